@@ -54,7 +54,7 @@ def simulate(
         Cylinder, ground motion, initial state, length, gravity, and the Coulomb coefficient of the pair
         cylinder and ground.
     engine : str
-        One of `engine_names()`; of `available_engines()` those that are installed. Exudyn is an ideal rim: flat
+        One of `engine_names()`; `available_engines()` are installed. Exudyn is an ideal rim: flat
         ground, from a release only. Rapier computes in single precision.
     support : {"recess", "flat", "ring"}
         The ideal recess, which holds the twist at zero; flat ground; or a recess of inclined walls with

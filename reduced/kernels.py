@@ -17,13 +17,15 @@ from .integration.systems import (
     FLAT,
     PLANAR,
     RECESS,
+    flat_combine,
     flat_ratio,
+    planar_combine,
     planar_ratio,
 )
 
-_driver_planar = make_driver(PLANAR, runge_kutta(PLANAR, planar_ratio))
+_driver_planar = make_driver(PLANAR, runge_kutta(PLANAR, planar_combine, planar_ratio))
 _driver_recess = make_driver(RECESS, taylor_series())
-_driver_flat = make_driver(FLAT, runge_kutta(FLAT, flat_ratio))
+_driver_flat = make_driver(FLAT, runge_kutta(FLAT, flat_combine, flat_ratio))
 _driver_resisted_planar = make_driver(RESISTED_PLANAR, STEPPERS["planar"])
 _driver_resisted_recess = make_driver(RESISTED_RECESS, STEPPERS["recess"])
 _driver_resisted_flat = make_driver(RESISTED_FLAT, STEPPERS["flat"])
@@ -80,14 +82,7 @@ INTEGRATORS: dict[str, Driver] = {
     "resisted flat": integrate_resisted_flat,
 }
 # variables of a state: with rolling resistance two more, energy lost and side (`integration.resisted`)
-SIZES = {
-    "planar": PLANAR.size,
-    "recess": RECESS.size,
-    "flat": FLAT.size,
-    "resisted planar": RESISTED_PLANAR.size,
-    "resisted recess": RESISTED_RECESS.size,
-    "resisted flat": RESISTED_FLAT.size,
-}
+SIZES = {"planar": 3, "recess": 4, "flat": 8, "resisted planar": 5, "resisted recess": 6, "resisted flat": 10}
 
 
 def load(model: str) -> None:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.models.number_checks import quoted
-from rockwobble.models.support import SUPPORTS as support_facts
+from rockwobble.models.support import SUPPORTS as FACTS
 
 from . import kernels
 from .body import Body, body_of, restitution_from_momentum
@@ -22,7 +22,7 @@ from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
 from .integration.result import Driver, IntegrationResult, Options, Task
 from .rolling import impact_ratio
 
-SUPPORTS = tuple(name for name, support in support_facts.items() if support.modelled)
+SUPPORTS = tuple(name for name, support in FACTS.items() if support.modelled)
 _OUT_OF_PLANE = 1e-9  # [rad] more than what rounding makes of an azimuth
 
 # Tilt (over alpha) below which the base is closed again. A rest forgets which way the cylinder leans, and
@@ -113,7 +113,7 @@ class Problem:
     @property
     def free_twist(self) -> bool:
         """Whether the model has a twist: on flat ground, but not where it is planar by choice."""
-        return self.model in SUPPORTS and not support_facts[self.model].guided
+        return self.model in SUPPORTS and not FACTS[self.model].guided
 
     def is_planar(self) -> bool:
         """Return whether the run stays in one vertical plane."""

@@ -124,7 +124,7 @@ class SuiteFile(pytest.File):
 
     def collect(self) -> Iterator[SuiteItem]:
         """Yield the items."""
-        from rockwobble.compare.runs.labels import run_labels
+        from rockwobble.compare.runs.choice import run_labels
         from rockwobble.multibody.engines.registry import engine_lack
 
         try:
@@ -152,11 +152,10 @@ class SuiteItem(pytest.Item):
 
     def runtest(self) -> None:
         """Run engine and model, and raise what is beyond a bound."""
-        from rockwobble.compare.check.agreement import check_run, reference_of
-        from rockwobble.compare.check.own_bounds import SuiteRuns
+        from rockwobble.compare.check.suite import SuiteRuns, check_run, reference_of
         from rockwobble.compare.runs.execution import Job
 
-        from .console.budget_of_run import budget_of_run
+        from .pages.findings import budget_of_run
 
         runs, bounds = SuiteRuns(workers=1), self.suite.bounds
         job = Job(case=self.case, run=self.run, label=self.label)

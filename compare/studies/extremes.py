@@ -42,12 +42,10 @@ from rockwobble.multibody.scene import REFERENCE_TIME_STEP, froude_scale
 from ..comparison.prediction import time_scale
 from ..metrics.pair import make_pair
 from ..runs.choice import own_model, require_runnable, support_of
-from ..runs.execution import simulate_run
+from ..runs.execution import run_tables, simulate_run
 from ..runs.progress import ProgressCallback
-from ..runs.tables import run_tables
-from ..storage.fingerprint import fingerprint
 from ..storage.manifest import Number
-from ..storage.provenance import code_digests, package_versions
+from ..storage.provenance import code_digests, fingerprint, package_versions
 from ..storage.results import Results
 from .plans import ExtremesPlan
 

@@ -71,33 +71,11 @@ ERROR = (
 )
 
 
-def make_combine(size: int) -> Callable[..., State]:
-    """Return ``combine(y, h, weights, slopes)``, y + h sum(weights slopes) of `size` variables."""
-    last = size - 1
-    before = make_combine(last) if last else None
-
-    @inlined
-    def value(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> float:
-        total = 0.0
-        for j in range(len(weights)):
-            total += weights[j] * slopes[j][last]
-        return y[last] + h * total
-
-    @jit
-    def first(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
-        return (value(y, h, weights, slopes),)
-
-    @jit
-    def combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
-        return (*before(y, h, weights, slopes), value(y, h, weights, slopes))  # type: ignore[misc]
-
-    return combine if last else first
-
-
 def make_step(derivative: Callable[..., Any], combine: Callable[..., Any]) -> Callable[..., Any]:
     """Return the compiled step of a system.
 
-    ``derivative(body, y, a)`` returns y' under the ground acceleration `a`. The step is
+    ``derivative(body, y, a)`` returns y' under the ground acceleration `a`, and
+    ``combine(y, h, weights, slopes)`` returns y + h sum(weights slopes). The step is
     ``step(body, y, k1, h, a, slope) -> (y_new, k_new, error, lowest)``: from the state `y` with
     derivative `k1`, over `h` [s], under the ground acceleration a + slope t; `lowest` is the least
     tilt of all stages and of the new state.
@@ -150,20 +128,18 @@ class Stepper(NamedTuple):
     acceleration: Callable[..., Any]  # (work, path) -> theta'' at the start of the last step
 
 
-Weights = tuple[float, ...]
-
-
 @jit
 def _no_workspace(y: State) -> NDArray[np.float64]:
     return np.empty(1)
 
 
-def runge_kutta(system: System, error_ratio: Callable[..., float]) -> Stepper:
+def runge_kutta(system: System, combine: Callable[..., Any], error_ratio: Callable[..., float]) -> Stepper:
     """Return the Runge-Kutta steps of one system.
 
+    ``combine(y, h, weights, slopes)`` returns y + h sum(weights slopes), and
     ``error_ratio(body, rtol, h, y, y_new, error, flat)`` the error over what is allowed.
     """
-    step = make_step(system.derivative, make_combine(system.size))
+    step = make_step(system.derivative, combine)
     momenta, derivative = system.momenta, system.derivative
 
     @jit

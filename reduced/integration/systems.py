@@ -28,10 +28,17 @@ from .result import State
 
 _ROUNDING = float(np.finfo(np.float64).eps)
 
+Weights = tuple[float, ...]
+
 
 @jit
 def _never(body: Body, y: State, a: Vector, slope: Vector) -> float:
     return 0.0
+
+
+@jit
+def _in_motion(body: Body, y: State, a: Vector, slope: Vector) -> bool:
+    return False
 
 
 @jit
@@ -45,15 +52,15 @@ def _as_it_was(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> S
 
 
 class System(NamedTuple):
-    """The compiled functions of one model, and the number of its variables."""
+    """The compiled functions of one model."""
 
-    size: int
     derivative: Callable[..., Any]  # (body, y, a) -> y'
     momenta: Callable[..., Any]  # y -> (L or Lambda, S)
     placed: Callable[..., Any]  # (body, y, theta, omega, phi, L) -> y with these, and without twist rate
-    resists: bool = False  # against rolling; then the last three are asked (`resisted`)
+    resists: bool = False  # against rolling; then the last four are asked (`resisted`)
     hold: Callable[..., float] = _never  # (body, y, a, slope) -> for how long it stands still, tilted [s]
     set_off: Callable[..., Any] = _as_it_is  # (body, y, a, slope) -> y that begins to move, its first step
+    let_go: Callable[..., bool] = _in_motion  # (body, y, a, slope) -> does what only pivots begin to move
     stopped: Callable[..., Any] = _as_it_was  # (body, rtol, y, a, slope) -> y, still where it is held
 
 
@@ -82,6 +89,18 @@ def scales(
 @jit
 def _planar_derivative(body: Body, y: State, a: Vector) -> State:
     return y[1], planar_rhs(body, y[0], sin_cos(y[2])[1], a[0], a[2]), 0.0
+
+
+@jit
+def planar_combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
+    """Return y + h sum(weights slopes)."""
+    a = b = c = 0.0
+    for j in range(len(weights)):
+        w, k = weights[j], slopes[j]
+        a += w * k[0]
+        b += w * k[1]
+        c += w * k[2]
+    return y[0] + h * a, y[1] + h * b, y[2] + h * c
 
 
 @jit
@@ -127,6 +146,32 @@ def _flat_derivative(body: Body, y: State, a: Vector) -> State:
 
 
 @jit
+def flat_combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
+    """Return y + h sum(weights slopes)."""
+    a = b = c = d = e = f = x = z = 0.0
+    for j in range(len(weights)):
+        w, k = weights[j], slopes[j]
+        a += w * k[0]
+        b += w * k[1]
+        c += w * k[2]
+        d += w * k[3]
+        e += w * k[4]
+        f += w * k[5]
+        x += w * k[6]
+        z += w * k[7]
+    return (
+        y[0] + h * a,
+        y[1] + h * b,
+        y[2] + h * c,
+        y[3] + h * d,
+        y[4] + h * e,
+        y[5] + h * f,
+        y[6] + h * x,
+        y[7] + h * z,
+    )
+
+
+@jit
 def _flat_momenta(y: State) -> tuple[float, float]:
     return y[3], y[5]
 
@@ -148,6 +193,6 @@ def flat_ratio(body: Body, rtol: float, h: float, y: State, y_new: State, error:
     return max(ratio, max(abs(error[6]), abs(error[7])) / (rtol * body.b))
 
 
-PLANAR = System(3, _planar_derivative, _planar_momenta, _planar_placed)
-RECESS = System(4, _recess_derivative, _recess_momenta, _recess_placed)
-FLAT = System(8, _flat_derivative, _flat_momenta, _flat_placed)
+PLANAR = System(_planar_derivative, _planar_momenta, _planar_placed)
+RECESS = System(_recess_derivative, _recess_momenta, _recess_placed)
+FLAT = System(_flat_derivative, _flat_momenta, _flat_placed)

@@ -100,11 +100,13 @@ def _layer(layer: Layer, panel: Panel, picture: Picture) -> dict[str, Any]:
             **{key: packed(getattr(layer, key)) for key in ("places", "start", "end")},
         }
     if isinstance(layer, Rule):
-        keys = ("name", "at", "axis", "text", "until", "colour", "dash", "side")
+        keys: tuple[str, ...] = ("name", "at", "axis", "text", "until", "colour", "dash", "side")
         return {"kind": "rule", **{key: getattr(layer, key) for key in keys}}
     if isinstance(layer, Text):
-        keys = ("x", "y", "text", "colour", "anchor")
-        return {"kind": "text", **{key: getattr(layer, key) for key in keys}}
+        return {
+            "kind": "text",
+            **{key: getattr(layer, key) for key in ("x", "y", "text", "colour", "anchor")},
+        }
     assert picture.shades is not None
     return _heat(layer, panel, picture.shades)
 

@@ -22,7 +22,7 @@ from rockwobble.compare.comparison.budget import (
     findings,
     limits,
 )
-from rockwobble.compare.metrics.agreement import Agreement
+from rockwobble.compare.metrics.pair import Agreement
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite
 from rockwobble.models.trace import lost_trace
 

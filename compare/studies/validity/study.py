@@ -10,11 +10,10 @@ from pathlib import Path
 
 import pandas as pd
 
+from ...runs.execution import run_tables
 from ...runs.progress import ProgressCallback
-from ...runs.tables import run_tables
-from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Number
-from ...storage.provenance import engine_makers, reduced_makers
+from ...storage.provenance import engine_makers, fingerprint, reduced_makers
 from ...storage.results import Results
 from ..plans import ValidityPlan
 from .free_response import FREE_RESPONSE, SLIP, VERIFICATION
