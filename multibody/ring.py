@@ -50,10 +50,10 @@ import numpy as np
 from rockwobble.models import Cylinder
 from rockwobble.models.support import SUPPORTS
 
-from .engines.declared import EngineSettings, positive, whole
 from .kinematics import axis_of
 from .protocol import Array, Settings
 from .scene import Scene
+from .settings import EngineSettings, positive, whole
 
 _ROUNDING = 1e-12  # [b] of a tilt that comes back from a quaternion
 STEEPEST = 1.5  # [rad] a wall that leans further is a floor

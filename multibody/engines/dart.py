@@ -34,18 +34,8 @@ import numpy as np
 from ..kinematics import about_vertical
 from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
 from ..scene import Scene
-from .declared import (
-    Count,
-    Declared,
-    EngineSettings,
-    Leapfrog,
-    Positive,
-    Share,
-    Small,
-    body_friction,
-    contact_counts,
-    positive,
-)
+from ..settings import Count, EngineSettings, Positive, Share, Small, positive
+from .declared import Declared, Leapfrog, body_friction, contact_counts
 
 if TYPE_CHECKING:
     from dartpy.constraint import BoxedLcpSolver

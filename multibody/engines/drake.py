@@ -32,17 +32,8 @@ import numpy as np
 from ..kinematics import about_vertical
 from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
 from ..scene import Body, Scene
-from .declared import (
-    Declared,
-    EngineSettings,
-    Leapfrog,
-    NotNegative,
-    Positive,
-    body_friction,
-    contact_counts,
-    one_of,
-    positive,
-)
+from ..settings import EngineSettings, NotNegative, Positive, one_of, positive
+from .declared import Declared, Leapfrog, body_friction, contact_counts
 
 if TYPE_CHECKING:
     from pydrake.multibody.tree import MultibodyForces

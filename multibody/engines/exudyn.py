@@ -20,14 +20,8 @@ import numpy as np
 from ..kinematics import axis_of
 from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
 from ..scene import Scene, Start
-from .declared import (
-    Count,
-    Declared,
-    EngineSettings,
-    Small,
-    one_of,
-    positive,
-)
+from ..settings import Count, EngineSettings, Small, one_of, positive
+from .declared import Declared
 
 if TYPE_CHECKING:
     from exudyn import MainSystem, SimulationSettings

@@ -16,14 +16,8 @@ import numpy as np
 from ..protocol import Array
 from ..ring import RingSettings, wall_feet, wall_orientations
 from ..scene import Scene, Start
-from .declared import (
-    Count,
-    EngineSettings,
-    Positive,
-    body_friction,
-    one_of,
-    positive,
-)
+from ..settings import Count, EngineSettings, Positive, one_of, positive
+from .declared import body_friction
 
 if TYPE_CHECKING:
     import mujoco  # type: ignore[import-untyped]

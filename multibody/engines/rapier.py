@@ -25,17 +25,8 @@ import numpy as np
 
 from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
 from ..scene import Scene
-from .declared import (
-    Count,
-    Declared,
-    EngineSettings,
-    Leapfrog,
-    Positive,
-    Share,
-    Small,
-    body_friction,
-    contact_counts,
-)
+from ..settings import Count, EngineSettings, Positive, Share, Small
+from .declared import Declared, Leapfrog, body_friction, contact_counts
 
 _SLOP = 10.0  # depths of the rim that Rapier does not correct: of what lands, it corrects the rest
 # [rad] lean from which the guide acts in full: its torque shakes a closed base, which friction holds as
