@@ -114,14 +114,19 @@ def make_ground(bullet: Any, client: int, scene: Scene, settings: PybulletSettin
 def make_cylinder(
     bullet: Any, client: int, scene: Scene, settings: PybulletSettings, *, standing: bool
 ) -> int:
-    """Make the cylinder, or the point on its rim from which it rises; return its number."""
+    """Make the cylinder, or the point on its rim from which it rises; return its number.
+
+    Under a slab it rises between two points, the other being the mirror of the first.
+    """
     shape = scene.body
     if standing:
         size = _POINT_SIZE * shape.base_radius
-        outline = bullet.createCollisionShape(
-            bullet.GEOM_SPHERE,
-            radius=size,
-            collisionFramePosition=[shape.base_radius, 0.0, size - shape.mass_centre_height],
+        point = [shape.base_radius, 0.0, size - shape.mass_centre_height]
+        points = [point, [-x for x in point]] if shape.slab_mass_ratio > 0.0 else [point]
+        outline = bullet.createCollisionShapeArray(
+            [bullet.GEOM_SPHERE] * len(points),
+            radii=[size] * len(points),
+            collisionFramePositions=points,
             physicsClientId=client,
         )
     else:
@@ -154,6 +159,30 @@ def make_cylinder(
     return int(body)
 
 
+def make_slab(bullet: Any, client: int, scene: Scene, settings: PybulletSettings) -> int:
+    """Make a slab that can only translate, a plane that looks down; return its number."""
+    plane = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=client)
+    slab = bullet.createMultiBody(
+        scene.body.slab_mass_ratio,
+        plane,
+        basePosition=[0.0, 0.0, 2.0 * float(scene.start.position[2])],
+        baseOrientation=_DOWNWARDS,
+        physicsClientId=client,
+    )
+    bullet.changeDynamics(
+        slab,
+        -1,
+        lateralFriction=body_friction(scene.friction, "product"),
+        restitution=0.0,
+        collisionMargin=settings.collision_margin,
+        localInertiaDiagonal=[0.0, 0.0, 0.0],  # which Bullet takes for infinite
+        linearDamping=0.0,
+        activationState=bullet.ACTIVATION_STATE_DISABLE_SLEEPING,
+        physicsClientId=client,
+    )
+    return int(slab)
+
+
 @contextlib.contextmanager
 def quiet() -> Iterator[None]:
     """Keep what Bullet prints from C, its build time and the like, off both standard streams."""
@@ -178,6 +207,7 @@ _HAS_DIRECTION = 1e-9  # [rad]
 _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
 _POSE = 7  # numbers of a pose: position, and quaternion with the scalar last
 _NO_SPIN = (0.0, 0.0, 0.0)
+_DOWNWARDS = (1.0, 0.0, 0.0, 0.0)  # half a turn about x, with the scalar last
 
 _FACTS = EngineFacts(
     title="PyBullet",
@@ -185,6 +215,7 @@ _FACTS = EngineFacts(
     release_error=1.5e-5,
     uplift_error=5e-6,
     smooth_uplift=True,
+    carries_slab=True,
     rolling_friction=True,
 )
 
@@ -221,6 +252,8 @@ class _PybulletStepper:
         self._ground = make_ground(pybullet, client, scene, settings)
         self._make = functools.partial(make_cylinder, pybullet, client, scene, settings)
         self._body = self._make(standing=self._standing)
+        self._slab = make_slab(pybullet, client, scene, settings) if scene.body.slab_mass_ratio else None
+        self._slab_velocity = 2.0 * scene.start.velocity  # in the axes of the scene [m/s]
         self._lengths = scene.body.base_radius, scene.body.mass_centre_height
         self._iterations, self._unsolved = settings.iterations, False
         self._overshoot = settings.friction_damping - 1.0
@@ -238,6 +271,11 @@ class _PybulletStepper:
             pybullet.stepSimulation(client)
             after, spin_after = map(np.array, pybullet.getBaseVelocity(self._body, client))
             velocity, spin = 1.5 * velocity - 0.5 * after, 1.5 * spin - 0.5 * spin_after
+            if self._slab is not None:
+                slab_after = np.array(pybullet.getBaseVelocity(self._slab, client)[0])
+                self._slab_velocity = 1.5 * self._slab_velocity - 0.5 * slab_after
+                place = [0.0, 0.0, 2.0 * float(start.position[2])]
+                pybullet.resetBasePositionAndOrientation(self._slab, place, _DOWNWARDS, client)
             self._put(start.position, quaternion, velocity, spin)
 
     @property
@@ -290,14 +328,18 @@ class _PybulletStepper:
         elif load > _LOADED:
             towards = math.atan2(-acceleration[1], -acceleration[0])
         velocities = bullet.getBaseVelocity(self._body, client)
-        vectors = about_vertical(np.array([place, (x, y, z), *velocities]), self._heading - towards)
+        vectors = np.array([place, (x, y, z), *velocities, self._slab_velocity])
+        vectors = about_vertical(vectors, self._heading - towards)
         self._heading = towards
         if lean > _RISEN:
             self._let_go()
+        self._slab_velocity = vectors[4]
         self._put(vectors[0], np.append(vectors[1], w), vectors[2], vectors[3])
         pull = about_vertical(-acceleration[None] - [0.0, 0.0, self._gravity], -towards)[0]
         bullet.setGravity(*pull.tolist(), client)
         bullet.stepSimulation(client)
+        if self._slab is not None:
+            self._slab_velocity = np.array(bullet.getBaseVelocity(self._slab, client)[0])
         place, turn = bullet.getBasePositionAndOrientation(self._body, client)
         return (*place, *turn)
 
@@ -317,6 +359,8 @@ class _PybulletStepper:
         pose = position.tolist(), quaternion.tolist()
         self._bullet.resetBasePositionAndOrientation(self._body, *pose, self._client)
         self._bullet.resetBaseVelocity(self._body, velocity, spin, physicsClientId=self._client)
+        if self._slab is not None:
+            self._bullet.resetBaseVelocity(self._slab, self._slab_velocity, physicsClientId=self._client)
 
     def warnings(self) -> str:
         """Bullet does not warn."""
@@ -356,9 +400,11 @@ class _PybulletStepper:
         torque, world, stiffness = bullet.applyExternalTorque, bullet.WORLD_FRAME, -2.0 * self._stiffness
         velocities, move = bullet.getBaseVelocity, bullet.resetBaseVelocity
         ground, overshoot, (b, h) = self._ground, self._overshoot, self._lengths
+        slab, (slab_x, slab_y, slab_z) = self._slab, self._slab_velocity.tolist()
         atan2, sqrt = math.atan2, math.sqrt
         # numbers in one list, not tuples in one: those the garbage collector would go through again and again
         poses: list[float] = []
+        beyond_x = beyond_y = 0.0
         report: Any = ()
         _, (x, y, z, w) = pose(body, client)
         for along_x, along_y, along_z in zip(*gravity.T.tolist(), strict=True):
@@ -376,11 +422,21 @@ class _PybulletStepper:
                 # takes the rim to the velocity of the ground, here beyond zero by the overshoot
                 (vx, vy, _), (wx, wy, wz) = velocities(body, client)
                 out, down = b * az / sine - h, h * az + b * sine
-                slip_x, slip_y = vx - wy * down - wz * out * ay, vy + wz * out * ax + wx * down
+                turn_x, turn_y = wy * down + wz * out * ay, wz * out * ax + wx * down
+                slip_x, slip_y = vx - turn_x, vy + turn_y
                 move(ground, (-overshoot * slip_x, -overshoot * slip_y, 0.0), _NO_SPIN, client)
+                if slab is not None:
+                    # the same on the slab, which keeps what it is moved by for this step alone
+                    beyond_x = overshoot * (slab_x - vx - turn_x)
+                    beyond_y = overshoot * (slab_y - vy + turn_y)
+                    move(slab, (slab_x + beyond_x, slab_y + beyond_y, slab_z), _NO_SPIN, client)
             report = step(client)
+            if slab is not None:
+                (slab_x, slab_y, slab_z), _ = velocities(slab, client)
+                slab_x, slab_y = slab_x - beyond_x, slab_y - beyond_y
             place, turn = pose(body, client)
             x, y, z, w = turn
             poses += place
             poses += turn
+        self._slab_velocity = np.array((slab_x, slab_y, slab_z))
         return poses, report

@@ -65,7 +65,7 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "walls": any(each["support"] in _WALLED for each in found.facts["methods"].values()),
         "failed": [row for row in fallen if row["failed"]],
         "efficiency": efficiency,
-        "islands": found.islands.to_dict("records"),
+        "gaps": found.gaps.to_dict("records"),
     }
 
 

@@ -42,10 +42,10 @@ def spectrum_values(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> d
         .replace(math.inf, math.nan)
         .to_dict("records"),
         "every": every,
-        "wrong": bands[bands["missed"] > bands["overcalled"]].to_dict("records"),
+        "wrong": bands[bands["unconservative"] > bands["conservative"]].to_dict("records"),
         "overturns": any(np.isfinite(lowest).any() for lowest in spectrum.lowest.values()),
         "unconservative_from": unconservative_from(spectrum),
-        "islands": _islands(tables["islands"]),
+        "gaps": _gaps(tables["gaps"]),
         "failed": int(spectrum.failed().sum()),
         "search": _search(spectrum, tables["lowest"]),
         "checked": {
@@ -59,8 +59,8 @@ def spectrum_values(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> d
     }
 
 
-def _islands(islands: pd.DataFrame) -> dict[str, object] | None:
-    closed = islands[islands["closed"] & (islands["series"] == SPATIAL)]
+def _gaps(gaps: pd.DataFrame) -> dict[str, object] | None:
+    closed = gaps[gaps["closed"] & (gaps["series"] == SPATIAL)]
     if not len(closed):
         return None
     widest = closed.iloc[int((closed["upper"] - closed["lower"]).argmax())]

@@ -53,7 +53,7 @@ def page_of(found: Validity) -> Page:
 
 
 def _contrasts(table: pd.DataFrame) -> list[dict[str, object]]:
-    """The rows of paired ratios with their point in words; a recess with clearance at half the step is in the text."""
+    """The rows of paired ratios with their point in words, but for half the step."""
     rows = []
     for row in table.to_dict("records"):
         if row["method"] not in METHODS:
