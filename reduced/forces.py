@@ -53,7 +53,9 @@ def contact_force(
     turning = 0.0
     if body.delta > 0.0:
         spin = tau_rate - phi_rate
-        tilting, turning = couple_on(body, theta, omega, phi, spin, theta_acceleration, (ax, ay, az))
+        tilting, turning = couple_on(
+            body, theta, omega, phi, spin, tau_rate, theta_acceleration, (ax, ay, az), free_twist
+        )
         theta_acceleration += tilting / body.A
         S_rate += twist_share(body, s, c) * turning
     t = s / (1.0 + c)

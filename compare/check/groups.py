@@ -285,7 +285,7 @@ def check(
     workers: int | None = None,
     progress: ProgressCallback | None = None,
     announce: Callable[[str], None] | None = None,
-    **settings: Any,
+    **settings: object,
 ) -> Checks:
     """Check a reduced model, an engine, somebody's model or a trajectory by physics.
 
@@ -344,7 +344,7 @@ def check(
         results = [*_of_suite(runs, read_suite(suite) if not isinstance(suite, Suite) else suite)]
         return _summed(results)
     if engine is not None:
-        chosen = [subjects.engine(engine, time_step, **settings)]
+        chosen = [subjects.engine(engine, time_step, reference=None, **settings)]
     elif model is not None:
         function = subjects.load_model(model) if isinstance(model, str) else model
         chosen = [subjects.external_model(function, support=support, tolerance=tolerance)]

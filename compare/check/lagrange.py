@@ -36,6 +36,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, WobblingFrame, el_centro_1940
+from rockwobble.models.support import SUPPORTS
 
 from ..metrics.pair import energy_loss
 from .measurement import GRAVITY, PIER, RELEASE, Result, at_most, largest, released, worst_of
@@ -342,7 +343,7 @@ def free_motion(subject: Subject, support: str) -> Iterator[Result]:
     for words, case in cases.items():
         found = subject.simulate(case, support, rest_tilt=0.0)
         yield at_most(f"energy of a release{words}", np.ptp(found.energy) / found.energy[0], bound)
-        if support != "recess" or not {"tilt_rate", "rolling_rate"} <= subject.knows:
+        if not (SUPPORTS[support].guided and {"tilt_rate", "rolling_rate"} <= subject.knows):
             continue
         shape = shape_of(PIER)
         state = found.tilt, found.rolling_angle, found.tilt_rate, found.rolling_rate

@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 
@@ -98,7 +97,7 @@ class Subject(Brief):
     carries_slab: bool = False
 
     def simulate(
-        self, case: Case, support: str, *, sample_step: float = SAMPLE_STEP, **options: Any
+        self, case: Case, support: str, *, sample_step: float = SAMPLE_STEP, **options: object
     ) -> Trace:
         """Return the motion of a case; options that the source does not take are left out."""
         known = {name: value for name, value in options.items() if name in self.options}
@@ -124,7 +123,9 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
     Subject
     """
 
-    def source(case: Case, support: str, *, sample_step: float, rtol: float = rtol, **options: Any) -> Trace:
+    def source(
+        case: Case, support: str, *, sample_step: float, rtol: float = rtol, **options: object
+    ) -> Trace:
         way = {"plane": 0.0} if support == "planar" else {"support": support}
         found: Trace = module.simulate(case, sample_step=sample_step, rtol=rtol, **way, **options)
         return found
@@ -144,7 +145,7 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
 
 
 def engine(
-    name: str, time_step: TimeStep | None = None, *, reference: Simulate | None = None, **settings: Any
+    name: str, time_step: TimeStep | None = None, *, reference: Simulate | None = None, **settings: object
 ) -> Subject:
     """Return an engine with its settings.
 
@@ -321,7 +322,7 @@ def _remembered(source: Simulate) -> Simulate:
     """Return the source that runs each case once, since many checks look at one motion."""
     kept: dict[str, Trace] = {}
 
-    def simulate(case: Case, support: str, **options: Any) -> Trace:
+    def simulate(case: Case, support: str, **options: object) -> Trace:
         key = fingerprint([case, support, options])
         if key not in kept:
             kept[key] = source(case, support, **options)

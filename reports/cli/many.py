@@ -115,7 +115,7 @@ def spectrum(
 
     Writes spectrum.html, the same as spectrum.md with spectrum.svg, and as Parquet the cells (spectrum),
     the lowest intensities found to overturn (lowest), the gaps in the overturning region above them
-    (islands), the shares by size (contrast), and some cells run again to a tighter tolerance (checked).
+    (gaps), the shares by size (contrast), and some cells run again to a tighter tolerance (checked).
 
     Example: rockwobble spectrum --tan-alpha 0.2 --semidiagonal 1:20:50 --intensity 1:9:50
     """

@@ -289,6 +289,7 @@ def certify(
         from rockwobble.compare.check import reduced_model, run_checks
         from rockwobble.compare.storage.files import require_file
         from rockwobble.models.number_checks import require_one_of
+        from rockwobble.models.support import SUPPORTS
 
         if time_step is not None and engine is None:
             raise ValueError("--time-step belongs to --engine, got it alone")
@@ -296,7 +297,7 @@ def certify(
             require_one_of("--only", group, CLAIMING)
         require_file("--out", out)
         subject = models() if engine is None else engine_subject(engine, time_step)
-        if "recess" not in subject.supports:
+        if not any(SUPPORTS[name].guided for name in subject.supports):
             given = f"{engine} with {', '.join(subject.supports)}"
             raise ValueError(f"--engine must have a recess, got {given}")
         checked = subject if engine else reduced_model()

@@ -46,13 +46,15 @@ _STYLE: Any = {
     "path.simplify_threshold": 0.3,
 }
 _SMALL = 8
-_RASTER_DPI = 200  # of maps with more cells than are worth a path each
-_VECTOR_CELLS = 2500
+_RASTER_DPI = 200  # of maps, whose cells as paths would take ten times the room
+_EDGED_CELLS = 2500  # with more cells than these, a white edge would hide them
 # more numbers than these would run into each other
 _MOST_WRITTEN = 64
 # of the scale of colours: there white letters are read better
 _DARK = 0.6
-_LONG_NUMBER = re.compile(rb"(?<=[ \"(])(-?\d+\.\d{2})\d+")  # a hundredth of a point is not seen
+# a tenth of a point is an eighth of a pixel
+_PATH, _LONG_NUMBER = re.compile(rb'(?<= d=")[^"]+'), re.compile(rb"(\.\d)\d+")
+_INDENT = re.compile(rb"\n +")
 _HATCHES = {"": "", "/": "//", "x": "xx", ".": ".."}
 
 
@@ -63,7 +65,11 @@ def svg(picture: Picture, *, titled: bool = False) -> bytes:
         figure(picture, titled=titled).savefig(
             buffer, format="svg", dpi=_RASTER_DPI, metadata={"Date": None, "Creator": "rockwobble"}
         )
-    return _LONG_NUMBER.sub(rb"\1", buffer.getvalue())
+    return _INDENT.sub(b"\n", _PATH.sub(_short, buffer.getvalue()))
+
+
+def _short(path: re.Match[bytes]) -> bytes:
+    return b" ".join(_LONG_NUMBER.sub(rb"\1", path[0]).split())
 
 
 def figure(picture: Picture, *, titled: bool = False) -> Figure:
@@ -229,8 +235,8 @@ _BEHIND = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0}
 def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
     edges = heat.edges(log_x=panel.x.log, log_y=panel.y.log)
     place = shades.place(heat.values)
-    few = heat.values.size <= _VECTOR_CELLS
-    drawn: dict[str, Any] = {"rasterized": not few, "edgecolors": "white" if few else "none"}
+    few = heat.values.size <= _EDGED_CELLS
+    drawn: dict[str, Any] = {"rasterized": True, "edgecolors": "white" if few else "none"}
     axes.grid(visible=False)
     axes.set_facecolor(NOTHING)
     axes.pcolormesh(*edges, np.ma.masked_invalid(place), cmap=colours(shades), vmin=0.0, vmax=1.0,

@@ -19,6 +19,7 @@ from rockwobble.compare.studies.validity.limits import (
 )
 from rockwobble.compare.studies.validity.shaken import FLAT, FREE, PERTURBED, RECESS
 from rockwobble.compare.studies.validity.study import Validity
+from rockwobble.models.support import SUPPORTS
 
 from .heat import Gap, Heat, Shades, contour, names
 from .palette import DARK, GREY, ORDER, PALE, Style, mark_styles
@@ -342,7 +343,7 @@ def _slip(table: pd.DataFrame) -> Picture:
 
 def _rings(table: pd.DataFrame) -> Picture:
     # walls of another inclination or friction are in the table, and would be too many lines here
-    plain = table[(table["support"] == "ring") & (table["inclination"] == 0.0)]
+    plain = table[walled(table) & (table["inclination"] == 0.0)]
     default = plain["friction"].mode().iloc[0] if len(plain) else 0.0
     plain = plain[plain["friction"] == default]
     plain = plain.assign(ratio=plain["peak"] / plain["recess_peak"])
@@ -386,6 +387,11 @@ def _rings(table: pd.DataFrame) -> Picture:
         ],
         columns=2,
     )
+
+
+def walled(table: pd.DataFrame) -> pd.Series[bool]:
+    """Return which runs are of a support with walls."""
+    return table["support"].map(lambda name: SUPPORTS[name].walls)
 
 
 def _contact(table: pd.DataFrame) -> Picture:

@@ -11,10 +11,12 @@ from rockwobble.compare.studies.fragility.fit import ALWAYS, FITTED, NEVER, TOO_
 from rockwobble.compare.studies.fragility.intensity import MEASURES
 from rockwobble.compare.studies.fragility.study import FEWEST_LEVELS, main_contrasts
 from rockwobble.compare.studies.fragility.tables import ALL, OVERTURNED
+from rockwobble.models.support import SUPPORTS
 
 from ..figures.fragility import pictures
 from .page import Page
 
+_WALLED = tuple(each.name for each in SUPPORTS.values() if each.walls)
 # below this probability the counts do not follow a lognormal curve
 _POOR = 0.05
 
@@ -61,10 +63,10 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "states": _states(found),
         "state_columns": [["method", "method", "words"]]
         + [[limit, limit.replace("_", " "), ".3g"] for limit in found.facts["limits"]],
-        "ring": any(each["support"] == "ring" for each in found.facts["methods"].values()),
+        "walls": any(each["support"] in _WALLED for each in found.facts["methods"].values()),
         "failed": [row for row in fallen if row["failed"]],
         "efficiency": efficiency,
-        "islands": found.islands.to_dict("records"),
+        "gaps": found.gaps.to_dict("records"),
     }
 
 

@@ -13,7 +13,7 @@ from rockwobble.compare.studies.validity.plan import LARGEST_PEAK
 from rockwobble.compare.studies.validity.shaken import FREE
 from rockwobble.compare.studies.validity.study import Validity
 
-from ..figures.validity import METHODS, pictures
+from ..figures.validity import METHODS, pictures, walled
 from .page import Page
 
 _NEEDS = {
@@ -125,7 +125,7 @@ def _rings(table: pd.DataFrame) -> list[dict[str, object]]:
 
 def _worst(table: pd.DataFrame) -> dict[str, object]:
     """The ring whose peak is farthest from that of the recess model."""
-    shaken = table[(table["support"] == "ring") & (table["motion"] != FREE) & (table["outcome"] != "failed")]
+    shaken = table[walled(table) & (table["motion"] != FREE) & (table["outcome"] != "failed")]
     ratio = (shaken["peak"] / shaken["recess_peak"]).to_numpy(dtype=float)
     with np.errstate(divide="ignore"):
         worst = shaken.iloc[int(np.argmax(np.maximum(ratio, 1.0 / ratio)))]

@@ -23,12 +23,11 @@ from rockwobble.compare.studies.validity.limits import (
     cells,
     contrasts,
     damping,
-    first_failing,
     friction,
+    limit_of,
     limits_of,
     needs,
     reached,
-    up_to,
     vertical,
 )
 from rockwobble.compare.studies.validity.plan import (
@@ -151,7 +150,7 @@ def test_over_records_agreement_is_said_where_the_interval_shows_it(
     members = {**tables, "records": pd.DataFrame(rows)}
     found = contrasts(members).set_index(["method", "against"])
     assert found.loc[("recess", RECESS), "verdict"] == verdict
-    # a ring is another system, and is held against itself for how far it has converged
+    # a ring is another system, and is compared with itself for how far it has converged
     assert found.loc[("ring", RECESS), "ratio"] == pytest.approx(2.0)
     assert found.loc[(HALVED, "ring"), "ratio"] == pytest.approx(0.5)
     numbers = limits_of(members)["records"]
@@ -271,10 +270,10 @@ def test_an_ended_run_goes_on_where_it_was_and_finds_the_same(
 def test_measures_of_limits() -> None:
     points = np.array([0.1, 0.1, 0.2, 0.2, 0.3])
     holds = np.array([True, True, True, False, True])
-    assert up_to(points, holds) == 0.1  # needs every row of a point
-    assert first_failing(points, holds) == 0.2
-    assert math.isnan(up_to(points, np.zeros(5, bool)))
-    assert math.isnan(first_failing(points, np.ones(5, bool)))
+    assert limit_of(points, holds) == (0.1, 0.2)  # a point needs every row
+    np.testing.assert_equal(limit_of(points, np.zeros(5, bool)), (math.nan, 0.1))
+    np.testing.assert_equal(limit_of(points, np.ones(5, bool)), (0.3, math.nan))
+    np.testing.assert_equal(limit_of(points[:0], holds[:0]), (math.nan, math.nan))
     # what is infinite counts, what is not known does not
     assert reached(np.array([1.0, 2.0, math.inf, math.nan]), 0.6) == 2.0
     assert reached(np.array([1.0, 2.0, math.inf]), 0.9) == math.inf
