@@ -32,7 +32,7 @@ class Demands(NamedTuple):
 def review(
     demands_at: Callable[[Array], Demands], steps: Array, jumps: Array, friction: float
 ) -> Assumptions:
-    """Hold the demands of a solution against contact and a coefficient of friction.
+    """Compare the demands of a solution with contact and a coefficient of friction.
 
     Parameters
     ----------

@@ -40,8 +40,8 @@ def simulate(
     Parameters
     ----------
     case : Case
-        Cylinder, ground motion, initial state, length, gravity; its friction is what the friction needed is
-        held against.
+        Cylinder, ground motion, initial state, length, gravity, and the friction with which the friction
+        demand is compared.
     support : {"recess", "flat"}, optional
         "recess": no slip, no roll-out, the paper's two degrees of freedom, (18) and (19); "flat": no slip,
         free to roll out.

@@ -1,8 +1,8 @@
 """Engines by name; each is imported only when it is asked for.
 
 Engines are declared as entry points of the group `rockwobble.engines`, so that a package of somebody
-else can bring one. Ours are declared there too, and known here besides: a checkout that is not installed
-has no entry points, and one of ours is known by name where its package has no wheel.
+else can bring one. Those of this package are declared there too, and known here besides: a checkout that is
+not installed has no entry points, and an engine is known by name where its package has no wheel.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
 
 
 def engine_names() -> tuple[str, ...]:
-    """Return the names of all known engines, installed or not: ours, then those of other packages.
+    """Return the names of all known engines, installed or not: of this package, then of others.
 
     Returns
     -------
@@ -130,7 +130,7 @@ def own_engines() -> tuple[str, ...]:
 
 
 def available_engines() -> tuple[str, ...]:
-    """Return the names of all engines that are installed here: ours, then those of other packages.
+    """Return the names of all engines that are installed here: of this package, then of others.
 
     Returns
     -------
