@@ -164,11 +164,11 @@ class Assumptions(Brief):
     (True, 0.221, 0.94)
     """
 
-    breaches: tuple[Diagnostic, ...]
-    least_normal_force: float
-    largest_normal_force: float = field(repr=False)
-    largest_friction_needed: float
-    largest_restraining_moment: float
+    breaches: tuple[Diagnostic, ...] = ()
+    least_normal_force: float = 1.0
+    largest_normal_force: float = field(default=1.0, repr=False)
+    largest_friction_needed: float = 0.0
+    largest_restraining_moment: float = 0.0
     friction: float
 
     @property

@@ -32,28 +32,30 @@ _RANGE = ("from", "to", "step", "count", "spacing")
 # a step divides its range up to the rounding of decimal fractions
 _ROUNDING = 1e-9
 
-Check = Callable[[float], str]
+Check = Callable[[float], None]
+"""Refuses a value out of range."""
 
 
-def any_number(_: float) -> str:
+def any_number(_: float) -> None:
     """Refuse nothing."""
-    return ""
 
 
-def positive(value: float) -> str:
+def positive(value: float) -> None:
     """Refuse zero and below."""
-    return "" if value > 0.0 else f"must be positive, got {value:g}"
+    if not value > 0.0:
+        raise ValueError(f"must be positive, got {value:g}")
 
 
-def not_negative(value: float) -> str:
+def not_negative(value: float) -> None:
     """Refuse what is below zero."""
-    return "" if value >= 0.0 else f"must not be negative, got {value:g}"
+    if not value >= 0.0:
+        raise ValueError(f"must not be negative, got {value:g}")
 
 
-def whole(value: float) -> str:
+def whole(value: float) -> None:
     """Refuse fractions and what is below one."""
-    fine = value >= 1.0 and value == math.floor(value)
-    return "" if fine else f"must be a positive whole number, got {value:g}"
+    if not (value >= 1.0 and value == math.floor(value)):
+        raise ValueError(f"must be a positive whole number, got {value:g}")
 
 
 def expanded(given: object, check: Check = any_number) -> tuple[float, ...]:
@@ -67,7 +69,7 @@ def expanded(given: object, check: Check = any_number) -> tuple[float, ...]:
     if isinstance(given, dict):
         values = _range(given)
         for value in values:
-            _require(check(value))
+            check(value)
         return values
     if not isinstance(given, list):
         return (_number(given, check),)
@@ -97,13 +99,8 @@ def _number(given: object, check: Check) -> float:
         value = math.inf
     if not math.isfinite(value):
         raise ValueError(f"must be a finite number, got {shown(given)}")
-    _require(check(value))
+    check(value)
     return value
-
-
-def _require(complaint: str) -> None:
-    if complaint:
-        raise ValueError(complaint)
 
 
 def _range(given: Mapping[str, object]) -> tuple[float, ...]:
