@@ -28,6 +28,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace,
 from ..external.motion import exceeds
 from ..metrics.pair import agreement_time, energy_loss, make_pair, rms
 from .measurement import (
+    FRAME_RELEASE,
     GRAVITY,
     NO_BASELINE,
     PIER,
@@ -109,6 +110,13 @@ def release(subject: Subject, support: str) -> Iterator[Result]:
         own, other = (each.passes[columns].to_numpy(dtype=float) for each in (found, model))
         off = largest(own - other) if own.shape == other.shape else math.nan
         yield at_most("passes of a release", off, subject.within(10.0, "as the model", "s, rad"))
+
+
+def frame(subject: Subject, support: str) -> Iterator[Result]:
+    """Tilt of a release of a frame: one column under a slab that can only translate."""
+    found, model = _both(subject, FRAME_RELEASE, support)
+    apart = _difference(found, model, FRAME_RELEASE.length)
+    yield at_most("tilt and azimuth of a frame", apart, subject.within(1.0, "contact at its step", "alpha"))
 
 
 def ramp(subject: Subject, support: str) -> Iterator[Result]:

@@ -76,6 +76,8 @@ class Subject(Brief):
         The only cases that it answers. Default: any.
     uplifts : bool
         Whether it can start from a cylinder that stands.
+    carries_slab : bool
+        Whether it knows a wobbling frame.
     """
 
     label: str
@@ -92,6 +94,7 @@ class Subject(Brief):
     run: Run | None = None
     cases: tuple[Case, ...] | None = None
     uplifts: bool = True
+    carries_slab: bool = False
 
     def simulate(
         self, case: Case, support: str, *, sample_step: float = SAMPLE_STEP, **options: object
@@ -137,6 +140,7 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
         repeatability=MODEL_TOLERANCE,
         steps=(1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10),
         at_step=lambda rtol: reduced_model(module, rtol=rtol),
+        carries_slab=True,
     )
 
 
@@ -187,6 +191,7 @@ def engine(
         reference=reference or reduced.simulate,
         run=Run(name, found.supports[0], time_step, **settings),
         uplifts=found.uplifts,
+        carries_slab=facts.carries_slab,
     )
 
 

@@ -37,6 +37,11 @@ def _never(body: Body, y: State, a: Vector, slope: Vector) -> float:
 
 
 @jit
+def _in_motion(body: Body, y: State, a: Vector, slope: Vector) -> bool:
+    return False
+
+
+@jit
 def _as_it_is(body: Body, y: State, a: Vector, slope: Vector) -> tuple[State, float]:
     return y, inf
 
@@ -52,9 +57,10 @@ class System(NamedTuple):
     derivative: Callable[..., Any]  # (body, y, a) -> y'
     momenta: Callable[..., Any]  # y -> (L or Lambda, S)
     placed: Callable[..., Any]  # (body, y, theta, omega, phi, L) -> y with these, and without twist rate
-    resists: bool = False  # against rolling; then the last three are asked (`resisted`)
+    resists: bool = False  # against rolling; then the last four are asked (`resisted`)
     hold: Callable[..., float] = _never  # (body, y, a, slope) -> for how long it stands still, tilted [s]
     set_off: Callable[..., Any] = _as_it_is  # (body, y, a, slope) -> y that begins to move, its first step
+    let_go: Callable[..., bool] = _in_motion  # (body, y, a, slope) -> does what only pivots begin to move
     stopped: Callable[..., Any] = _as_it_was  # (body, rtol, y, a, slope) -> y, still where it is held
 
 

@@ -17,6 +17,7 @@ from rockwobble.compare.studies.spectrum.study import (
     OverturningSpectrum,
     unconservative_from,
 )
+from rockwobble.models.support import support_named
 
 from ..figures.spectrum import pictures
 from .page import Page
@@ -34,6 +35,7 @@ def spectrum_values(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> d
     bands, every = contrast.iloc[:-1], contrast.iloc[-1]
     return {
         "spectrum": spectrum,
+        "holds": support_named(spectrum.support),
         "cell_rows": contrast.assign(
             band=[f"{row.smallest:.3g} to {row.largest:.3g}" for row in contrast.itertuples()]
         )
