@@ -259,7 +259,7 @@ class Run:
         planar = self.settings.get("plane") is not None
         return "planar model" if planar else _MODEL_NAMES.get(self.support, f"{self.support} model")
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         # a mapping proxy does not pickle, and runs travel to worker processes
         return _restore_run, (self.engine, self.support, self.time_step, dict(self.settings))
 

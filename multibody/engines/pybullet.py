@@ -14,22 +14,22 @@ import functools
 import math
 import os
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from types import ModuleType
+from typing import Annotated
 
 import numpy as np
 
-from rockwobble.models.support import SUPPORTS
-
-from ..kinematics import about_vertical, turning
+from ..kinematics import about_vertical
 from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
 from ..scene import Scene
-from .declared import GUIDE, Declared, body_friction, build, positive, whole
+from ..settings import Count, EngineSettings, Positive, Share, positive
+from .declared import Declared, Leapfrog, body_friction, contact_counts
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PybulletSettings:
+class PybulletSettings(EngineSettings):
     """Settings of Bullet: its contact solver; its step and its cone leave no choice.
 
     Attributes
@@ -54,39 +54,20 @@ class PybulletSettings:
         Rounds the rim, at the reference size [m]. Bullet's own, 0.04, leaves a bias that no step removes.
     """
 
-    guide_stiffness: float
-    friction_damping: float = 1.8
-    solver_residual: float = 1e-16
-    iterations: int = 100
-    contact_slop: float = 0.0
-    contact_erp: float = 0.2
-    collision_margin: float = 0.0
-
-    @classmethod
-    def resolve(cls, given: Mapping[str, Any], time_step: float) -> PybulletSettings:
-        """Return the settings for a time step [s], with those `given` in place of the defaults.
-
-        Raises
-        ------
-        ValueError
-            If a setting is unknown or out of range.
-        """
-        settings = build(cls, "pybullet", given, {"guide_stiffness": (GUIDE / time_step) ** 2 / 4.0})
-        positive(settings, "guide_stiffness")
-        positive(settings, "friction_damping", most=2.0)
-        positive(settings, "solver_residual")
-        positive(settings, "contact_slop", most=0.1, or_zero=True)
-        positive(settings, "contact_erp", most=1.0)
-        positive(settings, "collision_margin", most=0.1, or_zero=True)
-        whole(settings, "iterations")
-        return settings
+    guide_stiffness: Positive
+    friction_damping: Annotated[float, positive(most=2.0)] = 1.8
+    solver_residual: Positive = 1e-16
+    iterations: Count = 100
+    contact_slop: Annotated[float, positive(most=0.1, or_zero=True)] = 0.0
+    contact_erp: Share = 0.2
+    collision_margin: Annotated[float, positive(most=0.1, or_zero=True)] = 0.0
 
 
 _POINT_SIZE = 1e-6  # of b
 _LEAST = 1e-12  # friction of a pair, for a quotient
 
 
-def make_ground(bullet: Any, client: int, scene: Scene, settings: PybulletSettings) -> int:
+def make_ground(bullet: ModuleType, client: int, scene: Scene, settings: PybulletSettings) -> int:
     """Set the parameters of the engine and make the ground; return its number."""
     bullet.setPhysicsEngineParameter(
         fixedTimeStep=scene.time_step,
@@ -112,7 +93,7 @@ def make_ground(bullet: Any, client: int, scene: Scene, settings: PybulletSettin
 
 
 def make_cylinder(
-    bullet: Any, client: int, scene: Scene, settings: PybulletSettings, *, standing: bool
+    bullet: ModuleType, client: int, scene: Scene, settings: PybulletSettings, *, standing: bool
 ) -> int:
     """Make the cylinder, or the point on its rim from which it rises; return its number.
 
@@ -159,7 +140,7 @@ def make_cylinder(
     return int(body)
 
 
-def make_slab(bullet: Any, client: int, scene: Scene, settings: PybulletSettings) -> int:
+def make_slab(bullet: ModuleType, client: int, scene: Scene, settings: PybulletSettings) -> int:
     """Make a slab that can only translate, a plane that looks down; return its number."""
     plane = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=client)
     slab = bullet.createMultiBody(
@@ -241,13 +222,11 @@ class PybulletEngine(Declared):
                 pybullet.disconnect(client)
 
 
-class _PybulletStepper:
-    def __init__(self, pybullet: Any, client: int, scene: Scene, settings: PybulletSettings) -> None:
-        self._bullet, self._client, self._step = pybullet, client, scene.time_step
+class _PybulletStepper(Leapfrog):
+    def __init__(self, pybullet: ModuleType, client: int, scene: Scene, settings: PybulletSettings) -> None:
+        super().__init__(scene, settings.guide_stiffness)
+        self._bullet, self._client = pybullet, client
         self._gravity = scene.gravity
-        # guide_stiffness is in the time of the user; of both halves of the guide, torque for each twist
-        stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
-        self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
         self._standing = scene.start.standing
         self._ground = make_ground(pybullet, client, scene, settings)
         self._make = functools.partial(make_cylinder, pybullet, client, scene, settings)
@@ -257,12 +236,9 @@ class _PybulletStepper:
         self._lengths = scene.body.base_radius, scene.body.mass_centre_height
         self._iterations, self._unsolved = settings.iterations, False
         self._overshoot = settings.friction_damping - 1.0
-        self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
         self._held = self._standing
         self._friction = scene.friction
         start = scene.start
-        self._position = start.position
-        self._quaternion = start.quaternion
         quaternion = np.roll(start.quaternion, -1)
         velocity, spin = start.velocity, start.angular_velocity
         self._put(start.position, quaternion, velocity, spin)
@@ -278,14 +254,8 @@ class _PybulletStepper:
                 pybullet.resetBasePositionAndOrientation(self._slab, place, _DOWNWARDS, client)
             self._put(start.position, quaternion, velocity, spin)
 
-    @property
-    def hold_centre(self) -> float:
-        """Bullet steps as leapfrog does."""
-        return 0.0
-
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
-        before = self._position, self._quaternion
         poses: list[float] = []
         headings: list[float] = []
         while self._standing and len(headings) < len(acceleration):
@@ -303,14 +273,7 @@ class _PybulletStepper:
             poses += self._loop(pulls)
         heading = np.array(headings + [self._heading] * (len(acceleration) - done))
         rows = np.fromiter(poses, dtype=np.float64, count=len(poses)).reshape(-1, _POSE)
-        position = about_vertical(rows[:, :3], heading)
-        quaternion = np.roll(rows[:, 3:], 1, axis=1)
-        quaternion[:, 1:] = about_vertical(quaternion[:, 1:], heading)
-        self._position, self._quaternion = position[-1], quaternion[-1]
-        # the new velocity moves the pose, so poses give the velocities, and the loop is spared a call
-        velocity = np.diff(np.vstack([before[0], position]), axis=0) / self._step
-        spin = turning(before[1], quaternion) / self._step
-        return Steps(position, quaternion, velocity, spin, unsolved=self._unsolved)
+        return self._steps_to(rows[:, :3], np.roll(rows[:, 3:], 1, axis=1), heading, unsolved=self._unsolved)
 
     def _stand(self, acceleration: Array) -> tuple[float, ...]:
         """Take one step of a cylinder that stands, or rises from a point of its rim; return the pose."""
@@ -362,14 +325,9 @@ class _PybulletStepper:
         if self._slab is not None:
             self._bullet.resetBaseVelocity(self._slab, self._slab_velocity, physicsClientId=self._client)
 
-    def warnings(self) -> str:
-        """Bullet does not warn."""
-        return ""
-
     def counts(self) -> SceneCounts:
-        """Return the counts of the last step: a normal and two directions of friction for each contact."""
-        contacts = len(self._bullet.getContactPoints(self._body, physicsClientId=self._client))
-        return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
+        """Return the counts of the last step."""
+        return contact_counts(len(self._bullet.getContactPoints(self._body, physicsClientId=self._client)))
 
     def _analyse(self, wanted: bool) -> None:
         # of every step it would cost a tenth
@@ -389,7 +347,7 @@ class _PybulletStepper:
         )
         return poses + last
 
-    def _steps(self, gravity: Array) -> tuple[list[float], Any]:
+    def _steps(self, gravity: Array) -> tuple[list[float], Sequence[Mapping[str, float]]]:
         """Return the poses, all in a row, and what the last step reported.
 
         Gravity is apparent, because rigid ground need not move.
@@ -405,7 +363,7 @@ class _PybulletStepper:
         # numbers in one list, not tuples in one: those the garbage collector would go through again and again
         poses: list[float] = []
         beyond_x = beyond_y = 0.0
-        report: Any = ()
+        report: Sequence[Mapping[str, float]] = ()
         _, (x, y, z, w) = pose(body, client)
         for along_x, along_y, along_z in zip(*gravity.T.tolist(), strict=True):
             pull(along_x, along_y, along_z, client)

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from rockwobble.compare import Fragility
 from rockwobble.compare.studies.fragility.intensity import MEASURES
-from rockwobble.compare.studies.fragility.study import main_contrasts
+from rockwobble.compare.studies.fragility.study import Row, main_contrasts
 from rockwobble.compare.studies.fragility.tables import ALL, OVERTURNED
 from rockwobble.models.support import SUPPORTS
 
@@ -91,7 +90,7 @@ def _ratios(found: Fragility) -> Picture | None:
 
 
 def _curves(found: Fragility, cylinder: str, place: int) -> Picture:
-    methods: Mapping[str, Mapping[str, Any]] = found.facts["methods"]
+    methods: Mapping[str, Row] = found.facts["methods"]
     guided = [name for name, own in methods.items() if own["support"] in _GUIDED and not own["engine"]]
     panels = []
     for support, title in _PANELS.items():
@@ -166,7 +165,7 @@ def _panel(found: Fragility, cylinder: str, labels: Sequence[str], title: str) -
     )
 
 
-def _grouped(counts: Any) -> Any:
+def _grouped(counts: pd.DataFrame) -> pd.DataFrame:
     """Counts of a cloud by tenths of its runs, each at the mean of its logarithms; of stripes as they are."""
     if len(counts) <= 40:
         return counts

@@ -20,7 +20,7 @@ _UNSETTLED = {
     "unresolved_pass": "a pass is left to chance, so that its error is not known",
     "energy": "contact makes or takes energy, so that its error is not known",
 }
-# why runs at successive steps tell no limit
+# why runs at successive steps have no limit
 _NOT_EXTRAPOLATED = {
     "fails": "a run at a coarser step fails",
     "diverged": "the runs diverge there",

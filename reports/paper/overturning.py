@@ -51,7 +51,7 @@ def lowest_on_axes(spectrum: TiltMaps, *, own: bool) -> Mapping[str, Array]:
 
 
 def statements(spectrum: TiltMaps) -> list[Statement]:
-    """Hold what the paper says of the figure against the spectrum, on both pairs of axes."""
+    """Compare the paper's statements on the figure with the spectrum, on both pairs of axes."""
     large = spectrum.semidiagonals >= LARGE
     contrast = planar_contrast(spectrum)
     every, upper = contrast.iloc[-1], contrast.iloc[-2]

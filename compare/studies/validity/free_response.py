@@ -64,6 +64,7 @@ FREE_RESPONSE = Part(
     measure=measure_free_response,
     keys=("tan_alpha",),
     cost=lambda releases, spins, **_: 0.02 * len(releases) * len(spins),
+    engine="",
 )
 
 
@@ -108,7 +109,6 @@ VERIFICATION = Part(
     measure=measure_verification,
     keys=RELEASE,
     cost=lambda **_: 1.5,
-    engine=DEFAULT_ENGINE,
 )
 
 
@@ -150,5 +150,4 @@ SLIP = Part(
     measure=measure_slip,
     keys=RELEASE,
     cost=lambda shares, **_: 0.5 * len(shares),
-    engine=DEFAULT_ENGINE,
 )

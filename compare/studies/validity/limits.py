@@ -111,7 +111,7 @@ def ratios(runs: pd.DataFrame, method: str, against: str) -> Array:
     return np.exp(pairs(runs, method, against, member="motion", peak="peak").log_ratios())
 
 
-def peak_ratios(tables: Tables) -> Numbers:
+def records(tables: Tables) -> Numbers:
     """Return the range over the points of the contrasts of each method.
 
     NAME_least and NAME_largest, of the median ratio to the recess model; NAME_05_least to NAME_95_largest, of
@@ -312,7 +312,7 @@ def restraining_moment(tables: Tables) -> Numbers:
     }
 
 
-def free_passes(tables: Tables) -> Numbers:
+def free_response(tables: Tables) -> Numbers:
     """Return the difference of recess and flat ground in a pass, and the releases that an engine decides."""
     table = tables["free_response"]
     off = np.abs(column(table, "flat_turn") - column(table, "turn"))
@@ -405,16 +405,17 @@ def rings(tables: Tables) -> Numbers:
     }
 
 
-def _known_contacts(tables: Tables) -> pd.DataFrame:
-    """The runs with a contact of their own: failed, and the ratio of the peaks, NaN where it did."""
+def _soft_contacts(tables: Tables) -> pd.DataFrame:
+    """The runs with a contact of their own: failed; ratio of the peaks and loss, NaN where one failed."""
     table = tables["contact"]
     failed = (table[["free_outcome", "outcome"]] == "failed").any(axis="columns")
-    return table.assign(failed=failed, ratio=np.where(failed, math.nan, quotient(table)))
+    known = table.assign(ratio=quotient(table))[["ratio", "loss"]].mask(failed)
+    return table.assign(failed=failed, **known)
 
 
 def soft_contact(tables: Tables) -> Numbers:
     """Return up to which softness, its time constant times p, contact leaves the peak as it is."""
-    table = _known_contacts(tables)
+    table = _soft_contacts(tables)
     known = table[~table["failed"]]
     # one contact is one point, though its softness differs by slenderness in the third digit
     softness, constant = column(known, "softness"), column(known, "time_constant")
@@ -433,33 +434,26 @@ def soft_contact(tables: Tables) -> Numbers:
 
 def damping(tables: Tables) -> pd.DataFrame:
     """Return the least and largest ratio of the peak, and the largest loss, by the damping of contact."""
-    rows = []
-    for ratio, own in _known_contacts(tables).groupby("damping"):
-        known = own[~own["failed"]]
-        rows.append(
-            {
-                "damping": ratio,
-                "points": len(own),
-                "failed": len(own) - len(known),
-                "least": least(column(known, "ratio")),
-                "largest": largest(column(known, "ratio")),
-                "loss": largest(column(known, "loss")),
-            }
+    return (
+        _soft_contacts(tables)
+        .groupby("damping", as_index=False)
+        .agg(
+            points=("failed", "size"),
+            failed=("failed", "sum"),
+            least=("ratio", "min"),
+            largest=("ratio", "max"),
+            loss=("loss", "max"),
         )
-    return pd.DataFrame(rows)
+    )
 
 
+# every limit, by the name of its function
 LIMITS: Mapping[str, Callable[[Tables], Numbers]] = {
-    "records": peak_ratios,
-    "single_peaks": single_peaks,
-    "traces": traces,
-    "free_response": free_passes,
-    "friction": friction,
-    "contact": contact,
-    "restraining_moment": restraining_moment,
-    "rings": rings,
-    "soft_contact": soft_contact,
-    "vertical": vertical,
+    limit.__name__: limit
+    for limit in (
+        *(records, single_peaks, traces, free_response, friction, contact),
+        *(restraining_moment, rings, soft_contact, vertical),
+    )
 }
 
 

@@ -20,6 +20,7 @@ from rockwobble.models import (
     synthetic_motions,
 )
 from rockwobble.models.records.p695 import missing_packages
+from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.multibody.ring import RingSettings
 
 Inputs = Mapping[str, object]  # arguments of `Part.measure` by name: numbers, text and tuples of them
@@ -57,7 +58,7 @@ class Part:
         Inputs that are the first columns of every row.
     cost : callable
         Rough computing time of a task [s], of the same inputs.
-    engine : str
+    engine : str, optional
         The engine that it runs; empty where it runs the reduced models alone.
     """
 
@@ -67,7 +68,7 @@ class Part:
     measure: Callable[..., list[Row]]
     keys: tuple[str, ...]
     cost: Callable[..., float]
-    engine: str = ""
+    engine: str = DEFAULT_ENGINE
 
 
 _RING = RingSettings(ring_inclination=0.0)

@@ -100,6 +100,7 @@ PEAKS = Part(
     measure=measure_peaks,
     keys=("motion", "tan_alpha", "semidiagonal"),
     cost=lambda intensities, **_: 0.03 * len(intensities),
+    engine="",
 )
 
 
@@ -152,7 +153,6 @@ RECORDS = Part(
     measure=measure_records,
     keys=("motion", *POINT),
     cost=lambda time_step, **_: 16.0 * 2e-4 / time_step,
-    engine=DEFAULT_ENGINE,
 )
 
 
@@ -186,7 +186,6 @@ FOLLOWING = Part(
     measure=measure_following,
     keys=(*POINT, "duration"),
     cost=lambda duration, **_: 0.04 * duration,
-    engine=DEFAULT_ENGINE,
 )
 
 
@@ -228,7 +227,6 @@ CONTACT = Part(
     measure=measure_contact,
     keys=("tan_alpha", "time_constant", "damping"),
     cost=lambda **_: 1.0,
-    engine=DEFAULT_ENGINE,
 )
 
 
@@ -346,5 +344,4 @@ RINGS = Part(
     measure=measure_rings,
     keys=("motion", "tan_alpha", "turn", "support", *_WALLS),
     cost=lambda support, length, **_: (0.4 if support_named(support).walls else 0.125) * length,
-    engine=DEFAULT_ENGINE,
 )
