@@ -3,9 +3,9 @@
 Behind the variables of each model (`systems`) stand two more: the energy lost so far, per unit mass, and the
 side, the sign of the tilt rate in planar motion, which stays what it was over a step. The couple jumps where
 such motion turns, so a step ends there and the next one begins with the other side, or none: the body stands
-still on its rim while the couple holds it. On flat ground it may pivot on its contact meanwhile, a motion with
-one degree of freedom: its side is PIVOTS. With spin the couple turns instead of jumping, within a time that
-may be short: a step is asked to follow that turn, or to be so short that it does not matter.
+still on its rim while the couple holds it. On flat ground it may pivot on its contact meanwhile, a motion
+with one degree of freedom: its side is PIVOTS. With spin the couple turns instead of jumping, within a time
+that may be short: a step is asked to follow that turn, or to be so short that it does not matter.
 """
 
 from __future__ import annotations
@@ -192,7 +192,7 @@ def _make_system(
 
     @jit
     def placed(body: Body, y: State, theta: float, omega: float, phi: float, L: float) -> State:
-        # at an impact or a rest energy is lost; an uplift begins with the work of the couple on its first tilt
+        # an impact and a rest take energy; an uplift begins with the work of the couple on its first tilt
         lost = body.delta * body.g * (theta - y[0])
         if theta == 0.0:
             lost = energy(body, y[0], y[1], *momenta(y)) - 0.5 * body.A * omega * omega
