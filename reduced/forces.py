@@ -85,7 +85,7 @@ def contact_force(
     up = D_2 * theta_acceleration - D_1 * omega * omega
     F_t = nu * across + a_t * (1.0 - nu * reach * reach / H)
     if body.delta > 0.0:
-        F_t -= reach / H * turning
+        F_t -= nu * reach / H * turning
     return nu * outward + a_r, F_t, body.g + az + nu * up, kappa
 
 

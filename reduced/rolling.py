@@ -11,9 +11,10 @@ it is the generalised force
     Q_theta = -delta N theta'/w,   Q_tau = -delta N s^2 psi'/w = -Q_phi.
 
 In the recess tau' = 0 and psi' = -phi'. On flat ground Lambda' has Q_phi and S' has Q_tau + (G/B) Q_phi.
-The normal force is that of the same motion, N = load + lift theta'', and theta'' has Q_theta/A: both follow
-from one linear equation. Where w = 0 the couple is what holds the body, if delta N suffices: standing still
-N = g + az, theta'' = 0 and L' = 0 need
+The normal force is that of the same motion, N = load + mu lift theta'', and theta'' has Q_theta/A: both
+follow from one linear equation. In a frame the rim of the top rolls on the slab at the same angular velocity,
+so N is the sum of the forces on base and top. Where w = 0 the couple is what holds the body, if delta N
+suffices: standing still N = g + az, theta'' = 0 and L' = 0 need
 
     M_theta = (g + az) D'' + D' a_r,   M_psi = -(D/s) a_t,   |M| <= delta (g + az).
 
@@ -28,8 +29,8 @@ vertical by D'' and above the ground by D' Euler's equations of this rotation ar
 symbol    unit     meaning
 ========= ======== ============================================================
 delta     m        length of rolling resistance
-N         m/s^2    normal force on the base, over m
-load      m/s^2    its part without theta'', g + az - D' theta'^2
+N         m/s^2    normal force on the base, and on the top of a column; over m, in a frame w m
+load      m/s^2    its part without theta'', g + az - mu D' theta'^2
 lift      m        z'' of the mass centre for each theta'', D'' = b c - h s
 w         rad/s    horizontal part of the angular velocity
 side      -        sign of the tilt rate, of motion in one plane
@@ -58,8 +59,8 @@ _ROUNDING = 1e-12
 
 @inlined
 def normal_force(body: Body, s: float, c: float, omega: float, az: float) -> tuple[float, float]:
-    """Return load [m/s^2] and lift [m] of the normal force N = load + lift theta''."""
-    return body.g + az - (body.b * s + body.h * c) * omega * omega, body.b * c - body.h * s
+    """Return load [m/s^2] and lift [m] of the normal force N = load + mu lift theta''."""
+    return body.g + az - (body.b * s + body.h * c) * omega * (body.mu * omega), body.b * c - body.h * s
 
 
 @inlined
@@ -90,14 +91,15 @@ def couple(
     """
     across = s * spin
     load, lift = normal_force(body, s, c, omega, az)
-    # delta N/w of theta'' = free - delta N theta'/(A w), by one division; none where contact is lost
-    pressed = body.delta * body.A * max(0.0, load + lift * free)
+    # delta N/w of theta'' = free - delta N theta'/(A w), by one division; none where contact is lost. mu = 1
+    # times a rate leaves every sum of a cylinder as it rounds, which times a difference it does not
+    pressed = body.delta * body.A * max(0.0, load + lift * (body.mu * free))
     if across != 0.0:
         speed = sqrt(omega * omega + across * across)
-        per_speed = pressed / (body.A * speed + body.delta * lift * omega)
+        per_speed = pressed / (body.A * speed + body.delta * lift * (body.mu * omega))
         return -per_speed * omega, -per_speed * across, per_speed * speed * speed
     tilting = side if side != 0.0 or omega == 0.0 else copysign(1.0, omega)
-    largest = pressed / (body.A + body.delta * lift * tilting)
+    largest = pressed / (body.A + body.delta * lift * (body.mu * tilting))
     return -largest * tilting, 0.0, largest * tilting * omega
 
 
@@ -287,8 +289,9 @@ def couple_on(
 def impact_ratio(body: Body, restitution: float) -> float:
     """Return the ratio of tilt rates at an impact of planar motion with rolling resistance.
 
-    The vertical impulse on the base is n = m b (omega + omega'), and the couple takes delta n of the moment
-    of momentum: A omega' = r A omega - delta b (omega + omega'), r being the ratio without it. To first
+    The vertical impulse on the base, and on the top of a column, is n = mu b (omega + omega') per unit mass,
+    and the couple takes delta n of the moment of momentum: A omega' = r A omega - delta n, r being the ratio
+    without it. To first
     order r of Housner is the ratio of delta = b without impact.
 
     Parameters
@@ -302,5 +305,5 @@ def impact_ratio(body: Body, restitution: float) -> float:
     float
         omega'/omega [-], not negative.
     """
-    taken = body.delta * body.b
+    taken = body.delta * body.mu * body.b
     return max(0.0, (body.A * restitution - taken) / (body.A + taken))

@@ -133,8 +133,8 @@ class Comparison(Results, kind="comparison"):
         """
         require_one_of("case", name, self.facts["cases"])
 
-        def kept(part: str) -> Mapping[str, Any]:
-            facts: Mapping[str, Any] = self.facts[part]
+        def kept(part: str) -> Mapping[str, object]:
+            facts: Mapping[str, object] = self.facts[part]
             return {key: fact for key, fact in facts.items() if key.split(_SEPARATOR)[0] == name}
 
         return View(

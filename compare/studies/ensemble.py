@@ -116,7 +116,7 @@ def ensemble(
     source: str = "cases",
     **options: Any,
 ) -> Ensemble:
-    """Run many members by each method, and hold their peak tilts against each other, member by member.
+    """Run many members by each method, and compare their peak tilts, member by member.
 
     Parameters
     ----------

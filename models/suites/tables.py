@@ -14,7 +14,7 @@ A number is one, a list, or a range; each becomes the tuple of its values.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import Annotated, Any
 
@@ -56,7 +56,7 @@ def whole(value: float) -> str:
     return "" if fine else f"must be a positive whole number, got {value:g}"
 
 
-def expanded(given: Any, check: Check = any_number) -> tuple[float, ...]:
+def expanded(given: object, check: Check = any_number) -> tuple[float, ...]:
     """Return the values of a number, a list or a range.
 
     Raises
@@ -85,7 +85,7 @@ def expanded(given: Any, check: Check = any_number) -> tuple[float, ...]:
     return values
 
 
-def _number(given: Any, check: Check) -> float:
+def _number(given: object, check: Check) -> float:
     if isinstance(given, bool) or not isinstance(given, int | float):
         raise ValueError(  # noqa: TRY004 - a wrong type in a file is bad input like any other
             "must be a number, a list, or a range such as { from = 1, to = 3, step = 0.5 }, "
@@ -106,7 +106,7 @@ def _require(complaint: str) -> None:
         raise ValueError(complaint)
 
 
-def _range(given: dict[str, Any]) -> tuple[float, ...]:
+def _range(given: Mapping[str, object]) -> tuple[float, ...]:
     for key in given:
         if key not in _RANGE:
             raise KeyedError(key, nearest(key, _RANGE))
@@ -156,12 +156,12 @@ def _counted(low: float, high: float, count: int, spacing: str) -> tuple[float, 
     return _tidy(low * (high / low) ** (index / (count - 1)) for index in range(count))
 
 
-def _tidy(values: Any) -> tuple[float, ...]:
+def _tidy(values: Iterable[float]) -> tuple[float, ...]:
     # 0.3 and not 0.30000000000000004
     return tuple(float(f"{value:.12g}") for value in values)
 
 
-def _values(check: Check) -> Any:
+def _values(check: Check) -> BeforeValidator:
     return BeforeValidator(lambda given: expanded(given, check))
 
 
@@ -325,18 +325,18 @@ class CaseTable(_Table):
         return self
 
 
-def _texts(given: Any) -> Any:
+def _texts(given: object) -> object:
     return given if isinstance(given, list) else [given]
 
 
-def _steps(given: Any) -> Any:
+def _steps(given: object) -> tuple[object, ...]:
     """Values of a time step; the ways to one are left to the engine."""
     if given in WAYS_TO_A_STEP:
         return (given,)
     return expanded(given, positive)
 
 
-def _one_positive(given: Any) -> float:
+def _one_positive(given: object) -> float:
     if isinstance(given, list | dict):
         raise ValueError(f"must be one number, got {shown(given)}")  # noqa: TRY004 (bad input)
     return expanded(given, positive)[0]

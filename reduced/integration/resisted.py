@@ -192,7 +192,7 @@ def _make_system(
 
     @jit
     def placed(body: Body, y: State, theta: float, omega: float, phi: float, L: float) -> State:
-        # an impact and a rest take energy; an uplift begins with the work of the couple on its first tilt
+        # an impact and a rest lose energy; an uplift begins with the work of the couple on its first tilt
         lost = body.delta * body.g * (theta - y[0])
         if theta == 0.0:
             lost = energy(body, y[0], y[1], *momenta(y)) - 0.5 * body.A * omega * omega

@@ -100,7 +100,7 @@ def _layer(layer: Layer, panel: Panel, picture: Picture) -> dict[str, Any]:
             **{key: packed(getattr(layer, key)) for key in ("places", "start", "end")},
         }
     if isinstance(layer, Rule):
-        keys = ("name", "at", "axis", "text", "until", "colour", "dash", "side")
+        keys: tuple[str, ...] = ("name", "at", "axis", "text", "until", "colour", "dash", "side")
         return {"kind": "rule", **{key: getattr(layer, key) for key in keys}}
     if isinstance(layer, Text):
         return {

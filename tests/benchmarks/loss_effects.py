@@ -28,8 +28,9 @@ SHARES = (0.0, 0.003, 0.01, 0.03)  # delta over b
 LEVELS = (1.5, 2.0, 2.75, 3.75, 5.0, 6.5, 9.0, 12.0)  # peak over g tan(alpha)
 MOTIONS, SEED = 200, 16
 _STRONGER = {"1 %": 1.01, "1e-6": 1.0 + 1e-6}
-_ENGINE, _COMPARED, _WITH_ENGINE = "mujoco", 12, 4  # motions: El Centro, and synthetic ones
+_ENGINE, _COMPARED, _WITH_ENGINE = "mujoco", 12, 3  # motions: El Centro, and synthetic ones
 _PEAK, _DURATION, _FRICTION = 3.0, 20.0, 20.0  # [g tan alpha], [s]
+_STEP = 2e-4  # [s] of the engine
 
 
 def fragilities() -> pd.DataFrame:
@@ -85,7 +86,7 @@ def agreements() -> pd.DataFrame:
                 copy = rw.simulate(stronger, rtol=1e-10)
                 rows.append((share, name, case.name, *_agreement(case, reference, copy)))
             if index < _WITH_ENGINE:
-                trial = rw.simulate(case, engine=_ENGINE)
+                trial = rw.simulate(case, engine=_ENGINE, time_step=_STEP)
                 rows.append((share, _ENGINE, case.name, *_agreement(case, reference, trial)))
     return pd.DataFrame(rows, columns=["delta_b", "trial", "motion", "agreement_time", "diverged"])
 

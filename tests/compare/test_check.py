@@ -33,7 +33,7 @@ from rockwobble.compare.check import (
     subject,
     trajectories,
 )
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, WobblingFrame
 from rockwobble.models.trace_source import Known
 from rockwobble.reduced.body import body_of
 
@@ -97,6 +97,13 @@ def heavier(case: Case, options: Options) -> Case:
 def larger(case: Case, options: Options) -> Case:
     size = 1.001 * case.cylinder.semidiagonal
     return dataclasses.replace(case, cylinder=dataclasses.replace(case.cylinder, semidiagonal=size))
+
+
+def lighter_slab(case: Case, options: Options) -> Case:
+    body = case.cylinder
+    if isinstance(body, WobblingFrame):
+        body = WobblingFrame(body.cylinder, 0.999 * body.slab_mass_ratio, body.columns)
+    return dataclasses.replace(case, cylinder=body)
 
 
 def option(name: str, value: Callable[[Any], Any]) -> Callable[[Subject], Subject]:
@@ -163,7 +170,9 @@ def test_the_reduced_models_hold(right: Subject, group: str) -> None:
         (lagrange.residual, "recess", heavy),
         (lagrange.residual, "recess", field("contact_force", lambda force: force * [1.0, 1.0, 1.0 + 1e-8])),
         (lagrange.residual, "recess", field("tilt_rate", lambda rate: (1.0 + 1e-8) * rate)),
+        (lagrange.residual, "recess", asked(lighter_slab)),
         (laws.free_response, "recess", asked(larger)),
+        (laws.free_response, "recess", asked(lighter_slab)),
         (laws.steady_wobble, "flat", heavy),
         (laws.vanishing_spin, "recess", answered(lambda found: dataclasses.replace(
             found, passes=found.passes.assign(angle_of_turn=1.00001 * found.passes["angle_of_turn"])))),
@@ -449,10 +458,13 @@ def state_of(*values: float) -> State:
     return State(*(vector(value)[0] for value in values))
 
 
-def test_kinetic_energy_is_that_of_vectors() -> None:
+@pytest.mark.parametrize("ratio", [0.0, 1.5])
+def test_kinetic_energy_is_that_of_vectors(ratio: float) -> None:
     theta, phi, theta_rate, phi_rate = 0.3, 1.1, 0.7, -0.9
-    expected = kinetic_energy(body_of(CYLINDER, 9.81), state_of(theta, theta_rate, phi, phi_rate, -phi_rate))
-    found = lagrange.kinetic(SHAPE, *one(theta, phi, theta_rate, phi_rate))[0]
+    state = state_of(theta, theta_rate, phi, phi_rate, -phi_rate)
+    expected = kinetic_energy(body_of(CYLINDER, 9.81), state, ratio) / (1.0 + 2.0 * ratio)
+    shape = lagrange.shape_of(WobblingFrame(CYLINDER, ratio))
+    found = lagrange.kinetic(shape, *one(theta, phi, theta_rate, phi_rate))[0]
     assert found == pytest.approx(float(expected), rel=ROUNDING)
 
 

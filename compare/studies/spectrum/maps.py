@@ -289,11 +289,11 @@ def maps_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, Any]) -> Til
     )
 
 
-def safe_islands(spectrum: TiltMaps) -> pd.DataFrame:
+def safe_gaps(spectrum: TiltMaps) -> pd.DataFrame:
     """Return the ranges of intensities above the lowest overturning one in which a cylinder stands.
 
     Columns: series, semidiagonal [m], lower and upper, the first and last intensity of the grid that the
-    cylinder stands [-], closed, whether a higher one overturns it again. A failed run ends an island, and
+    cylinder stands [-], closed, whether a higher one overturns it again. A failed run ends a gap, and
     neither opens one nor closes it.
     """
     rows = []
