@@ -8,6 +8,10 @@ from typing import ClassVar
 
 from ..runs.plan import Plan, option
 
+_ROLLING = (
+    "Length of the couple against the rolling of the rim, in m, below every base radius; 0 loses nothing."
+)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Copies(Plan):
@@ -98,6 +102,7 @@ class FragilityPlan(Plan):
         above=0.0,
     )
     friction: float = option(1.0, "Coefficient of friction of cylinder and ground.", above=0.0)
+    rolling_resistance: float = option(0.0, _ROLLING, least=0.0)
     gravity: float = option(9.81, "g, in m/s2.", above=0.0)
 
     def __post_init__(self) -> None:
@@ -148,6 +153,7 @@ class SpectrumPlan(Plan):
         0.0, "Mass of a rigid slab over that of the cylinders that carry it.", group="Cylinder", least=0.0
     )
     gravity: float = option(9.81, "g, in m/s2.", group="Ground motion", above=0.0)
+    rolling_resistance: float = option(0.0, _ROLLING, group="Ground motion", least=0.0)
     support: str = option(
         "recess", "Support of the model in three dimensions: recess or flat.", choices=("recess", "flat")
     )
