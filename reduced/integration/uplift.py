@@ -119,9 +119,8 @@ def started(
     phi' = W/(1 + 2 J F0/(h |a|)).
 
     Rolling resistance adds delta mu b theta'' to the inertia of the tilt, N being g + az + mu b theta''
-    there, and the couple -delta N theta^2 phi'/theta' across, which holds the contact back behind the
-    force: by kappa W t with kappa/(1 - kappa) = delta N/(3 h |a|), or where f starts above zero by its term
-    in phi'.
+    there, and the couple -delta N theta^2 phi'/theta' across, which holds the contact back behind the force:
+    by kappa W t with kappa/(1 - kappa) = delta N/(3 h |a|), or where f starts above zero by its term in phi'.
     """
     ax, ay, az = ground(a, slope, at)
     size = max(hypot(ax, ay), WEAK * body.g)

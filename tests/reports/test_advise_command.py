@@ -145,7 +145,6 @@ def test_the_three_numbers_are_those_of_the_groups(found):
     group = found.groups.set_index("group").loc["copies"]
     assert copies["tilt_95"] == pytest.approx(alpha * group["peak_tilt_95"])
     assert copies["overturned"] == f"{group['overturned']} of 20"
-    assert [row["topic"] for row in values["criteria"]] == list(found.grades)
 
 
 def test_an_overturned_group_moves_without_bound(found):
