@@ -81,7 +81,7 @@ def _number(text: str, allowed: str) -> float:
         raise typer.BadParameter(f"must be {allowed}, got {text!r}") from None
 
 
-def settings(given: Sequence[str] | None) -> dict[str, Any]:
+def settings(given: Sequence[str] | None) -> dict[str, int | float | str]:
     """Return settings from texts of the form name=value: a whole number, a number, or the text itself.
 
     Raises
@@ -94,7 +94,7 @@ def settings(given: Sequence[str] | None) -> dict[str, Any]:
     >>> settings(["ring_facets=64", "ring_clearance=1e-2", "cone=pyramidal"])
     {'ring_facets': 64, 'ring_clearance': 0.01, 'cone': 'pyramidal'}
     """
-    found: dict[str, Any] = {}
+    found: dict[str, int | float | str] = {}
     for text in given or ():
         name, sign, value = (part.strip() for part in text.partition("="))
         if not (name and sign and value):

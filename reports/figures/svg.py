@@ -10,6 +10,7 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Colormap, ListedColormap, Normalize
@@ -273,21 +274,19 @@ def _colour_bar(drawn: Figure, places: NDArray[np.object_], shades: Shades) -> N
     bar.set_label(shades.title)
 
 
-def _handles(panels: Sequence[Axes]) -> tuple[list[Any], list[str]]:
+def _handles(panels: Sequence[Axes]) -> tuple[list[Artist], list[str]]:
     """Return what stands in a legend, each name once, at most so many as can be told apart."""
-    found: dict[str, Any] = {}
+    found: dict[str, Artist] = {}
     for axes in panels:
         for handle, name in zip(*axes.get_legend_handles_labels(), strict=True):
             found.setdefault(name, handle)
     rest = len(found) - MOST_ENTRIES
     shown = list(found)[: MOST_ENTRIES - (rest > 0)]
-    words = [textwrap.fill(name, 60) for name in shown]
+    handles, words = [found[name] for name in shown], [textwrap.fill(name, 60) for name in shown]
     if rest > 0:
-        return [found[name] for name in shown] + [Line2D([], [], linestyle="none")], [
-            *words,
-            f"and {rest + 1} more",
-        ]
-    return [found[name] for name in shown], words
+        handles.append(Line2D([], [], linestyle="none"))
+        words.append(f"and {rest + 1} more")
+    return handles, words
 
 
 def _legend(drawn: Figure, panels: Sequence[Axes]) -> None:
