@@ -2,8 +2,8 @@
 
 `python tests/benchmarks step_errors --seed 7` draws releases and shaken motions with near-upright passes,
 runs both ways to a time step, and prints for each the error stated and the largest tilt difference from the
-reduced model of its support over the time that the statement is about, as far as its assumptions hold. An estimate may be too small by a
-factor of `FACTOR`; what states no number says why.
+reduced model of its support over the time that the statement is about, as far as the assumptions of the model
+hold. An estimate may be too small by a factor of `FACTOR`; what states no number says why.
 """
 
 from __future__ import annotations

@@ -29,7 +29,6 @@ from rockwobble.compare.metrics.distributions import (
     signed_rank_p,
 )
 from rockwobble.compare.metrics.order_statistics import (
-    CONFIDENCE,
     Interval,
     end_index,
     quantile_interval,

@@ -101,9 +101,7 @@ def faults_of(file: str, source: str) -> list[GeneratedFault]:
         line = getattr(node, "lineno", 0)
         words = f"line {line}, {kind}: {' '.join(ast.unparse(node).split())[:60]}"
         function = _function_at(functions, line)
-        found.append(
-            GeneratedFault(file=file, place=place, function=function, change=words, sources=digest)
-        )
+        found.append(GeneratedFault(file=file, place=place, function=function, change=words, sources=digest))
     return found
 
 

@@ -1,7 +1,7 @@
 """Functions of the packages that each test calls, recorded by one run of the tests.
 
-`python -m pytest -p mutation.reach` writes the table, of JSON, to the file that the environment names in `REACH`.
-Compiled functions are not seen: what is compiled is called by no test.
+`python -m pytest -p mutation.reach` writes the table, of JSON, to the file that the environment names in
+`REACH`. Compiled functions are not seen: what is compiled is called by no test.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import CodeType, FrameType
@@ -48,7 +48,7 @@ def read(table: Path) -> list[Reach]:
 
 
 def near(tests: Sequence[Reach], file: str, function: int | None) -> list[Reach]:
-    """Return the tests that may see a fault in a function, or in a file where `function` is None, fastest first.
+    """Return the tests that may see a fault in a function (in a file, for None), fastest first.
 
     Where no test is seen to call it, those of the file, and of the package where there are none either.
     """
@@ -99,7 +99,11 @@ class Recorder:
     def pytest_sessionfinish(self) -> None:
         """Write the table."""
         rows = [
-            (test, round(seconds, 3), sorted(calls.union(*(self._fixtures.get(name, ()) for name in fixtures))))
+            (
+                test,
+                round(seconds, 3),
+                sorted(calls.union(*(self._fixtures.get(name, ()) for name in fixtures))),
+            )
             for test, (seconds, calls, fixtures) in self._tests.items()
         ]
         Path(os.environ["REACH"]).write_text(json.dumps(rows), encoding="utf-8")
@@ -107,7 +111,7 @@ class Recorder:
     def _names(self) -> set[str]:
         return {
             f"{short}{code.co_filename.removeprefix(folder)}:{code.co_firstlineno}"
-            for code in self._running.values()
+            for code in list(self._running.values())  # which itself is a call
             for folder, short in self._folders.items()
             if code.co_filename.startswith(folder)
         }
