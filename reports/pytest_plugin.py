@@ -10,7 +10,7 @@ its model of a structure, its records and its suites may look like this:
         records/EW.AT2, NS.AT2
       .github/workflows/ci.yml  # pip install '.[test]', then pytest
 
-with a suite (what it may hold is said in the docstring of `rockwobble.models.suites.file`):
+with a suite (what it may hold is said in the docstring of `rockwobble.models.suites`):
 
     [bounds]                     # without this table: what the time step leaves, measured on each run
     tilt_rms = 2e-3              # alpha
@@ -47,8 +47,10 @@ import rockwobble.compare as rc
 import rockwobble.compare.runs as rr
 
 if TYPE_CHECKING:
+    from _pytest._code.code import TerminalRepr, TracebackStyle
+
     from rockwobble.compare.check import Result
-# of models.suites.file, which would be imported with every run of pytest
+# of models.suites, which would be imported with every run of pytest
 ENDING = ".suite.toml"
 _OPTION = "--no-rockwobble-budget"
 _CERTIFICATE = "--rockwobble-certificate"
@@ -96,7 +98,9 @@ class CertificateItem(pytest.Item):
             raise ChangedError(verdict.words())
         self.add_report_section("call", "certificate", verdict.words())
 
-    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
+    def repr_failure(
+        self, excinfo: pytest.ExceptionInfo[BaseException], style: TracebackStyle | None = None
+    ) -> str | TerminalRepr:
         """Return what changed; anything else as pytest has it."""
         if isinstance(excinfo.value, ChangedError | ValueError):
             return str(excinfo.value)
@@ -124,7 +128,7 @@ class SuiteFile(pytest.File):
 
     def collect(self) -> Iterator[SuiteItem]:
         """Yield the items."""
-        from rockwobble.compare.runs.labels import run_labels
+        from rockwobble.compare.runs.choice import run_labels
         from rockwobble.multibody.engines.registry import engine_lack
 
         try:
@@ -144,7 +148,7 @@ class SuiteFile(pytest.File):
 
 
 class SuiteItem(pytest.Item):
-    """One engine run of one case, held against the reduced model."""
+    """One engine run of one case, compared with the reduced model."""
 
     def __init__(self, *, suite: rw.Suite, case: rw.Case, run: rw.Run, label: str, **common: Any) -> None:
         super().__init__(**common)
@@ -152,11 +156,10 @@ class SuiteItem(pytest.Item):
 
     def runtest(self) -> None:
         """Run engine and model, and raise what is beyond a bound."""
-        from rockwobble.compare.check.agreement import check_run, reference_of
-        from rockwobble.compare.check.own_bounds import SuiteRuns
+        from rockwobble.compare.check.suite import SuiteRuns, check_run, reference_of
         from rockwobble.compare.runs.execution import Job
 
-        from .console.budget_of_run import budget_of_run
+        from .pages.findings import budget_of_run
 
         runs, bounds = SuiteRuns(workers=1), self.suite.bounds
         job = Job(case=self.case, run=self.run, label=self.label)
@@ -168,7 +171,9 @@ class SuiteItem(pytest.Item):
             budget = budget_of_run(self.case, self.run, reference) if wanted else []
             raise DisagreementError(failed, budget)
 
-    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
+    def repr_failure(
+        self, excinfo: pytest.ExceptionInfo[BaseException], style: TracebackStyle | None = None
+    ) -> str | TerminalRepr:
         """Return the bounds that do not hold, and the budget; anything else as pytest has it."""
         if isinstance(excinfo.value, DisagreementError):
             return str(excinfo.value)

@@ -15,11 +15,12 @@ from pathlib import Path
 import pytest
 
 import rockwobble
+from rockwobble.multibody.engines.registry import engine_modules
 
 CHECKOUT = Path(__file__).parents[1]
 FOLDERS = ["models", "reduced", "multibody", "compare", "reports"]
-ENGINES = ["mujoco", "pybullet", "dartpy", "pydrake", "exudyn", "rapier3d"]
-HEAVY = [*ENGINES, "pandas", "pyarrow", "plotly", "matplotlib", "jinja2", "scipy", "sympy"]
+ENGINES = list(engine_modules().values())
+HEAVY = [*ENGINES, "pandas", "pyarrow", "matplotlib", "jinja2", "scipy", "sympy"]
 
 
 def run(*command: str) -> str:

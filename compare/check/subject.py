@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 
@@ -17,14 +16,12 @@ from rockwobble.models import Case, Run, Trace
 from rockwobble.models.case import TimeStep
 from rockwobble.models.shown import Brief
 from rockwobble.multibody.engines.registry import engine_facts, find_engine
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
+from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 
 from ..external.trajectory import measurement
 from ..runs.execution import SAMPLE_STEP, simulate_run
-from ..storage.fingerprint import fingerprint
-from .motion import trace_of
-from .result import Bound
-from .scenes import RELEASE
+from ..storage.provenance import fingerprint
+from .measurement import RELEASE, Bound, trace_of
 
 Simulate = Callable[..., Trace]
 
@@ -81,6 +78,8 @@ class Subject(Brief):
         The only cases that it answers. Default: any.
     uplifts : bool
         Whether it can start from a cylinder that stands.
+    carries_slab : bool
+        Whether it knows a wobbling frame.
     """
 
     label: str
@@ -98,9 +97,10 @@ class Subject(Brief):
     run: Run | None = None
     cases: tuple[Case, ...] | None = None
     uplifts: bool = True
+    carries_slab: bool = False
 
     def simulate(
-        self, case: Case, support: str, *, sample_step: float = SAMPLE_STEP, **options: Any
+        self, case: Case, support: str, *, sample_step: float = SAMPLE_STEP, **options: object
     ) -> Trace:
         """Return the motion of a case; options that the source does not take are left out."""
         known = {name: value for name, value in options.items() if name in self.options}
@@ -126,7 +126,9 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
     Subject
     """
 
-    def source(case: Case, support: str, *, sample_step: float, rtol: float = rtol, **options: Any) -> Trace:
+    def source(
+        case: Case, support: str, *, sample_step: float, rtol: float = rtol, **options: object
+    ) -> Trace:
         way = {"plane": 0.0} if support == "planar" else {"support": support}
         found: Trace = module.simulate(case, sample_step=sample_step, rtol=rtol, **way, **options)
         return found
@@ -141,11 +143,12 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
         repeatability=MODEL_TOLERANCE,
         steps=(1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10),
         at_step=lambda rtol: reduced_model(module, rtol=rtol),
+        carries_slab=True,
     )
 
 
 def engine(
-    name: str, time_step: TimeStep | None = None, *, reference: Simulate | None = None, **settings: Any
+    name: str, time_step: TimeStep | None = None, *, reference: Simulate | None = None, **settings: object
 ) -> Subject:
     """Return an engine with its settings.
 
@@ -192,6 +195,7 @@ def engine(
         reference=reference or reduced.simulate,
         run=Run(name, found.supports[0], time_step, **settings),
         uplifts=found.uplifts,
+        carries_slab=facts.carries_slab,
     )
 
 
@@ -322,7 +326,7 @@ def _remembered(source: Simulate) -> Simulate:
     """Return the source that runs each case once, since many checks look at one motion."""
     kept: dict[str, Trace] = {}
 
-    def simulate(case: Case, support: str, **options: Any) -> Trace:
+    def simulate(case: Case, support: str, **options: object) -> Trace:
         key = fingerprint([case, support, options])
         if key not in kept:
             kept[key] = source(case, support, **options)

@@ -171,3 +171,71 @@ class SpectrumPlan(Plan):
             given = getattr(self, name)
             if given is not None and len(require_increasing(name, given)) > self._MOST:
                 raise ValueError(f"{name} must be at most {self._MOST} numbers, got {len(given)}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ValidityPlan(Plan):
+    """Limits of the reduced model: the extent of its maps."""
+
+    quick: bool = option(False, "Coarse maps and few runs: some two minutes on two cores.", flag="--quick")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TradeoffPlan(Plan):
+    """Error against computing time: the number of points."""
+
+    quick: bool = option(
+        False,
+        "Fewer points and fewer members: some two minutes on two idle cores.",
+        flag="--quick",
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExtremesPlan(Plan):
+    """Extreme conditions: which of them."""
+
+    quick: bool = option(
+        False,
+        "Only the two ends of each extreme: some two minutes on two idle cores.",
+        flag="--quick",
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GridPlan(Plan):
+    """Grid of reduced runs from rest: its axes, and what all runs have in common."""
+
+    DEFAULTS: ClassVar = {"semidiagonals": (0.5, 30.0, 100), "scales": (0.5, 6.0, 100)}  # [m], [-]
+
+    semidiagonals: Sequence[float] | None = option(
+        None,
+        "R, in m: a list 1,2,6 or an even range FROM:TO:COUNT. Default: 0.5:30:100.",
+        group="Grid",
+        form="numbers",
+        flag="--semidiagonal",
+    )
+    tan_alphas: Sequence[float] = option(
+        (0.2,), "Slenderness b/h: a list or a range.", group="Grid", form="numbers", flag="--tan-alpha"
+    )
+    scales: Sequence[float] | None = option(
+        None,
+        "Factors on the records: a list or a range. Default: 0.5:6:100.",
+        group="Grid",
+        form="numbers",
+        flag="--scale",
+    )
+    gravity: float = option(9.81, "g, in m/s2.", group="Ground motion", above=0.0)
+    slab_mass_ratio: float = option(
+        0.0, "Mass of a rigid slab over that of the cylinders that carry it.", group="Cylinder", least=0.0
+    )
+    plane: float | None = option(
+        None, "Planar motion: azimuth of the vertical plane that holds it, in rad.", group="Reduced models"
+    )
+    restitution: float | str | None = option(
+        None,
+        "Ratio of tilt rates at an impact of planar motion. Default: 1, as in the paper; momentum: from the "
+        "moment of momentum about the new pivot.",
+        group="Reduced models",
+        form="restitution",
+    )

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from .._compile import inlined, jit
 from ..body import Body
-from .endings import HALF_PI
-from .result import MAXIMUM, MINIMUM
+from ..rolling import PIVOTS
+from .record import Vector, ground
+from .result import HALF_PI, MAXIMUM, MINIMUM, State
 from .stepping import Stepper
 from .systems import System
-from .tsit5 import State, Vector, ground
 
 TAKEN, REPEATED = range(2)  # what becomes of a step
 NO_TURN = 0.0  # beside MAXIMUM and MINIMUM
@@ -73,7 +73,7 @@ class Events(NamedTuple):
 def make_events(system: System, stepper: Stepper) -> Events:
     """Return the search for events in the steps that `stepper` takes."""
     _, restarted, advance, partial, acceleration = stepper
-    momenta, placed, resists = system.momenta, system.placed, system.resists
+    momenta, placed, resists, let_go = system.momenta, system.placed, system.resists, system.let_go
 
     @inlined
     def is_flat(y: State) -> bool:
@@ -166,6 +166,24 @@ def make_events(system: System, stepper: Stepper) -> Events:
                 high, rate_high, slope_high = at, rate, slope
         return 0.0
 
+    @jit
+    def release_in(
+        body: Body, work: NDArray[np.float64], path: Any, h: float, a: Vector, slope: Vector
+    ) -> float:
+        """Return the time in a step at which a body that only pivots is let go, or 0; by bisection."""
+        low, high = 0.0, 0.5 * h
+        if not let_go(body, partial(body, work, path, high)[0], ground(a, slope, high), slope):
+            low, high = high, h
+            if not let_go(body, partial(body, work, path, high)[0], ground(a, slope, high), slope):
+                return 0.0
+        while high - low > _CLOSE * _CLOSE * h:
+            middle = 0.5 * (low + high)
+            if let_go(body, partial(body, work, path, middle)[0], ground(a, slope, middle), slope):
+                high = middle
+            else:
+                low = middle
+        return high
+
     @inlined
     def turn_in(body: Body, work: NDArray[np.float64], path: Any, y: State, h: float, y_new: State) -> Turn:
         """Return the turning point of the tilt in a step from `y` to `y_new`."""
@@ -198,6 +216,10 @@ def make_events(system: System, stepper: Stepper) -> Events:
             if at > 0.0:  # two turning points in one step: it ends between them
                 h, (y_new, _) = at, partial(body, work, path, at)
                 k = restarted(body, y_new, ground(a, slope, at), work)
+        if resists and y[-1] == PIVOTS:
+            at = release_in(body, work, path, h, a, slope)
+            if at > 0.0:
+                h, (y_new, _) = at, partial(body, work, path, at)
         flat = is_flat(y) and is_flat(y_new)
         turn = turn_in(body, work, path, y, h, y_new)
         if resists and flat:  # the couple jumps where the tilt turns

@@ -23,7 +23,8 @@ from .._compile import inlined, jit
 from ..body import Body
 from ..equations import flat_rhs, planar_rhs, recess_rhs
 from ..trigonometry import sin_cos
-from .tsit5 import State, Vector
+from .record import Vector
+from .result import State
 
 _ROUNDING = float(np.finfo(np.float64).eps)
 
@@ -33,6 +34,11 @@ Weights = tuple[float, ...]
 @jit
 def _never(body: Body, y: State, a: Vector, slope: Vector) -> float:
     return 0.0
+
+
+@jit
+def _in_motion(body: Body, y: State, a: Vector, slope: Vector) -> bool:
+    return False
 
 
 @jit
@@ -51,9 +57,10 @@ class System(NamedTuple):
     derivative: Callable[..., Any]  # (body, y, a) -> y'
     momenta: Callable[..., Any]  # y -> (L or Lambda, S)
     placed: Callable[..., Any]  # (body, y, theta, omega, phi, L) -> y with these, and without twist rate
-    resists: bool = False  # against rolling; then the last three are asked (`resisted`)
+    resists: bool = False  # against rolling; then the last four are asked (`resisted`)
     hold: Callable[..., float] = _never  # (body, y, a, slope) -> for how long it stands still, tilted [s]
     set_off: Callable[..., Any] = _as_it_is  # (body, y, a, slope) -> y that begins to move, its first step
+    let_go: Callable[..., bool] = _in_motion  # (body, y, a, slope) -> does what only pivots begin to move
     stopped: Callable[..., Any] = _as_it_was  # (body, rtol, y, a, slope) -> y, still where it is held
 
 

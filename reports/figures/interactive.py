@@ -1,248 +1,199 @@
-"""Pictures by plotly: a figure for each panel, to be read on a screen as wide as a phone or wider."""
+"""Pictures as data that `charts.js` draws on a page, to be read on a screen as wide as a phone or wider."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import base64
+import html
+import json
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from .heat import Heat
-from .interactive_heat import add_heat, small
-from .palette import DARK
-from .picture import MOST_ENTRIES, Axis, Band, Bars, Line, Panel, Picture, Rule, Text
+from .heat import NOTHING, Heat, Shades
+from .palette import GREY, Style
+from .picture import MOST_ENTRIES, Axis, Band, Bars, Layer, Line, Panel, Picture, Rule, Text
+from .svg import colours
 from .thinning import POINTS, kept_points
 
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
-
-CONFIG = {"responsive": True, "displaylogo": False, "modeBarButtonsToRemove": ["select2d", "lasso2d"]}
-_FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif"
 _PER_INCH = 125.0  # pixels of height
-_ENTRY = 22  # pixels of a line of a legend
-# a phone has room for one such name beside another
-_LONG = 18
+# numbers in cells as long as a phone has room for them
+_MOST_WRITTEN = 42
+_COLOURS = 64  # of a continuous scale
+_EMPTY = 255  # place of a cell without a value and without a reason
 
 
-def plots(picture: Picture) -> list[tuple[str, str]]:
-    """Return title and HTML element of each panel; the page has plotly.js."""
+def charts(picture: Picture) -> list[tuple[str, str]]:
+    """Return title and HTML element of each panel."""
     elements = []
-    for index, drawn in enumerate(figures(picture)):
-        # on a small map the tool bar would hide the cells
-        maps = any(isinstance(layer, Heat) for layer in picture.panels[index].layers)
-        config = CONFIG | ({"displayModeBar": False} if maps else {})
-        name = f"{picture.name}-{index}"
-        element = drawn.to_html(full_html=False, include_plotlyjs=False, div_id=name, config=config)
-        elements.append((picture.panels[index].title, str(element)))
+    for index, panel in enumerate(picture.panels):
+        # in a script only `</` would end it
+        stated = json.dumps(chart(panel, picture), separators=(",", ":"), ensure_ascii=False).replace(
+            "</", "<\\/"
+        )
+        name = html.escape(f"{picture.name}-{index}")
+        script = f'<script type="application/json">{stated}</script>'
+        elements.append((panel.title, f'<div class="chart" id="{name}">{script}</div>'))
     return elements
 
 
-def figures(picture: Picture) -> list[go.Figure]:
-    """Return the figure of each panel."""
-    return [_figure(panel, picture) for panel in picture.panels]
-
-
-def _figure(panel: Panel, picture: Picture) -> go.Figure:
-    import plotly.graph_objects as go
-
-    drawn = go.Figure(layout={"template": "none"})  # the default one takes 7 kB of a page, each time
-    entries = panel.entries()
-    rows = len(entries) if max(map(len, entries), default=0) > _LONG else (len(entries) + 1) // 2
-    room = 8 + _ENTRY * rows
-    drawn.update_layout(
-        height=int(_PER_INCH * panel.height) + _ENTRY * rows,
-        margin={"l": 8, "r": 12, "t": 10, "b": room},
-        font={"family": _FONT, "size": 13, "color": DARK},
-        paper_bgcolor="white",
-        plot_bgcolor="white",
-        hovermode="closest",
-        dragmode="zoom",
-        showlegend=bool(entries),
-        barmode="overlay",
-        # below the axes, where it takes no width on a phone
-        legend={"orientation": "h", "yref": "container", "y": 0.0, "yanchor": "bottom", "x": 0.0},
-        xaxis=_axis(panel.x),
-        yaxis=_axis(panel.y),
-        # what a page enlarges together
-        meta={"link": picture.panels[0].x.title if picture.link_x else ""},
+def colour_bar(shades: Shades) -> str:
+    """Return the HTML element of the scale of the colours."""
+    shown = ", ".join(_palette(shades)) if not shades.steps else ", ".join(_steps(shades))
+    ticks = "".join(
+        f'<span style="left: {100.0 * at:.4g}%">{html.escape(word)}</span>' for at, word in shades.ticks()
     )
-    shown: set[str] = set()  # names in the legend
-    for layer in panel.layers:
-        if isinstance(layer, Line):
-            _line(drawn, layer, panel, shown, picture.points)
-        elif isinstance(layer, Band):
-            _band(drawn, layer, shown)
-        elif isinstance(layer, Bars):
-            _bars(drawn, layer, shown)
-        elif isinstance(layer, Rule):
-            _rule(drawn, layer, panel, shown)
-        elif isinstance(layer, Text):
-            at = {"x": _exponent(layer.x, panel.x), "y": _exponent(layer.y, panel.y)}
-            _words(drawn, layer.text, **at, xanchor=layer.anchor, yanchor="bottom", color=layer.colour)
-        else:
-            assert picture.shades is not None
-            add_heat(drawn, layer, panel, picture.shades)
-            for gap in layer.gaps:
-                if gap.cells.any():
-                    _swatch(drawn, gap.name, gap.colour, shown)
-    if panel.equal:
-        drawn.update_xaxes(constrain="domain")
-        drawn.update_yaxes(scaleanchor="x", scaleratio=1, constrain="domain")
-    if panel.second is not None:
-        _second(drawn, panel, *panel.second)
-    return drawn
+    bar = f'<div style="background: linear-gradient(to right, {shown})"></div>'
+    return f'<div class="shades">{bar}<p>{ticks}</p><p>{html.escape(shades.title)}</p></div>'
+
+
+def chart(panel: Panel, picture: Picture) -> dict[str, Any]:
+    """Return a panel as data: plain values, and arrays as base64 of little-endian float32."""
+    entries = {name: entry for layer in panel.layers for name, entry in _entries(layer) if name}
+    shown = list(entries)[: MOST_ENTRIES - (len(entries) > MOST_ENTRIES)]
+    maps = any(isinstance(layer, Heat) for layer in panel.layers)
+    return {
+        "height": round(_PER_INCH * panel.height),
+        "x": _axis(panel.x),
+        "y": _axis(panel.y),
+        "second": None if panel.second is None else [_axis(panel.second[0]), panel.second[1]],
+        "equal": panel.equal,
+        "link": picture.panels[0].x.title if picture.link_x else "",
+        "ground": NOTHING if maps else "#ffffff",
+        "layers": [_layer(layer, panel, picture) for layer in panel.layers],
+        "legend": [{"name": name, **entries[name]} for name in shown],
+        "more": len(entries) - len(shown),
+    }
+
+
+def packed(values: ArrayLike) -> str:
+    """Return numbers as base64 of little-endian float32: seven digits are more than a screen shows."""
+    return base64.b64encode(np.asarray(values, dtype="<f4").tobytes()).decode()
 
 
 def _axis(axis: Axis) -> dict[str, Any]:
-    found: dict[str, Any] = {
-        **{"showline": True, "linecolor": "#444444", "gridcolor": "#dddddd", "zerolinecolor": "#bbbbbb"},
-        **{"ticks": "outside", "tickcolor": "#444444", "automargin": True},
-        "title": {"text": axis.title, "standoff": 6},
+    return {
+        "title": axis.title,
+        "unit": f" {axis.unit}" if axis.unit not in ("", "-") else "",
+        "log": axis.log,
+        "low": axis.low,
+        "high": axis.high,
+        "ticks": [[float(at), word] for at, word in axis.ticks],
+        "reverse": axis.reverse,
     }
-    ends = [None if end is None else _exponent(end, axis) for end in (axis.low, axis.high)]
-    if ends != [None, None]:
-        found["range"] = ends[::-1] if axis.reverse else ends
-    elif axis.reverse:
-        found["autorange"] = "reversed"
-    if axis.log:
-        # on a long axis the numbers of all decades would run into each other
-        long = axis.low is not None and axis.high is not None and axis.high > 1e6 * axis.low
-        found |= {"type": "log", "exponentformat": "power", "dtick": 2 if long else 1}
-    if axis.ticks:
-        places, words = zip(*axis.ticks, strict=True)
-        words = tuple(word.replace("\n", "<br>") for word in words)
-        found |= {"tickmode": "array", "tickvals": places, "ticktext": words}
-    return found
 
 
-def _exponent(value: float, axis: Axis) -> float:
-    """Return where a value is for what takes the exponent on a logarithmic axis: ends, annotations."""
-    return float(np.log10(value)) if axis.log else value
+def _layer(layer: Layer, panel: Panel, picture: Picture) -> dict[str, Any]:
+    if isinstance(layer, Line):
+        return _line(layer, picture.points)
+    if isinstance(layer, Band):
+        sides = {"x": packed(layer.x), "low": packed(layer.low), "high": packed(layer.high)}
+        return {"kind": "band", "name": layer.name, "colour": layer.colour, **sides}
+    if isinstance(layer, Bars):
+        return {
+            "kind": "bars",
+            "name": layer.name,
+            "colours": list(layer.colours),
+            "hatch": layer.hatch,
+            "texts": list(layer.texts),
+            **{key: packed(getattr(layer, key)) for key in ("places", "start", "end")},
+        }
+    if isinstance(layer, Rule):
+        keys: tuple[str, ...] = ("name", "at", "axis", "text", "until", "colour", "dash", "side")
+        return {"kind": "rule", **{key: getattr(layer, key) for key in keys}}
+    if isinstance(layer, Text):
+        return {
+            "kind": "text",
+            **{key: getattr(layer, key) for key in ("x", "y", "text", "colour", "anchor")},
+        }
+    assert picture.shades is not None
+    return _heat(layer, panel, picture.shades)
 
 
-def _entry(name: str, shown: set[str]) -> dict[str, Any]:
-    """Return what makes one entry in the legend of all that has one name."""
-    if not name:
-        return {"showlegend": False}
-    first = name not in shown and len(shown) < MOST_ENTRIES
-    shown.add(name)
-    return {"name": name, "legendgroup": name, "showlegend": first}
-
-
-def _line(drawn: go.Figure, line: Line, panel: Panel, shown: set[str], points: int) -> None:
-    style = line.style
-    keep = kept_points(line.x, line.y, points=POINTS if style.dash == "none" else points)
-    symbol: str | list[str] = style.symbol or "circle"
-    if style.symbol and line.filled is not True:
-        filled = np.broadcast_to(line.filled, line.x.shape)[keep]
-        symbol = [style.symbol if each else f"{style.symbol}-open" for each in filled]
-    modes = [*([] if style.dash == "none" else ["lines"]), *(["markers"] if style.symbol else [])]
-    notes = [line.notes[place].replace("\n", "<br>") for place in keep] if line.notes else None
-    hover = f"%{{y:.4~g}}{_unit(panel.y)} at %{{x:.4~g}}{_unit(panel.x)}"
-    marker = {"symbol": symbol, "color": style.colour, "size": 1.6 * line.size, "line": {"width": 1.0}}
-    drawn.add_scatter(
-        x=small(line.x[keep]),
-        y=small(line.y[keep]),
-        mode="+".join(modes),
-        line={
-            "color": style.colour,
-            "dash": None if style.dash in ("none", "solid") else style.dash,
-            "width": line.width,
-            "shape": "hv" if line.steps else None,
-        },
-        marker=marker if style.symbol else None,
-        opacity=None if line.opacity == 1.0 else line.opacity,
-        cliponaxis=None if line.clip else False,
-        text=notes,
-        hovertemplate=hover + ("<br>%{text}" if notes else ""),
-        **_entry(line.name, shown),
+def _line(line: Line, points: int) -> dict[str, Any]:
+    keep = kept_points(line.x, line.y, points=POINTS if line.style.dash == "none" else points)
+    filled = (
+        np.broadcast_to(line.filled, line.x.shape)[keep]
+        if isinstance(line.filled, np.ndarray)
+        else line.filled
     )
+    return {
+        "kind": "line",
+        "name": line.name,
+        "x": packed(line.x[keep]),
+        "y": packed(line.y[keep]),
+        "style": _style(line.style),
+        "width": line.width,
+        "size": line.size,
+        "opacity": line.opacity,
+        "open": np.atleast_1d(np.logical_not(filled)).astype(int).tolist(),
+        "steps": line.steps,
+        "clip": line.clip,
+        "notes": [line.notes[place] for place in keep] if line.notes else [],
+    }
 
 
-def _unit(axis: Axis) -> str:
-    return f" {axis.unit}" if axis.unit not in ("", "-") else ""
+def _style(style: Style) -> dict[str, str]:
+    return {"colour": style.colour, "dash": style.dash, "symbol": style.symbol}
 
 
-def _band(drawn: go.Figure, band: Band, shown: set[str]) -> None:
-    drawn.add_scatter(
-        x=small(np.concatenate([band.x, band.x[::-1]])),
-        y=small(np.concatenate([band.high, band.low[::-1]])),
-        fill="toself",
-        fillcolor=band.colour,
-        line={"width": 0},
-        mode="lines",
-        hoverinfo="skip",
-        **_entry(band.name, shown),
-    )
+def _entries(layer: Layer) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the entries of a layer in the legend: a name, and how its mark looks."""
+    if isinstance(layer, Line):
+        yield layer.name, {**_style(layer.style), "width": layer.width}
+    elif isinstance(layer, Rule):
+        yield (
+            layer.name,
+            {"colour": layer.colour, "dash": layer.dash if layer.until is None else "", "width": 1},
+        )
+    elif isinstance(layer, Band):
+        yield layer.name, {"colour": layer.colour}
+    elif isinstance(layer, Bars):
+        yield layer.name, {"colour": layer.colours[0] if layer.colours else GREY}
+    elif isinstance(layer, Heat):
+        yield from ((gap.name, {"colour": gap.colour}) for gap in layer.gaps if gap.cells.any())
 
 
-def _bars(drawn: go.Figure, bars: Bars, shown: set[str]) -> None:
-    drawn.add_bar(
-        base=bars.start,
-        x=bars.end - bars.start,
-        y=bars.places,
-        orientation="h",
-        width=0.78,
-        marker={
-            "color": list(bars.colours),
-            "pattern": {"shape": bars.hatch, "fgcolor": "white", "size": 6, "solidity": 0.2},
-        },
-        text=list(bars.texts) or None,
-        textposition="outside" if bars.texts else "none",
-        cliponaxis=False,
-        hovertemplate="%{x:.3g}",
-        **_entry(bars.name, shown),
-    )
+def _heat(heat: Heat, panel: Panel, shades: Shades) -> dict[str, Any]:
+    x, y = heat.edges(log_x=panel.x.log, log_y=panel.y.log)
+    palette = _palette(shades)
+    known = np.isfinite(heat.values)
+    places = shades.place(np.where(known, heat.values, shades.low))
+    cells = np.where(known, np.minimum(places * len(palette), len(palette) - 1), _EMPTY).astype(np.uint8)
+    gaps = {}
+    for number, gap in enumerate(heat.gaps, start=len(palette)):
+        cells[gap.cells] = number
+        gaps[number] = gap.name
+    written = bool(heat.written) and heat.values.size <= _MOST_WRITTEN
+    return {
+        "kind": "heat",
+        "x": packed(x),
+        "y": packed(y),
+        "centres": [packed(heat.x), packed(heat.y)],
+        "values": packed(heat.values),
+        "cells": base64.b64encode(cells.tobytes()).decode(),
+        "palette": [*palette, *(gap.colour for gap in heat.gaps)],
+        "gaps": gaps,
+        "title": shades.title,
+        "written": [
+            format(value, heat.written) if np.isfinite(value) else "" for value in heat.values.ravel()
+        ]
+        if written
+        else [],
+    }
 
 
-def _rule(drawn: go.Figure, rule: Rule, panel: Panel, shown: set[str]) -> None:
-    vertical = rule.axis == "x"
-    if rule.until is None:
-        line = {"color": rule.colour, "dash": rule.dash, "width": 1}
-        (drawn.add_vline if vertical else drawn.add_hline)(rule.at, line=line)
-    else:
-        strip = drawn.add_vrect if vertical else drawn.add_hrect
-        strip(rule.at, rule.until, fillcolor=rule.colour, line_width=0, layer="below")
-    if rule.name:
-        _swatch(drawn, rule.name, rule.colour, shown, dash=rule.dash if rule.until is None else "")
-    if not rule.text:
-        return
-    left = rule.side == "left"
-    where: dict[str, Any]
-    if vertical:
-        where = {"x": _exponent(rule.at, panel.x), "y": 1.0, "yref": "paper", "yanchor": "top"}
-        where |= {"xanchor": "right" if left else "left"}
-    else:
-        where = {"x": 0.0 if left else 1.0, "xref": "paper", "y": _exponent(rule.at, panel.y)}
-        where |= {"xanchor": "left" if left else "right", "yanchor": "bottom"}
-    _words(drawn, rule.text, **where)
+def _palette(shades: Shades) -> Sequence[str]:
+    """Return the colours of the scale from its low end to its high one."""
+    from matplotlib.colors import to_hex
+
+    count = shades.steps or _COLOURS
+    return [to_hex(colour) for colour in colours(shades)(np.linspace(0.0, 1.0, count))]
 
 
-def _swatch(drawn: go.Figure, name: str, colour: str, shown: set[str], *, dash: str = "") -> None:
-    """Add an entry to the legend for what plotly has none for: a line, or a coloured square."""
-    mark = {"symbol": "square", "size": 10, "color": colour}
-    line = {"color": colour, "dash": dash or "solid", "width": 1}
-    mode = "lines" if dash else "markers"
-    drawn.add_scatter(x=[None], y=[None], mode=mode, line=line, marker=mark, **_entry(name, shown))
-
-
-def _words(drawn: go.Figure, text: str, *, color: str = DARK, **where: Any) -> None:
-    drawn.add_annotation(
-        text=text,
-        showarrow=False,
-        font={"size": 12, "color": color},
-        bgcolor="rgba(255,255,255,0.8)",
-        **where,
-    )
-
-
-def _second(drawn: go.Figure, panel: Panel, second: Axis, factor: float) -> None:
-    if panel.y.low is None or panel.y.high is None:
-        raise ValueError(f"a second axis needs the ends of the first, {panel.y.label!r}")
-    drawn.add_scatter(x=[None], y=[None], yaxis="y2", showlegend=False)
-    drawn.update_traces(colorbar_x=1.2, selector={"type": "heatmap"})
-    ends = [_exponent(factor * end, panel.y) for end in (panel.y.low, panel.y.high)]
-    # enlarging the first would leave the second behind
-    drawn.update_layout(
-        yaxis_fixedrange=True,
-        yaxis2=_axis(second) | {"overlaying": "y", "side": "right", "range": ends, "fixedrange": True},
-    )
+def _steps(shades: Shades) -> Iterator[str]:
+    """Yield the stops of a gradient in steps."""
+    palette = _palette(shades)
+    for place, colour in enumerate(palette):
+        yield f"{colour} {100.0 * place / len(palette):.4g}% {100.0 * (place + 1) / len(palette):.4g}%"

@@ -1,4 +1,4 @@
-"""Colours, dashes and symbols: told apart by colour-blind readers and in black and white."""
+"""Colours, dashes and symbols: distinct to colour-blind readers and in black and white."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ ORDER = ("#0072B2", "#D55E00", "#56B4E9", "#E69F00", "#009E73", "#CC79A7")
 DARK, GREY, PALE = "#222222", "#9a9a9a", "#e8eef4"
 SHADED = "#f3e3c3"  # a strip behind lines
 
-# the dashes of plotly, and what they are in matplotlib
+# dashes, and what they are in matplotlib
 DASHES: Mapping[str, str | tuple[float, tuple[float, ...]]] = {
     "solid": "-",
     "dash": (0, (5, 2)),
@@ -22,7 +22,7 @@ DASHES: Mapping[str, str | tuple[float, tuple[float, ...]]] = {
     "longdashdot": (0, (9, 3, 1, 3)),
     "none": "none",
 }
-# the symbols of plotly, and what they are in matplotlib
+# symbols, and what they are in matplotlib
 SYMBOLS: Mapping[str, str] = {
     **{"circle": "o", "square": "s", "triangle-up": "^", "diamond": "D", "triangle-down": "v"},
     **{"star": "*", "cross": "P", "x": "X", "pentagon": "p", "hexagon": "h"},
@@ -32,7 +32,7 @@ SYMBOLS: Mapping[str, str] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Style:
-    """Colour, dash and symbol (in plotly's words) of a line; no symbol: no marks, dash "none": only marks."""
+    """Colour, dash and symbol of a line; no symbol: no marks, dash "none": only marks."""
 
     colour: str
     dash: str = "solid"

@@ -6,8 +6,7 @@ import math
 
 import pandas as pd
 
-from rockwobble.compare.studies.extremes.study import Extremes
-from rockwobble.compare.studies.extremes.verdict import FINE
+from rockwobble.compare.studies.extremes import FINE, Extremes
 from rockwobble.models.diagnostic import CODES, parted
 
 from .page import Page
@@ -26,7 +25,7 @@ _REFERENCES = {
     "energy": "energy kept",
     "tight": "tolerance of 1e-12",
     "model": "model of its support",
-    "half_step": "same ring, half the step",
+    "half_step": "the same at half the step",
 }
 
 

@@ -24,14 +24,13 @@ from markdown_it import MarkdownIt
 from rich.console import Console
 from rich.markdown import Markdown
 
-from ..figures.interactive import plots
+from ..figures.interactive import charts, colour_bar
 from ..figures.picture import Picture
 from ..figures.svg import svg
+from .sentences import environment
 from .table import Row, Table, columns_of, number
-from .words.sentences import environment
 
 Output = Literal["terminal", "markdown", "html"]
-SCRIPT = "plotly.min.js"
 _PLACE = re.compile(r"\n?@@(\d+)@@\n?")
 # what Markdown would take for markup in a name; an underscore only where a word begins or ends
 _MARKUP = re.compile(r"([\\`*<])|(?<!\w)_|_(?!\w)")
@@ -84,18 +83,13 @@ class Page:
     blocks: Mapping[str, str] = field(default_factory=dict)
     outputs: Sequence[Output] = ("markdown", "html")
 
-    def files(self, *, shared_script: bool = False) -> dict[str, bytes]:
-        """Return the files by name: NAME.md with its pictures as SVG beside it, and NAME.html.
-
-        With `shared_script`, what draws in a browser is a file of its own, which the pages of a folder share.
-        """
+    def files(self) -> dict[str, bytes]:
+        """Return the files by name: NAME.md with its pictures as SVG beside it, and NAME.html."""
         titled, texts = self.alone is not None, {}
         if "markdown" in self.outputs:
             texts[f"{self.name}.md"] = self.markdown()
         if "html" in self.outputs:
-            texts[f"{self.name}.html"] = self.html(shared_script=shared_script)
-            if shared_script:
-                texts[SCRIPT] = _script()
+            texts[f"{self.name}.html"] = self.html()
         return {
             **{name: text.encode() for name, text in texts.items()},
             **{
@@ -119,8 +113,8 @@ class Page:
         parts = (part if isinstance(part, str) else shown(part) for part in self._parts("markdown"))
         return "\n\n".join(filter(None, parts)) + "\n"
 
-    def html(self, *, shared_script: bool = False) -> str:
-        """Return the page, which needs nothing else, or nothing but the `shared_script` beside it."""
+    def html(self) -> str:
+        """Return the page, which needs nothing else."""
         parts = self._parts("html")
         body = "\n".join(_html(part) for part in parts)
         title = re.search(r"<h1.*?>(.*?)</h1>", body)
@@ -132,8 +126,6 @@ class Page:
                 title=re.sub("<.*?>", "", title[1]) if title else self.name,
                 body=body,
                 drawn=drawn,
-                script="" if shared_script or not drawn else _script(),
-                script_file=SCRIPT,
             )
         )
 
@@ -200,12 +192,6 @@ class Page:
         ]
 
 
-def _script() -> str:
-    from plotly.offline import get_plotlyjs
-
-    return str(get_plotlyjs())
-
-
 def _html(part: Part) -> str:
     if isinstance(part, Fold):
         summary = f'<details class="fold"><summary>{html.escape(part.title)}</summary>'
@@ -213,12 +199,13 @@ def _html(part: Part) -> str:
     if isinstance(part, Picture):
         panels = "".join(
             f"<div>{f'<h4>{html.escape(title)}</h4>' if title else ''}{plot}</div>"
-            for title, plot in plots(part)
+            for title, plot in charts(part)
         )
         columns = f' class="panels" style="--columns: {part.columns}"'
         several = columns if len(part.panels) > 1 and not part.link_x else ""
         words = f"<h3>{html.escape(part.title)}</h3><p>{html.escape(part.caption)}</p>"
-        return f'<figure id="{html.escape(part.name)}">{words}<div{several}>{panels}</div></figure>'
+        scale = colour_bar(part.shades) if part.shades else ""
+        return f'<figure id="{html.escape(part.name)}">{words}<div{several}>{panels}</div>{scale}</figure>'
     if isinstance(part, Table):
         return part.html()
     return str(part) if isinstance(part, Safe) else to_html(part)

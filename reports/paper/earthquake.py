@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from rockwobble import reduced
 from rockwobble.models import AGREEMENT, Case, Cylinder, GroundMotion, Trace, el_centro_1940
 
+from . import Statement, verdict_of
 from .free import RESIDUAL, displacement
-from .statement import Statement, verdict_of
 
 Array = NDArray[np.float64]
 
@@ -166,7 +166,7 @@ def _median(values: Array) -> float:
 
 
 def statements(data: Shaken) -> list[Statement]:
-    """Hold what the paper says of the figure against the response and its neighbours."""
+    """Compare the paper's statements on the figure with the response and its neighbours."""
     strong, weak, trace = data.strong, data.weak, data.trace
     both = {f"{name}_{key}": value for name, part in (("strong", strong), ("weak", weak))
             for key, value in asdict(part).items()}  # fmt: skip

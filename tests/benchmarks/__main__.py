@@ -16,6 +16,7 @@ SCRIPTS = (
     "certified_releases",
     "convergence",
     "cut_records",
+    "decks",
     "engine_extremes",
     "engine_settings",
     "engine_versions",

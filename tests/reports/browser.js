@@ -5,29 +5,31 @@ window.addEventListener("load", () => setTimeout(() => {
   const edges = (element) => element.getBoundingClientRect();
   const inside = (part, whole) =>
     part.left > whole.left - 1 && part.right < whole.right + 1 && part.top > whole.top - 1 && part.bottom < whole.bottom + 1;
-  const MARKS = ".scatterlayer .point, .scatterlayer .js-line, .barlayer path, .boxlayer path, .heatmaplayer image";
-
-  const look = (plot) => {
-    const say = (words) => found.push(`${plot.id || "player"}: ${words}`);
-    const sheet = plot.querySelector(".main-svg"), drawn = plot._fullLayout;
-    if (!sheet || !drawn) { say("not drawn"); return; }
-    if (edges(sheet).right > edges(plot.parentElement).right + 1) say("wider than its place");
-    if (edges(sheet).bottom > edges(plot.parentElement).bottom + 1) say("taller than its place");
-    if (plot._fullData.some((trace) => trace.type.endsWith("3d"))) return;
-    for (const name of ["xaxis", "yaxis"]) {
-      const title = drawn[name].title.text || "";
+  const look = (chart) => {
+    const say = (words) => found.push(`${chart.id}: ${words}`);
+    const sheet = chart.querySelector("svg"), drawn = sheet && sheet.querySelector("[data-axis]");
+    if (!drawn) { say("not drawn"); return; }
+    if (edges(chart).right > edges(chart.parentElement).right + 1) say("wider than its place");
+    const stated = JSON.parse(chart.querySelector("script").textContent);
+    for (const axis of ["x", "y"]) {
+      const title = sheet.querySelector(`[data-axis="${axis}"]`).textContent;
       // names of runs say what they are
-      if ((drawn[name].type === "category" || drawn[name].ticktext) && !title) continue;
-      if (!/\[.+\]/.test(title)) say(`${name} without a unit: "${title}"`);
+      if (!/\[.+\]/.test(title) && !(stated[axis].ticks.length && !title)) say(`${axis} without a unit: "${title}"`);
     }
-    if (!plot.querySelector(MARKS)) say("empty");
-    for (const text of plot.querySelectorAll("text")) {
+    if (!sheet.querySelector(".mark")) say("empty");
+    for (const text of sheet.querySelectorAll("text")) {
       if (edges(text).width && !inside(edges(text), edges(sheet))) say(`text cut off: "${text.textContent}"`);
     }
   };
+  const empty = (canvas) => {
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    return data.every((value) => value === 0);
+  };
 
-  const plots = Array.from(document.querySelectorAll(".plotly-graph-div")).filter((plot) => plot.offsetParent);
-  plots.forEach(look);
+  const charts = Array.from(document.querySelectorAll(".chart")).filter((chart) => chart.offsetParent);
+  charts.forEach(look);
+  const players = Array.from(document.querySelectorAll(".player canvas")).filter((canvas) => canvas.offsetParent);
+  players.filter(empty).forEach(() => found.push("player: empty"));
   const wider = document.documentElement.scrollWidth - document.documentElement.clientWidth;
   if (wider > 0) found.push(`the page scrolls sideways by ${wider} pixels`);
   for (const asked of performance.getEntriesByType("resource")) {
@@ -35,5 +37,5 @@ window.addEventListener("load", () => setTimeout(() => {
     if (!own) found.push(`asks for ${asked.name}`);
   }
   if (window.lookFurther) window.lookFurther(found);
-  window.parent.postMessage([window.name, plots.length, ...found].join("\n"), "*");
+  window.parent.postMessage([window.name, charts.length, ...found].join("\n"), "*");
 }, 1200));

@@ -11,9 +11,9 @@ from test_published import WHOLE
 from rockwobble import compare
 from rockwobble.compare import Comparison
 from rockwobble.models import Case, Cylinder, InitialState
-from rockwobble.reports.pages.comparison import report
+from rockwobble.reports.pages import comparison as report
+from rockwobble.reports.pages import page_of, stored_page
 from rockwobble.reports.pages.ensemble import page_of as ensemble_page
-from rockwobble.reports.pages.registry import page_of, stored_page
 
 # of a player: moved, it must say where it is
 PLAYER = """
@@ -45,15 +45,14 @@ def ensemble() -> str:
 def test_page_of_a_study_is_drawn(kind: str, tmp_path: Path):
     folder = next(folder for folder, each in WHOLE if each == kind)
     page = stored_page(kind, folder).html()
-    assert complaints(page, tmp_path, figures=page.count("Plotly.newPlot(")) == []
+    assert complaints(page, tmp_path, figures=page.count('class="chart"')) == []
 
 
 @needs_chromium
 def test_pages_of_a_comparison_are_drawn(comparison: Comparison, tmp_path: Path, monkeypatch):
     assert complaints(page_of(comparison.made_by()).html(), tmp_path, figures=15, further=PLAYER) == []
     played = page_of(comparison.of_case("El Centro 1940").made_by())
-    # drawn without a graphics card, a player takes its time: the page above had it at both widths
-    assert complaints(played.html(), tmp_path, figures=0, further=PLAYER, widths=["phone"]) == []
+    assert complaints(played.html(), tmp_path, figures=0, further=PLAYER) == []
     monkeypatch.setattr(report, "SINGLY", 0)
     assert complaints(page_of(comparison.made_by()).html(), tmp_path, figures=6, further=CHOOSER) == []
 
@@ -61,23 +60,23 @@ def test_pages_of_a_comparison_are_drawn(comparison: Comparison, tmp_path: Path,
 @needs_chromium
 def test_a_page_with_a_broken_figure_is_found(tmp_path: Path):
     whole = ensemble()
-    broken = whole.replace("Plotly.newPlot(", "Plotly.noPlot(")
+    broken = whole.replace("LAYERS[layer.kind](", "LAYERS[layer.no_kind](")
     assert broken != whole
     said = complaints(broken, tmp_path, figures=2)
-    assert "screen: ensemble-0: not drawn" in said
-    assert "phone: ensemble-0: not drawn" in said
-    assert any("Plotly.noPlot is not a function" in line for line in said)
+    assert "screen: ensemble-0: empty" in said
+    assert "phone: ensemble-0: empty" in said
+    assert any("is not a function" in line for line in said)
 
 
 @needs_chromium
 def test_what_a_reader_would_stumble_over_is_found(tmp_path: Path):
     whole = ensemble()
-    wrong = whole.replace("share of the members [-]", 20 * "share of the members ")
+    wrong = whole.replace("share of the members [-]", 20 * "share_of_the_members_")
     wrong = wrong.replace(
         "<h1", '<div style="width: 700px">wide</div><img src="https://example.org/a.png"><h1'
     )
     said = complaints(wrong, tmp_path, figures=3)
-    assert any(line.startswith("phone: ensemble-0: yaxis without a unit") for line in said)
+    assert any(line.startswith("phone: ensemble-0: y without a unit") for line in said)
     assert any(line.startswith("phone: ensemble-0: text cut off") for line in said)
     assert any(line.startswith("phone: the page scrolls sideways") for line in said)
     assert "screen: 2 figures, expected 3" in said

@@ -154,10 +154,3 @@ def test_a_legend_explains_the_columns_that_are_shown(page):
         assert "note: by hand." in text
     assert "peak: the largest." in printed(60)
     assert "note: by hand." not in printed(60)
-
-
-def test_pages_of_a_folder_share_one_script(page):
-    files = page.files(shared_script=True)
-    assert b'<script src="plotly.min.js"></script>' in files["report.html"]
-    assert files["plotly.min.js"] not in files["report.html"]
-    assert files["plotly.min.js"] in page.files()["report.html"]

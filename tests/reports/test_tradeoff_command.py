@@ -48,7 +48,7 @@ def found() -> Tradeoff:
 def test_the_command_writes_its_pages_and_all_that_they_are_drawn_from(
     found: Tradeoff, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(study, "measure_tradeoff", lambda **_: found)
+    monkeypatch.setattr(study, "measure_tradeoff", lambda *_, **__: found)
     done = CliRunner().invoke(app, ["tradeoff", "--quick", "--out", str(tmp_path)])
     assert done.exit_code == 0
     assert {path.name for path in tmp_path.iterdir() if path.is_file()} >= {
@@ -63,9 +63,9 @@ def test_the_command_writes_its_pages_and_all_that_they_are_drawn_from(
     )
     assert "scipy's solvers on the same equations takes 600 to 900 times" in printed
     page = (tmp_path / "tradeoff.html").read_text()
-    assert page.count("plotly-graph-div") >= 2
+    assert page.count('class="chart"') >= 2
     assert "The load of the machine was 0.1 before and 1.2 after." in page
-    assert len(page) < 8e6
+    assert len(page) < 2e6
     stored = Tradeoff.load(tmp_path)
     assert stored.facts == found.facts
     for name in TABLES:

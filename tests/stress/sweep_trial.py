@@ -17,9 +17,8 @@ import numpy as np
 
 from rockwobble.compare.runs.cache import CACHE
 from rockwobble.compare.runs.progress import Progress
-from rockwobble.compare.studies.sweep.grid import Grid
-from rockwobble.compare.studies.sweep.result import KIND
-from rockwobble.compare.studies.sweep.study import sweep
+from rockwobble.compare.studies.grid import Grid
+from rockwobble.compare.studies.sweep import KIND, sweep
 from rockwobble.models import el_centro_1940
 
 if TYPE_CHECKING:
@@ -62,9 +61,9 @@ class Kills:
 def trial_grid(sizes: int) -> Grid:
     """Return a grid of 80 runs for each size, small enough to be swept many times."""
     return Grid(
-        semidiagonals=np.linspace(0.5, 30.0, sizes),
+        semidiagonals=np.linspace(0.5, 30.0, sizes).tolist(),
         tan_alphas=[0.1, 0.2],
-        scales=np.linspace(0.5, 6.0, 40),
+        scales=np.linspace(0.5, 6.0, 40).tolist(),
         motions=[el_centro_1940()],
     )
 

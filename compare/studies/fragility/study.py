@@ -12,27 +12,29 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.models import Cylinder, GroundMotion, Run
-from rockwobble.models.records.plausibility import doubts_of
-from rockwobble.models.traces.trace_file import run_to_plain
+from rockwobble.models.records.units import doubts_of
+from rockwobble.models.trace_file import run_to_plain
 
-from ...metrics.order_statistics import FEWEST
+from ...metrics.statistics import FEWEST
 from ...runs.progress import ProgressCallback
-from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Number
+from ...storage.provenance import fingerprint
 from ...storage.results import Results
 from ..plans import FragilityPlan
 from .fit import TOO_FEW, resamples
-from .methods import MODELS, Method, methods_of, own_model
-from .plan import RunPlan, default_levels, run_plan
-from .samples import DEFAULT_LIMITS, OVERTURNED, blocks_of, require_limits
+from .runs import MODELS, Method, RunPlan, default_levels, methods_of, own_model, run_plan
 from .tables import (
+    DEFAULT_LIMITS,
+    OVERTURNED,
+    blocks_of,
     contrast_table,
     count_table,
     curve_table,
     curves_of,
     efficiency_table,
     fit_table,
-    island_table,
+    gap_table,
+    require_limits,
 )
 
 KIND = "fragility"
@@ -68,7 +70,7 @@ class Fragility(Results, kind=KIND):
         holds the interval of the ratio), verdict for the margin of the facts.
     efficiency : DataFrame
         Dispersion of the first method by each measure, and over that of the best.
-    islands : DataFrame
+    gaps : DataFrame
         Gaps in the overturning region: motions that overturn a cylinder which stands under the same motion
         made stronger, and bias of the median of an analysis that stops at the first overturning.
 
@@ -132,7 +134,7 @@ def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Mapping[str, A
         "curves": curve_table(blocks, fitted, drawn),
         "contrasts": contrast_table(blocks, fitted, drawn, weights, float(facts["margin"])),
         "efficiency": efficiency_table(blocks, blocks.methods[0], weights),
-        "islands": island_table(blocks, weights),
+        "gaps": gap_table(blocks, weights),
     }
     levels = points.groupby("cylinder")[blocks.measure].nunique()
     if len(blocks.motions) < FEWEST or levels.min() < FEWEST_LEVELS:
@@ -146,7 +148,7 @@ def _counts_alone(tables: Mapping[str, pd.DataFrame]) -> dict[str, pd.DataFrame]
     fitted = fits.columns.difference([*_COUNTED, "kind", "extrapolated"])
     fits[fitted] = float("nan")
     return {"fits": fits} | {
-        name: tables[name].iloc[:0] for name in ("curves", "contrasts", "efficiency", "islands")
+        name: tables[name].iloc[:0] for name in ("curves", "contrasts", "efficiency", "gaps")
     }
 
 
@@ -175,18 +177,16 @@ def main_contrasts(found: Fragility) -> dict[str, list[Row]]:
 def _question(methods: Mapping[str, Mapping[str, Any]], method: str, against: str) -> tuple[str, bool]:
     """Return the question that a pair answers, and whether the pair is the other way round; "" for none."""
     one, other = methods[method], methods[against]
-    engines = one["engine"], other["engine"]
-    if engines == (None, None) and "planar" in (one["support"], other["support"]):
-        recess = [each["support"] == "recess" for each in (one, other)]
-        return ("planar", recess[0]) if any(recess) else ("", False)
+    engines, supports = ([each[name] for each in (one, other)] for name in ("engine", "support"))
     if engines[0] == engines[1]:
-        recess = [each["support"] == "recess" for each in (one, other)]
-        return ("support", recess[0]) if recess[0] != recess[1] else ("", False)
+        recess = [support == "recess" for support in supports]
+        question = "planar" if engines[0] is None and "planar" in supports else "support"
+        return (question, recess[0]) if recess[0] != recess[1] else ("", False)
     if None in engines:
         turned = engines[0] is None
         model, engine = (method, other) if turned else (against, one)
         return ("engine", turned) if engine["own_model"] == model else ("", False)
-    return ("engine", False) if one["support"] == other["support"] else ("", False)
+    return ("engine", False) if supports[0] == supports[1] else ("", False)
 
 
 def _inverted(row: Row) -> Row:
@@ -273,7 +273,7 @@ def fragility(
     return fragility_of(runs, plan.points, facts)
 
 
-def _facts(plan: RunPlan) -> dict[str, Any]:
+def _facts(plan: RunPlan) -> dict[str, object]:
     asked = plan.options
     named = ("measure", "period", "margin", "resamples", "seed", "gravity", "friction", "step_factor")
     return {
@@ -292,7 +292,7 @@ def _facts(plan: RunPlan) -> dict[str, Any]:
     }
 
 
-def _described(method: Method, methods: Sequence[Method]) -> dict[str, Any]:
+def _described(method: Method, methods: Sequence[Method]) -> dict[str, object]:
     return {
         "support": method.support,
         "engine": method.run.engine if method.run is not None else None,

@@ -20,7 +20,7 @@ from rockwobble import reduced
 from rockwobble.models import GroundMotion
 from rockwobble.models.number_checks import require_increasing
 
-from ...metrics.tilt import overturned
+from ...metrics.pair import overturned
 from ...runs.progress import ProgressCallback, Stages
 from ..plans import SpectrumPlan
 from .search import lowest_on_grid, probe_below, run_searches, search_lowest
@@ -283,11 +283,11 @@ def maps_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, Any]) -> Til
     )
 
 
-def safe_islands(spectrum: TiltMaps) -> pd.DataFrame:
+def safe_gaps(spectrum: TiltMaps) -> pd.DataFrame:
     """Return the ranges of intensities above the lowest overturning one in which a cylinder stands.
 
     Columns: series, semidiagonal [m], lower and upper, the first and last intensity of the grid that the
-    cylinder stands [-], closed, whether a higher one overturns it again. A failed run ends an island, and
+    cylinder stands [-], closed, whether a higher one overturns it again. A failed run ends a gap, and
     neither opens one nor closes it.
     """
     rows = []

@@ -1,0 +1,274 @@
+"""The options that state a problem, the same for every command, and the case that they make."""
+
+from __future__ import annotations
+
+import math
+import shlex
+from collections.abc import Collection
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import rockwobble as rw
+
+from . import options
+
+# length of a free response where the user does not say [s]
+FREE_DURATION = 10.0
+_release = options.panel("Release")
+SEMIDIAGONAL, TAN_ALPHA = 6.0, 0.2  # [m], [-]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Body:
+    """The options that state a cylinder, or a slab on cylinders."""
+
+    semidiagonal: Annotated[float | None, options.body("R = sqrt(b^2 + h^2), in m. Default: 6.")] = None
+    tan_alpha: Annotated[float | None, options.TAN_ALPHA] = None
+    diameter: Annotated[float | None, options.body("2b, in m; with --height in place of the two above.")] = (
+        None
+    )
+    height: Annotated[float | None, options.body("2h, in m.")] = None
+    mass_centre_height: Annotated[
+        float | None,
+        options.body(
+            "Of the mass centre above the base, in m; with --diameter and --height. Default: half of that."
+        ),
+    ] = None
+    transverse_inertia: Annotated[
+        float | None,
+        options.body("I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder."),
+    ] = None
+    axial_inertia: Annotated[float | None, options.body("I2/m about the axis, in m2.")] = None
+    slab_mass_ratio: options.SlabMassRatio = None
+    columns: Annotated[
+        int | None,
+        options.body(
+            "Number of the cylinders under the slab: 3 or more, or 1 for a slab that cannot turn. Default: 3."
+        ),
+    ] = None
+
+    def cylinder(self) -> rw.Cylinder:
+        """Return the cylinder, by semidiagonal and slenderness or by diameter and height, or the frame.
+
+        Raises
+        ------
+        ValueError
+            If an option is out of range, or two do not go together.
+        """
+        inertias = {
+            "transverse_inertia": self.transverse_inertia,
+            "axial_inertia": self.axial_inertia,
+        }
+        if self.diameter is not None and self.height is not None:
+            if self.semidiagonal is not None or self.tan_alpha is not None:
+                raise ValueError("--diameter and --height stand in place of --semidiagonal and --tan-alpha")
+            if not self.diameter > 0.0:
+                raise ValueError(f"--diameter must be positive [m], got {self.diameter:g}")
+            cylinder = rw.Cylinder.from_dimensions(
+                base_radius=0.5 * self.diameter,
+                height=self.height,
+                mass_centre_height=self.mass_centre_height,
+                **inertias,
+            )
+        elif self.diameter is not None or self.height is not None:
+            raise ValueError("--diameter and --height go together, got one without the other")
+        elif self.mass_centre_height is not None:
+            raise ValueError("--mass-centre-height goes with --diameter and --height")
+        else:
+            cylinder = rw.Cylinder(
+                semidiagonal=SEMIDIAGONAL if self.semidiagonal is None else self.semidiagonal,
+                tan_alpha=TAN_ALPHA if self.tan_alpha is None else self.tan_alpha,
+                **inertias,
+            )
+        return under_slab(cylinder, self.slab_mass_ratio, self.columns)
+
+
+def under_slab(cylinder: rw.Cylinder, slab_mass_ratio: float | None, columns: int | None) -> rw.Cylinder:
+    """Return a cylinder, or the frame of a slab on such cylinders where a slab is given.
+
+    Raises
+    ------
+    ValueError
+        If there are columns without a slab, or the frame is none.
+    """
+    if slab_mass_ratio is None:
+        if columns is not None:
+            raise ValueError("--columns carry a slab, give --slab-mass-ratio as well")
+        return cylinder
+    return rw.WobblingFrame(cylinder, slab_mass_ratio, 3 if columns is None else columns)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record:
+    """The options that state a ground motion."""
+
+    record: Annotated[
+        Path | None, options.ground("Text or CSV of time, x, y and perhaps z, in place of the files below.")
+    ] = None
+    record_x: Annotated[
+        Path | None,
+        options.ground(
+            "East-west component: PEER AT2, two-column text or CSV, or zero beside the other (planar "
+            "motion). Default: El Centro 1940."
+        ),
+    ] = None
+    record_y: Annotated[Path | None, options.ground("North-south component, or zero.")] = None
+    record_z: Annotated[Path | None, options.ground("Vertical component, may be left out.")] = None
+    units: options.Units = None
+    resample: options.Resample = False
+    scale: Annotated[float, options.ground("Factor on all components.")] = 1.0
+
+    def motion(self, *, still: bool = False) -> rw.GroundMotion | None:
+        """Return the ground motion; without a record El Centro, or None where the ground is then `still`.
+
+        Raises
+        ------
+        ValueError
+            If an option is out of range, two do not go together, or the record cannot be read.
+        """
+        x, y, z, scale = self.record_x, self.record_y, self.record_z, self.scale
+        whole = self.record
+        if not (math.isfinite(scale) and scale > 0.0):
+            raise ValueError(f"--scale must be positive and finite, got {scale:g}")
+        if whole is not None:
+            if any(path is not None for path in (x, y, z)):
+                raise ValueError("--record holds all components, got --record-x, -y or -z beside it")
+            if self.resample:
+                raise ValueError("--resample goes with --record-x and --record-y: --record has one time step")
+            return rw.read_record(whole, units=self.units).scaled(scale)
+        if x is None and y is None:
+            if lone := "--record-z" if z is not None else self._lone_option():
+                raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
+            if not still:
+                return rw.el_centro_1940().scaled(scale)
+            if scale != 1.0:
+                raise ValueError("--scale belongs to a record, give --record-x and --record-y as well")
+            return None
+        if x is None or y is None:
+            given, missing = ("--record-y", "--record-x") if x is None else ("--record-x", "--record-y")
+            raise ValueError(
+                f"both horizontal components are needed, got {given} without {missing}: for planar motion "
+                f"give {missing} zero, one file of all by --record"
+            )
+        return rw.read_record(x, y, z, units=self.units, resample=self.resample).scaled(scale)
+
+    def _lone_option(self) -> str:
+        return "--units" if self.units is not None else "--resample" if self.resample else ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Release:
+    """The options that state a release."""
+
+    release_tilt_deg: Annotated[
+        float | None, _release("Release at this tilt, in deg; without a record the ground is then still.")
+    ] = None
+    rolling_rate: Annotated[float, _release("Rolling rate at release, in rad/s.")] = 0.0
+    duration: Annotated[
+        float | None,
+        _release(
+            "Length of the run, in s; what moves then is followed over still ground to its next maximum. "
+            "Default: that of the ground motion, 10 s without one."
+        ),
+    ] = None
+
+    def initial(self) -> rw.InitialState | None:
+        """Return the state at release; None from rest.
+
+        Raises
+        ------
+        ValueError
+            If an option is out of range, or two do not go together.
+        """
+        if self.release_tilt_deg is None:
+            if self.rolling_rate:
+                raise ValueError("--rolling-rate needs a release, give --release-tilt-deg [deg] as well")
+            return None
+        if not 0.0 <= self.release_tilt_deg < 90.0:
+            raise ValueError(
+                f"--release-tilt-deg must be at least 0 and below 90 [deg], got {self.release_tilt_deg:g}"
+            )
+        return rw.InitialState(tilt=math.radians(self.release_tilt_deg), rolling_rate=self.rolling_rate)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem(Release, Record, Body):
+    """The options that state a problem."""
+
+    gravity: options.Gravity = 9.81
+    friction: Annotated[
+        float,
+        options.ground(
+            "Coefficient of cylinder and ground. The reduced models assume that it suffices and say where it "
+            "would not."
+        ),
+    ] = 1.0
+    rolling_resistance: Annotated[
+        float,
+        options.ground(
+            "Length of the couple against the rolling of the rim, in m, below the base radius; 0 loses "
+            "nothing."
+        ),
+    ] = 0.0
+
+    def case(self) -> rw.Case:
+        """Return the case that they state.
+
+        Raises
+        ------
+        ValueError
+            If an option is out of range, or two do not go together.
+        """
+        initial, cylinder = self.initial(), self.cylinder()
+        motion = self.motion(still=initial is not None)
+        scaled = f" × {self.scale:g}" if self.scale != 1.0 else ""
+        return rw.Case(
+            cylinder,
+            motion,
+            initial=initial,
+            duration=FREE_DURATION if motion is None and self.duration is None else self.duration,
+            gravity=self.gravity,
+            friction=self.friction,
+            rolling_resistance=self.rolling_resistance,
+            name="free response" if motion is None else motion.name + scaled,
+        )
+
+
+def given_options(context: typer.Context) -> list[str]:
+    """Return the options that the user gave, by the names of their parameters."""
+    sources = {name: context.get_parameter_source(name) for name in context.params}
+    return [name for name, source in sources.items() if source is not None and source.name == "COMMANDLINE"]
+
+
+def restated(context: typer.Context, command: str, *, also: Collection[str] = ()) -> str:
+    """Return the line of another command on the problem that the user gave; `also`: more of its options."""
+    parts = ["rockwobble", command]
+    for name in given_options(context):
+        if name in PROBLEM or name in also:
+            parts += [f"--{name.replace('_', '-')}", str(context.params[name])]
+    return shlex.join(parts)
+
+
+def refuse(context: typer.Context, names: Collection[str], why: str) -> None:
+    """Refuse options that the user gave and that would be ignored.
+
+    Raises
+    ------
+    ValueError
+        Naming the first of them.
+    """
+    for name in given_options(context):
+        if name in names:
+            raise ValueError(f"--{name.replace('_', '-')} {why}")
+
+
+def refuse_options_of_engines(context: typer.Context, engines: list[str] | None) -> None:
+    """Refuse options that belong to engines where there are none."""
+    if engines == [options.NO_ENGINE]:
+        refuse(context, {"support", "time_step"}, "belongs to engines, got it with --engine none")
+
+
+BODY, PROBLEM = (frozenset(field.name for field in fields(each)) for each in (Body, Problem))

@@ -1,0 +1,49 @@
+"""A case in words: what was understood of the input, in numbers."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rockwobble.models import Case
+
+
+def describe(case: Case) -> list[str]:
+    """Return the lines that echo a case: what was understood, in numbers."""
+    cylinder, motion, initial = case.cylinder, case.motion, case.initial
+    lines = [
+        f"Cylinder: b = {cylinder.base_radius:.4g} m, 2h = {2.0 * cylinder.half_height:.4g} m, "
+        f"alpha = {math.degrees(cylinder.alpha):.4g} deg "
+        f"(R = {cylinder.semidiagonal:g} m, tan alpha = {cylinder.tan_alpha:g})"
+    ]
+    if cylinder.slab_mass_ratio > 0.0:
+        lines.append(f"Slab: {cylinder.slab_mass_ratio:g} times the mass of all columns under it")
+    if motion is not None:
+        # here, because the help of the command line needs no numpy
+        from rockwobble.compare.studies.spectrum.maps import uplift_factor
+        from rockwobble.models.records.units import doubts_of
+
+        from .diagnostics import warnings
+
+        factor = uplift_factor(motion, cylinder.tan_alpha, case.gravity, until=case.length)
+        within = " within the run" if case.length < motion.duration else ""
+        count, components = motion.acceleration.shape
+        lines.append(
+            f"Ground: {motion.name or 'record'}, {count} samples of {motion.time_step:g} s, "
+            f"{components} components, peak {motion.peak / case.gravity:.3f} g "
+            f"({1.0 / factor:.2f} times the uplift threshold{within})"
+        )
+        lines += warnings(doubts_of([motion]))
+    if initial is not None:
+        lines.append(
+            f"Release: tilt {math.degrees(initial.tilt):.4g} deg "
+            f"({initial.tilt / cylinder.alpha:.3g} alpha), rolling rate {initial.rolling_rate:g} rad/s"
+        )
+    lines.append(f"Length of the run: {case.length:.4g} s")
+    return lines
+
+
+def group_of(name: str) -> str:
+    """Return the group of a case: its name up to the first colon or comma, where the values follow."""
+    return name.split(":")[0].split(",")[0].strip()

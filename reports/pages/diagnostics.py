@@ -1,0 +1,154 @@
+"""Diagnostics in words: each code of `rockwobble.models.diagnostic`, with its numbers."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from rockwobble.models import Diagnostic
+from rockwobble.models.diagnostic import FAILURES
+from rockwobble.models.records.units import likely_unit
+
+# why halving the step did not settle it
+_UNSETTLED = {
+    "fails": "a smaller step fails",
+    "still_changes": "it still changes at the smallest step allowed",
+    "no_later": "a smaller step does not put off the divergence",
+    "no_closer": "a smaller step does not bring it closer",
+    "unresolved_pass": "a pass is left to chance, so that its error is not known",
+    "energy": "contact makes or takes energy, so that its error is not known",
+}
+# why runs at successive steps have no limit
+_NOT_EXTRAPOLATED = {
+    "fails": "a run at a coarser step fails",
+    "diverged": "the runs diverge there",
+    "no_closer": "the runs do not come closer to one another",
+    "unresolved_pass": "a pass is left to chance there",
+    "energy": "contact makes or takes energy",
+}
+# with the numbers of `_fields`
+_WORDS: Mapping[str, str] = {
+    "step_budget": "the {size:.0f} steps allowed were used up{at}: the motion chatters near upright, which "
+    "a larger rest threshold ends",
+    "tolerance": "no step met the tolerance of {bound:g}{at}",
+    "slip": "contact slipped{since}",
+    "lift_off": "the cylinder left the ground{at}",
+    "tension": "contact is lost{at}, for {duration} in all: the ground would have to pull (normal force "
+    "{size:.3g} weights)",
+    "friction_needed": "the rim would slip{at}, for {duration} in all: it needs a friction of {size:.3g}, "
+    "where there is {bound:g}",
+    "wall_contact": "the cylinder touched a wall{since}",
+    "energy": "contact {made} {amount:.1e} of the energy of the motion, which shows{since}",
+    "undecided": "it ends in motion, which comes to no maximum of its tilt in the time for which it is "
+    "followed: whether it overturns is not decided",
+    "solver": "the solver had not converged in {size:.0f} of the {bound:.0f} steps looked at",
+    "unresolved_pass": "{passes_are} closer to upright than the {bound:.1e} rad that contact resolves, "
+    "first{at}",
+    "settled": "the tilt is, until {duration}, within {size:.1e} alpha of its limit for a vanishing step, "
+    "by Richardson with order {bound:.2g}",
+    "unsettled": "the tilt has not settled by halving the step: {why}; until {duration} it differs by "
+    "{size:.1e} alpha from that at twice the step",
+    "extrapolated": "the motion is, until {duration}, what runs at three time steps tend to, with order "
+    "{bound:.0f}: within {size:.1e} alpha, by estimate",
+    "not_extrapolated": "it is not extrapolated{later}, but the run at the finest time step: {why}",
+    "side": "it passed through upright itself, first{at}: the ground had moved in one plane, and the side "
+    "of such a pass is undetermined",
+    "large_peak": "its peak is {size:.3g} g, more than any record has ({bound:g} g): it would be "
+    "{other_unit:.2g} g with its numbers in {detail}; give the unit of the file",
+    "unlike_components": "the peaks of its components differ by a factor of {size:.3g}, {detail} is the "
+    "larger: their units may differ",
+    "note": "{detail}",
+    "missed_pass": "{passes_fell} between two samples, first{at}",
+}
+# the same where the size is not known, or infinite: no friction suffices where the ground would have to pull
+_UNKNOWN: Mapping[str, str] = {
+    "tension": "contact is lost{at}: a joint holds the rim down",
+    "friction_needed": "a joint holds the rim{at}, where the friction of the case would let it slip",
+    "unsettled": "the tilt has not settled by halving the step: {why}",
+}
+_INFINITE: Mapping[str, str] = {
+    "friction_needed": "the rim would slip{at}, for {duration} in all: no friction suffices",
+}
+# what each is called where many runs are counted
+_MANY: Mapping[str, str] = {
+    "slip": "slipped",
+    "lift_off": "left the ground",
+    "wall_contact": "touched a wall",
+    "tension": "lost contact but for a joint",
+    "friction_needed": "needed more friction than there is",
+    "energy": "lost or gained energy",
+    "solver": "had steps whose solver did not converge",
+    "unsettled": "did not settle with the time step",
+    "not_extrapolated": "could not be extrapolated in the time step to the end",
+    "unresolved_pass": "had passes closer to upright than contact resolves",
+    "undecided": "ended in motion that was not decided",
+    "side": "passed through upright itself",
+}
+
+
+def sentence(fact: Diagnostic) -> str:
+    """Return a diagnostic in words, without capital and full stop."""
+    special = _UNKNOWN if math.isnan(fact.size) else _INFINITE if math.isinf(fact.size) else {}
+    words = special.get(fact.code) or _WORDS.get(fact.code)
+    if words is None:
+        words = "{meaning}{at}" + (": {detail}" if fact.detail else "")
+    return words.format_map(_fields(fact))
+
+
+def _fields(fact: Diagnostic) -> dict[str, str | float]:
+    """Return what the words of a diagnostic may name."""
+    known = not math.isnan(fact.time)
+    time = _s(fact.time)
+    since = f" from {time} on" if known else ""
+    reasons = _UNSETTLED if fact.code == "unsettled" else _NOT_EXTRAPOLATED
+    return {
+        "meaning": fact.meaning,
+        "size": fact.size,
+        "amount": abs(fact.size),
+        "made": "made" if fact.size > 0.0 else "took",
+        "bound": fact.bound,
+        "duration": _s(fact.duration),
+        "detail": fact.detail,
+        "why": reasons.get(fact.detail, ""),
+        "at": f" at {time}" if known else "",
+        "since": since,
+        "later": since if fact.time > 0.0 else "",
+        "passes_are": _count(fact.size, "pass", "is", "are"),
+        "passes_fell": _count(fact.size, "near pass", "fell", "fell"),
+        "other_unit": likely_unit(fact.size)[1] if fact.code == "large_peak" else math.nan,
+    }
+
+
+def remarks(facts: Iterable[Diagnostic]) -> str:
+    """Return diagnostics in words, separated by semicolons."""
+    return "; ".join(map(sentence, facts))
+
+
+def warnings(doubts: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Return a line on each doubt about a record, as `doubts_of` gives them."""
+    lines = []
+    for doubt in doubts:
+        fields = {name: value for name, value in doubt.items() if name != "record"}
+        lines.append(f"Warning: {doubt['record']}: {sentence(Diagnostic(**fields))}.")
+    return lines
+
+
+def failure(facts: Iterable[Diagnostic]) -> str:
+    """Return why a run failed, in words."""
+    return remarks(fact for fact in facts if fact.code in FAILURES) or "it failed"
+
+
+def counted(codes: Iterable[Iterable[str]]) -> list[str]:
+    """Return how many runs have which diagnostic, from the codes of each run; failures left out."""
+    found = Counter(code for of_run in codes for code in set(of_run))
+    return [f"{found[code]} {words}" for code, words in _MANY.items() if found[code]]
+
+
+def _s(time: float) -> str:
+    return f"{time:.4g} s"
+
+
+def _count(number: float, what: str, one: str, many: str) -> str:
+    return f"1 {what} {one}" if number == 1 else f"{number:.0f} {what}es {many}"

@@ -1,0 +1,88 @@
+"""Sentences and pieces of pages from templates, and numbers as sentences have them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from rockwobble.compare.runs.choice import REDUCED
+
+from .diagnostics import warnings
+
+if TYPE_CHECKING:
+    import jinja2
+
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def sentence(template: str, macro: str, *values: object) -> str:
+    """Return the words of a macro of a template, on one line, as plain text."""
+    said = str(getattr(_environment(html=False).get_template(template).module, macro)(*values))
+    # spaces that do not break stay
+    return re.sub(r"[ \n]+", " ", said).strip()
+
+
+def lines(template: str, **values: object) -> list[str]:
+    """Return what a template says in a terminal, as plain text."""
+    return _environment(html=False).get_template(template).render(**values).splitlines()
+
+
+def fragment(template: str, **values: object) -> str:
+    """Return a piece of a page, in which values are text and no markup."""
+    return _environment(html=True).get_template(template).render(**values)
+
+
+def seconds(value: float) -> str:
+    """Return a time with as many digits as say something."""
+    return f"{value:.2f} s" if value < 1.0 else f"{value:.1f} s"
+
+
+def small(value: float) -> str:
+    """Return a positive number with one digit, as a power of ten where it is small."""
+    if value >= 1e-3 or value <= 0.0:
+        return f"{value:.1g}"
+    digit, exponent = f"{value:.0e}".split("e")
+    # spaces that do not break
+    return f"{digit}\u00a0×\u00a010{str(int(exponent)).translate(_SUPERSCRIPTS)}"
+
+
+def listed(words: Sequence[str]) -> str:
+    """Return words with commas and, before the last, "and"."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def the(label: str, engine: str) -> str:
+    """Return the label of a run of an engine, or of a reduced model, as a sentence names it."""
+    return f"the {label}" if engine == REDUCED else label
+
+
+# what templates know besides what jinja2 does
+_FILTERS = {
+    **{"seconds": seconds, "small": small, "listed": listed, "the": the, "degrees": math.degrees},
+    "warnings": warnings,
+    "lookup": lambda name, table: table[name],
+}
+
+
+def environment(**options: Any) -> jinja2.Environment:
+    """Return what reads the templates; more options are those of `jinja2.Environment`."""
+    import jinja2
+
+    found = jinja2.Environment(
+        loader=jinja2.PackageLoader("rockwobble.reports.pages", "templates"),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        **options,
+    )
+    found.filters |= _FILTERS
+    found.tests["known"] = math.isfinite
+    return found
+
+
+@cache
+def _environment(*, html: bool) -> jinja2.Environment:
+    return environment(autoescape=html)  # of sentences, what shows them escapes them
