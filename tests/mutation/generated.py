@@ -196,7 +196,8 @@ def tried(root: Path, fault: GeneratedFault, tests: Sequence[Reach]) -> Row:
         shutil.copytree(compiled, aside)
     found_by, detail = "nothing", ""
     try:
-        asked, seconds = [], 0.0
+        asked: list[str] = []
+        seconds = 0.0
         for test in near(tests, fault.file, fault.function):
             if asked and seconds + test.seconds > _LONGEST:
                 break
