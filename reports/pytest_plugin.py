@@ -156,7 +156,7 @@ class SuiteItem(pytest.Item):
         from rockwobble.compare.check.own_bounds import SuiteRuns
         from rockwobble.compare.runs.execution import Job
 
-        from .console.budget_of_run import budget_of_run
+        from .pages.findings import budget_of_run
 
         runs, bounds = SuiteRuns(workers=1), self.suite.bounds
         job = Job(case=self.case, run=self.run, label=self.label)

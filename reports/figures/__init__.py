@@ -13,15 +13,15 @@ if TYPE_CHECKING:
 # drawn, because one figure must not wait for the imports of all
 _MODULES: Mapping[str, str] = {
     "Advice": "advice",
-    "Comparison": "comparison.tilt",
+    "Comparison": "comparison",
     "Ensemble": "ensemble",
     "Extremes": "extremes",
     "Fragility": "fragility",
     "OverturningSpectrum": "spectrum",
-    "Sweep": "runs.sweep",
-    "Trace": "runs.trace",
+    "Sweep": "sweep",
+    "Trace": "trace",
     "Tradeoff": "tradeoff",
-    "Validity": "validity.pictures",
+    "Validity": "validity",
 }
 
 

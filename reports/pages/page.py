@@ -27,8 +27,8 @@ from rich.markdown import Markdown
 from ..figures.interactive import charts, colour_bar
 from ..figures.picture import Picture
 from ..figures.svg import svg
+from .sentences import environment
 from .table import Row, Table, columns_of, number
-from .words.sentences import environment
 
 Output = Literal["terminal", "markdown", "html"]
 _PLACE = re.compile(r"\n?@@(\d+)@@\n?")

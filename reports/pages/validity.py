@@ -14,7 +14,7 @@ from rockwobble.compare.studies.validity.limits import damping, limits_of, needs
 from rockwobble.compare.studies.validity.plan import LARGEST_PEAK
 from rockwobble.compare.studies.validity.study import Validity
 
-from ..figures.validity.pictures import METHODS, pictures
+from ..figures.validity import METHODS, pictures
 from .page import Page
 
 _NEEDS = {

@@ -1,1 +1,50 @@
-"""The figures of the paper, computed again, with what the paper says of them held against the numbers."""
+"""The figures of the paper, computed again, with the paper's statements on them compared with the numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import pandas as pd
+
+HOLDS, HOLDS_IN_PART, DOES_NOT_HOLD = "holds", "holds in part", "does not hold"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Statement:
+    """A statement of the paper on one of its figures; the words stand in the template paper.md.j2."""
+
+    figure: int
+    name: str
+    numbers: Mapping[str, float]
+    verdict: str
+
+
+def verdict_of(*parts: bool) -> str:
+    """Return the verdict on a statement with several parts."""
+    if all(parts):
+        return HOLDS
+    return HOLDS_IN_PART if any(parts) else DOES_NOT_HOLD
+
+
+def to_frame(statements: Sequence[Statement]) -> pd.DataFrame:
+    """Return one row for each number: figure, statement, verdict, number, value."""
+    rows = [
+        (each.figure, each.name, each.verdict, number, float(value))
+        for each in statements
+        for number, value in each.numbers.items()
+    ]
+    return pd.DataFrame(rows, columns=["figure", "statement", "verdict", "number", "value"])
+
+
+def from_frame(table: pd.DataFrame) -> list[Statement]:
+    """Return the statements of the table of `to_frame`."""
+    found = []
+    for name, rows in table.groupby("statement", sort=False):
+        first, numbers = rows.iloc[0], dict(zip(rows["number"], rows["value"].astype(float), strict=True))
+        found.append(
+            Statement(
+                figure=int(first["figure"]), name=str(name), numbers=numbers, verdict=str(first["verdict"])
+            )
+        )
+    return found

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from rockwobble import reduced
 from rockwobble.models import AGREEMENT, Case, Cylinder, GroundMotion, Trace, el_centro_1940
 
+from . import Statement, verdict_of
 from .free import RESIDUAL, displacement
-from .statement import Statement, verdict_of
 
 Array = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.compare.studies.spectrum.tables import planar_contrast, unconservative_from
 from rockwobble.models import el_centro_1940
 
-from .statement import Statement, verdict_of
+from . import Statement, verdict_of
 
 Array = NDArray[np.float64]
 

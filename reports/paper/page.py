@@ -1,22 +1,40 @@
-"""The page of the paper's figures: what is kept of them, and the report on it."""
+"""The figures of the paper: what is kept of them, their pictures, and the report on them."""
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
 
 from rockwobble.compare.runs.progress import ProgressCallback, Stages
 from rockwobble.compare.storage.fingerprint import fingerprint
 from rockwobble.compare.storage.manifest import Number
 from rockwobble.compare.storage.provenance import code_digests, package_versions
 from rockwobble.compare.storage.results import Results
-from rockwobble.compare.studies.spectrum.maps import maps_of, tilt_maps
+from rockwobble.compare.studies.spectrum.maps import (
+    PLANAR_X,
+    PLANAR_Y,
+    SERIES,
+    SPATIAL,
+    TiltMaps,
+    maps_of,
+    tilt_maps,
+)
 from rockwobble.compare.studies.spectrum.tables import tables_of
+from rockwobble.models import Run
 
+from ..figures.palette import DARK, ORDER, SHADED, Style, model_style, run_styles
+from ..figures.picture import TIME, Axis, Layer, Line, Panel, Picture, Rule
+from ..figures.spectrum import NAMES, picture_of
 from ..pages.page import Page
 from ..pages.spectrum import spectrum_values
-from . import earthquake, free, overturning, period, pictures
-from .statement import from_frame, to_frame
+from . import earthquake, free, from_frame, overturning, to_frame
+from .overturning import lowest_on_axes
 
 KIND = "paper"
 _SAMPLES = 12_000  # of figure 5 that are kept
@@ -45,7 +63,7 @@ def compute(grid: int, progress: ProgressCallback | None = None) -> Paper:
     """Run figures 3 to 6, the last on `grid` sizes and as many intensities."""
     stage = Stages(progress, [1.0, 20.0, 40.0, 0.005 * grid * grid]).stage
     with stage("figure 3"):
-        curves = period.periods()
+        curves = free.periods()
     with stage("figure 4"):
         modes = free.free_modes()
     with stage("figure 5"):
@@ -53,8 +71,8 @@ def compute(grid: int, progress: ProgressCallback | None = None) -> Paper:
     with stage("figure 6"):
         spectrum = tilt_maps(**overturning.problem(grid))
     found = [
-        *period.statements(curves),
-        *free.statements(modes),
+        *free.period_statements(curves),
+        *free.mode_statements(modes),
         *earthquake.statements(shaken),
         *overturning.statements(spectrum),
     ]
@@ -85,9 +103,167 @@ def page_of(paper: Paper) -> Page:
             "about": paper.manifest,
         },
         pictures=[
-            pictures.period_picture(tables["figure-3"]),
-            pictures.free_picture(tables["figure-4"]),
-            pictures.earthquake_picture(tables["figure-5"], tables["record"], shaken),
-            pictures.overturning_picture(spectrum),
+            period_picture(tables["figure-3"]),
+            free_picture(tables["figure-4"]),
+            earthquake_picture(tables["figure-5"], tables["record"], shaken),
+            overturning_picture(spectrum),
         ],
+    )
+
+
+Array = NDArray[np.float64]
+
+_LINE = Style(colour=ORDER[0])
+# cividis, dark to light by slenderness
+_SHADES = ("#00224e", "#2b406d", "#595e6e", "#7e7d78", "#a99f73", "#d6c35d")
+_ROCKING = (1.0, free.DISC)  # the curves of slender bodies lie under Housner's
+_HISTORIES = (("θ / α", "-"), ("θ'", "rad/s"), ("φ / π", "-"), ("φ'", "rad/s"))
+_FROM_0 = replace(TIME, low=0.0)
+
+
+def period_picture(table: pd.DataFrame) -> Picture:
+    """Return figure 3."""
+    layers: list[Layer] = []
+    for tan_alpha, colour in zip(free.TAN_ALPHAS, _SHADES, strict=True):
+        x, y = free.curve(table, "wobble", tan_alpha)
+        name = f"wobble, tan α = {tan_alpha:g}" + (" (disc)" if tan_alpha == free.DISC else "")
+        layers.append(Line(x=x, y=y, name=name, style=Style(colour=colour), width=1.6))
+    for tan_alpha, dash in zip(_ROCKING, ("dash", "dashdot"), strict=True):
+        x, y = free.curve(table, "rocking", tan_alpha)
+        colour = _SHADES[free.TAN_ALPHAS.index(tan_alpha)]
+        layers.append(Line(x=x, y=y, style=Style(colour=colour, dash=dash), width=1.1))
+    x, y = free.curve(table, "housner")
+    layers.append(Line(x=x, y=y, name="planar, Housner", style=Style(colour=ORDER[1], dash="dot"), width=2.0))
+    panel = Panel(
+        x=Axis(label="tilt / α", unit="-", low=0.0, high=1.0),
+        y=Axis(label="p × period", unit="-", low=0.0, high=15.0),
+        layers=layers,
+        height=4.0,
+    )
+    return Picture(
+        name="figure-3",
+        title="Periods over the tilt",
+        caption="Time in which the contact point goes once round the rim at constant tilt, times p, for "
+        "bodies from slender to flat; and the full period of planar rocking released at that tilt: "
+        "linearised after Housner (dotted), which does not depend on α, and exact for tan α = 1 (dashed) and "
+        "for the disc (dash-dotted).",
+        panels=[panel],
+    )
+
+
+def free_picture(table: pd.DataFrame) -> Picture:
+    """Return figure 4: one column for each mode, the path of the centre of mass above its time histories."""
+    modes = {str(mode): rows for mode, rows in table.groupby("mode", sort=False)}
+    orbits = [_orbit(mode, rows) for mode, rows in modes.items()]
+    histories = [_histories(rows, free.CYLINDER.alpha) for rows in modes.values()]
+    rate = 1.1 * max(float(np.abs(each[1]).max()) for each in histories)
+    # the same scale across, so that the modes compare; the rates of rolling need their own
+    ends = ((0.0, 1.1 * free.RELEASE), (-rate, rate), (None, None), (None, None))
+    panels = []
+    for place, ((label, unit), (low, high)) in enumerate(zip(_HISTORIES, ends, strict=True)):
+        for rows, values in zip(modes.values(), (each[place] for each in histories), strict=True):
+            # of hardly any spin the rate spans decades
+            log = place == 3 and bool(values.max() > 100.0 * values.min())
+            room = (0.0, 1.15 * float(values.max())) if place == 3 and not log else (low, high)
+            y = Axis(label=label, unit=unit, low=room[0], high=room[1], log=log)
+            line = Line(x=_column(rows, "time"), y=values, style=_LINE)
+            panels.append(Panel(x=_FROM_0, y=y, layers=[line], height=1.5))
+    return Picture(
+        name="figure-4",
+        title="Paths and time histories of the modes",
+        caption="Above, the path of the centre of mass seen from above, from the dot on.",
+        panels=[*orbits, *panels],
+        columns=len(modes),
+    )
+
+
+def _orbit(mode: str, rows: pd.DataFrame) -> Panel:
+    x, y = _column(rows, "centre_x"), _column(rows, "centre_y")
+    reach = 1.12 * float(np.abs([x, y]).max())
+    start = Line(x=x[:1], y=y[:1], style=Style(colour=DARK, dash="none", symbol="circle"), size=4.0)
+    return Panel(
+        x=Axis(label="x", unit="m", low=-reach, high=reach),
+        y=Axis(label="y of the centre of mass", unit="m", low=-reach, high=reach),
+        layers=[Line(x=x, y=y, style=_LINE, width=0.9), start],
+        title=f"{mode}\nφ'(0) = {_column(rows, 'rolling_rate')[0]:.3g} rad/s",
+        equal=True,
+        height=2.9,
+    )
+
+
+def _histories(rows: pd.DataFrame, alpha: float) -> tuple[Array, ...]:
+    names = ("tilt", "tilt_rate", "rolling_angle", "rolling_rate")
+    tilt, rate, angle, rolling = (_column(rows, name) for name in names)
+    return tilt / alpha, rate, angle / math.pi, rolling
+
+
+def _column(rows: pd.DataFrame, name: str) -> Array:
+    return rows[name].to_numpy(dtype=np.float64)
+
+
+def earthquake_picture(table: pd.DataFrame, record: pd.DataFrame, numbers: Mapping[str, float]) -> Picture:
+    """Return figure 5: response above, record below, the strong part shaded."""
+    cylinder, gravity = earthquake.CYLINDER, 9.81
+    marks: list[Layer] = [Rule(at=numbers["from"], until=numbers["until"], axis="x", colour=SHADED)]
+    if math.isfinite(numbers["agreement"]):
+        marks.append(Rule(at=numbers["agreement"], axis="x", colour="#777777"))
+    tilt, rate, angle, rolling = _histories(table, cylinder.alpha)
+    shown = [(tilt, 1.9), (rate, 1.5), (angle, 1.9), (_signed_log(rolling), 1.6)]
+    ticks = [(float(_signed_log(np.array([v]))[0]), f"{v:g}") for v in (-1000.0, -10.0, 0.0, 10.0, 1000.0)]
+    axes = [Axis(label=label, unit=unit) for label, unit in _HISTORIES]
+    axes = [replace(axes[0], low=0.0), *axes[1:3], replace(axes[3], ticks=ticks)]
+    panels = [
+        _over_time(_column(table, "time"), values, y, marks, _LINE, height)
+        for (values, height), y in zip(shown, axes, strict=True)
+    ]
+    at = np.arange(len(record), dtype=np.float64) * numbers["time_step"]
+    largest = 1.1 * float(record[["x", "y"]].abs().to_numpy().max()) / gravity
+    for name, label in (("x", "east-west"), ("y", "north-south")):
+        y = Axis(label=label, unit="g", low=-largest, high=largest)
+        ground = _column(record, name) / gravity
+        panels.append(_over_time(at, ground, y, marks, Style(colour="#444444"), 1.4))
+    return Picture(
+        name="figure-5",
+        title="Response and ground motion",
+        caption=f"R = {cylinder.semidiagonal:g} m, tan α = {cylinder.tan_alpha:g}. Shaded: the record itself "
+        f"can uplift; dashed: from here on the response to a record {100.0 * earthquake.NUDGE:g} % stronger "
+        "differs by 1 % of α.",
+        panels=panels,
+        link_x=True,
+    )
+
+
+def _over_time(x: Array, y: Array, axis: Axis, marks: list[Layer], style: Style, height: float) -> Panel:
+    line = Line(x=x, y=y, style=style, width=0.8)
+    return Panel(x=_FROM_0, y=axis, layers=[*marks, line], height=height)
+
+
+def _signed_log(values: Array) -> Array:
+    """Linear below 1, logarithmic above, of both signs."""
+    size = np.abs(values)
+    return np.asarray(np.sign(values) * np.where(size < 1.0, size, 1.0 + np.log10(np.maximum(size, 1.0))))
+
+
+def overturning_picture(spectrum: TiltMaps) -> Picture:
+    """Return figure 6: the maps, and the lowest intensities on the axes of the paper and on equal shaking."""
+    whole = picture_of(spectrum)
+    styles = {SPATIAL: model_style(str(Run(None, spectrum.support))), **run_styles([PLANAR_X, PLANAR_Y])}
+    curves = []
+    for own, label in ((True, "own peak / (g tan α)"), (False, "peak resultant / (g tan α)")):
+        lowest = lowest_on_axes(spectrum, own=own)
+        lines = [
+            Line(x=spectrum.semidiagonals, y=lowest[name], name=NAMES[name], style=styles[name], width=1.6)
+            for name in SERIES
+        ]
+        title = "lowest found to overturn, " + ("as the paper draws it" if own else "on equal shaking")
+        y = Axis(label=label, unit="-", low=0.0)
+        curves.append(Panel(x=Axis(label="R", unit="m"), y=y, layers=lines, title=title, height=3.2))
+    return replace(
+        whole,
+        name="figure-6",
+        title="Peak tilts, and the lowest intensities found to overturn",
+        caption="Peak tilt of sizes under intensities, in 3D and of each component alone, undamped; the line "
+        "is the lowest intensity found to overturn. The three runs of a cell share one factor on the record; "
+        "the scale on the right of a planar map is the peak of its own component, the axis of the paper.",
+        panels=[*whole.panels[:3], *curves],
     )

@@ -6,7 +6,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from rockwobble.reports.pages.registry import page_of, stored_page
+from rockwobble.reports.pages import page_of, stored_page
 from rockwobble.reports.pages.versions import KIND, EngineVersions
 
 from .engine_versions import COLUMNS, made_table, minor_releases

@@ -7,7 +7,7 @@ import pytest
 
 from rockwobble.compare.comparison.summary import MATRIX_COLUMNS, agreement_matrix
 from rockwobble.models import Case, InitialState, Run
-from rockwobble.reports.pages.comparison.tables import matrix_tables
+from rockwobble.reports.pages.comparison import matrix_tables
 
 TIME = np.arange(101) * 0.01
 

@@ -21,9 +21,8 @@ from rockwobble.compare.studies.advice.trust import Trust
 from rockwobble.models import Case, Cylinder, InitialState, WobblingFrame, el_centro_1940
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.pages import page
+from rockwobble.reports.pages import page, stored_page
 from rockwobble.reports.pages.advice import CRITERIA, page_of
-from rockwobble.reports.pages.registry import stored_page
 
 PAGE_LIMIT = 8e6  # bytes, of every page
 SCREEN = 46  # lines of the longest verdict at 100 columns, the names of the files left out

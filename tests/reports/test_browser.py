@@ -11,9 +11,9 @@ from test_published import WHOLE
 from rockwobble import compare
 from rockwobble.compare import Comparison
 from rockwobble.models import Case, Cylinder, InitialState
-from rockwobble.reports.pages.comparison import report
+from rockwobble.reports.pages import comparison as report
+from rockwobble.reports.pages import page_of, stored_page
 from rockwobble.reports.pages.ensemble import page_of as ensemble_page
-from rockwobble.reports.pages.registry import page_of, stored_page
 
 # of a player: moved, it must say where it is
 PLAYER = """

@@ -18,9 +18,9 @@ from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.ensemble import pictures, ratio_span, ratio_ticks
 from rockwobble.reports.figures.picture import Line, Text
+from rockwobble.reports.pages import stored_page
 from rockwobble.reports.pages.ensemble import page_of
 from rockwobble.reports.pages.page import Page
-from rockwobble.reports.pages.registry import stored_page
 
 FALLEN = 7.9  # [alpha]
 RELEASE = ["--release-tilt-deg", "5", "--duration", "0.5", "--engine", "none", "--copies", "3"]

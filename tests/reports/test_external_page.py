@@ -11,11 +11,11 @@ import pytest
 
 from rockwobble.compare.external.mistakes import AXES_WORDS, WORDS, Mistake
 from rockwobble.compare.external.verdict import no_verdict
-from rockwobble.reports.pages.comparison.findings import cause, explains_divergence, headline, notes, within
-from rockwobble.reports.pages.comparison.tables import external_rows
+from rockwobble.reports.pages.comparison import external_rows
+from rockwobble.reports.pages.findings import cause, explains_divergence, headline, notes, within
 
 if TYPE_CHECKING:
-    from rockwobble.reports.figures.comparison.view import CaseView
+    from rockwobble.reports.figures.case_view import CaseView
 
 AGREES = {"azimuth_rms": 0.2, "path_rms": 0.001, "tilt_bound": 0.01, "noise": 0.0}
 WRONG = {

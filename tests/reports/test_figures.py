@@ -15,20 +15,9 @@ from rockwobble.reduced import simulate
 from rockwobble.reports.figures.heat import Gap, Heat, Shades, contour, names
 from rockwobble.reports.figures.interactive import chart, charts
 from rockwobble.reports.figures.palette import ORDER, Style, label_styles
-from rockwobble.reports.figures.picture import (
-    TIME,
-    Axis,
-    Band,
-    Bars,
-    Line,
-    Panel,
-    Picture,
-    Rule,
-    Text,
-    ecdf,
-)
-from rockwobble.reports.figures.runs.trace import pictures as trace_pictures
+from rockwobble.reports.figures.picture import TIME, Axis, Band, Bars, Line, Panel, Picture, Rule, Text, ecdf
 from rockwobble.reports.figures.svg import figure, svg
+from rockwobble.reports.figures.trace import pictures as trace_pictures
 
 ALPHA = Axis(label="tilt / α", unit="-", low=0.0)
 T = np.linspace(0.0, 10.0, 4001)

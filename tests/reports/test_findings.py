@@ -21,9 +21,10 @@ from rockwobble.models import (
     el_centro_1940,
 )
 from rockwobble.models.diagnostic import CODES, REASONS
-from rockwobble.reports.console import budget_of_run
-from rockwobble.reports.figures.comparison.view import case_views, rows_of
-from rockwobble.reports.pages.comparison.findings import (
+from rockwobble.reports.figures.case_view import case_views, rows_of
+from rockwobble.reports.pages import findings as budget_of_run
+from rockwobble.reports.pages.diagnostics import counted, failure, remarks, sentence
+from rockwobble.reports.pages.findings import (
     CAUSES,
     budget_sentences,
     cause,
@@ -33,8 +34,7 @@ from rockwobble.reports.pages.comparison.findings import (
     headline,
     notes,
 )
-from rockwobble.reports.pages.words.diagnostics import counted, failure, remarks, sentence
-from rockwobble.reports.pages.words.sentences import small
+from rockwobble.reports.pages.sentences import small
 
 LENGTH = 50.0
 

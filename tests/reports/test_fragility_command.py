@@ -18,12 +18,12 @@ from rockwobble.compare.storage.manifest import read_manifests
 from rockwobble.compare.studies.fragility.study import KIND, fragility_of, main_contrasts
 from rockwobble.models import Cylinder, synthetic_motions
 from rockwobble.models.records import p695
-from rockwobble.reports.cli import fragility as command
+from rockwobble.reports.cli import many as command
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.fragility import pictures
 from rockwobble.reports.figures.picture import Band, Line
+from rockwobble.reports.pages import page_of, stored_page
 from rockwobble.reports.pages.page import Page
-from rockwobble.reports.pages.registry import page_of, stored_page
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 SMALL = [

@@ -16,7 +16,7 @@ from rockwobble.compare.metrics.order_statistics import Interval
 from rockwobble.compare.studies.fragility.study import fragility_of, main_contrasts
 from rockwobble.compare.studies.fragility.tables import margin_of
 from rockwobble.reports.figures.fragility import pictures
-from rockwobble.reports.pages.registry import page_of
+from rockwobble.reports.pages import page_of
 
 
 @pytest.fixture(scope="module")

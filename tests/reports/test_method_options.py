@@ -10,9 +10,9 @@ from typer.main import get_command
 
 from rockwobble.compare.runs.run_settings import with_settings
 from rockwobble.models import Case, Cylinder, InitialState, Run
-from rockwobble.reports.cli.inputs.method_values import settings
-from rockwobble.reports.cli.inputs.problem import BODY
 from rockwobble.reports.cli.main import app, main
+from rockwobble.reports.cli.options import settings
+from rockwobble.reports.cli.problem import BODY
 
 RELEASE = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "0.2"]
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from rockwobble.compare import SUMMARY_COLUMNS, compare
 from rockwobble.compare.storage.manifest import Manifest
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run
-from rockwobble.reports.pages.registry import page_of
-from rockwobble.reports.pages.words.diagnostics import sentence
+from rockwobble.reports.pages import page_of
+from rockwobble.reports.pages.diagnostics import sentence
 
 PAGE_LIMIT = 2_000_000  # [bytes]
 PICTURE_LIMIT = 300_000  # [bytes]

@@ -13,13 +13,15 @@ import pytest
 from rockwobble import reduced
 from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL, TiltMaps
 from rockwobble.models import Case, Cylinder, InitialState, Trace, el_centro_1940
-from rockwobble.reports.paper import earthquake, free, overturning, period
-from rockwobble.reports.paper.statement import (
+from rockwobble.reports.paper import (
     DOES_NOT_HOLD,
     HOLDS,
     HOLDS_IN_PART,
     Statement,
+    earthquake,
+    free,
     from_frame,
+    overturning,
     to_frame,
     verdict_of,
 )
@@ -47,26 +49,26 @@ def test_statements_come_back_from_their_table():
 
 @pytest.fixture(scope="module")
 def periods() -> pd.DataFrame:
-    return period.periods()
+    return free.periods()
 
 
 def test_periods_are_those_of_the_exact_solutions(periods):
     cylinder = Cylinder(semidiagonal=7.0, tan_alpha=0.5)
     p = math.sqrt(12.0 / (15.0 + math.cos(cylinder.alpha) ** 2) * 9.81 / 7.0)
-    tilt, wobble = period.curve(periods, "wobble", 0.5)
+    tilt, wobble = free.curve(periods, "wobble", 0.5)
     exact = p * reduced.wobbling_period(cylinder, float(tilt[100]) * cylinder.alpha)
     # without dimension the size falls out, but for rounding
     assert wobble[100] == pytest.approx(exact, rel=1e-12)
-    assert (np.diff(period.curve(periods, "housner")[1]) > 0.0).all()
+    assert (np.diff(free.curve(periods, "housner")[1]) > 0.0).all()
 
 
 def test_the_statements_on_figure_3_hold_and_can_fail(periods):
-    assert verdicts(period.statements(periods)) == [HOLDS, HOLDS]
+    assert verdicts(free.period_statements(periods)) == [HOLDS, HOLDS]
     closed = periods["curve"].isin(["disc", "housner"])
     false = periods.assign(
         p_times_period=periods["p_times_period"].where(~closed, 1.02 * periods["p_times_period"])
     )
-    assert verdicts(period.statements(false)) == [DOES_NOT_HOLD, HOLDS_IN_PART]
+    assert verdicts(free.period_statements(false)) == [DOES_NOT_HOLD, HOLDS_IN_PART]
 
 
 # figure 4
@@ -78,7 +80,7 @@ def modes() -> dict[str, Trace]:
 
 
 def test_the_statements_on_figure_4_hold(modes):
-    found = free.statements(modes)
+    found = free.mode_statements(modes)
     assert verdicts(found) == [HOLDS, HOLDS, HOLDS, HOLDS]
     # Srinivasan and Ruina's limit for tan alpha = 0.2, tests/reference/angle_of_turn_limit.csv
     assert found[0].numbers["limit"] == pytest.approx(182.6602, abs=5e-5)
@@ -86,13 +88,13 @@ def test_the_statements_on_figure_4_hold(modes):
 
 def test_the_statements_on_figure_4_can_fail(modes):
     both, steady, spin = (modes[name] for name in (free.BOTH, free.STEADY, free.SPIN))
-    assert verdicts(free.statements({**modes, free.STEADY: both}))[2] == DOES_NOT_HOLD
+    assert verdicts(free.mode_statements({**modes, free.STEADY: both}))[2] == DOES_NOT_HOLD
     # a spin of the order of the wobble turns much further, and comes nowhere near upright
-    found = verdicts(free.statements({**modes, free.SPIN: both, free.SMALLER: steady}))
+    found = verdicts(free.mode_statements({**modes, free.SPIN: both, free.SMALLER: steady}))
     assert found[0] == DOES_NOT_HOLD
     assert found[1] == HOLDS_IN_PART
     assert found[3] == HOLDS_IN_PART
-    assert verdicts(free.statements({**modes, free.SMALLER: spin}))[1] == HOLDS_IN_PART
+    assert verdicts(free.mode_statements({**modes, free.SMALLER: spin}))[1] == HOLDS_IN_PART
 
 
 # figure 5

@@ -11,7 +11,7 @@ import pytest
 
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.pages.registry import stored_page
+from rockwobble.reports.pages import stored_page
 from rockwobble.reports.paper import earthquake, overturning
 
 SVG_LIMIT = 400_000  # bytes, of each committed picture

@@ -8,9 +8,9 @@ import pytest
 from rockwobble.compare import compare
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.figures.comparison.playback import playback
-from rockwobble.reports.figures.comparison.view import case_views
-from rockwobble.reports.pages.comparison.view import page_of
+from rockwobble.reports.figures.case_view import case_views
+from rockwobble.reports.figures.playback import playback
+from rockwobble.reports.pages.comparison import page_of
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 # a page plays in float32: seven digits of some metres

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from rockwobble.compare import Progress
-from rockwobble.reports.console.progress import sentence, shown_progress
+from rockwobble.reports.console import sentence, shown_progress
 
 
 @pytest.mark.parametrize(

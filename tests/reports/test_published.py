@@ -15,7 +15,7 @@ from rockwobble.compare.studies.validity.limits import needs
 from rockwobble.compare.studies.validity.study import Validity
 from rockwobble.models.diagnostic import CODES, parted
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.pages.registry import KINDS, stored_page
+from rockwobble.reports.pages import KINDS, stored_page
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
 LARGEST = 300_000  # [bytes] of a table, as in remake.py

@@ -19,7 +19,7 @@ def modules_of_inner_runs() -> None:
     import rockwobble.compare.check
     from rockwobble import reduced
     from rockwobble.models import Case, Cylinder, InitialState
-    from rockwobble.reports.console import budget_of_run  # noqa: F401
+    from rockwobble.reports.pages import findings as budget_of_run  # noqa: F401
 
     assert rockwobble.compare.check.GROUPS
     body = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

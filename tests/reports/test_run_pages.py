@@ -15,13 +15,13 @@ import rockwobble.compare as rc
 import rockwobble.compare.runs as rr
 from rockwobble.compare.runs import execution
 from rockwobble.compare.studies.single_run import single_run_of
+from rockwobble.reports import pages as registry
 from rockwobble.reports.cli.main import main
+from rockwobble.reports.figures import sweep as figure
+from rockwobble.reports.figures import trace as trace_figure
 from rockwobble.reports.figures.heat import Heat
-from rockwobble.reports.figures.runs import sweep as figure
-from rockwobble.reports.figures.runs import trace as trace_figure
-from rockwobble.reports.pages import registry
 from rockwobble.reports.pages.page import Page
-from rockwobble.reports.pages.runs.run import page_of
+from rockwobble.reports.pages.run import page_of
 
 PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = rw.Case(PIER, initial=rw.InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.5), duration=1.0)

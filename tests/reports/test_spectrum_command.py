@@ -29,8 +29,8 @@ from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.heat import Heat
 from rockwobble.reports.figures.spectrum import picture_of
 from rockwobble.reports.figures.svg import svg
+from rockwobble.reports.pages import page_of, stored_page
 from rockwobble.reports.pages.page import Page
-from rockwobble.reports.pages.registry import page_of, stored_page
 
 # the factors on the record differ by a rounding, grown by a few passes
 SAME_RUN = 1e-6

@@ -15,11 +15,11 @@ from rockwobble.compare.comparison import driver
 from rockwobble.compare.comparison.comparison import comparison_of
 from rockwobble.compare.runs import execution
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, WobblingFrame, read_suite
-from rockwobble.reports.cli.inputs.suite_choice import chosen_runs
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.pages.comparison import report
+from rockwobble.reports.cli.suite_choice import chosen_runs
+from rockwobble.reports.pages import comparison as report
+from rockwobble.reports.pages.cases import describe, group_of
 from rockwobble.reports.pages.page import Page
-from rockwobble.reports.pages.words.cases import describe, group_of
 
 PAGE_LIMIT = 2_000_000  # [bytes]
 CASES = 6

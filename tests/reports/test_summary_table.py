@@ -8,7 +8,7 @@ from rich.console import Console
 
 from rockwobble.compare import compare
 from rockwobble.models import Case, Cylinder, Run
-from rockwobble.reports.pages.registry import page_of
+from rockwobble.reports.pages import page_of
 
 
 def printed(comparison, width: int) -> str:

@@ -16,8 +16,8 @@ from rockwobble.compare.studies.validity.records import RECESS
 from rockwobble.compare.studies.validity.study import Validity, validity_of
 from rockwobble.reports.cli.main import app, main
 from rockwobble.reports.pages import page as page_module
+from rockwobble.reports.pages import page_of
 from rockwobble.reports.pages.page import Page
-from rockwobble.reports.pages.registry import page_of
 
 LARGEST = 8_000_000  # bytes of a page
 

@@ -1,1 +1,0 @@
-"""Commands that tell whether models and engines still agree."""

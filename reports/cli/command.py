@@ -1,0 +1,125 @@
+"""From a function to a command: its dataclasses of options, and the refusal of what was typed wrongly."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from functools import wraps
+from typing import Annotated, Any, get_type_hints
+
+import typer
+from typer.core import TyperCommand
+
+from rockwobble.compare.runs.plan import Option, options_of
+
+from ..console import user_input
+from .options import levels, numbers, restitution
+
+# form of the text of an option: what reads it, and what help calls it
+_FORMS: Mapping[str, tuple[Callable[[str], object], str]] = {
+    "numbers": (numbers, "LIST|FROM:TO:COUNT"),
+    "levels": (levels, "LIST|FROM:TO:COUNT"),
+    "restitution": (restitution, "FLOAT|momentum"),
+}
+
+
+def takes_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command, in the place of each parameter whose type is a dataclass, its fields as options.
+
+    A field is annotated with an option of typer, or is an option of a plan, whose numbers are checked when
+    the plan is made. Two dataclasses may share a field: it is one option, and both get its value.
+    """
+    own = get_type_hints(command, include_extras=True)
+    stated: dict[str, Any] = {name: kind for name, kind in own.items() if is_dataclass(kind)}
+    parameters: dict[str, inspect.Parameter] = {}
+    for name, parameter in inspect.signature(command).parameters.items():
+        if name in stated:
+            parameters |= {each.name: each for each in _parameters(stated[name])}
+        else:
+            parameters[name] = parameter.replace(kind=parameter.KEYWORD_ONLY, annotation=own[name])
+
+    @wraps(command)
+    def with_options(**given: Any) -> None:
+        with user_input():
+            made = {
+                name: kind(**{each.name: given[each.name] for each in fields(kind)})
+                for name, kind in stated.items()
+            }
+        others = {name: value for name, value in given.items() if name in own and name not in stated}
+        command(**made, **others)
+
+    with_options.__signature__ = inspect.Signature(list(parameters.values()))  # type: ignore[attr-defined]
+    with_options.__annotations__ = {name: each.annotation for name, each in parameters.items()}
+    return with_options
+
+
+def _parameters(kind: type) -> Iterator[inspect.Parameter]:
+    types, options = get_type_hints(kind, include_extras=True), options_of(kind)
+    for each in fields(kind):
+        annotation = types[each.name]
+        if each.name in options:
+            annotation = _annotation(annotation, options[each.name])
+        yield inspect.Parameter(
+            each.name, inspect.Parameter.KEYWORD_ONLY, default=each.default, annotation=annotation
+        )
+
+
+def _annotation(kind: Any, stated: Option) -> Any:
+    """Return the type of an option of a plan with what typer is to know of it."""
+    names = (stated.flag,) if stated.flag else ()
+    more: dict[str, Any] = {"help": stated.help, "rich_help_panel": stated.group}
+    if stated.form:  # typer knows no type for that
+        read, metavar = _FORMS[stated.form]
+        return Annotated[Any, typer.Option(*names, parser=read, metavar=metavar, **more)]
+    if kind == Sequence[str] | None:
+        kind = list[str] | None
+    return Annotated[kind, typer.Option(*names, **more)]
+
+
+class StrictCommand(TyperCommand):
+    """A command whose options take no empty text and come once, and whose refusals say what was given.
+
+    An empty folder would be the one the command is run in; of an option that comes twice the last would
+    count in silence. Options that may be repeated stay so.
+    """
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Return the arguments that are left when the options are taken.
+
+        Raises
+        ------
+        UsageError
+            If a text is empty, an option comes twice, or a value is none of its kind.
+        """
+        given, _, order = self.make_parser(ctx).parse_args(args=list(args))
+        if not ctx.resilient_parsing:  # not while a shell asks how a line could go on
+            _refuse_empty(ctx, given, order)
+            _refuse_twice(ctx, order)
+        try:
+            return super().parse_args(ctx, args)
+        except typer.BadParameter as error:
+            text = given.get(getattr(error.param, "name", None) or "")
+            if isinstance(text, str) and text not in error.message and ", got " not in error.message:
+                # "Input should be a valid number, unable to parse string as a number"
+                error.message = f"{error.message.partition(', unable')[0]}, got {text!r}"
+            raise
+
+
+def _refuse_empty(ctx: Any, given: dict[str, Any], order: list[Any]) -> None:
+    for option in order:
+        texts = given.get(option.name)
+        for text in texts if isinstance(texts, list | tuple) else [texts]:
+            if isinstance(text, str) and not text.strip():
+                ctx.fail(f"{_name(option)} must not be empty, got {text!r}")
+
+
+def _refuse_twice(ctx: Any, order: list[Any]) -> None:
+    for place, option in enumerate(order):
+        if option in order[:place] and not (option.multiple or option.is_eager):
+            ctx.fail(f"{_name(option)} is given twice")
+
+
+def _name(option: Any) -> str:
+    """Name of an option or argument, as help says it."""
+    return str(option.opts[-1] if option.param_type_name == "option" else option.name.upper())

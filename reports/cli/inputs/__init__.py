@@ -1,1 +1,0 @@
-"""From options to a problem and a method."""

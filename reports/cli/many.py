@@ -1,0 +1,365 @@
+"""Commands on many problems: `rockwobble fragility`, `spectrum`, `ensemble` and `sweep`."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import fields
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+import rockwobble as rw
+import rockwobble.compare as rc
+import rockwobble.compare.storage as rs
+from rockwobble.compare.studies.plans import Copies, FragilityPlan, SpectrumPlan
+
+from ..console import interruptible, save_with_page, show_and_save, shown_progress, user_input
+from ..pages.cases import describe
+from . import options
+from .command import takes_options
+from .estimate import require_feasible, require_sweep
+from .problem import BODY, Body, Problem, Record, refuse, refuse_options_of_engines
+from .several import GridOptions, ManyMethods, ManyMotions, cylinders_of
+from .suite_choice import chosen_runs, refuse_problem_options, without_missing
+
+Cylinders = Annotated[
+    list[str] | None,
+    options.body(
+        "A cylinder by name, as NAME=R,TAN_ALPHA such as pier=6,0.2; may be repeated.",
+        metavar="NAME=R,TAN_ALPHA",
+    ),
+]
+
+
+@takes_options
+def fragility(
+    context: typer.Context,
+    many: ManyMotions,
+    body: Body,
+    methods: ManyMethods,
+    plan: FragilityPlan,
+    cylinder: Cylinders = None,
+    workers: options.Workers = None,
+    scheduler: options.Scheduler = None,
+    out: options.Out = Path("rockwobble-fragility"),
+) -> None:
+    """Say how probable it is that shaking of an intensity overturns a cylinder, by several methods.
+
+    Every motion is scaled to the same intensities and moves every cylinder by every method, so that
+    methods are compared motion by motion. Lognormal curves by maximum likelihood, with bands by
+    resampling the motions.
+
+    Without options: the five reduced models of R = 6 m, tan alpha = 0.2 under 100 synthetic motions.
+
+    Whatever ends it, the same command resumes.
+
+    Writes fragility.html, the same as fragility.md with its figures, the tables as Parquet, and
+    counts.csv and counts.json, from which other tools can fit curves of their own.
+    """
+    with interruptible(out):
+        with user_input():
+            from rockwobble.compare.studies.fragility.methods import methods_of
+            from rockwobble.models.records.plausibility import doubts_of
+
+            from ..pages.diagnostics import warnings
+
+            rs.require_writable(out)
+            if cylinder:
+                of_body = BODY - {"slab_mass_ratio", "columns"}
+                refuse(context, of_body, "does not go with --cylinder, which states the cylinder")
+            bodies = cylinders_of(cylinder, body)
+            chosen = methods.methods(next(iter(bodies.values())))
+            methods_of(chosen, restitution=plan.restitution)  # before motions are read
+            motions, source = many.read(plan.seed)
+            for name, each in bodies.items():
+                size = f"R = {each.semidiagonal:g} m, tan alpha = {each.tan_alpha:g}"
+                print(f"{name}: {size}" if cylinder else size)
+            print(f"Motions: {len(motions)}, {source}", *warnings(doubts_of(motions)), sep="\n")
+        with user_input(), shown_progress() as progress:
+            found = rw.fragility(
+                bodies,
+                motions,
+                methods=chosen,
+                workers=workers,
+                scheduler=scheduler,
+                progress=progress,
+                resume=out,
+                source=source,
+                **dataclasses.asdict(plan),
+            )
+        show_and_save(found, out)
+
+
+@takes_options
+def spectrum(
+    record: Record,
+    plan: SpectrumPlan,
+    tan_alpha: options.TanAlpha = 0.1,
+    workers: options.Workers = None,
+    out: options.Out = Path("rockwobble-spectrum"),
+) -> None:
+    """Map the peak tilt over size and intensity, in 3D and by planar analysis of each component.
+
+    The record is scaled until its peak horizontal resultant reaches each intensity. A planar run takes
+    one component of the same shaking alone.
+
+    Without options: figure 6 of the paper, the 1940 El Centro record on cylinders of tan alpha = 0.1.
+
+    The lowest intensity that overturns each size is searched between the intensities and below them,
+    too; what the search misses is measured.
+
+    Writes spectrum.html, the same as spectrum.md with spectrum.svg, and as Parquet the cells (spectrum),
+    the lowest intensities found to overturn (lowest), the gaps in the overturning region above them
+    (islands), the shares by size (contrast), and some cells run again to a tighter tolerance (checked).
+    """
+    with interruptible():
+        with user_input():
+            from rockwobble.compare.studies.spectrum.maps import intensity_unit
+
+            motion = record.motion()
+            assert motion is not None  # without a release there always is one
+            intensity_unit(tan_alpha, motion, plan.gravity)
+            slender = rw.Case(
+                rw.Cylinder(semidiagonal=1.0, tan_alpha=tan_alpha), motion, gravity=plan.gravity
+            )
+            rs.require_writable(out)
+        print(
+            f"Cylinders: tan alpha = {tan_alpha:g} (alpha = {math.degrees(slender.cylinder.alpha):.4g} deg)"
+        )
+        # the ground: the threshold of uplift is that of all sizes
+        print(*describe(slender)[1:-1], sep="\n")
+        with shown_progress("series") as progress:
+            found = rw.spectrum(
+                tan_alpha, motion, workers=workers, progress=progress, **dataclasses.asdict(plan)
+            )
+        show_and_save(found, out)
+
+
+_COPIES = {"copies", "perturbation"}
+_MOTIONS = {"p695", "records", "synthetic", "peak"}
+
+Peak = Annotated[
+    float | None,
+    typer.Option(
+        help="Peak horizontal resultant to which each of many motions is scaled, in g tan alpha. Default: 3.",
+        rich_help_panel="Ground motions",
+    ),
+]
+
+
+@takes_options
+def ensemble(
+    context: typer.Context,
+    problem: Problem,
+    copies: Copies,
+    motions: ManyMotions,
+    suite: options.SuiteName = None,
+    peak: Peak = None,
+    engine: options.Engines = None,
+    support: options.Supports = None,
+    time_step: options.TimeStep = None,
+    out: options.Out = Path("rockwobble-ensemble"),
+) -> None:
+    """Compare the peak tilts of many members by each method, member by member.
+
+    Without options: El Centro on R = 6 m, tan alpha = 0.2, with 20 slightly perturbed copies. With
+    --synthetic, --p695 or --records the members are ground motions, with a SUITE its cases, by its runs,
+    among which --engine and --support choose. --engine none runs the reduced models alone.
+
+    Whatever ends it, the same command resumes.
+
+    Writes ensemble.html, the same as ensemble.md with ensemble.svg, and members, methods and contrasts as
+    Parquet and CSV.
+    """
+    with interruptible(out):
+        with user_input():
+            from rockwobble.models.records.plausibility import doubts_of
+
+            from ..pages.diagnostics import warnings
+
+            rs.require_writable(out)
+            refuse_options_of_engines(context, engine)
+            stated: rw.Case | rw.Suite | list[rw.Case]
+            if suite is not None:
+                ignored = _COPIES | _MOTIONS
+                refuse(context, ignored, f"does not go with a suite, got {suite}: its cases are the members")
+                refuse_problem_options(context, suite)
+                stated, source = rw.read_suite(suite), f"cases of {suite}"
+                runs = _runs(engine, support, time_step, stated)
+                print(f"Suite {suite}: {len(stated.cases)} members")
+                shaking = [each.motion for each in stated.cases]
+            else:
+                stated, source = _members(context, problem, copies, motions, peak)
+                shown = stated if isinstance(stated, rw.Case) else stated[0]
+                count = copies.copies if isinstance(stated, rw.Case) else len(stated)
+                runs = _runs(engine, support, time_step, None)
+                # each engine and its own model, and a perturbed copy of that
+                require_feasible([shown], [rw.Run(None, "recess"), *runs], members=count, samples=False)
+                for line in describe(shown) if isinstance(stated, rw.Case) else describe(shown)[:1]:
+                    print(line)
+                print(f"Members: {count}, {source}")
+                shaking = [] if isinstance(stated, rw.Case) else [each.motion for each in stated]
+            for line in warnings(doubts_of(shaking)):
+                print(line)
+        with user_input(), shown_progress() as tell:
+            found = rw.ensemble(
+                stated, runs=runs, progress=tell, resume=out, source=source, **dataclasses.asdict(copies)
+            )
+        show_and_save(found, out)
+
+
+def _members(
+    context: typer.Context, problem: Problem, copies: Copies, motions: ManyMotions, peak: float | None
+) -> tuple[rw.Case | list[rw.Case], str]:
+    """Return the case whose copies are the members, or the members, and what they are."""
+    if not motions.given:
+        refuse(context, {"peak"}, "scales many motions, give --synthetic, --p695 or --records as well")
+        return problem.case(), f"perturbed copies, {100.0 * copies.perturbation:g} %"
+    ignored = {"record", "record_x", "record_y", "record_z", "scale", *_COPIES}
+    refuse(context, ignored, f"does not go with {motions.given}: its motions are the members")
+    case = dataclasses.replace(problem, units=None, resample=False).case()
+    level = 3.0 if peak is None else peak
+    found, source = motions.read(copies.seed)
+    target = level * case.gravity * case.cylinder.tan_alpha
+    if not target > 0.0:
+        raise ValueError(f"--peak must be positive [g tan alpha], got {level:g}")
+    # named by the motion alone: the others are all the same
+    scaled = [motion.scaled(target / motion.peak) for motion in found]
+    members = [dataclasses.replace(case, name=motion.name, motion=motion) for motion in scaled]
+    return members, f"{source}, with peaks of {level:g} g tan alpha"
+
+
+def _runs(
+    engines: list[str] | None, supports: list[str] | None, time_step: Any, suite: rw.Suite | None
+) -> list[rw.Run]:
+    """Return the runs of the options, chosen among those of a suite."""
+    if engines == [options.NO_ENGINE]:
+        return []
+    if suite is not None:
+        return without_missing(chosen_runs(suite, engines, supports, time_step), engines)
+    chosen = rc.default_runs(engines or None, supports or None)
+    return [rw.Run(run.engine, run.support, time_step) for run in chosen]
+
+
+SuiteFile = Annotated[
+    str | None,
+    typer.Argument(
+        metavar="[SUITE]",
+        help="A suite instead of a grid: a TOML file, or the name of a shipped one.",
+        show_default=False,
+    ),
+]
+Models = Annotated[
+    list[str] | None,
+    options.method(
+        "recess, flat or planar; may be repeated. Default: recess; with a suite, none but its runs."
+    ),
+]
+ChunkSize = Annotated[
+    int | None,
+    options.work("Runs in a chunk. Default: about a second of work.", callback=options.whole(1)),
+]
+
+
+@takes_options
+def sweep(
+    context: typer.Context,
+    grid: GridOptions,
+    suite: SuiteFile = None,
+    model: Models = None,
+    workers: options.Workers = None,
+    scheduler: options.Scheduler = None,
+    chunk: ChunkSize = None,
+    out: options.Out = Path("rockwobble-sweep"),
+) -> None:
+    """Run every combination, and keep each chunk of runs as soon as it is finished.
+
+    A grid takes every size with every slenderness, scale, record and model, from rest, for its
+    peak tilt; friction is assumed to suffice. A suite takes every case with every run.
+
+    Whatever ends the sweep, the same command resumes.
+
+    Writes sweep.parquet, one row for each run, sweep.html (open it in a browser), sweep.md and sweep.svg.
+    """
+    with user_input():
+        plan: rc.Grid | rw.Suite
+        if suite is None:
+            plan = grid.grid(model)
+        else:
+            stated = {each.name for each in fields(GridOptions)}
+            refuse(context, stated, f"does not go with a suite, got {suite}: the file states the problems")
+            plan = _suite(suite, model)
+        how_long = require_sweep(plan)
+        rs.require_writable(out)
+    for line in (*_echo(plan), how_long):
+        print(line)
+    shows: list[Callable[[], None]] = []
+    with interruptible(out), user_input(), shown_progress("chunks") as progress:
+        rw.sweep(
+            plan,
+            out=out,
+            scheduler=scheduler,
+            workers=workers,
+            chunk_size=chunk,
+            progress=progress,
+            save=lambda found: shows.append(save_with_page(found, out)),
+        )
+    for show in shows:
+        show()
+
+
+def _suite(name: str, models: list[str] | None) -> rw.Suite:
+    from rockwobble.compare.studies.sweep.cases import runnable_suite
+
+    for model in models or ():
+        if model not in rw.reduced.MODELS:
+            raise ValueError(f"--model must be of {', '.join(rw.reduced.MODELS)}, got {model!r}")
+    suite = rw.read_suite(name)
+    chosen = [rw.Run(None, **{"support": "recess", **rw.reduced.MODELS[model]}) for model in models or ()]
+    runs = (*chosen, *(suite.runs or (() if models else rc.default_runs())))
+    return runnable_suite(rw.Suite(suite.cases, runs))
+
+
+def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
+    from rockwobble.models.records.plausibility import doubts_of
+
+    from ..pages.diagnostics import warnings
+
+    motions: Iterable[rw.GroundMotion | None]
+    if isinstance(plan, rc.Grid):
+        motions = plan.motions
+        ends = [
+            rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
+            for size in (min(plan.semidiagonals), max(plan.semidiagonals))
+            for tan_alpha in (min(plan.tan_alphas), max(plan.tan_alphas))
+        ]
+        runs = plan.rows
+        what = (
+            f"{len(plan.semidiagonals)} sizes, {len(plan.tan_alphas)} slendernesses, "
+            f"{len(plan.scales)} scales, {len(plan.motions)} records, models {', '.join(plan.models)}"
+        )
+    else:
+        motions = [case.motion for case in plan.cases]
+        ends = [case.cylinder for case in plan.cases]
+        runs = len(plan.cases) * len(plan.runs)
+        what = f"{len(plan.cases)} cases, {len(plan.runs)} runs of each"
+    return [
+        "Cylinders: "
+        + ", ".join(
+            (
+                f"b = {_span([c.base_radius for c in ends])} m",
+                f"2h = {_span([2.0 * c.half_height for c in ends])} m",
+                f"alpha = {_span([math.degrees(c.alpha) for c in ends])} deg",
+            )
+        ),
+        f"Runs: {runs:,} ({what})",
+        *warnings(doubts_of(motions)),
+    ]
+
+
+def _span(numbers: list[float]) -> str:
+    low, high = min(numbers), max(numbers)
+    return f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"

@@ -1,0 +1,322 @@
+"""Values of the options that state a method: from text to numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+if TYPE_CHECKING:
+    from rockwobble.models.case import TimeStep as Step
+
+_MOST_VALUES = 100_000
+
+
+def time_step(text: str) -> Step:
+    """Return a time step [s], "auto" or "extrapolated"; whether an engine can use the number is said later.
+
+    Raises
+    ------
+    BadParameter
+        If the text is neither.
+    """
+    from rockwobble.models.case import WAYS_TO_A_STEP
+
+    for way in WAYS_TO_A_STEP:
+        if text == way:
+            return way
+    return _number(text, 'a number [s], "auto" or "extrapolated"')
+
+
+def restitution(text: str) -> float | Literal["momentum"]:
+    """Return a coefficient of restitution, or "momentum".
+
+    Raises
+    ------
+    BadParameter
+        If the text is neither.
+    """
+    return "momentum" if text == "momentum" else _number(text, 'a number or "momentum"')
+
+
+def numbers(text: str) -> list[float]:
+    """Return the numbers of "6", "1,2,6" or "0.5:30:100", a range with both ends.
+
+    Raises
+    ------
+    BadParameter
+        If the text is none of these.
+    """
+    try:
+        if ":" not in text:
+            return [float(part) for part in text.split(",")]
+        first, last, count = text.split(":")
+        low, high, number = float(first), float(last), int(count)
+    except ValueError:
+        low = high = number = 0
+    if not (2 <= number <= _MOST_VALUES and math.isfinite(low - high)):
+        allowed = "a number, a list such as 1,2,6 or a range FROM:TO:COUNT"
+        raise typer.BadParameter(f"must be {allowed}, got {text!r}")
+    import numpy as np
+
+    return [float(value) for value in np.linspace(low, high, number)]
+
+
+def levels(text: str) -> list[float]:
+    """Return the numbers of a list, or of a range, which is even in the logarithm."""
+    found = numbers(text)
+    if ":" not in text or not 0.0 < found[0] < found[-1]:
+        return found
+    ratio, last = math.log(found[-1] / found[0]), len(found) - 1
+    return [found[0] * math.exp(ratio * place / last) for place in range(len(found))]
+
+
+def _number(text: str, allowed: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise typer.BadParameter(f"must be {allowed}, got {text!r}") from None
+
+
+def settings(given: Sequence[str] | None) -> dict[str, Any]:
+    """Return settings from texts of the form name=value: a whole number, a number, or the text itself.
+
+    Raises
+    ------
+    ValueError
+        If a text has another form, or a name comes twice.
+
+    Examples
+    --------
+    >>> settings(["ring_facets=64", "ring_clearance=1e-2", "cone=pyramidal"])
+    {'ring_facets': 64, 'ring_clearance': 0.01, 'cone': 'pyramidal'}
+    """
+    found: dict[str, Any] = {}
+    for text in given or ():
+        name, sign, value = (part.strip() for part in text.partition("="))
+        if not (name and sign and value):
+            raise ValueError(f"--set must be NAME=VALUE, got {text!r}")
+        if name in found:
+            raise ValueError(f"--set {name} is given twice")
+        found[name] = _value(value)
+    return found
+
+
+def _value(text: str) -> int | float | str:
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text
+
+
+def panel(title: str) -> Callable[..., Any]:
+    """Return what makes an option in a panel of the help text; without names it has that of its parameter."""
+
+    def option(help_text: str, *names: str, **more: Any) -> Any:
+        return typer.Option(*names, help=help_text, rich_help_panel=title, **more)
+
+    return option
+
+
+def whole(least: int, most: float = math.inf) -> Callable[[int | None], int | None]:
+    """Return the callback of a whole number: one out of range is refused in a line that says both."""
+    allowed = f"at least {least}" if most == math.inf else f"from {least} to {most}"
+
+    def checked(value: int | None) -> int | None:
+        if value is None or least <= value <= most:
+            return value
+        raise typer.BadParameter(f"must be {allowed}, got {value}")
+
+    return checked
+
+
+def _in_one_turn(plane: float | None) -> float | None:
+    if plane is None or abs(plane) <= math.tau:
+        return plane
+    raise typer.BadParameter(f"must be from -6.2832 to 6.2832 rad (90 deg is 1.5708), got {plane:g}")
+
+
+body, _ground, _release, method = map(panel, ("Cylinder", "Ground motion", "Release", "Method"))
+reduced, work, _external = map(
+    panel, ("Reduced model", "Work", "Trajectory of a shake table or another code")
+)
+
+Semidiagonal = Annotated[float | None, body("R = sqrt(b^2 + h^2), in m. Default: 6.")]
+TAN_ALPHA = body("Slenderness b/h, radius over half the height.")
+TanAlpha = Annotated[float, TAN_ALPHA]
+Diameter = Annotated[float | None, body("2b, in m; with --height in place of the two above.")]
+Height = Annotated[float | None, body("2h, in m.")]
+MassCentreHeight = Annotated[
+    float | None,
+    body("Of the mass centre above the base, in m; with --diameter and --height. Default: half of that."),
+]
+TransverseInertia = Annotated[
+    float | None, body("I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder.")
+]
+AxialInertia = Annotated[float | None, body("I2/m about the axis, in m2.")]
+SlabMassRatio = Annotated[
+    float | None,
+    body("Mass of a rigid slab over that of the cylinders that carry it. Default: a cylinder alone."),
+]
+Columns = Annotated[
+    int | None,
+    body("Number of the cylinders under the slab: 3 or more, or 1 for a slab that cannot turn. Default: 3."),
+]
+Record = Annotated[
+    Path | None, _ground("Text or CSV of time, x, y and perhaps z, in place of the files below.")
+]
+RecordX = Annotated[
+    Path | None,
+    _ground(
+        "East-west component: PEER AT2, two-column text or CSV, or zero beside the other (planar motion). "
+        "Default: El Centro 1940."
+    ),
+]
+RecordY = Annotated[Path | None, _ground("North-south component, or zero.")]
+RecordZ = Annotated[Path | None, _ground("Vertical component, may be left out.")]
+Units = Annotated[str | None, _ground("g, m/s2 or cm/s2; required where the files do not say.")]
+Resample = Annotated[
+    bool,
+    _ground(
+        "Take components of different time steps at the largest step that divides all; linear between "
+        "samples, which stay, so that none changes.",
+        "--resample",
+    ),
+]
+Scale = Annotated[float, _ground("Factor on all components.")]
+Gravity = Annotated[float, _ground("g, in m/s2.")]
+Friction = Annotated[
+    float,
+    _ground(
+        "Coefficient of cylinder and ground. The reduced models assume that it suffices and say where it "
+        "would not."
+    ),
+]
+RollingResistance = Annotated[
+    float,
+    _ground(
+        "Length of the couple against the rolling of the rim, in m, below the base radius; 0 loses nothing."
+    ),
+]
+ReleaseTilt = Annotated[
+    float | None, _release("Release at this tilt, in deg; without a record the ground is then still.")
+]
+RollingRate = Annotated[float, _release("Rolling rate at release, in rad/s.")]
+Duration = Annotated[
+    float | None,
+    _release(
+        "Length of the run, in s; what moves then is followed over still ground to its next maximum. "
+        "Default: that of the ground motion, 10 s without one."
+    ),
+]
+ALL, NO_ENGINE = "all", "none"  # in place of the names of engines
+
+
+def _standing_alone(names: list[str] | None) -> list[str] | None:
+    word = next((word for word in (ALL, NO_ENGINE) if word in (names or ())), None)
+    if names and word and len(names) > 1:
+        raise typer.BadParameter(f"{word} stands alone, got {' and '.join(names)}")
+    return names
+
+
+def _named(names: list[str] | None) -> list[str] | None:
+    if names and ALL in names:
+        raise typer.BadParameter("all is for compare; name each engine here, or none")
+    return _standing_alone(names)
+
+
+ENGINES = "mujoco, pybullet, dart, drake, exudyn, rapier or another that is installed"
+_SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, by engines that have them)"
+Engine = Annotated[str | None, method(f"{ENGINES}. Default: the reduced model.")]
+_DEFAULT = "Default: those that serve any case and are no extra"
+Engines = Annotated[list[str] | None, method(f"{ENGINES}; may be repeated. {_DEFAULT}.", callback=_named)]
+EnginesOrAll = Annotated[
+    list[str] | None,
+    method(
+        f"{ENGINES}; may be repeated. {_DEFAULT}; all: every one that is installed.",
+        callback=_standing_alone,
+    ),
+]
+Support = Annotated[str, method(f"{_SUPPORTS}.")]
+Supports = Annotated[list[str] | None, method(f"{_SUPPORTS}; may be repeated. Default: recess and flat.")]
+TimeStep = Annotated[
+    Any,  # a number, a word or None: typer knows no type for that, `time_step` makes it
+    method(
+        "Time step of the engines, in s. Default: 1e-4 s at R = 6 m, with the root of the size. auto "
+        "halves it until the tilt has settled, extrapolated gives what three steps tend to; both say what "
+        "error is left.",
+        parser=time_step,
+        metavar="FLOAT|auto|extrapolated",
+    ),
+]
+Settings = Annotated[
+    list[str] | None,
+    method(
+        "Setting of the method, such as ring_clearance=0.01, integrator=discrete or rtol=1e-10, for each run "
+        "that has one of that name; may be repeated.",
+        "--set",
+        metavar="NAME=VALUE",
+    ),
+]
+Plane = Annotated[
+    float | None,
+    reduced("Planar motion: azimuth of the vertical plane that holds it, in rad.", callback=_in_one_turn),
+]
+Restitution = Annotated[
+    Any,  # a number, "momentum" or None: typer knows no type for that
+    reduced(
+        "Ratio of tilt rates at an impact of planar motion. Default: 1, as in the paper; momentum: from "
+        "the moment of momentum about the new pivot.",
+        parser=restitution,
+        metavar="FLOAT|momentum",
+    ),
+]
+SuiteName = Annotated[
+    str | None,
+    typer.Argument(
+        metavar="[SUITE]",
+        help="A suite of cases and runs: a TOML file, or one that ships: canon, p695, quick.",
+        show_default=False,
+    ),
+]
+Trajectories = Annotated[
+    list[Path] | None,
+    _external(
+        "CSV of time and: tilt and azimuth, or qw, qx, qy, qz, or x, y, z of the mass centre; from a shake "
+        "table or another code. What it does not hold is not compared; may be repeated."
+    ),
+]
+TrajectoryAngles = Annotated[str | None, _external("deg or rad, where its header does not say.")]
+TrajectoryOffset = Annotated[float, _external("Added to its times, in s, so that 0 is the start of the run.")]
+TrajectoryNoise = Annotated[
+    float | None,
+    _external(
+        "Tilt below which it counts as standing, in deg. Default: as its scatter asks for, at least 1e-4 "
+        "alpha."
+    ),
+]
+Budget = Annotated[
+    bool,
+    method(
+        "Split each difference into model form, numerics and what stays unexplained, by runs at finer "
+        "steps: takes some seven times as long.",
+        "--budget",
+    ),
+]
+Seed = Annotated[int, method("Of everything random.", callback=whole(0))]
+Workers = Annotated[
+    int | None, work("Processes on this machine. Default: one for each processor.", callback=whole(1))
+]
+Scheduler = Annotated[
+    str | None,
+    work(
+        "Dask scheduler that has the work done, such as tcp://10.0.0.1:8786: started by dask scheduler, "
+        "and on each machine dask worker tcp://10.0.0.1:8786. Needs the extra distributed."
+    ),
+]
+Out = Annotated[Path, typer.Option(help="Folder for the results.")]

@@ -1,0 +1,106 @@
+"""Commands of the published studies: `rockwobble validity`, `tradeoff`, `extremes` and `figures`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ..console import FAILED, results_in, show_and_save, user_input
+from . import options
+
+
+def _quick(help_text: str) -> Any:
+    return typer.Option("--quick", help=f"{help_text}: some two minutes on two idle cores.")
+
+
+def validity(
+    quick: Annotated[bool, _quick("Coarse maps and few runs")] = False,
+    workers: options.Workers = None,
+    out: options.Out = Path("rockwobble-validity"),
+) -> None:
+    """Report the limits of the reduced model: what must hold, what error to expect, where it matters.
+
+    Peaks over records by the reduced models, and by MuJoCo in an ideal recess, in a recess with clearance
+    and on flat ground, beside a perturbed copy of the model; what friction, contact and moment a recess
+    needs; clearances, softer contact and less friction. Takes about 40 minutes on two idle cores. What is
+    measured is kept in the folder: a second run repeats nothing.
+
+    Writes validity.html, validity.md with its pictures as SVG, as Parquet the tables of all parts and every
+    number of the report (limits). `rockwobble report` draws the pages again.
+    """
+    with user_input(), results_in(out, "tasks") as progress:
+        from rockwobble.compare.studies.validity.plan import FULL, QUICK
+        from rockwobble.compare.studies.validity.study import measure_all, validity_of
+
+        extent = QUICK if quick else FULL
+        tables = measure_all(extent, out, workers=workers, progress=progress)
+    show_and_save(validity_of(tables, extent), out)
+
+
+def tradeoff(
+    quick: Annotated[bool, _quick("Fewer points and fewer members")] = False,
+    out: options.Out = Path("rockwobble-tradeoff"),
+) -> None:
+    """Measure what accuracy costs: the reduced models, scipy's solvers and the engines on three problems.
+
+    The angle of turn in free response, two times El Centro until ten seconds after uplift, and the
+    distribution of peak tilt over synthetic ground motions; then the cost of each part of an engine's scene.
+    All runs are timed in turn, one after another in one process.
+
+    Writes tradeoff.html (open it in a browser), tradeoff.md with its pictures as SVG, and the tables points,
+    problems and scenes as Parquet. `rockwobble report` draws the pages again.
+    """
+    with results_in(out, "rounds", resumes=False) as progress:
+        from rockwobble.compare.studies.tradeoff.study import measure_tradeoff
+
+        found = measure_tradeoff(quick=quick, progress=progress)
+    show_and_save(found, out)
+
+
+def extremes(
+    quick: Annotated[bool, _quick("Only the two ends of each extreme")] = False,
+    workers: options.Workers = None,
+    out: options.Out = Path("rockwobble-extremes"),
+) -> None:
+    """Take one thing at a time to its extreme: is the answer right, and if not, does the run say so.
+
+    Spin, slenderness, size, gravity, intensity, sample spacing, duration, time step, contact stiffness,
+    friction. Each verdict is backed by an exact answer, an invariant or a converged reference; a wrong run
+    counts as flagged only if one of its diagnostics explains the error.
+
+    Writes extremes.html (open it in a browser), extremes.md and the table as extremes.parquet. `rockwobble
+    report` draws the pages again. Exit code 1 if anything is wrong and nothing explains it.
+    """
+    with user_input(), results_in(out) as progress:
+        from rockwobble.compare.studies.extremes.study import measure_extremes
+
+        found = measure_extremes(out, quick=quick, workers=workers, progress=progress)
+    show_and_save(found, out)
+    if (found.extremes["verdict"] == "silent").any():
+        raise typer.Exit(FAILED)
+
+
+def figures(
+    grid: Annotated[
+        int,
+        typer.Option(
+            help="Sizes, and intensities, of the maps of figure 6.",
+            callback=options.whole(3, 1000),  # three sizes make bands to compare, and a map
+        ),
+    ] = 100,
+    out: options.Out = Path("rockwobble-figures"),
+) -> None:
+    """Compute figures 3 to 6 of the paper again, and compare its statements with the numbers.
+
+    Writes paper.md and paper.html with a verdict on each statement, the figures as SVG, and the data of each
+    and the numbers of the statements as Parquet.
+
+    Example: rockwobble figures --grid 20 --out paper
+    """
+    with results_in(out, "figures", resumes=False) as progress:
+        from ..paper.page import compute
+
+        found = compute(grid, progress)
+    show_and_save(found, out)

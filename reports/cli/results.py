@@ -1,0 +1,197 @@
+"""Commands on stored results: `rockwobble show`, `report` and `view`."""
+
+from __future__ import annotations
+
+import dataclasses
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+import rockwobble as rw
+import rockwobble.compare.runs as rr
+import rockwobble.compare.storage as rs
+
+from ..console import complain, interruptible, print_facts, show_and_save, shown_progress, user_input
+from ..pages import KINDS, stored_page
+from ..pages.cases import describe
+from ..pages.table import number
+from . import options
+from .command import takes_options
+from .estimate import require_feasible, time_needed
+from .options import settings
+from .problem import Problem, given_options, refuse
+
+if TYPE_CHECKING:
+    from rockwobble.compare.storage.manifest import Manifest
+
+Store = Annotated[
+    Path, typer.Argument(help="Folder of results that a command has written.", show_default=False)
+]
+Json = Annotated[bool, typer.Option("--json", help="Print all there is to know as JSON.")]
+
+
+def show(store: Store, as_json: Json = False) -> None:
+    """Summarise a folder of results: what they are, their main numbers, and what made them.
+
+    Nothing runs, and nothing is written. Files that are not what was written are named, with exit code 1.
+
+    Example: rockwobble show rockwobble-compare
+    """
+    from rockwobble.models import plain_json
+
+    with user_input():
+        from rockwobble.compare.runs.cache import unfinished
+        from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests
+
+        going = unfinished(store)
+        found = read_manifests(store) if not going or (store / MANIFEST).exists() else []
+    states = [{name: file_state(store, made, name) for name in made.files} for made in found]
+    if as_json:
+        results = [
+            dataclasses.asdict(made) | {"complete": True, "states": files}
+            for made, files in zip(found, states, strict=True)
+        ]
+        results += [{**dataclasses.asdict(each), "complete": False} for each in going]
+        print(plain_json.dumps({"folder": str(store), "results": results}, indent=2))
+    else:
+        for made, files in zip(found, states, strict=True):
+            _print(store, made, files)
+        for each in going:
+            far = f"{each.done} of {each.total} tasks"
+            print(f"{store}: {each.kind}, not finished: {far}; the same command goes on")
+    if any(state != "whole" for files in states for state in files.values()):
+        raise typer.Exit(1)
+
+
+def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
+    lines = {name: number(value) for name, value in made.headline.items()}
+    lines |= {name: _text(value) for name, value in made.about.items() if not isinstance(value, Mapping)}
+    lines |= {
+        "made by": made.command or "a program",
+        "made on": f"{made.date}, {made.processor}",
+        "commit": made.commit or "of an installed package",
+        "hash of the inputs": made.inputs,
+        "seeds": ", ".join(f"{name} {seed}" for name, seed in made.seeds.items()),
+        "versions": ", ".join(f"{name} {version}" for name, version in made.versions.items()),
+        "files": ", ".join(
+            name + (f" ({state})" if state != "whole" else "") for name, state in files.items()
+        ),
+        "pages": ", ".join(made.pages),
+    }
+    print_facts((f"[bold]{store}[/]: {made.kind}",), {name: text for name, text in lines.items() if text})
+
+
+def _text(value: object) -> str:
+    if isinstance(value, Mapping):
+        return str(value.get("name", value.get("label", "")))
+    if isinstance(value, list):
+        shown = ", ".join(_text(item) for item in value[:6])
+        return shown + (f" and {len(value) - 6} more" if len(value) > 6 else "")
+    return number(value)
+
+
+Folder = Annotated[Path, typer.Argument(help="Folder that a command has written.", show_default=False)]
+Out = Annotated[
+    Path | None,
+    typer.Option(help="Where the pages go. Default: into the folder of the results.", show_default=False),
+]
+
+
+def report(folder: Folder, out: Out = None) -> None:
+    """Draw the pages and pictures again of results that are stored. Nothing runs again.
+
+    They say what they said: which engines and records are installed here has no part in it. The results
+    stay as they are.
+
+    Example: rockwobble report rockwobble-compare --out pages
+    """
+    place = folder if out is None else out
+    with interruptible(), user_input():
+        from rockwobble.compare.storage.manifest import read_manifests, write_pages
+
+        rs.require_writable(place)
+        kinds = [made.kind for made in read_manifests(folder) if made.kind in KINDS]
+        if not kinds:
+            raise ValueError(f"pages are drawn of {', '.join(KINDS)}; {folder} holds none of them")
+        drawn = {kind: stored_page(kind, folder).files() for kind in kinds}
+        for kind, pages in drawn.items():
+            write_pages(place, kind, pages)
+    names = dict.fromkeys(name for pages in drawn.values() for name in pages)
+    print(f"Written to {place}: {', '.join(names)}")
+
+
+Stored = Annotated[
+    Path | None,
+    typer.Argument(
+        help="Folder of a comparison, to play what is stored there. Without it the case is run.",
+        show_default=False,
+    ),
+]
+CaseName = Annotated[
+    str | None, typer.Option("--case", help="Which case of the folder, where it has several.")
+]
+Engine = Annotated[str | None, options.method(f"{options.ENGINES}. Default: the first of them.")]
+Open = Annotated[
+    bool | None,
+    typer.Option("--open/--no-open", help="Show it in the browser. Default: where there is a terminal."),
+]
+
+
+@takes_options
+def view(
+    context: typer.Context,
+    problem: Problem,
+    folder: Stored = None,
+    case_name: CaseName = None,
+    engine: Engine = None,
+    support: options.Support = "recess",
+    time_step: options.TimeStep = None,
+    setting: options.Settings = None,
+    out: options.Out = Path("rockwobble-view"),
+    opened: Open = None,
+) -> None:
+    """Play one case in three dimensions: the engine's cylinder, and the reduced model translucent over it.
+
+    Without options: MuJoCo recess under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
+
+    Writes view.html, which needs nothing else and works offline, and the comparison that it plays.
+    """
+    with interruptible():
+        with user_input():
+            if folder is not None:
+                others = set(given_options(context)) - {"folder", "case_name", "out", "opened"}
+                refuse(context, others, "states a run and does not go with a stored one")
+                comparison = rw.Comparison.load(folder)
+                name = _chosen_case(comparison, case_name)
+            elif case_name is not None:
+                raise ValueError("--case chooses from a folder, give the folder of a comparison as well")
+            else:
+                case = problem.case()
+                asked = rw.Run(engine or rw.multibody.DEFAULT_ENGINE, support, time_step)
+                (run,) = rr.with_settings(case, [asked], settings(setting))
+                require_feasible([case], [run])
+                rr.require_runnable(case, run)
+                name = case.name
+            rs.require_writable(out)
+        if folder is None:
+            for line in (*describe(case), *time_needed([case], [run])):
+                print(line)
+            with user_input(), shown_progress() as tell:
+                comparison = rw.compare(case, runs=[run], progress=tell)
+        show_and_save(comparison.of_case(name), out)
+    if sys.stdout.isatty() if opened is None else opened:
+        import webbrowser
+
+        webbrowser.open((out / "view.html").resolve().as_uri())
+
+
+def _chosen_case(comparison: rw.Comparison, name: str | None) -> str:
+    names = list(comparison.cases)
+    if name is None and len(names) > 1:
+        complain(f"{len(names)} cases, the first is shown; --case chooses: {'; '.join(names[:6])} ...")
+    if name is not None and name not in names:
+        raise ValueError(f"--case must be one of {'; '.join(names)}, got {name!r}")
+    return names[0] if name is None else name

@@ -1,0 +1,214 @@
+"""From options that may be repeated, or name many, to cylinders, ground motions, grids and methods."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import rockwobble as rw
+import rockwobble.compare as rc
+import rockwobble.compare.runs as rr
+
+from . import options
+from .options import numbers, settings
+from .problem import Body, under_slab
+
+DEFAULT_COUNT = 100  # of synthetic motions, where the user does not say
+_motions = options.panel("Ground motions")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ManyMotions:
+    """The options that name many ground motions."""
+
+    p695: Annotated[bool, _motions("The 22 far-field pairs of FEMA P-695 (extra records).", "--p695")] = False
+    records: Annotated[
+        Path | None,
+        _motions(
+            "A folder of records with a table records.csv: columns x and y (files), maybe z, name, units "
+            "and scale."
+        ),
+    ] = None
+    synthetic: Annotated[int | None, _motions("So many synthetic motions.", callback=options.whole(2))] = None
+    units: options.Units = None
+    resample: options.Resample = False
+
+    @property
+    def given(self) -> str:
+        """The option that names them; empty without one."""
+        named = {"--p695": self.p695, "--records": self.records, "--synthetic": self.synthetic is not None}
+        return next((name for name, value in named.items() if value), "")
+
+    def read(self, seed: int) -> tuple[list[rw.GroundMotion], str]:
+        """Return the ground motions and what they are; synthetic ones where none are named.
+
+        Raises
+        ------
+        ValueError
+            If two sources are asked for, or one cannot be read.
+        """
+        from rockwobble.models.records.p695 import recorded_far_field
+
+        if self.p695 + (self.records is not None) + (self.synthetic is not None) > 1:
+            raise ValueError(
+                "the motions are those of --p695, of --records or --synthetic, got more than one"
+            )
+        lone = "--units" if self.units is not None else "--resample" if self.resample else ""
+        if lone and self.records is None:
+            raise ValueError(f"{lone} belongs to --records")
+        if self.p695:
+            return recorded_far_field(), "far-field pairs of FEMA P-695"
+        if self.records is not None:
+            found = rw.read_records(self.records, units=self.units, resample=self.resample)
+            return found, f"records of {self.records.name}"
+        count = DEFAULT_COUNT if self.synthetic is None else self.synthetic
+        return rw.synthetic_motions(count, peak=1.0, seed=seed), f"synthetic ground motions, seed {seed}"
+
+
+def cylinders_of(given: Sequence[str] | None, body: Body) -> dict[str, rw.Cylinder]:
+    """Return the cylinders of texts NAME=R,TAN_ALPHA; without any the one of the options.
+
+    Raises
+    ------
+    ValueError
+        If a text has another form, or a name comes twice.
+    """
+    if not given:
+        one = body.cylinder()
+        return {f"R = {one.semidiagonal:g} m, tan α = {one.tan_alpha:g}": one}
+    found: dict[str, rw.Cylinder] = {}
+    for text in given:
+        name, sign, numbers = (part.strip() for part in text.partition("="))
+        sizes = numbers.split(",")
+        try:
+            size, slenderness = map(float, sizes)
+        except ValueError:
+            name = ""
+        if not (name and sign):
+            raise ValueError(f"--cylinder must be NAME=R,TAN_ALPHA such as pier=6,0.2, got {text!r}")
+        if name in found:
+            raise ValueError(f"--cylinder {name} is given twice")
+        cylinder = rw.Cylinder(semidiagonal=size, tan_alpha=slenderness)
+        found[name] = under_slab(cylinder, body.slab_mass_ratio, body.columns)
+    return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class ManyMethods:
+    """The options that name many methods."""
+
+    model: Annotated[
+        list[str] | None,
+        options.method(
+            "Reduced model: recess, flat, planar-x, planar-y, worse-plane (of the two), or none; may be "
+            "repeated. Default: all."
+        ),
+    ] = None
+    engine: Annotated[
+        list[str] | None, options.method(f"{options.ENGINES}; may be repeated. Default: none.")
+    ] = None
+    support: options.Supports = None
+    setting: options.Settings = None
+    time_step: options.TimeStep = None
+
+    def methods(self, body: rw.Cylinder) -> list[str | rw.Run]:
+        """Return reduced models by name, and each engine with those of the supports that it has.
+
+        Parameters
+        ----------
+        body : Cylinder
+            On which the settings are tried.
+
+        Raises
+        ------
+        ValueError
+            If an engine has none of the supports, or nothing has a setting.
+        """
+        from rockwobble.compare.studies.fragility.methods import MODELS
+        from rockwobble.multibody.engines.registry import find_engine
+
+        given, supports = settings(self.setting), self.support
+        chosen: list[str | rw.Run] = [] if self.model == ["none"] else list(self.model or MODELS)
+        if not self.engine:
+            if supports or given or self.time_step is not None:
+                raise ValueError("--support, --set and --time-step are for engines, give --engine as well")
+            return chosen
+        runs: list[rw.Run] = []
+        for name in self.engine:
+            able = [each for each in supports or () if each in find_engine(name).supports]
+            if supports and len(able) < len(supports):
+                lacks = [each for each in supports if each not in able]
+                if not able:
+                    raise ValueError(f"{name} has no support {', '.join(lacks)}")
+                print(f"{name} has no support {', '.join(lacks)} and is left out there")
+            runs += rc.default_runs([name], able or None)
+        if self.time_step is not None:
+            runs = [rw.Run(run.engine, run.support, self.time_step) for run in runs]
+        if given:
+            runs = list(rr.with_settings(rw.Case(body, rw.el_centro_1940()), runs, given))
+        return [*chosen, *runs]
+
+
+_grid = options.panel("Grid: each a number, a list 1,2,6 or a range FROM:TO:COUNT")
+_NUMBERS: dict[str, Any] = {"parser": numbers, "metavar": "LIST|FROM:TO:COUNT"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class GridOptions:
+    """The options that state a grid."""
+
+    semidiagonal: Annotated[Any, _grid("R, in m.", **_NUMBERS)] = "0.5:30:100"
+    tan_alpha: Annotated[Any, _grid("Slenderness b/h.", **_NUMBERS)] = "0.2"
+    scale: Annotated[Any, _grid("Factors on the records.", **_NUMBERS)] = "0.5:6:100"
+    record_x: Annotated[
+        list[Path] | None,
+        _grid("East-west component, or zero; may be repeated for several records. Default: El Centro 1940."),
+    ] = None
+    record_y: Annotated[list[Path] | None, _grid("North-south component of each, or zero.")] = None
+    record_z: Annotated[list[Path] | None, _grid("Vertical component of each, or of none.")] = None
+    units: options.Units = None
+    resample: options.Resample = False
+    gravity: options.Gravity = 9.81
+    slab_mass_ratio: options.SlabMassRatio = None
+    plane: options.Plane = None
+    restitution: options.Restitution = None
+
+    def grid(self, models: list[str] | None) -> rw.Grid:
+        """Return the grid of these axes by some reduced models, the recess model without any.
+
+        Raises
+        ------
+        ValueError
+            If one is out of range, two do not go together, or a record cannot be read.
+        """
+        given = {name: getattr(self, name) for name in ("plane", "restitution", "slab_mass_ratio")}
+        if self.gravity != 9.81:  # the default of every case
+            given["gravity"] = self.gravity
+        return rw.Grid(
+            semidiagonals=self.semidiagonal,
+            tan_alphas=self.tan_alpha,
+            scales=self.scale,
+            motions=self._motions(),
+            models=models or ("recess",),
+            **{name: value for name, value in given.items() if value is not None},
+        )
+
+    def _motions(self) -> list[rw.GroundMotion]:
+        x, y, z = self.record_x or [], self.record_y or [], self.record_z or []
+        if not x and not y:
+            named = {"--record-z": z, "--units": self.units, "--resample": self.resample}
+            if lone := next((name for name, value in named.items() if value), ""):
+                raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
+            return [rw.el_centro_1940()]
+        if len(x) != len(y) or len(z) not in (0, len(x)):
+            raise ValueError(
+                "each record needs both horizontal components (zero for one: planar motion), and all a "
+                f"vertical one or none: got {len(x)}, {len(y)} and {len(z)} files"
+            )
+        ups: list[Path | None] = list(z) if z else [None] * len(x)
+        return [
+            rw.read_record(east, north, up, units=self.units, resample=self.resample)
+            for east, north, up in zip(x, y, ups, strict=True)
+        ]

@@ -1,0 +1,300 @@
+"""Commands on one problem: `rockwobble compare`, `simulate` and `advise`."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+import rockwobble as rw
+import rockwobble.compare as rc
+import rockwobble.compare.runs as rr
+import rockwobble.compare.storage as rs
+from rockwobble.compare.studies.plans import AdvicePlan
+
+from ..console import FAILED, complain, interruptible, show_and_save, shown_progress, user_input
+from ..pages.cases import describe
+from . import options
+from .command import takes_options
+from .estimate import require_feasible, time_needed
+from .options import settings
+from .problem import Problem, given_options, refuse_options_of_engines, restated
+from .suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
+
+
+@takes_options
+def compare(
+    context: typer.Context,
+    problem: Problem,
+    suite: options.SuiteName = None,
+    engine: options.EnginesOrAll = None,
+    support: options.Supports = None,
+    time_step: options.TimeStep = None,
+    setting: options.Settings = None,
+    trajectory: options.Trajectories = None,
+    trajectory_angles: options.TrajectoryAngles = None,
+    trajectory_offset: options.TrajectoryOffset = 0.0,
+    trajectory_noise_deg: options.TrajectoryNoise = None,
+    budget: options.Budget = False,
+    out: options.Out = Path("rockwobble-compare"),
+) -> None:
+    """Run the reduced model and the engines on one problem, and report how long they agree.
+
+    Without options: the 1940 El Centro record on R = 6 m, tan alpha = 0.2, every installed engine, in an
+    ideal recess and on flat ground.
+
+    With a SUITE: its cases and runs, among which --engine and --support choose. A suite that was ended
+    before its end resumes when it is started again with the same folder.
+
+    With --engine all: every installed engine that can run the problem, and their agreement matrix.
+
+    With --trajectory: that of a shake table or of another code is one more run. With --engine none it is
+    compared with the reduced model alone.
+
+    Writes summary.csv, the samples as Parquet, report.html and figure.svg.
+    """
+    with interruptible(out if suite else None):
+        with user_input():
+            from rockwobble.compare.runs.choice import unable_engines
+
+            refuse_options_of_engines(context, engine)
+            if suite is not None:
+                refuse_problem_options(context, suite)
+                cases, runs = _suite(suite, engine, support, time_step)
+            else:
+                cases = [problem.case()]
+                runs = _runs(cases[0], engine, support, time_step, alone=bool(trajectory))
+            if setting:
+                runs = list(rr.with_settings(cases[0], runs, settings(setting)))
+            rs.require_writable(out)
+            require_feasible(cases, runs)
+            for each in cases:
+                for run in runs:
+                    rr.require_runnable(each, run)
+            external = _external(
+                trajectory, cases, trajectory_angles, trajectory_offset, trajectory_noise_deg
+            )
+        if suite is None:
+            print(*describe(cases[0]), *time_needed(cases, runs), sep="\n")
+        else:
+            print(*describe_suite(suite, cases, runs), sep="\n")
+        if engine == [options.ALL]:
+            for reason in unable_engines(cases):
+                complain(reason)
+        elif not engine and suite is None:
+            _say_what_is_left_out(support or [])
+        with user_input(), shown_progress() as tell:
+            found = rw.compare(
+                rw.Suite(cases, runs),
+                runs=runs,
+                progress=tell,
+                external=external,
+                resume=None if suite is None else out,
+                budget=budget,
+            )
+        show_and_save(found, out)
+    if (found.summary["outcome"] == "failed").any():
+        raise typer.Exit(FAILED)
+
+
+def _suite(
+    name: str, engines: list[str] | None, supports: list[str] | None, time_step: Any
+) -> tuple[list[rw.Case], list[rw.Run]]:
+    from rockwobble.compare.runs.choice import all_runs
+
+    if engines == [options.NO_ENGINE]:
+        raise ValueError(f"--engine none is for a case given by options, and {name} is a suite with runs")
+    suite = rw.read_suite(name)
+    if engines == [options.ALL]:
+        asked = supports or list(dict.fromkeys(run.support for run in suite.runs)) or None
+        return list(suite.cases), [
+            rw.Run(run.engine, run.support, time_step) for run in all_runs(suite.cases, asked)
+        ]
+    return list(suite.cases), without_missing(chosen_runs(suite, engines, supports, time_step), engines)
+
+
+def _runs(
+    case: rw.Case, engines: list[str] | None, supports: list[str] | None, time_step: Any, *, alone: bool
+) -> list[rw.Run]:
+    from rockwobble.compare.runs.choice import all_runs
+
+    if engines == [options.NO_ENGINE]:
+        if not alone:
+            raise ValueError("--engine none leaves nothing to compare, give a --trajectory as well")
+        return []
+    every = engines == [options.ALL]
+    runs = all_runs([case], supports or None) if every else rc.default_runs(engines or None, supports or None)
+    return [rw.Run(run.engine, run.support, time_step) for run in runs]
+
+
+def _external(
+    paths: list[Path] | None,
+    cases: Sequence[rw.Case],
+    angles: str | None,
+    offset: float,
+    noise_deg: float | None,
+) -> list[rw.External]:
+    if not paths:
+        if angles is not None or offset or noise_deg is not None:
+            raise ValueError("--trajectory-angles, -offset and -noise-deg need a --trajectory")
+        return []
+    if len(cases) > 1:
+        raise ValueError(f"--trajectory belongs to one case, got a suite of {len(cases)}")
+    if noise_deg is not None and not 0.0 < noise_deg < 90.0:
+        raise ValueError(f"--trajectory-noise-deg must be above 0 and below 90 [deg], got {noise_deg:g}")
+    if not math.isfinite(offset):
+        raise ValueError(f"--trajectory-offset must be finite [s], got {offset:g}")
+    noise = None if noise_deg is None else math.radians(noise_deg)
+    external = [rw.External(path=path, angle_unit=angles, time_offset=offset, noise=noise) for path in paths]
+    for each in external:  # whatever is wrong with a file is said before anything runs
+        rc.read_trajectory(each, cases[0])
+    return external
+
+
+def _say_what_is_left_out(supports: list[str]) -> None:
+    from rockwobble.compare.runs.choice import left_out, unsupported
+
+    for name in rr.missing_engines():
+        complain(left_out(name))
+    for reason in unsupported(supports):
+        complain(reason)
+
+
+RestTilt = Annotated[
+    float | None,
+    options.reduced("Rest threshold: tilt over alpha below which the base is closed; 0 leaves the rule out."),
+]
+
+
+@takes_options
+def simulate(
+    context: typer.Context,
+    problem: Problem,
+    engine: options.Engine = None,
+    support: options.Support = "recess",
+    time_step: options.TimeStep = None,
+    setting: options.Settings = None,
+    plane: options.Plane = None,
+    restitution: options.Restitution = None,
+    rest_tilt: RestTilt = None,
+    out: options.Out = Path("rockwobble-simulate"),
+) -> None:
+    """Run the reduced model, or one engine, on one problem.
+
+    Without options: the recess model under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
+
+    Writes the samples to run.csv, the passes to passes.csv, all to run.parquet, which Trace.load reads,
+    manifest.json, which says units and meaning of each column, and run.html, run.md and trace.svg; SI units
+    and radians.
+    """
+    with interruptible():
+        from rockwobble.compare.studies.single_run import single_run
+
+        from ..pages.diagnostics import remarks
+
+        with user_input():
+            case = problem.case()
+            if plane is not None and case.initial is not None:  # it leans in the plane that holds it
+                case = replace(case, initial=replace(case.initial, rolling_angle=plane))
+            rs.require_writable(out)
+            model = {"plane": plane, "restitution": restitution, "rest_tilt": rest_tilt}
+            run = _with_settings(case, rw.Run(engine, support, time_step), setting, model)
+            require_feasible([case], [run])
+            rr.require_runnable(case, run)
+        for line in time_needed([case], [run]):
+            print(line, file=sys.stderr)
+        with user_input(), shown_progress() as tell:
+            found = single_run(
+                case, run, answer=restated(context, "advise", also=("support",)), progress=tell
+            )
+        if not len(found.trace.time):
+            complain(f"{run} left no result: {remarks(found.trace.facts)}")
+            raise typer.Exit(FAILED)
+        show_and_save(found, out)
+    if found.trace.outcome == "failed":
+        raise typer.Exit(FAILED)
+
+
+def _with_settings(case: rw.Case, run: rw.Run, setting: list[str] | None, model: dict[str, Any]) -> rw.Run:
+    """Return the run with the options that belong to its method; others are refused, not ignored."""
+    model = {name: value for name, value in model.items() if value is not None}
+    if run.engine is None and run.time_step is not None:
+        raise ValueError("--time-step belongs to an engine, give --engine as well")
+    if run.engine is not None and model:
+        option = "--" + next(iter(model)).replace("_", "-")
+        raise ValueError(f"{option} belongs to the reduced models, got --engine {run.engine}")
+    if twice := model.keys() & settings(setting).keys():
+        raise ValueError(f"{min(twice)} is given twice, by an option and by --set")
+    (whole,) = rr.with_settings(case, [run], settings(setting) | model)
+    return whole
+
+
+Engine = Annotated[
+    str | None,
+    options.method(
+        f"{options.ENGINES}. Its one run verifies the prediction; none leaves it out. "
+        "Default: the first of them."
+    ),
+]
+Details = Annotated[bool, typer.Option("--details", help="Print what is folded on the page, too.")]
+
+
+@takes_options
+def advise(
+    context: typer.Context,
+    problem: Problem,
+    plan: AdvicePlan,
+    engine: Engine = None,
+    time_step: options.TimeStep = None,
+    details: Details = False,
+    out: options.Out = Path("rockwobble-advise"),
+) -> None:
+    """Say how one case ends, how far its results can be trusted, and what its support must supply.
+
+    A verdict, a grade with its reason for each check, the largest tilt, the displacement of the top and the
+    probability of overturning, over copies of the record and over other records as strong; the design
+    demands on ground and recess; and what to do next.
+
+    Without options: the 1940 El Centro record on R = 6 m, tan alpha = 0.2, in a recess.
+
+    Writes advice.html, one page that needs nothing else, the same as advice.md with advice.svg, and
+    the runs as Parquet.
+    """
+    with interruptible():
+        with user_input():
+            case = problem.case()
+            run = _run(case, engine, plan.support, time_step)
+            require_feasible([case], [rw.Run(None, "recess"), *([] if run is None else [run])])
+            rs.require_writable(out)
+        with shown_progress("stages") as progress:
+            found = rw.advise(
+                case,
+                run,
+                friction_given="friction" in given_options(context),
+                progress=progress,
+                **dataclasses.asdict(plan),
+            )
+        show_and_save(found, out, details=details)
+    if found.response["outcome"] == "failed":
+        raise typer.Exit(FAILED)
+
+
+def _run(case: rw.Case, engine: str | None, support: str, time_step: float | None) -> rw.Run | None:
+    """Return the run of the engine that verifies; None without one."""
+    if engine == options.NO_ENGINE and time_step is not None:
+        raise ValueError("--time-step belongs to an engine, got it with --engine none")
+    default = rw.multibody.DEFAULT_ENGINE
+    missing = engine is None and default not in rw.multibody.available_engines()
+    if missing:
+        complain(f"{default} is not installed here: the prediction stays unverified")
+    if missing or engine == options.NO_ENGINE:
+        return None
+    run = rw.Run(engine or default, support, time_step)
+    rr.require_runnable(case, run)
+    return run

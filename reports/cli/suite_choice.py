@@ -1,0 +1,90 @@
+"""From a suite file and the options beside it to what will run."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import typer
+
+import rockwobble as rw
+import rockwobble.compare as rc
+import rockwobble.compare.runs as rr
+
+from ..console import complain
+from ..pages.cases import group_of
+from .estimate import time_needed
+from .problem import PROBLEM, refuse
+
+
+def refuse_problem_options(context: typer.Context, suite: str) -> None:
+    """Refuse options that contradict the file of a suite.
+
+    Raises
+    ------
+    ValueError
+        If the user gave an option that states a problem.
+    """
+    refuse(context, set(PROBLEM), f"does not go with a suite, got {suite}: the file states the problems")
+
+
+def chosen_runs(
+    suite: rw.Suite, engines: Sequence[str] | None, supports: Sequence[str] | None, time_step: Any
+) -> list[rw.Run]:
+    """Return the runs of a suite, with those of the options in their place.
+
+    Engines and supports that are named choose among the runs of the file; one that the file does not have
+    is added with each of the others. A time step replaces all others.
+    """
+    runs = list(suite.runs)
+    if not runs:
+        runs = list(rc.default_runs(engines or None, supports or None))
+    else:
+        if engines:
+            places = list(dict.fromkeys(run.support for run in runs))
+            known = {run.engine for run in runs}
+            runs = [run for run in runs if run.engine in engines]
+            runs += [rw.Run(engine, place) for engine in engines if engine not in known for place in places]
+        if supports:
+            makers = list(dict.fromkeys(run.engine for run in runs))
+            known = {run.support for run in runs}
+            runs = [run for run in runs if run.support in supports]
+            runs += [rw.Run(maker, place) for place in supports if place not in known for maker in makers]
+    if time_step is not None:
+        from rockwobble.compare.runs.run_settings import at_step
+
+        runs = [at_step(run, time_step) for run in runs]
+    return runs
+
+
+def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list[rw.Run]:
+    """Return the runs that can be made here, and say which engines are replaced or left out.
+
+    Raises
+    ------
+    ValueError
+        If none is left.
+    """
+    kept, said = rr.runs_here(runs, named or ())
+    if not kept:
+        raise ValueError(f"no engine of this suite is installed here: {'; '.join(said)}")
+    for line in said:
+        complain(line)
+    return kept
+
+
+def describe_suite(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> Iterator[str]:
+    """Yield the lines that echo what will run, and how long it may take."""
+    from rockwobble.compare.runs.labels import run_labels
+    from rockwobble.models.records.plausibility import doubts_of
+
+    from ..pages.diagnostics import warnings
+
+    groups = Counter(group_of(case.name) for case in cases)
+    yield f"Suite {name}: {len(cases)} cases x {len(runs)} runs = {len(cases) * len(runs)} runs of engines"
+    counted = (f"{group} ({count})" if count > 1 else group for group, count in groups.items())
+    yield f"Cases: {', '.join(counted)}"
+    yield f"Runs: {', '.join(run_labels(runs))}"
+    yield from warnings(doubts_of(case.motion for case in cases))
+    yield from time_needed(cases, runs, always=True)

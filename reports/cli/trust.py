@@ -1,0 +1,322 @@
+"""Commands that check models and engines: `rockwobble check`, `certify` and `verify`."""
+
+from __future__ import annotations
+
+import datetime
+import json
+import sys
+import time
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+import rockwobble as rw
+import rockwobble.compare as rc
+import rockwobble.compare.storage as rs
+
+from ..console import FAILED, interruptible, shown_progress, user_input
+from . import options
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rockwobble.compare.check import Checks
+
+_subject = options.panel("Subject (default: the reduced models, and the engines that are installed)")
+_output = options.panel("Output for programs")
+Engine = Annotated[str | None, _subject("Check one engine, the protocol of an engine included.")]
+_STEP = "Time step of the engine, in s. Default: its own choice."
+TimeStep = Annotated[float | None, _subject(_STEP)]
+Model = Annotated[
+    str | None,
+    _subject(
+        "Check a model: a function of a rockwobble.Case and a support that returns time, tilt, azimuth.",
+        metavar="MODULE:FUNCTION",
+    ),
+]
+Trajectory = Annotated[
+    Path | None,
+    _subject("Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite."),
+]
+Suite = Annotated[
+    str | None,
+    _subject("Compare the engine runs of a suite with the models: a TOML file, or one that ships."),
+]
+Support = Annotated[str | None, _subject("What model or trajectory is of: recess or flat. Default: recess.")]
+Tolerance = Annotated[float | None, _subject("How exact model or trajectory claims to be. Default: 0.001.")]
+Only = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="GROUP",
+        help="Run one group of checks; may be repeated: equations, exact, conserved, rest, invariance, "
+        "order, trace, agreement, protocol, baseline. Default: all.",
+    ),
+]
+Json = Annotated[Path | None, _output("Write all results as JSON.")]
+Junit = Annotated[Path | None, _output("Write a JUnit report (XML).")]
+Markdown = Annotated[Path | None, _output("Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.")]
+Update = Annotated[
+    bool,
+    typer.Option(
+        "--update-baseline", help="Show what new baselines would change, and write them if a reason is given."
+    ),
+]
+Reason = Annotated[
+    str | None, typer.Option(help="Why the baselines change; kept in their file. Without it you are asked.")
+]
+
+
+def check(
+    engine: Engine = None,
+    time_step: TimeStep = None,
+    model: Model = None,
+    trajectory: Trajectory = None,
+    suite: Suite = None,
+    support: Support = None,
+    tolerance: Tolerance = None,
+    only: Only = None,
+    workers: options.Workers = None,
+    json: Json = None,
+    junit: Junit = None,
+    markdown: Markdown = None,
+    update_baseline: Update = False,
+    reason: Reason = None,
+) -> None:
+    """Check by physics that reduced models and engines are right, and still do what they did.
+
+    One list of checks, tightest first: residuals in the equations of motion, exact solutions, conserved
+    quantities, rest and uplift, invariance, order of convergence, consistency of a trace, agreement with the
+    independent model, the protocol of an engine, stored numbers. Printed are failures, with value and bound,
+    and one line for each group.
+
+    A suite is compared with the bounds that it states; one that states none, with what the time step of each
+    run leaves, measured by a second run of twice that step.
+
+    Exit code 0 if all checks hold, 1 if one does not, 2 for bad input.
+    """
+    with interruptible():
+        begun = time.monotonic()
+        with user_input():
+            from rockwobble.compare.storage.files import require_file
+
+            if reason is not None and not update_baseline:
+                raise ValueError("--reason belongs to --update-baseline, got it alone")
+            for path in (json, junit, markdown):
+                if path is not None:
+                    require_file("a report", path)
+            subject = _subject_of(engine, time_step, model, trajectory, suite, support, tolerance, workers)
+            if update_baseline:
+                if subject or only:
+                    raise ValueError("--update-baseline goes with no subject and not with --only")
+
+                update(reason)
+                return
+            found = _run(subject, only)
+            _write(found, time.monotonic() - begun, json, junit, markdown)
+    if not found.passed:
+        raise typer.Exit(FAILED)
+
+
+def _subject_of(
+    engine: str | None,
+    time_step: float | None,
+    model: str | None,
+    trajectory: Path | None,
+    suite: str | None,
+    support: str | None,
+    tolerance: float | None,
+    workers: int | None,
+) -> dict[str, Any]:
+    """Return the options of `rockwobble.check` that name the subject.
+
+    Raises
+    ------
+    ValueError
+        If two are given, or an option that another leaves without a meaning.
+    """
+    from rockwobble.compare.check.subject import load_model
+    from rockwobble.multibody.engines.registry import find_engine
+
+    external = model is not None or trajectory is not None
+    named = {"--engine": engine, "--model": model, "--trajectory": trajectory}
+    named |= {} if trajectory is not None else {"--suite": suite}
+    given = [name for name, value in named.items() if value is not None]
+    if len(given) > 1:
+        raise ValueError(f"one subject may be given, got {' and '.join(given)}")
+    for name, value in (("--support", support), ("--tolerance", tolerance)):
+        if value is not None and not external:
+            raise ValueError(f"{name} belongs to --model or --trajectory, got it without either")
+    if time_step is not None and engine is None:
+        raise ValueError("--time-step belongs to --engine, got it alone")
+    if workers is not None and (suite is None or trajectory is not None):
+        raise ValueError("--workers belongs to the runs of a --suite, got it without one")
+    if engine is not None:
+        find_engine(engine)  # what is wrong with it is said before anything runs
+    found: dict[str, Any] = {"engine": engine, "time_step": time_step, "workers": workers}
+    found |= {"support": support, "tolerance": tolerance}
+    if model is not None:
+        found["model"] = load_model(model)
+    elif trajectory is not None:
+        cases = rw.read_suite(suite or "quick").cases
+        if len(cases) != 1:
+            raise ValueError(f"--trajectory needs a --suite with one case, got {len(cases)}")
+        found["trajectory"] = rc.read_trajectory(trajectory, cases[0])
+    elif suite is not None:
+        found["suite"] = rw.read_suite(suite)
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def _run(subject: dict[str, Any], only: list[str] | None) -> Checks:
+    """Run the checks, and print them."""
+    from rich.console import Console
+
+    from rockwobble.compare.check import GROUPS, check
+    from rockwobble.models.number_checks import require_one_of
+
+    from ..pages.check import print_checks
+
+    for group in only or ():
+        require_one_of("--only", group, tuple(GROUPS))
+    with shown_progress("engine runs", heading="checking") as progress:
+        found = check(**subject, only=only, progress=progress)
+    print_checks(Console(), found)
+    return found
+
+
+def _write(
+    found: Checks, seconds: float, json: Path | None, junit: Path | None, markdown: Path | None
+) -> None:
+    from ..pages.check import as_json, as_junit, check_page, headline
+
+    print(headline(found, seconds))
+    if json is not None:
+        rs.replace_files(json.parent, {json.name: as_json(found, seconds).encode()})
+    if junit is not None:
+        rs.replace_files(junit.parent, {junit.name: as_junit(found, seconds).encode()})
+    if markdown is not None:
+        try:  # the summary of a CI job may hold pages of other steps
+            with markdown.open("a", encoding="utf-8") as file:
+                file.write(check_page(found, seconds).markdown())
+        except OSError as error:
+            raise ValueError(f"{markdown} cannot be written: {error.strerror or error}") from None
+
+
+_SHOWN = 20
+
+
+def update(reason: str | None) -> None:
+    """Measure, print the changes, ask for a reason, and write the file.
+
+    Raises
+    ------
+    ValueError
+        If there is no reason, or the file cannot be written.
+    """
+    from rockwobble.compare.check import baseline
+    from rockwobble.compare.check.summary import baseline_subjects
+    from rockwobble.compare.storage.provenance import package_versions
+
+    with shown_progress("engine runs"):
+        new = baseline.measure(baseline_subjects())
+    old = baseline.read_baseline()
+    changed = baseline.changes(old, new)
+    _show(changed)
+    if not changed:
+        print("Nothing would change.")
+        return
+    if reason is None and sys.stdin.isatty():
+        reason = input("Reason (empty: leave everything as it is): ")
+    if not (reason or "").strip():
+        raise ValueError("nothing was changed: a new baseline needs a --reason, got none")
+    date = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
+    text = baseline.updated(old, new, reason=reason or "", date=date, versions=package_versions())
+    rs.replace_files(baseline.folder(), {baseline.FILE: text.encode()})
+    print(f"Written: {baseline.folder() / baseline.FILE}")
+
+
+def _show(changed: Sequence[tuple[str, str, float | None, float | None]]) -> None:
+    """Print the changes, the largest first, and what is new in one line."""
+    known = [
+        (group, what, before, after)
+        for group, what, before, after in changed
+        if before is not None and after is not None
+    ]
+    known.sort(key=lambda each: -abs(each[3] - each[2]))
+    for group, what, before, after in known[:_SHOWN]:
+        print(f"{group}, {what}: {before:.12g} -> {after:.12g} ({after - before:+.1e})")
+    if len(known) > _SHOWN:
+        print(f"... and {len(known) - _SHOWN} more values, which change by less")
+    for group in dict.fromkeys(each[0] for each in changed):
+        fresh = sum(each[2] is None for each in changed if each[0] == group)
+        gone = sum(each[3] is None for each in changed if each[0] == group)
+        if fresh or gone:
+            print(f"{group}: {fresh} new values, {gone} that are no longer there")
+
+
+def certify(
+    out: Annotated[Path, typer.Option(help="File to write.")] = Path("certificate.json"),
+    engine: Annotated[
+        str | None, typer.Option(help="Engine to certify. Default: the reduced models.")
+    ] = None,
+    time_step: Annotated[float | None, typer.Option(help=_STEP)] = None,
+    only: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="GROUP",
+            help="Make claims of one group of `rockwobble check`; may be repeated. Default: all but protocol "
+            "and baseline.",
+        ),
+    ] = None,
+) -> None:
+    """Write a certificate: claims with their evidence, and a fingerprint of twelve short cases.
+
+    A claim is verified (against exact solutions), cross-validated (between independent formulations) or
+    validated (against an experiment, by the hash of its data; there is none yet). Nothing is written where a
+    check fails.
+
+    Exit code 0 if it is written, 2 for bad input or a check that fails.
+    """
+    with interruptible(), user_input():
+        from rockwobble.compare.certificate import CLAIMING, models, write_certificate
+        from rockwobble.compare.certificate import certify as make
+        from rockwobble.compare.check import engine as engine_subject
+        from rockwobble.compare.check import reduced_model, run_checks
+        from rockwobble.compare.storage.files import require_file
+        from rockwobble.models.number_checks import require_one_of
+
+        if time_step is not None and engine is None:
+            raise ValueError("--time-step belongs to --engine, got it alone")
+        for group in only or ():
+            require_one_of("--only", group, CLAIMING)
+        require_file("--out", out)
+        subject = models() if engine is None else engine_subject(engine, time_step)
+        if "recess" not in subject.supports:
+            given = f"{engine} with {', '.join(subject.supports)}"
+            raise ValueError(f"--engine must have a recess, got {given}")
+        checked = subject if engine else reduced_model()
+        found = make(subject, run_checks(checked, only or CLAIMING))
+        write_certificate(found, out)
+    print(f"{out}: {len(found['claims'])} claims, {len(found['fingerprint'])} cases")
+
+
+def verify(
+    certificate: Annotated[Path, typer.Argument(help="File that certify wrote.", show_default=False)],
+    as_json: Annotated[bool, typer.Option("--json", help="Print the answer as JSON.")] = False,
+) -> None:
+    """Answer in one word whether this installation still does what a certificate says.
+
+    same: every number repeats. chaotic: what differs does so after agreement must end, and distributions
+    agree. changed: something differs before that; the claim and the first term concerned are named.
+
+    Exit code 0 for same and chaotic, 1 for changed, 2 for bad input.
+    """
+    with interruptible(), user_input():
+        from rockwobble.compare.certificate import read_certificate
+        from rockwobble.compare.certificate import verify as verdict_on
+
+        verdict = verdict_on(read_certificate(certificate))
+    print(json.dumps(asdict(verdict), indent=1) if as_json else verdict.words())
+    if verdict.exit_code:
+        raise typer.Exit(verdict.exit_code)

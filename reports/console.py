@@ -1,0 +1,295 @@
+"""The terminal: a command as it was typed, its progress, and how it ends."""
+
+from __future__ import annotations
+
+import codecs
+import io
+import math
+import os
+import shlex
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, TextIO
+
+import typer
+
+import rockwobble.compare as rc
+import rockwobble.compare.storage as rs
+
+from .pages.table import number
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
+    from rich.text import Text
+
+    from rockwobble.compare.runs.progress import Progress, ProgressCallback
+    from rockwobble.compare.storage.results import Results
+
+FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+# what is printed where the encoding has no such character
+_PLAIN = {
+    **{
+        "α": "alpha",
+        "π": "pi",
+        "√": "sqrt",
+        "±": "+-",
+        "×": "x",
+        "°": " deg",
+        "−": "-",
+        "–": "-",
+        "…": "...",
+    },
+    **{"▲": "^", "✓": "ok", "\u00a0": " ", "é": "e"},
+    **dict(zip("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789", strict=True)),
+}
+
+
+def command_line() -> str:
+    """Return the command that runs, as it would be typed."""
+    return shlex.join(["rockwobble", *sys.argv[1:]])
+
+
+def complain(message: str) -> None:
+    """Print one line on standard error."""
+    print(f"rockwobble: {' '.join(message.split())}", file=sys.stderr)
+
+
+@contextmanager
+def user_input() -> Iterator[None]:
+    """Turn a ValueError, which is what bad input raises, into one line and exit code 2.
+
+    Only what depends on the user's input belongs in the block: a ValueError elsewhere is a defect
+    and keeps its traceback.
+    """
+    try:
+        yield
+    except ValueError as error:
+        complain(str(error))
+        raise typer.Exit(BAD_INPUT) from None
+
+
+@contextmanager
+def interruptible(kept: Path | None = None) -> Iterator[None]:
+    """Turn Ctrl-C into one line and exit code 130, and tasks that cannot be finished into one and code 1.
+
+    `kept` is the folder of runs that need no repetition.
+    """
+    try:
+        yield
+    except rc.IncompleteError as error:
+        complain(str(error))
+        raise typer.Exit(FAILED) from None
+    except KeyboardInterrupt:
+        if kept is not None and kept.is_dir():
+            complain(f"interrupted, the finished runs are kept in {kept}, and the same command goes on")
+        else:
+            complain("interrupted, nothing was written")
+        raise typer.Exit(INTERRUPTED) from None
+
+
+def forgive_output() -> None:
+    """Let no output stop a command: results outlive a closed pipe, a full device and a poor encoding."""
+    codecs.register_error("rockwobble", _plain)
+    _open_standard_files()
+    sys.stdout, sys.stderr = _forgiving(sys.stdout, "standard output"), _forgiving(sys.stderr, "")
+
+
+def _open_standard_files() -> None:
+    """Put the null device in the place of standard files that are closed: a later file would take theirs."""
+    for descriptor in range(3):
+        try:
+            os.fstat(descriptor)
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_RDWR), descriptor)
+
+
+def _forgiving(stream: TextIO | None, name: str) -> TextIO:
+    if stream is None:  # closed when Python started
+        return Path(os.devnull).open("w", encoding="utf-8")
+    if not isinstance(stream, io.TextIOWrapper):
+        return stream
+    if stream.isatty():
+        stream.reconfigure(errors="rockwobble")
+        return stream
+    try:
+        raw = _Forgiving(stream.fileno(), "w", closefd=False)
+    except OSError:  # in memory, as in a test
+        return stream
+    raw.said = name
+    return io.TextIOWrapper(
+        io.BufferedWriter(raw), encoding=stream.encoding, errors="rockwobble", line_buffering=True
+    )
+
+
+class _Forgiving(io.FileIO):
+    """A file that says once that it cannot be written, and then takes everything."""
+
+    said = ""
+
+    def write(self, data: ReadableBuffer, /) -> int:
+        try:
+            return super().write(data)
+        except BrokenPipeError:
+            pass  # whoever read it has seen enough
+        except OSError as error:
+            if self.said:
+                complain(f"{self.said} cannot be written: {error.strerror}")
+                self.said = ""
+        return memoryview(data).nbytes
+
+
+def _plain(error: UnicodeError) -> tuple[str, int]:
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    wanting = error.object[error.start : error.end]
+    return "".join(_PLAIN.get(character, "?") for character in wanting), error.end
+
+
+# up to so many tasks have a line each where there is no terminal
+_FEW = 12
+_PAUSE = 10.0  # between two lines of more [s]
+
+
+@contextmanager
+def shown_progress(what: str = "runs", *, heading: str = "") -> Iterator[ProgressCallback]:
+    """Yield a callback that shows how far tasks are; `what` they are, and what for, in words.
+
+    It names each file of finished tasks that is damaged, once.
+    """
+    if heading:
+        _say(f"{heading} ...")
+    named: set[str] = set()
+    with _bar(what) if sys.stderr.isatty() else _lines(what) as show:
+
+        def tell(event: Progress) -> None:
+            for path in event.damaged:
+                if path not in named:
+                    named.add(path)
+                    complain(f"{path} is damaged, what it held is computed again")
+            show(event)
+
+        yield tell
+
+
+def sentence(event: Progress, what: str = "runs") -> str:
+    """Return how far it is, in words."""
+    words = f"{event.done:,} of {event.total:,} {what}"
+    if event.found:
+        words += f" ({event.found:,} of them found finished)"
+    if event.done < event.total and math.isfinite(event.left):
+        words += f", about {number(event.left, 'duration')} left"
+    return words
+
+
+def _say(words: str) -> None:
+    print(words, file=sys.stderr, flush=True)
+
+
+@contextmanager
+def _bar(what: str) -> Iterator[ProgressCallback]:
+    from rich.console import Console
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bars
+
+    columns = (
+        BarColumn(),
+        TextColumn("{task.fields[far]}"),
+        TimeElapsedColumn(),
+        # a name may have brackets, which would be markup
+        TextColumn("{task.description}", markup=False),
+    )
+    with Bars(*columns, console=Console(stderr=True), transient=True) as bars:
+        task = bars.add_task("", total=None, far="")
+        running: dict[str, None] = {}
+
+        def tell(event: Progress) -> None:
+            if event.state == "started":
+                running[event.label] = None
+            else:
+                running.pop(event.label, None)
+            # of one task that tells how far it is, the share says more than the count
+            done = event.share * event.total if event.found == 0 else event.done
+            far = sentence(event, what)
+            bars.update(
+                task, total=event.total, completed=done, far=far, description=next(reversed(running), "")
+            )
+
+        yield tell
+
+
+@contextmanager
+def _lines(what: str) -> Iterator[ProgressCallback]:
+    begun: dict[str, float] = {}
+    last = time.monotonic()
+
+    def tell(event: Progress) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if event.total - event.found <= _FEW:
+            if event.state == "started":
+                begun[event.label] = now
+                _say(f"running {event.label} ...")
+            else:
+                took = now - begun.get(event.label, now)
+                _say(f"  done {event.label} in {took:.1f} s ({event.done} of {event.total})")
+        elif now - last >= _PAUSE or (event.state == "finished" and event.done == event.total):
+            last = now
+            _say(sentence(event, what))
+
+    yield tell
+
+
+@contextmanager
+def results_in(out: Path, what: str = "runs", *, resumes: bool = True) -> Iterator[ProgressCallback]:
+    """Yield the progress callback of a study that writes to a folder, in which one that `resumes` keeps runs.
+
+    An interrupt and a folder that cannot be written end the command.
+    """
+    with interruptible(out if resumes else None):
+        with user_input():
+            rs.require_writable(out)
+        with shown_progress(what) as progress:
+            yield progress
+
+
+def print_facts(heading: Sequence[str | Text], facts: Mapping[str, str]) -> None:
+    """Print a heading and facts by their names, as text, in which brackets are no markup."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
+    table.add_column(no_wrap=True)
+    table.add_column(overflow="fold")
+    for name, fact in facts.items():
+        table.add_row(Text(name), Text(fact))
+    console = Console()
+    console.print(*heading, highlight=False)
+    console.print(table)
+
+
+def show_and_save(found: Results, out: Path, *, details: bool = False) -> None:
+    """Write results with their page; then print the page, with what is folded where `details` are wanted."""
+    save_with_page(found, out, details=details)()
+
+
+def save_with_page(found: Results, out: Path, *, details: bool = False) -> Callable[[], None]:
+    """Write results with their page, and return what prints the page."""
+    from .pages import page_of
+
+    found = found.made_by(command_line())
+    page = page_of(found)
+    pages = page.files()
+    with user_input():
+        found.save(out, pages=pages)
+
+    def show() -> None:
+        page.show(details=details)
+        names = ["manifest.json", *(f"{name}.parquet" for name in found.tables), *found.sheets(), *pages]
+        print(f"\nWritten to {out}: {', '.join(dict.fromkeys(names))}")
+
+    return show

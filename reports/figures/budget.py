@@ -1,0 +1,120 @@
+"""Error budgets as pictures: shares of all parts, and the parts against time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING, Comparison, ErrorBudget
+
+from .case_view import CaseView, rows_of
+from .heat import names
+from .palette import Style, pale
+from .picture import TIME, Axis, Bars, Layer, Line, Panel, Picture, Rule, Text
+from .thinning import envelope
+
+# blue, pale orange and vermilion of Okabe and Ito: apart in every kind of colour vision and in grey
+PARTS = {
+    "model_form": ("model form", Style(colour="#0072B2", dash="solid"), "/"),
+    "numerics": ("numerics", Style(colour="#E69F00", dash="dash"), ""),
+    "unexplained": ("unexplained", Style(colour="#D55E00", dash="dot"), "x"),
+}
+_WHOLE = ("whole", Style(colour="#000000", dash="solid"), "")
+# a logarithm has no zero [alpha]
+_SMALLEST = 1e-10
+# a taller picture cannot be read any more; the table has them all
+_MOST = 60
+_CAPTION = (
+    "Model form: the reduced model of the support minus what is asked about. Numerics: the engine minus the "
+    "engine extrapolated to a time step of zero. What is left nobody explains. RMS until 80 % of the "
+    "agreement, over the sum of the three; on the right the RMS of the whole difference."
+)
+
+
+Bar = tuple[str, ErrorBudget, bool]  # a difference: its name, its budget, and whether it is worth explaining
+
+
+def part_shares(budget: ErrorBudget) -> dict[str, float]:
+    """Return the RMS of each part over the sum of all three: signed parts may cancel, these may not."""
+    sizes = {part: budget.rms(part) for part in PARTS}
+    total = sum(sizes.values())
+    return {part: size / total if total > 0.0 else 0.0 for part, size in sizes.items()}
+
+
+def budget_picture(view: CaseView, name: str) -> Picture | None:
+    """Return the stacked parts of each run and reference of a case; None where no difference is split."""
+    bars = [
+        (f"{run} − {model}", each, True) for (run, model), each in view.budgets.items() if not each.not_split
+    ]
+    return _stacked(bars, name)
+
+
+def all_budgets_picture(comparison: Comparison) -> Picture | None:
+    """Return a bar for each row of the summary whose difference is split, the findings on top.
+
+    The order is: rows above the bound, the worst first; then those worth explaining; then the rest, which
+    is drawn pale.
+    """
+    summary = comparison.summary[comparison.summary["unexplained_rms"].notna()]
+    worth = summary["whole_rms"] > WORTH_EXPLAINING
+    finding = worth & (summary["unexplained_share"] > LARGEST_SHARE)
+    ordered = summary.assign(worth=worth, finding=finding).sort_values(
+        ["finding", "worth", "unexplained_share"], ascending=False
+    )
+    bars = [
+        (
+            f"{'▲ ' if row.finding else ''}{row.case}, {row.run} − {row.reference}",
+            comparison.budgets[row.case, row.run, row.reference],
+            row.worth,
+        )
+        for row in rows_of(ordered.head(_MOST))
+    ]
+    return _stacked(bars, "budget")
+
+
+def _stacked(bars: Sequence[Bar], name: str) -> Picture | None:
+    if not bars:
+        return None
+    places, ticks = names([label for label, _, _ in bars])
+    ends = np.zeros(len(bars))
+    layers: list[Bars | Text] = []
+    for part, (words, style, hatch) in PARTS.items():
+        starts, ends = ends, ends + np.array([part_shares(budget)[part] for _, budget, _ in bars])
+        colours = [style.colour if worth else pale(style.colour) for _, _, worth in bars]
+        layers.append(Bars(places=places, start=starts, end=ends, colours=colours, name=words, hatch=hatch))
+    whole = [f"{budget.rms('whole'):.1e} α" for _, budget, _ in bars]
+    layers += [Text(x=1.02, y=place + 0.3, text=text) for place, text in zip(places, whole, strict=True)]
+    shares = [(share, f"{share:g}") for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
+    panel = Panel(
+        x=Axis(label="share of the parts", unit="-", low=0.0, high=1.25, ticks=shares),
+        y=Axis(label="", unit="", ticks=ticks, low=-0.6, high=len(bars) - 0.4, reverse=True),
+        layers=layers,
+        height=0.9 + 0.27 * len(bars),
+    )
+    return Picture(name=name, title="What the difference is made of", caption=_CAPTION, panels=[panel])
+
+
+def parts_picture(view: CaseView, name: str, *, above: float = 0.0) -> Picture | None:
+    """Return the parts against time, of differences whose RMS is at least `above` [alpha]."""
+    y = Axis(label="|part| / α", unit="-", log=True)
+    panels = []
+    for (run, model), budget in view.budgets.items():
+        if budget.rms("whole") < above:
+            continue
+        lines = []
+        resting = ("numerics", "unexplained") if budget.not_split else ()
+        for part, (words, style, _) in ({"whole": _WHOLE} | PARTS).items():
+            if part in resting:
+                continue
+            values = np.abs(getattr(budget, part))
+            if values.any():
+                upper = np.maximum(envelope(budget.time, values), _SMALLEST)
+                width = 0.9 if part == "whole" else 1.6
+                lines.append(Line(x=budget.time, y=upper, name=words, style=style, width=width))
+        layers: list[Layer] = [*lines, Rule(at=budget.covered, axis="x", text="counted up to here")]
+        panels.append(Panel(x=TIME, y=y, layers=layers, title=f"{run} − {model}"))
+    caption = "Each as its largest value within the last second."
+    if not panels:
+        return None
+    return Picture(name=name, title="The parts against time", caption=caption, panels=panels, link_x=True)

@@ -1,0 +1,301 @@
+"""Pictures of one case of a comparison: tilts, contact point, centre of mass, and the ground."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from rockwobble.compare import TILTED, Comparison
+from rockwobble.compare.metrics.pair import make_pair
+from rockwobble.models import AGREEMENT, Trace
+from rockwobble.models.support import SUPPORTS
+from rockwobble.reduced import limiting_angle_of_turn
+
+from .case_view import CaseView, case_views
+from .heat import names
+from .palette import GREY, SYMBOLS, Style
+from .picture import TILT, TIME, Array, Axis, Bars, Layer, Line, Panel, Picture, Rule
+from .thinning import envelope
+
+# smaller differences are drawn here: a logarithm has no zero [alpha]
+SMALLEST = 1e-7
+_CUT = 1.5  # [alpha] where tilts are cut if one goes farther
+_HEIGHT = 2.3  # [inch]
+
+
+def pictures(comparison: Comparison) -> Iterator[Picture]:
+    """Yield the picture of each case, by its name."""
+    return (tilt_picture(view, view.case.name) for view in case_views(comparison))
+
+
+def tilt_picture(view: CaseView, name: str = "figure") -> Picture:
+    """Return the tilts of one case by support, each with the model of the support, and their differences."""
+    cylinder = view.case.cylinder
+    groups = [
+        [label for label, trace in view.runs.items() if trace.run.support == support]
+        for support in view.supports
+    ]
+    return Picture(
+        name=name,
+        title=f"Tilt: {view.case.name}, R = {cylinder.semidiagonal:g} m, tan α = {cylinder.tan_alpha:g}",
+        caption="Angle of the axis from the vertical over the slenderness, of the runs of each support and "
+        "its model. Below, the difference from the reference: its largest value within the last second. "
+        "Diamonds mark where 1 % of α is first exceeded: beyond it single traces say nothing about "
+        "each other.",
+        panels=[
+            *(_tilts(view, group, support) for group, support in zip(groups, view.supports, strict=True)),
+            *(_differences(view, reference) for reference in view.rows["reference"].unique()),
+        ],
+        link_x=True,
+    )
+
+
+def _tilts(view: CaseView, runs: Sequence[str], support: str) -> Panel:
+    shown = dict.fromkeys([*runs, *map(view.partner, runs)])
+    traces = view.traces
+    layers = [
+        Line(
+            x=traces[label].time,
+            y=traces[label].tilt / view.case.cylinder.alpha,
+            name=label,
+            style=view.styles[label],
+            width=1.6 if label in runs else 0.9,
+        )
+        for label in shown
+    ]
+    # a fall would leave nothing to be seen of the rest
+    cut = any(float(np.nanmax(line.y, initial=0.0)) > _CUT for line in layers)
+    y = replace(TILT, high=_CUT if cut else None)
+    return Panel(
+        x=TIME,
+        y=y,
+        layers=layers,
+        title=SUPPORTS[support].words if support in SUPPORTS else "external trajectory",
+        height=_HEIGHT,
+    )
+
+
+def _differences(view: CaseView, reference: str) -> Panel:
+    layers: list[Layer] = [Rule(at=AGREEMENT, axis="y", text="1 % of α", side="right")]
+    for row, other, trial in view.pairs():
+        if row.reference != reference:
+            continue
+        pair = make_pair(view.case.cylinder, other, trial, until=view.case.length)
+        style = view.styles[row.run]
+        apart = np.maximum(envelope(pair.time, np.abs(pair.tilt_difference)), SMALLEST)
+        layers.append(Line(x=pair.time, y=apart, name=row.run, style=style))
+        if row.diverged:
+            mark = Style(colour=style.colour, dash="none", symbol="diamond")
+            at = np.array([view.divergence(row)])
+            layers.append(Line(x=at, y=np.array([AGREEMENT]), style=mark, size=7.0))
+    y = Axis(label="|tilt difference| / α", unit="-", log=True, low=SMALLEST, high=3.0)
+    return Panel(x=TIME, y=y, layers=layers, title=f"difference from {reference}", height=_HEIGHT)
+
+
+_TURNS = Axis(label="azimuth of contact", unit="turns")
+_DRIFT = Axis(label="radial drift / b", unit="%")
+_ANGLE = Axis(label="|angle of turn|", unit="deg", low=0.0)
+
+
+def contact_picture(view: CaseView, name: str) -> Picture:
+    """Return the unwrapped azimuth of the contact point, and by support its distance from the circle."""
+    return Picture(
+        name=name,
+        title="Where the rim touches",
+        caption="Azimuth of the contact point, counted through whole turns; a jump of about half a turn is a "
+        "pass. Below, its distance from the original circle, where the tilt exceeds 5 % of its peak: a "
+        "cylinder in a recess keeps to the circle, on flat ground it rolls out.",
+        panels=[_azimuth(view), *(_drift(view, support) for support in view.supports)],
+        link_x=True,
+    )
+
+
+def azimuth_picture(view: CaseView, name: str) -> Picture:
+    """Return the azimuth alone."""
+    whole = contact_picture(view, name)
+    return Picture(name=name, title=whole.title, caption=whole.caption, panels=whole.panels[:1], link_x=True)
+
+
+def _azimuth(view: CaseView) -> Panel:
+    starts = (trace.uplift_direction for trace in view.references.values())
+    origin = next((start / (2.0 * np.pi) for start in starts if math.isfinite(start)), 0.0)
+    layers = []
+    for label, trace in view.traces.items():
+        turns = trace.rolling_angle / (2.0 * np.pi)
+        known = turns[np.isfinite(turns)]
+        # azimuths are known up to whole turns: all start on the branch of the model
+        branch = round(float(known[0]) - origin) if len(known) else 0
+        width = 1.6 if label in view.runs else 0.9
+        layers.append(Line(x=trace.time, y=turns - branch, name=label, style=view.styles[label], width=width))
+    return Panel(x=TIME, y=_TURNS, layers=layers, title="azimuth")
+
+
+def _drift(view: CaseView, support: str) -> Panel:
+    """(|T| - b)/b, where the tilt is so large that a contact point means something."""
+    layers = []
+    for label, trace in view.traces.items():
+        # a guided model keeps to the circle: that line is zero
+        guided = support in SUPPORTS and SUPPORTS[support].guided
+        if trace.run.support != support or (label not in view.runs and guided):
+            continue
+        tilted = trace.tilt > TILTED * np.nanmax(trace.tilt)
+        drift: Array = 100.0 * trace.contact_offset / trace.case.cylinder.base_radius
+        shown = np.where(tilted, drift, np.nan)
+        layers.append(Line(x=trace.time, y=shown, name=label, style=view.styles[label]))
+    return Panel(x=TIME, y=_DRIFT, layers=layers, title=f"drift, support {support}", height=2.0)
+
+
+def turn_picture(view: CaseView, name: str, *, notes: bool = True) -> Picture:
+    """Return |angle of turn| of each pass, against its limit for vanishing spin; `notes` give its tilt."""
+    limit = math.degrees(limiting_angle_of_turn(view.case.cylinder))
+    layers: list[Layer] = [Rule(at=limit, axis="y", text=f"π √(A/J) = {limit:.2f}°, vanishing spin")]
+    for (label, trace), symbol in zip(view.traces.items(), _symbols(view), strict=False):
+        passes = trace.passes
+        resolved = passes["resolved"].to_numpy(bool)
+        tilts = passes["minimum_tilt"].to_numpy(float) / view.case.cylinder.alpha
+        layers.append(
+            Line(
+                x=passes["time"].to_numpy(float),
+                y=np.abs(np.degrees(passes["angle_of_turn"].to_numpy(float))),
+                name=label,
+                style=Style(colour=view.styles[label].colour, dash="none", symbol=symbol),
+                filled=bool(resolved.all()) or resolved,
+                notes=[f"minimum tilt {tilt:.2g} α" for tilt in tilts] if notes else (),
+            )
+        )
+    x = Axis(label=TIME.label, unit=TIME.unit, low=0.0, high=view.case.length)
+    return Picture(
+        name=name,
+        title="Angle of turn of each pass",
+        caption="How far the contact point turns from one tilt maximum to the next; dashed: the exact answer "
+        "for vanishing spin. Open symbols are passes closer to upright than contact resolves.",
+        panels=[Panel(x=x, y=_ANGLE, layers=layers)],
+        link_x=True,
+    )
+
+
+def _symbols(view: CaseView) -> list[str]:
+    """Symbols with an area for runs, crosses for references."""
+    crosses = ["cross-thin", "x-thin"]
+    filled = [symbol for symbol in SYMBOLS if symbol not in crosses]
+    runs = [filled[index % len(filled)] for index in range(len(view.runs))]
+    return [*runs, *(crosses[index % 2] for index in range(len(view.references)))]
+
+
+def orbit_picture(view: CaseView, name: str) -> Picture:
+    """Return the path of each run over that of the model of its support."""
+    reach = _reach(view)
+    east, north = (Axis(label=side, unit="-", low=-reach, high=reach) for side in _SIDES)
+    ends = {(row.run, row.reference): view.divergence(row) for row, _, _ in view.pairs()}
+    panels = []
+    for label, trace in view.runs.items():
+        other = view.partner(label)
+        end = ends.get((label, other), math.inf)
+        layers = [
+            *_path(view.traces[other], other, view.styles[other], end, 2.2),
+            *_path(trace, label, view.styles[label], end, 1.3),
+        ]
+        title = f"{label} over {other}"
+        panels.append(Panel(x=east, y=north, layers=layers, title=title, equal=True, height=3.4))
+    return Picture(
+        name=name,
+        title="Paths of the centre of mass, seen from above",
+        caption="Each run over the model of its support, relative to the moving ground: strong until they "
+        "diverge, faint from then on.",
+        panels=panels,
+        columns=2,
+        legend="panels",
+    )
+
+
+_SIDES = ("east-west / b", "north-south / b")
+
+
+def _reach(view: CaseView) -> float:
+    cylinder = view.case.cylinder
+    largest = 0.0
+    for trace in view.traces.values():
+        # a fallen cylinder would leave nothing to be seen of the rest
+        upright = trace.tilt <= 1.2 * cylinder.alpha
+        beside = np.abs(trace.centre_of_mass[upright, :2])
+        largest = max(largest, float(np.nanmax(beside, initial=0.0)))
+    return min(1.08 * largest, 6.0 * cylinder.semidiagonal) / cylinder.base_radius or 1.0
+
+
+def _path(trace: Trace, name: str, style: Style, end: float, width: float) -> Iterator[Line]:
+    path = trace.centre_of_mass[:, :2] / trace.case.cylinder.base_radius
+    solid, agreed = Style(colour=style.colour), trace.time <= end
+    for part, opacity in ((agreed, 1.0), (~agreed, 0.25)):
+        if np.count_nonzero(part) > 1:
+            x, y = path[part].T
+            yield Line(x=x, y=y, name=name, style=solid, width=width, opacity=opacity)
+
+
+def residual_picture(view: CaseView, name: str) -> Picture:
+    """Return residual displacement and residual twist of each run."""
+    once = view.rows.drop_duplicates("run")
+    runs = [str(run) for run in once["run"]]
+    moved = once["residual_displacement"].to_numpy(float)
+    twisted = np.abs(once["residual_twist"].to_numpy(float))
+    colours = [view.styles[run].colour if run in view.styles else GREY for run in runs]
+    return Picture(
+        name=name,
+        title="How the cylinder stands at the end",
+        caption="Distance of the base centre from its old place, and turn of the cylinder about its own "
+        "axis. The recess model has none of either.",
+        panels=[
+            _bars(runs, moved, colours, Axis(label="displacement / b", unit="-", low=0.0), "b"),
+            _bars(runs, twisted, colours, Axis(label="twist", unit="deg", low=0.0), "°"),
+        ],
+        columns=2,
+    )
+
+
+def _bars(runs: list[str], values: Array, colours: list[str], x: Axis, unit: str) -> Panel:
+    places, ticks = names(runs)
+    known = np.nan_to_num(values)
+    # room for the numbers beside the bars
+    high = 1.45 * (float(known.max(initial=0.0)) or 1.0)
+    texts = [f"{value:.3g} {unit}" if math.isfinite(value) else "unknown" for value in values]
+    bars = Bars(places=places, start=0.0 * known, end=known, colours=colours, texts=texts)
+    return Panel(
+        x=Axis(label=x.label, unit=x.unit, low=0.0, high=high),
+        y=Axis(label="", unit="", ticks=ticks, reverse=True),
+        layers=[bars],
+        height=0.7 + 0.3 * len(runs),
+    )
+
+
+_AXES = (("x, east-west", "#0072B2"), ("y, north-south", "#D55E00"), ("z, up", "#009E73"))
+
+
+def excitation_picture(view: CaseView, name: str) -> Picture | None:
+    """Return the components of the ground acceleration, None where the ground is still."""
+    motion, gravity = view.case.motion, view.case.gravity
+    if motion is None:
+        return None
+    time = np.arange(len(motion.acceleration), dtype=np.float64) * motion.time_step
+    threshold = view.case.cylinder.tan_alpha
+    peak = max(1.15 * threshold, 1.05 * float(np.abs(motion.acceleration).max()) / gravity)
+    lines = [
+        Line(x=time, y=component / gravity, name=words, style=Style(colour=colour), width=0.9)
+        for component, (words, colour) in zip(motion.acceleration.T, _AXES, strict=False)
+    ]
+    words = f"uplift where |a| exceeds tan α = {threshold:g}"
+    layers: list[Layer] = [
+        *lines,
+        Rule(at=threshold, axis="y", text=words, side="right"),
+        Rule(at=-threshold, axis="y"),
+    ]
+    y = Axis(label="ground acceleration / g", unit="-", low=-peak, high=peak)
+    return Picture(
+        name=name,
+        title="Excitation",
+        caption="Acceleration of the ground. The cylinder uplifts where the horizontal resultant exceeds the "
+        "dashed line.",
+        panels=[Panel(x=TIME, y=y, layers=layers)],
+        link_x=True,
+    )

@@ -1,0 +1,101 @@
+"""Both motions in three dimensions: what the page needs to play a case."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import Trace
+
+from .case_view import CaseView
+from .interactive import packed
+
+# in a second: between them the page interpolates
+_PICTURES = 25.0
+_TRAIL = 4.0  # how much of the path of the contact point is seen [s]
+_TRANSLUCENT, _SOLID = 0.35, 1.0
+
+
+def playback(view: CaseView) -> dict[str, Any] | None:
+    """Return the data that `playback.js` plays: the runs of a case and the reduced models beside them.
+
+    A pose is stated by tilt, rolling angle, twist and contact point, not by a matrix: so the page can
+    magnify the tilt and keep the cylinder on its rim. Nothing is to be played where nothing moves.
+
+    Parameters
+    ----------
+    view : CaseView
+
+    Returns
+    -------
+    dict or None
+        Numbers, texts and, as base64 of little-endian float32, arrays: ready for JSON.
+    """
+    cylinder = view.case.cylinder
+    runs = [_body(label, trace, view.styles[label].colour, _SOLID) for label, trace in view.runs.items()]
+    models = [_body(label, trace, "#8a8a8a", _TRANSLUCENT) for label, trace in view.references.items()]
+    if not any(body["moves"] for body in [*runs, *models]):
+        return None
+    return {
+        "base_radius": cylinder.base_radius,
+        "height": 2.0 * cylinder.half_height,
+        # what falls after the end of the case is played until its side is down
+        "length": max(view.case.length, *(float(trace.time[-1]) for trace in view.traces.values())),
+        "runs": runs,
+        "models": models,
+        # the model that each run is shown with at first
+        "partners": [list(view.references).index(view.partner(label)) for label in view.runs]
+        if view.references
+        else [],
+        "magnify": _magnifications(view),
+        "trail": round(_TRAIL * _PICTURES),
+    }
+
+
+def _body(label: str, trace: Trace, colour: str, opacity: float) -> dict[str, Any]:
+    step = _picture_step(trace.time)
+    keep = slice(None, None, step)
+    pose = _pose(trace)
+    return {
+        "label": label,
+        "colour": colour,
+        "opacity": opacity,
+        "moves": bool(np.any(pose["tilt"] > 0.0)),
+        **{name: packed(values[keep]) for name, values in {"time": trace.time, **pose}.items()},
+    }
+
+
+def _pose(trace: Trace) -> Mapping[str, NDArray[np.float64]]:
+    """Return tilt, rolling angle, twist and contact point, with numbers where the cylinder stands."""
+    standing = ~np.isfinite(trace.rolling_angle) | ~np.isfinite(trace.contact_point[:, 0])
+    tilt = np.where(standing, 0.0, trace.tilt)
+    rolling_angle = np.where(standing, 0.0, trace.rolling_angle)
+    # a standing cylinder touches everywhere: any point of its rim will do
+    touch_x = np.where(
+        standing, trace.centre_of_mass[:, 0] + trace.case.cylinder.base_radius, trace.contact_point[:, 0]
+    )
+    touch_y = np.where(standing, trace.centre_of_mass[:, 1], trace.contact_point[:, 1])
+    return {
+        "tilt": tilt,
+        "rolling_angle": rolling_angle,
+        "twist": np.nan_to_num(trace.twist),
+        "contact_x": touch_x,
+        "contact_y": touch_y,
+    }
+
+
+def _picture_step(time: NDArray[np.float64]) -> int:
+    if len(time) < 2:
+        return 1
+    return max(1, round(1.0 / (_PICTURES * float(time[1] - time[0]))))
+
+
+def _magnifications(view: CaseView) -> list[int]:
+    """Return factors on the tilt that leave the largest upright tilt below 60 degrees."""
+    tilts = [trace.tilt for trace in view.traces.values()]
+    upright = [tilt[np.isfinite(tilt) & (tilt < 1.2 * view.case.cylinder.alpha)] for tilt in tilts]
+    largest = max((float(tilt.max(initial=0.0)) for tilt in upright), default=0.0)
+    return [factor for factor in (1, 3, 10, 30) if factor * largest < np.radians(60.0) or factor == 1]

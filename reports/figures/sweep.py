@@ -1,0 +1,93 @@
+"""Peak tilts of a sweep: maps over size and scale of a grid, distributions over the cases of a suite."""
+
+from __future__ import annotations
+
+import math
+from itertools import islice
+
+import numpy as np
+import pandas as pd
+
+from rockwobble.compare import Sweep
+from rockwobble.compare.runs.labels import REDUCED
+
+from .ensemble import distributions
+from .heat import PEAKS, names, peak_map
+from .picture import Array, Axis, Panel, Picture
+
+# maps of a picture, cells of a map: more are not to be seen, and a page holds them
+_MOST_MAPS, _MOST_CELLS = 6, 20_000
+_NAMED = 12  # so many values have a tick each
+
+
+def pictures(found: Sweep) -> list[Picture]:
+    """Return a map of each part of a grid, or of cases the distribution of their peaks by each run."""
+    return [_maps(found) if "model" in found.table else _distributions(found.table)]
+
+
+def _maps(found: Sweep) -> Picture:
+    parts = found.table.groupby(found.keys, sort=False)
+    sizes, scales = (found.table[name].nunique() for name in ("semidiagonal", "scale"))
+    steps = _step(sizes, scales), _step(scales, sizes)
+    panels = [_map(own, *steps) for _, own in islice(parts, _MOST_MAPS)]
+    thinned = zip(("sizes", "scales"), steps, strict=True)
+    left_out = "".join(f" Of the {what} one in {step} is shown." for what, step in thinned if step > 1)
+    left_out += f" The first {_MOST_MAPS} of {len(parts)} maps." if len(parts) > _MOST_MAPS else ""
+    return Picture(
+        name="sweep",
+        title="Peak tilt of sizes under scaled records",
+        caption="Each cell is a run. What overturns has a colour of its own, what does not uplift none."
+        + left_out,
+        panels=panels,
+        columns=min(2, len(panels)),
+        shades=PEAKS,
+    )
+
+
+def _step(count: int, other: int) -> int:
+    """Return of how many values of an axis one is shown, beside `other` values of the other axis."""
+    side = math.isqrt(_MOST_CELLS)
+    return math.ceil(count * min(max(other, 1), side) / _MOST_CELLS) if count > side else 1
+
+
+def _map(own: pd.DataFrame, step_x: int, step_y: int) -> Panel:
+    first = own.iloc[0]
+    # one row a cell, as in every map
+    tilts, outcomes = (
+        own.pivot(index="scale", columns="semidiagonal", values=value)  # noqa: PD010
+        for value in ("peak_tilt_over_alpha", "outcome")
+    )
+    tilts, outcomes = (each.iloc[::step_y, ::step_x] for each in (tilts, outcomes))
+    x, x_axis = _axis(tilts.columns.to_numpy(float), "R", "m")
+    y, y_axis = _axis(tilts.index.to_numpy(float), "scale of the record", "-")
+    return Panel(
+        x=x_axis,
+        y=y_axis,
+        layers=[peak_map(x, y, tilts.to_numpy(float), (outcomes == "overturned").to_numpy())],
+        title=f"{first['motion']}, {first['model']}, tan α = {first['tan_alpha']:g}",
+        height=3.2,
+    )
+
+
+def _axis(values: Array, label: str, unit: str) -> tuple[Array, Axis]:
+    """Return the places of values and their axis: few or uneven ones stand side by side and are named."""
+    steps = np.diff(values)
+    if len(values) > _NAMED and np.allclose(steps, steps[0]):
+        return values, Axis(label=label, unit=unit)
+    places, ticks = names(values.tolist())
+    return places, Axis(label=label, unit=unit, ticks=ticks[:: math.ceil(len(ticks) / _NAMED)])
+
+
+def _distributions(table: pd.DataFrame) -> Picture:
+    members = table.drop(columns="peak_tilt").rename(
+        columns={"run": "method", "case": "member", "peak_tilt_over_alpha": "peak_tilt"}
+    )
+    overturned = (members["outcome"] == "overturned").any()
+    models = members.loc[members["engine"] == REDUCED, "method"].unique()
+    return Picture(
+        name="sweep",
+        title="Distributions of peak tilt over the cases, by run",
+        caption="Share of the cases whose peak tilt is at most that of the axis"
+        + ("; what a curve lacks to 1 at the triangle overturns." if overturned else "."),
+        panels=[distributions(members, list(models), "cases")],
+    )

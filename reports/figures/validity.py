@@ -1,0 +1,428 @@
+"""Figures of the report on the limits: the engine's runs, and maps over release, spin, size and intensity."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pandas as pd
+
+from rockwobble.compare.studies.validity.distributions import (
+    CONTRASTS,
+    FEWEST,
+    POINT,
+    Tables,
+    cells,
+    column,
+    ratios,
+)
+from rockwobble.compare.studies.validity.el_centro import FREE
+from rockwobble.compare.studies.validity.limits import models_apart
+from rockwobble.compare.studies.validity.records import FLAT, PERTURBED, RECESS
+from rockwobble.compare.studies.validity.study import Validity
+
+from .heat import Gap, Heat, Shades, contour, names
+from .palette import DARK, GREY, ORDER, PALE, Style, mark_styles
+from .picture import Array, Axis, Line, Panel, Picture, Rule, ecdf, separated
+
+_FREE_PANELS = 4
+_FAR = 1e3  # what infinite is drawn as: beyond every scale
+_STILL, _FEW = "no record uplifts it", f"fewer than {FEWEST} records left standing"
+_MODERATE = 2.0  # friction over tan(alpha): twice that of uplift
+# column of the cells, level, name of the line where it is reached, style
+_LINES = (
+    ("overturned", 0.1, "1 in 10 records overturns", Style(colour=DARK, dash="dash")),
+    ("overturned", 0.5, "1 in 2 records overturns", Style(colour=DARK)),
+    (
+        "friction_90",
+        _MODERATE,
+        f"1 in 10 needs friction above {_MODERATE:g} tan α",
+        Style(colour=ORDER[1], dash="dot"),
+    ),
+    ("lost", 0.1, "1 in 10 loses contact", Style(colour=ORDER[4], dash="dashdot")),
+)
+
+
+# name, title, caption, column of the cells, shades
+_MAPS = (
+    (
+        "bias",
+        "Where rolling out changes the peak: bias",
+        "Median over the records of the peak on flat ground over that in an ideal recess, both of the "
+        "reduced models: red, higher on flat ground; blue, lower.",
+        "flat_percent",
+        Shades(label="flat over recess, median", unit="%", low=-50.0, high=50.0, centre=0.0),
+    ),
+    (
+        "spread",
+        "Where rolling out changes the peak: spread",
+        "The factor by which nine in ten records differ at most, to either side, on flat ground; darkest: 10 "
+        "and more, or it overturns in one of the two alone.",
+        "flat_90",
+        Shades(label="factor of nine in ten", unit="-", low=1.0, high=10.0, log=True),
+    ),
+    (
+        "sensitivity",
+        "What sensitivity alone does",
+        "The same of the recess model against itself under a record 1 % stronger: where it is no less, "
+        "neither model can be asked for the peak of one record.",
+        "copy_90",
+        Shades(label="factor of nine in ten", unit="-", low=1.0, high=10.0, log=True),
+    ),
+    (
+        "need-friction",
+        "Friction that the recess model needs",
+        "Friction that nine in ten of the records that rock without overturning need at most.",
+        "friction_90",
+        Shades(label="friction / tan α", unit="-", low=1.0, high=10.0, log=True),
+    ),
+    (
+        "need-contact",
+        "Least normal force",
+        "Normal force that nine in ten of the records that rock without overturning keep at least; below "
+        "zero the ground would have to pull.",
+        "normal_10",
+        Shades(label="normal force / weight", unit="-", low=-1.0, high=1.0, centre=0.0),
+    ),
+    (
+        "need-moment",
+        "Moment that the recess must supply",
+        "κ of the restraining moment κ (vertical + axis) that nine in ten of the records that rock without "
+        "overturning need at most.",
+        "moment_90",
+        Shades(label="κ / (weight × b)", unit="-", low=0.01, high=1.0, log=True),
+    ),
+)
+
+
+def map_pictures(tables: Tables) -> list[Picture]:
+    """Return the maps: of peaks over records, of what a recess must supply, and of free response."""
+    table, free = cells(tables), tables["free_response"]
+    table = table.assign(flat_percent=100.0 * (table["flat_ratio"] - 1.0))
+    found = [_shaken(table, *given) for given in _MAPS]
+    for name, what in (("turn", "Angle of turn"), ("period", "Period")):
+        off = 100.0 * (free[f"flat_{name}"] / free[name] - 1.0)
+        found.append(_free(f"free-{name}", what, free.assign(off=off)))
+    return found
+
+
+def _shaken(table: pd.DataFrame, name: str, title: str, caption: str, column: str, shades: Shades) -> Picture:
+    panels = []
+    for tan_alpha, own in table.groupby("tan_alpha"):
+        (x, x_ticks), (y, y_ticks) = (
+            names(sorted(own[axis].unique())) for axis in ("semidiagonal", "intensity")
+        )
+        values, still = _grid(own, column), _grid(own, "rocked") == 0.0
+        gaps = [
+            Gap(name=_FEW, colour=GREY, cells=np.isnan(values) & ~still),
+            Gap(name=_STILL, colour=PALE, cells=still),
+        ]
+        layers: list[Heat | Line] = [Heat(x=x, y=y, values=values, gaps=gaps)]
+        for other, level, words, style in _LINES:
+            line = contour(x, y, _grid(own, other), level)
+            if len(line[0]):
+                layers.append(Line(x=line[0], y=line[1], name=words, style=style))
+        panels.append(
+            Panel(
+                x=Axis(label="R", unit="m", ticks=x_ticks),
+                y=Axis(label="peak / (g tan α)", unit="-", ticks=y_ticks),
+                layers=layers,
+                title=f"tan α = {float(str(tan_alpha)):g}",
+                height=2.4,
+            )
+        )
+    return Picture(
+        name=name,
+        title=title,
+        caption=f"{caption} Each cell: {int(table['members'].max())} records.",
+        panels=panels,
+        columns=len(panels) if len(panels) < 4 else 2,
+        shades=shades,
+    )
+
+
+def _grid(table: pd.DataFrame, value: str) -> Array:
+    # one row a cell: an aggregation would take most of the time of the page
+    grid = table.pivot(index="intensity", columns="semidiagonal", values=value)  # noqa: PD010
+    found = grid.to_numpy(dtype=np.float64)
+    return np.where(np.isposinf(found), _FAR, found)  # a colour and a contour need a number
+
+
+def _free(name: str, what: str, table: pd.DataFrame) -> Picture:
+    every = np.unique(table["tan_alpha"])
+    chosen = every[np.unique(np.linspace(0, len(every) - 1, _FREE_PANELS).round().astype(int))]
+    panels = []
+    for tan_alpha in chosen:
+        own = table[table["tan_alpha"] == tan_alpha]
+        (x, x_ticks), (y, y_ticks) = (names(sorted(own[axis].unique())) for axis in ("spin", "release"))
+        grid = own.pivot(index="release", columns="spin", values="off")  # noqa: PD010 - one row a cell here, too
+        values = grid.to_numpy(dtype=np.float64)
+        overturned = Gap(name="overturns on flat ground", colour=GREY, cells=np.isnan(values))
+        panels.append(
+            Panel(
+                x=Axis(label="rolling rate / that of steady wobble", unit="-", ticks=x_ticks),
+                y=Axis(label="release / α", unit="-", ticks=y_ticks),
+                layers=[Heat(x=x, y=y, values=values, gaps=[overturned])],
+                title=f"tan α = {tan_alpha:g}",
+            )
+        )
+    reach = max(float(np.nanquantile(table["off"].abs(), 0.99)), 1e-3)
+    return Picture(
+        name=name,
+        title=f"{what} from tilt maximum to next maximum",
+        caption="Free response, by the reduced models: on flat ground against in an ideal recess.",
+        panels=panels,
+        columns=2,
+        shades=Shades(label="flat over recess", unit="%", low=-reach, high=reach, centre=0.0),
+    )
+
+
+# of a method, in words
+METHODS = {
+    RECESS: "recess model",
+    "recess": "engine, ideal recess",
+    "ring": "engine, ring of walls",
+    "flat": "engine, flat ground",
+    FLAT: "flat-ground model",
+    PERTURBED: "recess model, record 1 % stronger",
+}
+_STYLES = {
+    "recess": Style(colour=ORDER[0]),
+    "ring": Style(colour=ORDER[1], dash="dashdot"),
+    "flat": Style(colour=ORDER[4], dash="dash"),
+    FLAT: Style(colour=GREY, dash="dash"),
+    PERTURBED: Style(colour=DARK, dash="dot"),
+}
+_RATIO_ENDS = (0.2, 5.0)  # a ratio beyond is drawn at the end
+_LEAST = 1e-9  # what a logarithmic axis shows of nothing
+_ONE = Rule(at=1.0, axis="y", colour=GREY, dash="solid")
+
+
+def pictures(found: Validity) -> list[Picture]:
+    """Return all figures of the report, in its order."""
+    tables = found.tables
+    return [
+        _records(tables["records"]),
+        *map_pictures(tables),
+        _agreement(tables["following"]),
+        _verification(tables["verification"]),
+        _slip(tables["slip"]),
+        _rings(tables["rings"]),
+        _contact(tables["contact"]),
+    ]
+
+
+def _records(table: pd.DataFrame) -> Picture:
+    ticks = [(value, f"{value:g}") for value in (0.2, 0.5, 1.0, 2.0, 5.0)]
+    low, high = _RATIO_ENDS
+    ratio = Axis(label="peak / peak of the recess model", unit="-", log=True, low=low, high=high, ticks=ticks)
+    share = Axis(label="share of the records", unit="-", low=0.0, high=1.0)
+    panels = []
+    for point, runs in table.groupby(POINT, sort=False):
+        tan_alpha, size, intensity = (float(str(each)) for each in point)
+        layers: list[Line | Rule] = [Rule(at=1.0, axis="x", colour=GREY, dash="solid")]
+        for method, against in CONTRASTS:
+            if against != RECESS:
+                continue
+            values = ratios(runs, method, RECESS)
+            x, y = ecdf(np.clip(values[~np.isnan(values)], *_RATIO_ENDS), end=_RATIO_ENDS[1])
+            layers.append(
+                Line(
+                    x=np.maximum(x, _RATIO_ENDS[0]),
+                    y=y,
+                    name=METHODS[method],
+                    style=_STYLES[method],
+                    steps=True,
+                )
+            )
+        count = runs["motion"].nunique()
+        title = f"tan α = {tan_alpha:g}, R = {size:g} m, {intensity:g} g tan α, n = {count}"
+        panels.append(Panel(x=ratio, y=share, layers=layers, title=title))
+    return Picture(
+        name="records",
+        title="Peak tilt over records, against the recess model",
+        caption="Each curve: the share of the records whose ratio of the two peaks is at most that of the "
+        "axis; what overturns by one of the two alone is at an end. The dotted curve is the recess model "
+        "itself under a record 1 % stronger: a scatter no wider is sensitivity, and no error of a method.",
+        panels=panels,
+        columns=min(2, len(panels)),
+    )
+
+
+def _agreement(table: pd.DataFrame) -> Picture:
+    end = float(table["duration"].max())
+    predicted = Axis(label="predicted", unit="s", low=0.0, high=1.03 * end)
+    measured = Axis(label="measured", unit="s", low=0.0, high=1.03 * end)
+    groups = {
+        f"{support}, against the {reference} model": rows
+        for (support, reference), rows in table.groupby(["support", "reference_support"], sort=False)
+    }
+    styles = mark_styles(list(groups), lines=False)
+    layers = [Line(x=np.array([0.0, end]), y=np.array([0.0, end]), name="as predicted", width=0.8)]
+    layers += [
+        Line(
+            x=column(rows, "predicted_agreement_time"),
+            y=column(rows, "agreement_time"),
+            name=name,
+            style=styles[name],
+            filled=rows["diverged"].to_numpy(dtype=bool),
+        )
+        for name, rows in groups.items()
+    ]
+    return Picture(
+        name="agreement",
+        title="How long traces agree",
+        caption="Time from uplift until the tilts of engine and model differ by more than 1 % of α, against "
+        "the time that the reduced models predict. Open marks: runs that agree to their end.",
+        panels=[Panel(x=predicted, y=measured, layers=layers, height=3.2)],
+    )
+
+
+def _verification(table: pd.DataFrame) -> Picture:
+    table = table.assign(apart=np.degrees(models_apart(table)))
+    styles = mark_styles(["recess", "flat"], lines=False)
+    layers = []
+    for support, rows in table.groupby("support", sort=False):
+        off = np.degrees(np.abs(column(rows, "engine_turn") - column(rows, "turn")))
+        name = str(support)
+        layers.append(
+            Line(
+                x=column(rows, "apart"),
+                y=np.maximum(off, _LEAST),
+                name=f"engine, {name}",
+                style=styles[name],
+                filled=rows["resolved"].to_numpy(dtype=bool),
+            )
+        )
+    ends = table["apart"].agg(["min", "max"]).to_numpy(dtype=np.float64)
+    layers.append(Line(x=ends, y=ends, name="difference of the models", width=0.8))
+    return Picture(
+        name="verification",
+        title="The engine tells the models apart",
+        caption="Each mark is a release: how far the engine's angle of turn is off that of its own model, "
+        "over how far the two models are apart. Below the line it decides between them. Open marks: passes "
+        "that its contact does not resolve.",
+        panels=[
+            Panel(
+                x=Axis(label="recess − flat model", unit="deg", log=True),
+                y=Axis(label="engine − its model", unit="deg", log=True),
+                layers=layers,
+                height=3.2,
+            )
+        ],
+    )
+
+
+def _slip(table: pd.DataFrame) -> Picture:
+    groups = {
+        f"tan α = {tan_alpha:g}, needs {rows['needed'].iloc[0] / rows['tan_alpha'].iloc[0]:.2f} tan α": rows
+        for tan_alpha, rows in table.sort_values("share").groupby("tan_alpha")
+    }
+    styles = mark_styles(list(groups))
+    layers: list[Line | Rule] = [Rule(at=1.0, axis="x", colour=GREY, dash="solid")]
+    layers += [
+        Line(
+            x=column(rows, "share"), y=np.maximum(column(rows, "slip"), _LEAST), name=name, style=styles[name]
+        )
+        for name, rows in groups.items()
+    ]
+    return Picture(
+        name="slip",
+        title="Slip of the engine where friction is short",
+        caption="Distance over which the contact slips in one period of free response, over the friction as "
+        "a share of what the recess model says is needed.",
+        panels=[
+            Panel(
+                x=Axis(label="friction / friction needed", unit="-"),
+                y=Axis(label="slip / b", unit="-", log=True),
+                layers=layers,
+            )
+        ],
+    )
+
+
+def _rings(table: pd.DataFrame) -> Picture:
+    # walls of another inclination or friction are in the table, and would be too many lines here
+    plain = table[(table["support"] == "ring") & (table["inclination"] == 0.0)]
+    default = plain["friction"].mode().iloc[0] if len(plain) else 0.0
+    plain = plain[plain["friction"] == default]
+    plain = plain.assign(ratio=plain["peak"] / plain["recess_peak"])
+    styles = mark_styles([f"tan α = {tan_alpha:g}" for tan_alpha in sorted(plain["tan_alpha"].unique())])
+
+    def lines(column_name: str, chosen: pd.DataFrame, least: float) -> Iterator[Line]:
+        for tan_alpha, rows in chosen.groupby("tan_alpha"):
+            name = f"tan α = {tan_alpha:g}"
+            over = rows.groupby("clearance")[column_name]
+            low, high = (np.maximum(end.to_numpy(float), least) for end in (over.min(), over.max()))
+            x, bars = over.min().index.to_numpy(float), Style(colour=styles[name].colour)
+            yield Line(x=x, y=np.sqrt(low * high), name=name, style=styles[name])
+            yield Line(x=np.repeat(x, 3), y=separated(low, high), style=bars, width=0.8)
+
+    clearance = Axis(label="clearance / b", unit="-", log=True)
+    shaken, touched = plain[plain["motion"] != FREE], plain[plain["contact_time"] > 0.0]
+    return Picture(
+        name="rings",
+        title="A ring against the ideal recess",
+        caption="Rings whose walls lean by α, under El Centro at 1.5 g tan α and in free response; bars: "
+        "over the azimuths by which the problem is turned. Energy: where the walls are touched.",
+        panels=[
+            Panel(
+                x=clearance,
+                y=Axis(label="peak ratio", unit="-"),
+                layers=[_ONE, *lines("ratio", shaken, 1e-3)],
+                title="peak tilt",
+            ),
+            Panel(
+                x=clearance,
+                y=Axis(label="rolled out / b", unit="-", log=True),
+                layers=list(lines("rolled_out", shaken, 1e-6)),
+                title="leaving its place",
+            ),
+            Panel(
+                x=clearance,
+                y=Axis(label="energy lost / largest", unit="-", log=True),
+                layers=list(lines("loss", touched, 1e-6)),
+                title="energy lost",
+            ),
+        ],
+        columns=2,
+    )
+
+
+def _contact(table: pd.DataFrame) -> Picture:
+    failed = (table["free_outcome"] == "failed") | (table["outcome"] == "failed")
+    known = table[~failed].sort_values("softness")
+    known = known.assign(ratio=known["peak"] / known["recess_peak"], lost=np.maximum(known["loss"], 1e-6))
+    names = [f"damping ratio {damping:g}" for damping in sorted(table["damping"].unique())]
+    styles = mark_styles(names, lines=False)
+    softness = Axis(label="contact time constant × p", unit="-", log=True)
+
+    def marks(name: str) -> list[Line]:
+        return [
+            Line(x=column(rows, "softness"), y=column(rows, name), name=f"damping ratio {damping:g}",
+                 style=styles[f"damping ratio {damping:g}"])
+            for damping, rows in known.groupby("damping")
+        ]  # fmt: skip
+
+    lost: Array = column(table[failed], "softness")
+    crosses = Line(
+        x=lost,
+        y=np.full(len(lost), float(known["ratio"].min()) if len(known) else 1.0),
+        name="failed" if len(lost) else "",
+        style=Style(colour=DARK, dash="none", symbol="x"),
+    )
+    return Picture(
+        name="contact",
+        title="Contact that gives",
+        caption="Peak tilt under El Centro at 2 g tan α, and energy lost in a pass of free response over "
+        "that of the release, by the softness of contact and its damping ratio.",
+        panels=[
+            Panel(
+                x=softness,
+                y=Axis(label="peak ratio", unit="-"),
+                layers=[_ONE, *marks("ratio"), crosses],
+            ),
+            Panel(x=softness, y=Axis(label="lost in a pass", unit="-", log=True), layers=marks("lost")),
+        ],
+        columns=2,
+    )

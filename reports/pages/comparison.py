@@ -1,0 +1,353 @@
+"""The report of a comparison: of few cases each in full, of many an overview and one at a time."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import pandas as pd
+
+from rockwobble.compare import SUMMARY_COLUMNS, WORTH_EXPLAINING, Comparison
+from rockwobble.compare.comparison.comparison import View
+from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
+from rockwobble.compare.external.verdict import lists_in_words
+from rockwobble.models import Run
+
+from ..figures.budget import all_budgets_picture, budget_picture, parts_picture
+from ..figures.case_view import CaseView, case_views, own_rows, rows_of
+from ..figures.comparison import (
+    azimuth_picture,
+    contact_picture,
+    excitation_picture,
+    orbit_picture,
+    residual_picture,
+    tilt_picture,
+    turn_picture,
+)
+from ..figures.picture import Line, Picture
+from ..figures.playback import playback
+from .cases import describe, group_of
+from .findings import (
+    CAUSES,
+    budget_sentences,
+    cause_of,
+    counted_remarks,
+    divergence_counts,
+    early_sentences,
+    headline,
+    notes,
+)
+from .page import Page
+from .sentences import fragment
+from .table import Row, number
+
+# up to so many cases each has a part of the report of its own
+SINGLY = 3
+# points of all lines of a page together: eleven bytes each
+_ALL_POINTS = 60_000
+# more are not to be seen, fewer are no curve
+_MOST_POINTS, _FEWEST_POINTS = 1500, 90
+_ALONE = ("figure", "budget")
+
+
+def page_of(found: Comparison) -> Page:
+    """Return the report of a comparison, or the page that plays one case of it.
+
+    Raises
+    ------
+    ValueError
+        If a case is to be played in which nothing moves.
+    """
+    if isinstance(found, View):
+        return _player_page(found)
+    views = case_views(found)
+    many = len(views) > SINGLY
+    summary, lengths = found.summary, {view.case.name: view.case.length for view in views}
+    pictures = {place: list(_pictures(view, place, many)) for place, view in enumerate(views)}
+    whole = _thinned([picture for of_case in pictures.values() for picture in of_case])
+    bars = all_budgets_picture(found) if found.budgets else None
+    if bars is not None:
+        whole.append(bars)
+    blocks = _blocks(views, many=many)
+    values: dict[str, object] = {
+        "many": many,
+        "about": found.manifest,
+        "budgets": bars is not None,
+        "cases": [
+            {
+                **_case(view),
+                "matrices": matrix_tables(found.matrix[found.matrix["case"] == view.case.name]),
+                "pictures": [picture.name for picture in pictures[place]],
+                "player": name if (name := f"player-{place}") in blocks else "",
+            }
+            for place, view in enumerate(views)
+        ],
+    }
+    if many:
+        values |= {
+            "group_rows": group_rows(summary, lengths),
+            "worst": worst_rows(summary, lengths),
+            "failed": int((own_rows(summary)["outcome"] == "failed").sum()),
+            "matrices": matrix_tables(found.matrix),
+            "remarks": [
+                *budget_sentences(summary),
+                *early_sentences(summary),
+                *divergence_counts(summary),
+                *counted_remarks(summary),
+            ],
+        }
+    return Page(
+        name="report",
+        template="comparison/report",
+        values=values,
+        pictures=whole,
+        alone=_ALONE,
+        blocks=blocks,
+    )
+
+
+def _case(view: CaseView) -> dict[str, object]:
+    rows = view.rows
+    numbers, columns = all_columns(rows)
+    return {
+        "name": view.case.name,
+        "lines": describe(view.case),
+        "headline": headline(rows, view.case.length),
+        "notes": notes(view),
+        "rows": main_rows(view),
+        "external": external_rows(rows),
+        "numbers": numbers,
+        "columns": columns,
+    }
+
+
+def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
+    """Yield the pictures of a case; of many cases what every one has to show."""
+    yield tilt_picture(view, f"tilt-{place}" if place else "figure")
+    if not many:
+        yield orbit_picture(view, f"orbits-{place}")
+        yield contact_picture(view, f"contact-{place}")
+    else:
+        yield azimuth_picture(view, f"contact-{place}")
+    yield turn_picture(view, f"turns-{place}", notes=not many)
+    if view.budgets:
+        yield from filter(None, [budget_picture(view, f"shares-{place}")])
+        # where there is nothing to explain they are a megabyte for nothing
+        yield from filter(
+            None, [parts_picture(view, f"parts-{place}", above=WORTH_EXPLAINING if many else 0.0)]
+        )
+    if not many:
+        yield residual_picture(view, f"residuals-{place}")
+        yield from filter(None, [excitation_picture(view, f"excitation-{place}")])
+
+
+def _thinned(pictures: Sequence[Picture]) -> list[Picture]:
+    """Return the pictures with as many points as the page can hold, the same for every curve."""
+    layers = [layer for picture in pictures for panel in picture.panels for layer in panel.layers]
+    curves = sum(isinstance(layer, Line) and layer.style.dash != "none" for layer in layers)
+    points = min(_MOST_POINTS, max(_FEWEST_POINTS, _ALL_POINTS // max(1, curves)))
+    return [dataclasses.replace(picture, points=points) for picture in pictures]
+
+
+def _blocks(views: Sequence[CaseView], *, many: bool) -> dict[str, str]:
+    """Return what only a page shows: the chooser of many cases, the player of each of few."""
+    if many:
+        groups: dict[str, list[tuple[int, str]]] = {}
+        for place, view in enumerate(views):
+            groups.setdefault(group_of(view.case.name), []).append((place, view.case.name))
+        found = {f"open-{place}": f'<template id="case-{place}">' for place in range(len(views))}
+        return {
+            **found,
+            "close": "</template>",
+            "chooser": fragment("comparison/chooser.html.j2", groups=groups),
+        }
+    specs = {f"player-{place}": playback(view) for place, view in enumerate(views)}
+    return {
+        name: fragment("comparison/player.html.j2", name=name, spec=spec)
+        for name, spec in specs.items()
+        if spec is not None
+    }
+
+
+def main_rows(view: CaseView) -> list[Row]:
+    """Return the main columns of the rows of a case; what overturned or failed has a word for its peak."""
+    return [
+        {
+            **row._asdict(),
+            "reference": row.reference.removesuffix(" model"),
+            "peak": _peak(row.peak_tilt, row.outcome),
+            "reference_peak": _peak(row.reference_peak_tilt, row.reference_outcome),
+            "agrees": _until(row, row.reference_uplift_time),
+            "predicted": min(row.reference_uplift_time + row.predicted_agreement_time, view.case.length),
+            "cause": CAUSES[cause_of(view, row)] if row.diverged else None,
+        }
+        for row in rows_of(view.rows)
+    ]
+
+
+def _until(row: Any, start: float) -> str:
+    """Return the end of an agreement within 1 % of alpha, in the time of the run; that of the run with +."""
+    return f"{row.agreement_time + start:.2f}" if row.diverged else f"{row.agreement_time:.2f}+"
+
+
+def _peak(value: float, outcome: str) -> float | str:
+    return outcome if outcome in ("overturned", "failed") else value
+
+
+def external_rows(summary: pd.DataFrame) -> list[Row]:
+    """Return one line of numbers and codes for each external trajectory."""
+    return [
+        {
+            **row._asdict(),
+            "uplift": row.uplift_time_difference if math.isfinite(row.uplift_time_uncertainty) else None,
+            "direction": _degrees(row.uplift_direction_difference, row.uplift_direction_uncertainty),
+            "direction_uncertainty": _degrees(
+                # beyond half a turn there is nothing left to know
+                min(row.uplift_direction_uncertainty, math.pi),
+                row.uplift_direction_uncertainty,
+            ),
+            "differs_in": "; ".join(row.differs_in) or None,
+            "likely_mistake": "; ".join(
+                f"{part}: {code}"
+                for part, code in zip(row.likely_mistake_in, row.likely_mistake, strict=True)
+            )
+            or None,
+        }
+        for row in rows_of(summary[summary["support"] == EXTERNAL])
+    ]
+
+
+def _degrees(angle: float, uncertainty: float) -> float | None:
+    return math.degrees(angle) if math.isfinite(uncertainty) else None
+
+
+def all_columns(rows: pd.DataFrame) -> tuple[list[Row], list[list[str]]]:
+    """Return a line for each column of the summary, and the columns of that table: one for each row."""
+    found = list(rows_of(lists_in_words(rows)))
+    lines: list[Row] = [
+        {
+            "all": "All numbers",
+            "name": name.replace("_", " ") + (f" [{unit}]" if unit else ""),
+            **{str(index): getattr(row, name) for index, row in enumerate(found)},
+        }
+        for name, (unit, _) in SUMMARY_COLUMNS.items()
+        if name not in ("case", "run", "reference")
+    ]
+    columns = [[str(index), f"{row.run} − {row.reference}", ".4g"] for index, row in enumerate(found)]
+    return lines, [["name", "column", "words"], *columns]
+
+
+def group_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]:
+    """Return a line for each group of cases and run, the group with the shortest agreement first.
+
+    Parameters
+    ----------
+    summary : DataFrame
+        That of the comparison.
+    lengths : mapping
+        Length of the run of each case [s].
+    """
+    rows = _with_shares(summary, lengths)
+    shortest = rows.groupby("group")["share"].min().sort_values(kind="stable")
+    return [
+        {
+            "group": group,
+            "run": run,
+            "cases": len(chosen),
+            "agree": int((~chosen["left_tolerance"]).sum()),
+            "least": float(chosen["share"].min()),
+            "rms": float(chosen["tilt_rms_relative"].median()),
+            "worst": float(chosen["tilt_rms_relative"].max()),
+            "peak": float(chosen["peak_tilt_difference"].abs().max()),
+            "time": float(chosen["wall_time"].sum(min_count=1)),
+        }
+        for group in shortest.index
+        for run, chosen in rows[rows["group"] == group].groupby("run", sort=False)
+    ]
+
+
+def worst_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]:
+    """Return the worst run of each case, the worst case first, with the place of the case on the page."""
+    rows = _with_shares(summary, lengths)
+    worst = rows.sort_values(["share", "tilt_rms_relative"], ascending=[True, False], kind="stable")
+    places = {name: place for place, name in enumerate(lengths)}
+    return [
+        {
+            **row._asdict(),
+            "place": places[row.case],
+            "length": lengths[row.case],
+            "peak": abs(row.peak_tilt_difference),
+            "agrees": f"{row.within_tolerance_until:.2f}{'' if row.left_tolerance else '+'}",
+        }
+        for row in rows_of(worst.drop_duplicates("case"))
+    ]
+
+
+def _with_shares(summary: pd.DataFrame, lengths: Mapping[str, float]) -> pd.DataFrame:
+    """Add the group of each case, and the share of the run for which the tilts agree."""
+    rows = own_rows(summary)
+    share = (rows["within_tolerance_until"] / rows["case"].map(lengths)).clip(upper=1.0)
+    share = share.where(rows["left_tolerance"], 1.0)
+    known = share.where(share.map(math.isfinite), 0.0)
+    return rows.assign(group=rows["case"].map(group_of), share=known)
+
+
+def matrix_tables(matrix: pd.DataFrame) -> list[dict[str, Any]]:
+    """Return a table for each support: support, rows, and columns as templates have them.
+
+    A cell says for one case how long two agree and by how much their tilts differ; for many in how many of
+    them they agree to the end, and the median of the difference.
+    """
+    return [_matrix(str(support), part) for support, part in matrix.groupby("support", sort=False)]
+
+
+def _matrix(support: str, part: pd.DataFrame) -> dict[str, Any]:
+    labels = list(dict.fromkeys(part["run"]))
+    cells = {pair: _cell(rows) for pair, rows in part.groupby(["run", "other"], sort=False)}
+    rows: list[Row] = [
+        {"run": _short(run, support), **{other: cells.get((run, other)) for other in labels}}
+        for run in labels
+    ]
+    columns = [[label, _short(label, support), "words"] for label in labels]
+    return {"support": support, "rows": rows, "columns": [["run", support, "words"], *columns]}
+
+
+def _cell(rows: pd.DataFrame) -> str:
+    difference = number(float(rows["tilt_rms_relative"].median()), "percent")
+    if len(rows) == 1:
+        (row,) = rows_of(rows)
+        return f"{_until(row, row.other_uplift_time)} s, {difference}"
+    return f"{int((~rows['diverged']).sum())} of {len(rows)}, {difference}"
+
+
+def _short(label: str, support: str) -> str:
+    return "model" if label == str(Run(None, support)) else label.removesuffix(f" {support}")
+
+
+def _player_page(found: View) -> Page:
+    """Return the page that plays a comparison of one case.
+
+    Raises
+    ------
+    ValueError
+        If nothing moves.
+    """
+    (view,) = case_views(found)
+    spec = playback(view)
+    if spec is None:
+        raise ValueError(f"there is nothing to play in {view.case.name!r}: the cylinder never uplifts")
+    return Page(
+        name="view",
+        template="comparison/view",
+        values={
+            "name": view.case.name,
+            "headline": headline(view.rows, view.case.length),
+            "notes": notes(view),
+            "lines": describe(view.case),
+            "about": found.manifest,
+        },
+        blocks={"player": fragment("comparison/player.html.j2", name="player", spec=spec)},
+        outputs=["html"],  # without the player there is nothing to see
+    )

@@ -1,0 +1,50 @@
+"""Values for the page of a run: its words are in the template runs/run.md.j2."""
+
+from __future__ import annotations
+
+import math
+
+from rockwobble.compare.comparison.prediction import NUDGE
+from rockwobble.compare.studies.single_run import SingleRun
+from rockwobble.models.support import SUPPORTS
+
+from ..figures.trace import pictures
+from .cases import describe
+from .diagnostics import remarks
+from .page import Page
+
+
+def page_of(found: SingleRun) -> Page:
+    """Return the page of a run; numbers are NaN or infinite where there is none."""
+    trace, single = found.trace, found.facts.get("single_trace", {})
+    cylinder, held, engine = trace.case.cylinder, trace.assumptions, trace.run.engine is not None
+    until = single.get("until", math.inf)  # of earlier versions nothing is known
+    support = SUPPORTS.get(trace.run.support)
+    values = {
+        "trace": trace,
+        "label": found.facts["run"],
+        "lines": describe(trace.case),
+        "said": remarks(trace.diagnostics),
+        "alpha": cylinder.alpha,
+        "peak": trace.peak_tilt,
+        "end": float(trace.time[-1]),
+        "length": trace.case.length,
+        "plane": trace.run.settings.get("plane", math.nan),
+        "restitution": trace.run.settings.get("restitution", ""),
+        "uplift": trace.uplift_time,
+        "towards": math.remainder(trace.uplift_direction, math.tau),
+        "closest": float(trace.passes["minimum_tilt"].min()) / cylinder.alpha,
+        "held": held,
+        "friction": held.largest_friction_needed if held else math.nan,
+        "moment": held.largest_restraining_moment if held else math.nan,
+        "engine": engine,
+        "moves": engine or not (support and support.guided),  # out of its place
+        "displacement": trace.residual_displacement / cylinder.base_radius,
+        "first_touch": trace.first("wall_contact"),
+        "until": until,
+        "peak_later": float(trace.time[int(trace.tilt.argmax())]) > until,
+        "nudge": NUDGE,
+        "answer": single.get("answer", ""),
+        "about": found.manifest,
+    }
+    return Page(name="run", template="runs/run", values=values, pictures=pictures(trace))

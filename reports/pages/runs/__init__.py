@@ -1,1 +1,0 @@
-"""Pages of a single run and of a sweep."""

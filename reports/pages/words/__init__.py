@@ -1,1 +1,0 @@
-"""Words that pages share: of a case, of a diagnostic, of numbers."""
