@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 import os
 import sys
 from collections.abc import Iterator, Mapping
@@ -73,12 +74,19 @@ _LOOKS: Mapping[str, Any] = {"rich_markup_mode": "rich", "pretty_exceptions_enab
 def _command(name: str) -> TyperCommand:
     """Return what typer makes of a command, which is imported here."""
     group, module, example = _COMMANDS[name]
+    command = getattr(importlib.import_module(f".{module}", __package__), name)
     alone = typer.Typer(add_completion=False, **_LOOKS)
-    register = alone.command(cls=StrictCommand, epilog=f"Example: {example}", rich_help_panel=group)
-    register(getattr(importlib.import_module(f".{module}", __package__), name))
+    stated = {"help": _help(inspect.getdoc(command) or "", example), "rich_help_panel": group}
+    alone.command(cls=StrictCommand, **stated)(command)
     made = get_command(alone)
     assert isinstance(made, TyperCommand)
     return made
+
+
+def _help(text: str, *examples: str) -> str:
+    """Return a docstring with examples behind its first paragraph, for a terminal of any width."""
+    first, *others = (" ".join(part.split()) for part in text.split("\n\n"))
+    return "\n\n".join([first, "\n".join(f"  {example}" for example in examples), *others])
 
 
 class _Commands(Mapping[str, TyperCommand]):
@@ -102,7 +110,12 @@ class _Group(TyperGroup):
 app = typer.Typer(
     cls=_Group,
     name="rockwobble",
-    help="How far can a two-degree-of-freedom model of a rocking and wobbling cylinder be trusted?",
+    help=_help(
+        "How far can a two-degree-of-freedom model of a rocking and wobbling cylinder be trusted?",
+        "rockwobble advise --record-x EW.AT2 --record-y NS.AT2    is it safe, what must its recess carry?",
+        "rockwobble compare --record-x EW.AT2 --record-y NS.AT2   how long do model and engines agree?",
+        "rockwobble fragility --p695                              how probable is overturning?",
+    ),
     context_settings={"help_option_names": ["-h", "--help"]},
     **_LOOKS,
 )

@@ -141,7 +141,9 @@ def _in_one_turn(plane: float | None) -> float | None:
     raise typer.BadParameter(f"must be from -6.2832 to 6.2832 rad (90 deg is 1.5708), got {plane:g}")
 
 
-body, _ground, _release, method = map(panel, ("Cylinder", "Ground motion", "Release", "Method"))
+body, _ground, _release, method, output = map(
+    panel, ("Cylinder", "Ground motion", "Release", "Method", "Output")
+)
 reduced, work, _external = map(
     panel, ("Reduced model", "Work", "Trajectory of a shake table or another code")
 )
@@ -205,6 +207,9 @@ RollingResistance = Annotated[
 ]
 ReleaseTilt = Annotated[
     float | None, _release("Release at this tilt, in deg; without a record the ground is then still.")
+]
+ReleaseAzimuth = Annotated[
+    float, _release("Direction of the lean at release, in deg, counter-clockwise from x (east).")
 ]
 RollingRate = Annotated[float, _release("Rolling rate at release, in rad/s.")]
 Duration = Annotated[
@@ -319,4 +324,4 @@ Scheduler = Annotated[
         "and on each machine dask worker tcp://10.0.0.1:8786. Needs the extra distributed."
     ),
 ]
-Out = Annotated[Path, typer.Option(help="Folder for the results.")]
+Out = Annotated[Path, output("Folder for the results.")]

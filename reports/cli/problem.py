@@ -139,6 +139,7 @@ class Release:
     """The options that state a release."""
 
     release_tilt_deg: options.ReleaseTilt = None
+    release_azimuth_deg: options.ReleaseAzimuth = 0.0
     rolling_rate: options.RollingRate = 0.0
     duration: options.Duration = None
 
@@ -151,14 +152,23 @@ class Release:
             If an option is out of range, or two do not go together.
         """
         if self.release_tilt_deg is None:
-            if self.rolling_rate:
-                raise ValueError("--rolling-rate needs a release, give --release-tilt-deg [deg] as well")
+            lone = "--rolling-rate" if self.rolling_rate else "--release-azimuth-deg"
+            if self.rolling_rate or self.release_azimuth_deg:
+                raise ValueError(f"{lone} needs a release, give --release-tilt-deg [deg] as well")
             return None
+        if not abs(self.release_azimuth_deg) <= 360.0:
+            raise ValueError(
+                f"--release-azimuth-deg must be from -360 to 360 [deg], got {self.release_azimuth_deg:g}"
+            )
         if not 0.0 <= self.release_tilt_deg < 90.0:
             raise ValueError(
                 f"--release-tilt-deg must be at least 0 and below 90 [deg], got {self.release_tilt_deg:g}"
             )
-        return rw.InitialState(tilt=math.radians(self.release_tilt_deg), rolling_rate=self.rolling_rate)
+        return rw.InitialState(
+            tilt=math.radians(self.release_tilt_deg),
+            rolling_angle=math.radians(self.release_azimuth_deg),
+            rolling_rate=self.rolling_rate,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
