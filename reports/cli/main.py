@@ -76,8 +76,8 @@ def _command(name: str) -> TyperCommand:
     group, module, example = _COMMANDS[name]
     command = getattr(importlib.import_module(f".{module}", __package__), name)
     alone = typer.Typer(add_completion=False, **_LOOKS)
-    stated = {"help": _help(inspect.getdoc(command) or "", example), "rich_help_panel": group}
-    alone.command(cls=StrictCommand, **stated)(command)
+    text = _help(inspect.getdoc(command) or "", example)
+    alone.command(cls=StrictCommand, help=text, rich_help_panel=group)(command)
     made = get_command(alone)
     assert isinstance(made, TyperCommand)
     return made
