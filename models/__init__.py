@@ -1,21 +1,17 @@
 """The problem, with no mechanics: bodies, ground motions, initial states, cases and runs."""
 
-from .assumptions import Assumptions
 from .bounds import AGREEMENT, Bounds
-from .case import Case, Run, Suite, run_duration
+from .case import Case, InitialState, Run, Suite, run_duration
 from .cylinder import Cylinder, WobblingFrame
-from .diagnostic import Diagnostic
+from .diagnostic import Assumptions, Diagnostic
 from .ground_motion import GroundMotion
-from .initial_state import InitialState
 from .members import perturbed_copies, with_motions
-from .pulses import pulse
-from .records.el_centro import el_centro_1940
-from .records.files import read_record
+from .records.files import el_centro_1940, read_record
 from .records.folder import read_records
 from .records.p695 import far_field_motions, p695_far_field
-from .suites.file import read_suite, shipped_suites
-from .synthetic import synthetic_motions
-from .traces.trace import Trace
+from .suites import read_suite, shipped_suites
+from .synthetic import pulse, synthetic_motions
+from .trace import Trace
 
 __all__ = [
     "AGREEMENT",

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .body import Body
 from .protocol import Steps
+from .scene import Body
 
 Array = NDArray[np.float64]
 

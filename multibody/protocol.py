@@ -1,4 +1,4 @@
-"""Protocol of an engine: one small interface, known to everything else in this folder.
+"""Protocol of an engine, one small interface known to everything else in this folder, and its facts.
 
 An engine runs one rigid body on rigid ground at the reference size. It opens a scene, and then advances
 it by a number of steps at a time under given ground accelerations. How it steps (a rollout in C, a loop
@@ -40,56 +40,76 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .body import Body
-from .facts import EngineFacts
-from .start import Start
+from rockwobble.models.shown import Brief
+
+from .scene import Scene
+
+Options = Mapping[str, Any]
+
+_NOTHING: Options = MappingProxyType({})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class EngineFacts(Brief):
+    """Measured facts of one engine, for plans and predictions; the defaults are those of an unknown one.
+
+    Attributes
+    ----------
+    title : str
+        Name as its makers write it.
+    step_time : float
+        Computing time of a step on one core of a two-core machine [s].
+    order : float
+        Of the error in the time step.
+    release_error : float
+        Root mean square error of the tilt in the first second after a release, over alpha tan^2(alpha), at
+        the default step; see `compare.comparison.prediction`.
+    uplift_error : float
+        The same after an uplift from rest, over alpha.
+    smooth_uplift : bool
+        Whether the error of a run that uplifts is a power series in the step, so that finer steps tell its
+        limit.
+    rounding : float
+        Relative rounding error of its arithmetic, 2^-53 in double and 2^-24 in single precision.
+    carries_slab : bool
+        Whether its scenes hold the slab of a frame: one column, under a slab that only translates.
+    rolling_friction : bool
+        Whether it has a couple against rolling, of at most a length times the normal force.
+    contact_time : str
+        Name of the setting that is the time in which contact removes a velocity [s]; empty without one.
+    alternatives : mapping
+        Settings worth a price of their own in a table of costs, by what they are called there; for a
+        release.
+    standing_alternatives : mapping
+        The same for a cylinder that stands.
+    """
+
+    title: str = ""
+    step_time: float = 3e-5
+    order: float = 1.0
+    release_error: float = 2e-6
+    uplift_error: float = 2.5e-5
+    smooth_uplift: bool = False
+    rounding: float = 2.0**-53
+    carries_slab: bool = False
+    rolling_friction: bool = False
+    contact_time: str = ""
+    alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)
+    standing_alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)
+
 
 Array = NDArray[np.float64]
 
 Settings = Mapping[str, Any]
 
 MEMBERS = ("supports", "uplifts", "facts", "version", "settings", "open")  # of an Engine
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Scene:
-    """One run, stated for every engine, at the reference size and gravity.
-
-    Attributes
-    ----------
-    body : Body
-    start : Start
-    support : str
-        What holds the cylinder in its place.
-    friction : float
-        Coefficient of the pair cylinder and ground [-].
-    rolling_resistance : float
-        Length of the couple of the ground against rolling [m]; 0 for an engine without rolling friction.
-    time_step : float
-        h [s].
-    gravity : float
-        [m/s^2].
-    components : str
-        Components of the ground acceleration that are not absent, such as "xy" or "".
-    unit_time : float
-        User seconds in one second of the scene: settings that are times are in user seconds.
-    """
-
-    body: Body
-    start: Start
-    support: str
-    friction: float
-    time_step: float
-    gravity: float
-    components: str
-    unit_time: float
-    rolling_resistance: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

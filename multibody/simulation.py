@@ -1,32 +1,31 @@
-"""One run of an engine, from a case to a trace."""
+"""One run of an engine, from a case by way of its scene to a trace."""
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time as clock
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, InitialState, Run, Trace
+from rockwobble.models import Case, Diagnostic, InitialState, Run, Trace
 from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_positive
-from rockwobble.models.traces.trace_source import Known
+from rockwobble.models.trace_source import Known
 
+from .auto_step import AUTO, STEP_TOLERANCE, find_step
 from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, engine_for
-from .protocol import Scene
-from .recording.diagnostics import diagnostics
-from .recording.passes import passes_between, true_swings
-from .recording.recorder import COLUMNS, Recorder
-from .scene.excitation import StepMeans
-from .scene.froude import Scale, default_step, froude_scale
-from .scene.guard import check_time_step
-from .scene_of_case import make_scene
+from .excitation import StepMeans
+from .extrapolated_step import EXTRAPOLATED, FINEST, extrapolate, require_finest
+from .guard import check_time_step
+from .passes import passes_between, true_swings
+from .protocol import Engine
+from .recorder import COLUMNS, Recorder
+from .scene import REFERENCE_GRAVITY, Scale, Scene, default_step, froude_scale, scaled_body, starting_state
 from .stepping import Progress, run_steps
-from .time_step.auto import AUTO, STEP_TOLERANCE, find_step
-from .time_step.extrapolated import EXTRAPOLATED, FINEST, extrapolate, require_finest
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -64,10 +63,10 @@ def simulate(
         [s]; default 1e-4 s at a semidiagonal of 6 m and a gravity of 9.81 m/s^2, and so in proportion to
         sqrt(semidiagonal/gravity): accuracy does not depend on size. "auto" halves the step, from four
         times the default, until the tilt has settled within `step_tolerance`, another keyword, of alpha
-        (default 1e-3), and says what error is left: see `time_step.auto`. "extrapolated" runs at three
+        (default 1e-3), and says what error is left: see `auto_step`. "extrapolated" runs at three
         steps, down to `finest_step` [s], another keyword (default: 1.75 times the default step, so
         that it costs as much as one run at that), and gives what
-        they tend to, as far as they agree: see `time_step.extrapolated`.
+        they tend to, as far as they agree: see `extrapolated_step`.
     sample_step : float
         Of the result [s].
     progress : callable, optional
@@ -269,3 +268,101 @@ def _sample_times(end: float, sample_step: float) -> Array:
     """Multiples of the sample step, and the exact end."""
     times: Array = sample_step * np.arange(math.floor(end / sample_step + 1e-9) + 1, dtype=float)
     return times if math.isclose(times[-1], end, rel_tol=1e-9) else np.append(times, end)
+
+
+def make_scene(case: Case, support: str, step: float, scale: Scale) -> Scene:
+    """Return the scene of a case, in the units of the reference size; `step` is the user's [s]."""
+    body = scaled_body(case.cylinder, scale.length)
+    motion = case.motion
+    return Scene(
+        body=body,
+        start=starting_state(body, case.initial, scale.time),
+        support=support,
+        friction=case.friction,
+        time_step=step / scale.time,
+        gravity=REFERENCE_GRAVITY,
+        components="" if motion is None else "xyz" if motion.has_vertical else "xy",
+        unit_time=scale.time,
+        rolling_resistance=case.rolling_resistance / scale.length,
+    )
+
+
+def resolved_settings(
+    case: Case, engine: str, support: str, settings: Mapping[str, Any], time_step: float | None = None
+) -> dict[str, Any]:
+    """Return every setting with which `simulate` would run a case, without running it.
+
+    Raises
+    ------
+    ValueError
+        If the engine is unknown, cannot run the case, or a setting is unknown or out of range.
+    """
+    backend, scene = _stated(case, engine, support, time_step)
+    return backend.settings(settings, scene)
+
+
+@contextlib.contextmanager
+def open_scene(case: Case, engine: str, support: str, settings: Mapping[str, Any]) -> Iterator[Any]:
+    """Open the scene of a case as `simulate` does at its default step, for who wants to step it alone.
+
+    Yields
+    ------
+    Stepper
+        With whatever members its engine adds.
+
+    Raises
+    ------
+    ValueError
+        As `simulate` does.
+    """
+    backend, scene = _stated(case, engine, support)
+    with backend.open(scene, backend.settings(settings, scene)) as stepper:
+        yield stepper
+
+
+def _stated(case: Case, engine: str, support: str, time_step: float | None = None) -> tuple[Engine, Scene]:
+    backend = engine_for(case, engine, support)
+    size = case.cylinder.semidiagonal, case.gravity
+    step = default_step(*size) if time_step is None else time_step
+    return backend, make_scene(case, support, step, froude_scale(*size))
+
+
+def diagnostics(
+    recorder: Recorder, passes: pd.DataFrame, resolution: float, unit_time: float
+) -> Iterator[Diagnostic]:
+    """Yield the diagnostics of a run, its failure first.
+
+    `passes` and `resolution` [rad] are those of the trace, in the time of the user; `unit_time` is one second
+    of the scene there [s]. How the side comes down in a fall that is followed beyond the end asked for
+    limits nothing: what happens there is not said.
+    """
+    end = recorder.asked
+    if recorder.ended == "failed":
+        yield Diagnostic(
+            code=recorder.failure, time=recorder.end_time * unit_time, detail="; ".join(recorder.warnings)
+        )
+    # what never happened has the time NaN, which is no time before the end
+    for code, time in (
+        ("slip", recorder.slip_time),
+        ("tension", recorder.pull_time),
+        ("friction_needed", recorder.grip_time),
+        ("lift_off", recorder.flight_time),
+        ("wall_contact", recorder.walls.first),
+    ):
+        if time <= end:
+            yield Diagnostic(code=code, time=time * unit_time)
+    since, share, bound = recorder.energy.remark(end)
+    if not math.isnan(since):
+        yield Diagnostic(code="energy", time=since * unit_time, size=share, bound=bound)
+    if recorder.undecided:
+        yield Diagnostic(code="undecided", time=end * unit_time)
+    if recorder.unsolved:
+        yield Diagnostic(code="solver", size=recorder.unsolved, bound=recorder.looks)
+    close = passes[~passes["resolved"]]
+    if len(close):
+        yield Diagnostic(
+            code="unresolved_pass",
+            time=float(close["time"].iloc[0]),
+            size=len(close),
+            bound=resolution,
+        )

@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .body import Body
-from .protocol import Engine, Scene, Stepper
-from .recording.passes import TurningPoint, true_swings
-from .recording.recorder import Recorder
-from .scene.excitation import StepMeans
+from .excitation import StepMeans
+from .passes import TurningPoint, true_swings
+from .protocol import Engine, Stepper
+from .recorder import Recorder
+from .scene import Body, Scene
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]

@@ -12,7 +12,7 @@ from .body import Body, body_of
 from .integration.driver import make_driver
 from .integration.progress import spin_momentum
 from .integration.resisted import RESISTED_FLAT, RESISTED_PLANAR, RESISTED_RECESS, STEPPERS
-from .integration.result import IntegrationResult, Options
+from .integration.result import IntegrationResult, Options, State
 from .integration.stepping import runge_kutta, taylor_series
 from .integration.systems import (
     FLAT,
@@ -23,7 +23,6 @@ from .integration.systems import (
     planar_combine,
     planar_ratio,
 )
-from .integration.tsit5 import State
 
 _driver_planar = make_driver(PLANAR, runge_kutta(PLANAR, planar_combine, planar_ratio))
 _driver_recess = make_driver(RECESS, taylor_series())

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Assumptions
 from rockwobble.models.shown import Brief
-from rockwobble.models.traces.trace_source import friction_of
+from rockwobble.models.trace_source import friction_of
 
 from . import forces, kernels
 from .assumptions import Demands, review

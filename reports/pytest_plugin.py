@@ -10,7 +10,7 @@ its model of a structure, its records and its suites may look like this:
         records/EW.AT2, NS.AT2
       .github/workflows/ci.yml  # pip install '.[test]', then pytest
 
-with a suite (what it may hold is said in the docstring of `rockwobble.models.suites.file`):
+with a suite (what it may hold is said in the docstring of `rockwobble.models.suites`):
 
     [bounds]                     # without this table: what the time step leaves, measured on each run
     tilt_rms = 2e-3              # alpha
@@ -48,7 +48,7 @@ import rockwobble.compare.runs as rr
 
 if TYPE_CHECKING:
     from rockwobble.compare.check import Result
-# of models.suites.file, which would be imported with every run of pytest
+# of models.suites, which would be imported with every run of pytest
 ENDING = ".suite.toml"
 _OPTION = "--no-rockwobble-budget"
 _CERTIFICATE = "--rockwobble-certificate"
@@ -124,7 +124,7 @@ class SuiteFile(pytest.File):
 
     def collect(self) -> Iterator[SuiteItem]:
         """Yield the items."""
-        from rockwobble.compare.runs.labels import run_labels
+        from rockwobble.compare.runs.choice import run_labels
         from rockwobble.multibody.engines.registry import engine_lack
 
         try:
@@ -152,8 +152,7 @@ class SuiteItem(pytest.Item):
 
     def runtest(self) -> None:
         """Run engine and model, and raise what is beyond a bound."""
-        from rockwobble.compare.check.agreement import check_run, reference_of
-        from rockwobble.compare.check.own_bounds import SuiteRuns
+        from rockwobble.compare.check.suite import SuiteRuns, check_run, reference_of
         from rockwobble.compare.runs.execution import Job
 
         from .pages.findings import budget_of_run

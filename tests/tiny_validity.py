@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from rockwobble import multibody
-from rockwobble.compare.storage.fingerprint import fingerprint
+from rockwobble.compare.storage.provenance import fingerprint
 from rockwobble.compare.studies.validity.plan import QUICK, Ring
 from rockwobble.compare.studies.validity.study import Validity, measure_all, validity_of
 

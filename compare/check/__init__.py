@@ -4,10 +4,9 @@ One list of physical checks, in groups, tightest first; every check has a measur
 reason of the bound. `rockwobble check` runs them, and `rockwobble.check` in Python.
 """
 
-from .groups import GROUPS, run_checks
-from .result import FAILED, NO_BASELINE, NOT_RUN, PASSED, Result
+from .groups import GROUPS, Checks, check, run_checks
+from .measurement import FAILED, NO_BASELINE, NOT_RUN, PASSED, Result
 from .subject import Subject, engine, external_model, reduced_model, trajectories
-from .summary import Checks, check
 
 __all__ = [
     "FAILED",

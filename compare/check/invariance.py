@@ -1,19 +1,51 @@
-"""Changes of frame, scale and statement that must not change the motion."""
+"""What must not change a motion: its frame, scale and statement, and how the protocol of an engine is used.
+
+An engine describes itself, refuses what it does not know, steps alike however it is called, starts as stated,
+keeps the time grid, repeats itself to the bit, and leaves no trace: `rockwobble.multibody.protocol`.
+"""
 
 from __future__ import annotations
 
 import dataclasses
+import json
 import math
+import os
+import subprocess
+import sys
+import tempfile
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
+from rockwobble.multibody.engines.registry import find_engine
+from rockwobble.multibody.protocol import Engine, Scene, Settings
+from rockwobble.multibody.scene import (
+    REFERENCE_GRAVITY,
+    REFERENCE_TIME_STEP,
+    froude_scale,
+    scaled_body,
+    starting_state,
+)
 
-from .motion import largest, lean
-from .result import Bound, Result, at_most
-from .scenes import GRAVITY, PIER, SHOCK, SHOCK_TIMES, THRESHOLD, polyline, refined
+from ..runs.execution import simulate_run
+from .measurement import (
+    GRAVITY,
+    PIER,
+    RELEASE,
+    SHOCK,
+    SHOCK_TIMES,
+    THRESHOLD,
+    Bound,
+    Result,
+    at_most,
+    largest,
+    lean,
+    polyline,
+    refined,
+)
 from .subject import Subject
 
 Lean = NDArray[np.complex128]
@@ -200,3 +232,122 @@ def _on(time: NDArray[np.float64], own: NDArray[np.float64], values: Lean) -> Le
     from scipy.interpolate import CubicSpline
 
     return np.asarray(CubicSpline(own, values)(np.clip(time, own[0], own[-1])))
+
+
+_ALL = Bound(0.0, "the protocol of an engine")
+_CHUNKS = Bound(1e-9, "what is carried from one call to the next, and no more", "m")
+_START = Bound(1e-6, "of rates: a central difference over two steps")
+_FREE_FALL = Bound(2.0, "no acceleration of the mass centre is larger", "g")
+# with less energy than that of its balance, or the run would go on until it turns back
+_STATE = InitialState(0.12, tilt_rate=0.05, rolling_angle=-2.0, rolling_rate=0.5)
+_FIELDS = ("tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "energy", "centre_of_mass")
+_QUIET = """
+import json, sys
+import rockwobble as rw
+pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+case = rw.Case(pier, initial=rw.InitialState(0.1, rolling_rate=0.5), duration=0.01)
+rw.simulate(case, engine=sys.argv[1], support=sys.argv[2], **json.loads(sys.argv[3]))
+"""
+
+
+def description(subject: Subject, support: str) -> Iterator[Result]:
+    """Version, supports and settings are plain values; an unknown one is a ValueError that names it."""
+    backend, scene, given = _opened(subject, support)
+    settings = backend.settings(given, scene)
+    plain = json.loads(json.dumps(dict(settings))) == dict(settings)
+    right = bool(backend.version()) and support in backend.supports and isinstance(backend.uplifts, bool)
+    yield _holds("description of itself", right and plain, f"settings {settings}")
+    released = Case(PIER, initial=_STATE, duration=0.01)
+    refused = {
+        "setting": (released, Run(subject.label, support, no_such_setting=1.0)),
+        "support": (released, Run(subject.label, "no_such_support")),
+    }
+    if not subject.uplifts:
+        refused["at rest"] = (Case(PIER, duration=0.01), Run(subject.label, support))
+    for name, (case, run) in refused.items():
+        try:
+            simulate_run(case, run)
+            words = ""
+        except ValueError as error:
+            words = str(error)
+        yield _holds(f"refusal, {name}", "\n" not in words and name in words, words or "it is taken")
+
+
+def stepping(subject: Subject, support: str) -> Iterator[Result]:
+    """A step is a step, however many one call takes, and two open scenes do not disturb each other."""
+    backend, scene, given = _opened(subject, support)
+    settings, still = backend.settings(given, scene), np.zeros((60, 3))
+    with backend.open(scene, settings) as whole, backend.open(scene, settings) as separated:
+        together = whole.advance(still)
+        parts = [separated.advance(still[:1]), separated.advance(still[1:23]), separated.advance(still[23:])]
+        sound = 0.0 <= whole.hold_centre <= 1.0 and whole.warnings() == ""
+    widths = {"position": 3, "quaternion": 4, "velocity": 3, "angular_velocity": 3}
+    shaped = all(getattr(together, name).shape == (60, width) for name, width in widths.items())
+    yield _holds("shapes, centre of the force and warnings of a step", sound and shaped, "")
+    joined = {name: np.vstack([getattr(part, name) for part in parts]) for name in widths}
+    apart = max(largest(joined[name] - getattr(together, name)) for name in widths)
+    yield at_most("steps of one call and of three", apart, _CHUNKS)
+    norm = largest(np.linalg.norm(together.quaternion, axis=1) - 1.0)
+    yield at_most("norm of the quaternion", norm, _CHUNKS)
+    moved = np.diff(together.position, axis=0) / scene.time_step
+    velocity = Bound(1e-4, "the displacement over the step", "m/s")
+    yield at_most("velocity of a step", largest(together.velocity[1:] - moved), velocity)
+    first = largest(together.position[0] - scene.start.position - scene.time_step * scene.start.velocity)
+    yield at_most("first step", first / (REFERENCE_GRAVITY * scene.time_step**2), _FREE_FALL)
+
+
+def time_grid(subject: Subject, support: str) -> Iterator[Result]:
+    """Samples at multiples of the sample step and the exact end; all fields finite; the start as stated."""
+    case = Case(PIER, initial=_STATE, duration=0.1037)
+    found = subject.simulate(case, support, sample_step=0.02)
+    right = np.array_equal(found.time, np.append(0.02 * np.arange(6), 0.1037)) and found.outcome != "failed"
+    yield _holds("samples", right, f"{found.outcome}, at {found.time}")
+    yield _holds("finite fields", all(bool(np.isfinite(getattr(found, name)).all()) for name in _FIELDS), "")
+    stated = ("tilt", "tilt_rate", "rolling_angle", "rolling_rate")
+    off = max(abs(getattr(found, name)[0] / getattr(_STATE, name) - 1.0) for name in stated)
+    yield at_most("stated start", max(off, abs(found.twist[0])), _START)
+
+
+def repetition(subject: Subject, support: str) -> Iterator[Result]:
+    """The same run gives the same bits, prints nothing and writes nothing where the user works."""
+    assert subject.run is not None
+    run = Run(subject.label, support, subject.run.time_step, **subject.run.settings)
+    first, second = (simulate_run(ROCKING, run).tilt for _ in range(2))
+    yield _holds("two runs of the same", np.array_equal(first, second), "")
+    options = {"time_step": run.time_step, **run.settings}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    with tempfile.TemporaryDirectory() as folder:
+        shown = subprocess.run(
+            [sys.executable, "-c", _QUIET, subject.label, support, json.dumps(options)],
+            cwd=folder,
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            check=False,
+        )
+        left = sorted(path.name for path in Path(folder).iterdir())
+    said = f"{shown.stdout[-500:]!r} {left}"
+    yield _holds("nothing printed or written", not (shown.returncode or shown.stdout or left), said)
+
+
+def _holds(name: str, right: bool, note: str) -> Result:
+    return at_most(name, float(not right), _ALL, note="" if right else note)
+
+
+def _opened(subject: Subject, support: str) -> tuple[Engine, Scene, Settings]:
+    """Return the engine, the release as its stepper meets it, and the settings that were given."""
+    assert subject.run is not None
+    unit = froude_scale(PIER.semidiagonal, REFERENCE_GRAVITY)
+    body = scaled_body(PIER, unit.length)
+    scene = Scene(
+        body=body,
+        start=starting_state(body, RELEASE.initial, unit.time),
+        support=support,
+        friction=RELEASE.friction,
+        time_step=REFERENCE_TIME_STEP,
+        gravity=REFERENCE_GRAVITY,
+        components="",
+        unit_time=unit.time,
+    )
+    return find_engine(subject.label), scene, subject.run.settings

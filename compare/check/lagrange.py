@@ -1,4 +1,4 @@
-"""Lagrange's equations from the energies alone: the derivation that computed motions are compared with.
+"""Lagrange's equations from the energies alone, the residual of a motion in them, and what it conserves.
 
 Nothing here is shared with `rockwobble.reduced`, and no equation of motion is written down. The
 positions (8), (10) and the rotation (5), (6) with psi = -phi give the velocities; those give the
@@ -14,11 +14,16 @@ I1, I2 m^2      transverse and axial inertia about the mass centre              
 r      m        mass centre relative to O                                       (8), (10)
 T, V   m^2/s^2  kinetic and potential energy per unit mass                      (13)-(17)
 ====== ======== =============================================================== ========
+
+Of a computed motion nothing that a model says of itself is used but positions at samples: rates and
+accelerations follow by differences, and go into the equations. The motions are short and together show every
+term: many tilts and spins, and accelerations of the ground that change from sample to sample.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import factorial
 from typing import Any
@@ -26,7 +31,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
+
+from ..metrics.pair import energy_loss
+from .measurement import GRAVITY, PIER, RELEASE, Result, at_most, largest, released, worst_of
+from .subject import Subject
 
 Array = NDArray[Any]  # of float, or of complex within a complex step
 
@@ -196,3 +205,164 @@ def slope(function: Callable[[Array], Array], at: float) -> float:
 
 def _matrix(rows: list[list[Array]]) -> Array:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+# a slender pier, a drum as wide as high, and a squat body with mass and inertias of its own
+CYLINDERS = {
+    "R = 6 m, tan alpha = 0.2": Cylinder(semidiagonal=6.0, tan_alpha=0.2),
+    "R = 2.5 m, tan alpha = 1": Cylinder(semidiagonal=2.5, tan_alpha=1.0),
+    "own inertias, tan alpha = 0.5": Cylinder(
+        semidiagonal=4.0, tan_alpha=0.5, height=5.0, transverse_inertia=3.1, axial_inertia=2.3
+    ),
+}
+# in 1/p: the fastest of these motions changes in about 1/(3 p), and 0.06^12 is below rounding
+_SAMPLE = 0.02
+_PIECE = 16  # samples of the run in one of the record
+_PIECES = 3
+RUNS = 9
+_SEED = 18  # of the states: any other serves
+# 1e-16/0.02^2 of the angles, 1e-11 of p^2 at the worst, and what rtol 1e-13 leaves in a dozen steps
+_REASON = "differences of positions that are known to rounding"
+NAMES = {
+    "equation of motion of the tilt": "equation (18)",
+    "equation of motion of the rolling angle": "equation (19)",
+    "tilt rate against the change of tilt": "tilt rate",
+    "contact force against Newton's law": "contact force (reduced/forces.py)",
+}
+
+
+def residual(subject: Subject, support: str) -> Iterator[Result]:
+    """Residuals of Lagrange's equations, of the tilt rate and of Newton's law, each over all cylinders.
+
+    d/dt dT/dq' = d(T - V)/dq for the tilt, in g (b + h), and for the rolling angle; theta' in p; the contact
+    force over the weight is the acceleration of the mass centre and that of ground and gravity.
+    """
+    errors: dict[str, dict[str, float]] = {name: {} for name in NAMES}
+    for place, cylinder in CYLINDERS.items():
+        found = _residuals(subject, support, cylinder)
+        if found is None:
+            yield at_most(f"short motions reach their end, {place}", math.nan, subject.within(0.0, "all do"))
+            return
+        for name, value in zip(NAMES, found, strict=True):
+            errors[name][place] = value
+    # an equation that is wrong makes every other residual wrong, too: a cause is named where it stands alone
+    bound = subject.within(1.0, _REASON, "of g (b + h), p and weights")
+    results = [worst_of(name, error, bound) for name, error in errors.items()]
+    alone = sum(result.failed for result in results) == 1
+    yield from (
+        worst_of(result.name, errors[result.name], bound, NAMES[result.name] if alone else "")
+        for result in results
+    )
+
+
+def _residuals(subject: Subject, support: str, cylinder: Cylinder) -> list[float] | None:
+    shape = shape_of(cylinder)
+    p = math.sqrt(GRAVITY * cylinder.semidiagonal / (shape.I1 + shape.h**2 + shape.b**2))
+    step, inner = _SAMPLE / p, slice(REACH, -REACH)
+    errors: list[list[float]] = [[0.0] for _ in NAMES]
+    for initial, motion in _starts(p, step):
+        found = subject.simulate(
+            Case(cylinder, motion, initial=initial), support, sample_step=step, rtol=1e-13, rest_tilt=0.0
+        )
+        if found.outcome == "failed":
+            return None
+        # one that fell down ends between two samples, and may go on falling when the motion is over
+        even = len(found.time) - (found.outcome == "overturned")
+        for piece in range(min((even - 1) // _PIECE, _PIECES)):
+            cut = slice(piece * _PIECE, (piece + 1) * _PIECE + 1)
+            angles = found.tilt[cut], found.rolling_angle[cut]
+            rates, curves = (
+                tuple(derivative(values, step) for values in angles) for derivative in (rate, curve)
+            )
+            share = np.arange(_PIECE + 1)[:, None] / _PIECE
+            before, after = motion.acceleration[piece], motion.acceleration[piece + 1]
+            ground: Array = ((1.0 - share) * before + share * after)[inner]
+            place = angles[0][inner], angles[1][inner]
+            by_tilt, by_turn = residuals(shape, place, (rates[0], rates[1]), (curves[0], curves[1]), ground)
+            force = curve(found.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
+            scale = GRAVITY * (shape.b + shape.h)
+            for each, value in zip(
+                errors,
+                (
+                    largest(by_tilt) / scale,
+                    largest(by_turn) / scale,
+                    largest(rates[0] - found.tilt_rate[cut][inner]) / p,
+                    largest(force / GRAVITY - found.contact_force[cut][inner]),
+                ),
+                strict=True,
+            ):
+                each.append(value)
+    return [largest(np.array(each)) for each in errors]
+
+
+def _starts(p: float, step: float) -> Iterator[tuple[InitialState, GroundMotion]]:
+    random = np.random.default_rng(_SEED)
+    for _ in range(RUNS):
+        initial = InitialState(
+            tilt=random.uniform(0.15, 1.1),
+            tilt_rate=random.uniform(-0.3, 0.3) * p,
+            rolling_angle=random.uniform(-math.pi, math.pi),
+            rolling_rate=random.choice([-1.0, 1.0]) * random.uniform(0.8, 2.5) * p,
+        )
+        acceleration = GRAVITY * random.uniform(-0.4, 0.4, (_PIECES + 1, 3))
+        yield initial, GroundMotion(acceleration, _PIECE * step)
+
+
+_SPINS = (1e-2, 1e-5)  # whose passes are near, and cost a model of fixed steps all of its digits
+_LEAST_TILT = 1e-3  # [rad] rounding of B is as large as L below
+# where the ground accelerates evenly in three directions, until its record ends in full swing
+PUSHED = Case(
+    PIER,
+    GroundMotion(np.tile(GRAVITY * np.array([-0.05, 0.04, 0.2]), (2, 1)), 0.9),
+    initial=InitialState(0.5 * PIER.alpha, rolling_angle=0.3, rolling_rate=0.4),
+    duration=1.5,
+)
+EL_CENTRO = Case(PIER, el_centro_1940().scaled(2.0), duration=5.0)
+
+
+def free_motion(subject: Subject, support: str) -> Iterator[Result]:
+    """Energy of a release is constant, and in a recess L = B phi', the momentum of the rolling angle.
+
+    Both from the energies of `lagrange` and the state where it is known; the energy also as it is stated.
+    """
+    cases = {"": RELEASE}
+    if "rtol" in subject.options:
+        cases |= {f", spin {spin:g} rad/s": released(0.5, spin, 5.0) for spin in _SPINS}
+    bound = subject.within(10.0, "no loss; near passes magnify the error of a step")
+    for words, case in cases.items():
+        found = subject.simulate(case, support, rest_tilt=0.0)
+        yield at_most(f"energy of a release{words}", np.ptp(found.energy) / found.energy[0], bound)
+        if support != "recess" or not {"tilt_rate", "rolling_rate"} <= subject.knows:
+            continue
+        shape = shape_of(PIER)
+        state = found.tilt, found.rolling_angle, found.tilt_rate, found.rolling_rate
+        stated = largest(found.energy - energy(shape, *state)) / found.energy[0]
+        yield at_most(f"stated energy of a release{words}", stated, bound, "energy of the trace")
+        momentum = momenta(shape, *state)[1][found.tilt > _LEAST_TILT]
+        yield at_most(f"L = B phi' of a release{words}", np.ptp(momentum) / abs(momentum[0]), bound)
+
+
+def work_of_the_ground(subject: Subject, support: str) -> Iterator[Result]:
+    """The energy changes by the work of the ground, and after the end of its record by nothing.
+
+    In the frame of the ground the force per unit mass is -a: where a is constant, its work is that of the
+    displacement of the mass centre.
+    """
+    motion = PUSHED.motion
+    assert motion is not None
+    found = subject.simulate(PUSHED, support, sample_step=0.05)
+    within = np.arange(round(PUSHED.length / 0.05) + 1)  # a swing or a fall that goes on is not asked for
+    last = np.minimum(within, round(motion.duration / 0.05))
+    work = -(found.centre_of_mass[last] - found.centre_of_mass[0]) @ motion.acceleration[0]
+    energy = found.energy[within]
+    left = largest(energy - energy[0] - work) / energy.max()
+    bound = subject.within(10.0, "work of a constant force, from positions")
+    yield at_most("energy against the work of ground that accelerates, and stops", left, bound)
+
+
+def work_of_a_record(subject: Subject, support: str) -> Iterator[Result]:
+    """Under El Centro the energy changes by the work of the ground, sample by sample of the record."""
+    found = subject.simulate(EL_CENTRO, support)
+    loss = abs(energy_loss(found, EL_CENTRO.motion)) if found.peak_tilt > 0.0 else math.nan
+    bound = subject.within(2e5, "work from samples 0.01 s apart, corrected for their slope")
+    yield at_most("energy against the work of El Centro doubled", loss, bound)

@@ -17,14 +17,12 @@ from rockwobble.models import Case, Run, Trace
 from rockwobble.models.case import TimeStep
 from rockwobble.models.shown import Brief
 from rockwobble.multibody.engines.registry import engine_facts, find_engine
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
+from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 
 from ..external.trajectory import measurement
 from ..runs.execution import SAMPLE_STEP, simulate_run
-from ..storage.fingerprint import fingerprint
-from .motion import trace_of
-from .result import Bound
-from .scenes import RELEASE
+from ..storage.provenance import fingerprint
+from .measurement import RELEASE, Bound, trace_of
 
 Simulate = Callable[..., Trace]
 

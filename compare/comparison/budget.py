@@ -29,15 +29,21 @@ from numpy.typing import NDArray
 from rockwobble.models import Case, Cylinder, Run, Trace
 from rockwobble.models.shown import Brief
 from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.time_step.extrapolated import EXTRAPOLATED, to_zero_step
+from rockwobble.multibody.extrapolated_step import EXTRAPOLATED, to_zero_step
 
-from ..metrics.agreement import Agreement, agreement_time, tolerance_of
-from ..metrics.pair import is_release, make_pair, start_of
-from ..metrics.tilt import rms
-from ..metrics.turning import first_unresolved_pass, landings
-from ..runs.choice import own_model, references_of
+from ..metrics.pair import (
+    Agreement,
+    agreement_time,
+    first_unresolved_pass,
+    is_release,
+    landings,
+    make_pair,
+    rms,
+    start_of,
+    tolerance_of,
+)
+from ..runs.choice import at_step, own_model, references_of
 from ..runs.execution import SAMPLE_STEP, Job
-from ..runs.run_settings import at_step
 
 Array = NDArray[np.float64]
 

@@ -14,15 +14,14 @@ import pandas as pd
 
 from rockwobble.models import Case, Trace, plain_json
 from rockwobble.models.number_checks import require_one_of
-from rockwobble.models.traces.trace_file import case_from_plain, case_to_plain
+from rockwobble.models.trace_file import case_from_plain, case_to_plain
 
 from ..external.verdict import lists_in_words, lists_of_file
-from ..metrics.order_statistics import stated
-from ..metrics.pair import start_of
-from ..metrics.turning import first_unresolved_pass
+from ..metrics.pair import first_unresolved_pass, start_of
+from ..metrics.statistics import stated
 from ..runs.execution import case_inputs
-from ..storage.fingerprint import fingerprint
 from ..storage.manifest import Number, Stored, made_now
+from ..storage.provenance import fingerprint
 from ..storage.results import Results
 from .budget import ErrorBudget
 from .summary import agreement_matrix

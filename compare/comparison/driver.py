@@ -12,15 +12,15 @@ from rockwobble.models import AGREEMENT, Case, Run, Suite, Trace
 
 from ..external.trajectory import External, read_trajectories
 from ..external.verdict import Row
-from ..metrics.agreement import tolerance_of
+from ..metrics.pair import tolerance_of
 from ..runs.choice import (
     default_runs,
+    labels_beside_references,
     own_model,
     references_of,
     require_runnable,
 )
 from ..runs.execution import Job, open_trace_cache, simulate_all
-from ..runs.labels import labels_beside_references
 from ..runs.progress import ProgressCallback
 from ..storage.manifest import require_writable
 from ..storage.provenance import package_versions

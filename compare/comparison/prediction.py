@@ -24,12 +24,18 @@ import numpy as np
 
 from rockwobble.models import AGREEMENT, Case, Run, Trace
 from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
+from rockwobble.multibody.scene import REFERENCE_TIME_STEP, froude_scale
 
-from ..metrics.agreement import agreement_time, tolerance_of
-from ..metrics.pair import FloatArray, is_release, make_pair, start_of
-from ..metrics.tilt import rms
-from ..metrics.turning import landings
+from ..metrics.pair import (
+    FloatArray,
+    agreement_time,
+    is_release,
+    landings,
+    make_pair,
+    rms,
+    start_of,
+    tolerance_of,
+)
 from .budget import ErrorBudget
 
 # a prediction is in time if the measured agreement time is within this factor of it, either way

@@ -14,13 +14,23 @@ from rockwobble.models import AGREEMENT, Case, Trace
 from rockwobble.models.diagnostic import joined
 
 from ..external.verdict import VERDICT_COLUMNS, Row, judge, no_verdict
-from ..metrics.agreement import Agreement, agreed_passes, agreement_time, closest_pass, tolerance_of
-from ..metrics.contact import contact_rms
-from ..metrics.energy import energy_loss
-from ..metrics.pair import make_pair, start_of
-from ..metrics.tilt import tilt_rms, tilt_rms_relative
-from ..metrics.turning import direction_difference, first_unresolved_pass, turn_difference
-from ..runs.labels import REDUCED
+from ..metrics.pair import (
+    Agreement,
+    agreed_passes,
+    agreement_time,
+    closest_pass,
+    contact_rms,
+    direction_difference,
+    energy_loss,
+    first_unresolved_pass,
+    make_pair,
+    start_of,
+    tilt_rms,
+    tilt_rms_relative,
+    tolerance_of,
+    turn_difference,
+)
+from ..runs.choice import REDUCED
 from .budget import NO_BUDGET, ErrorBudget
 from .prediction import Prediction, close_pass, verdict
 

@@ -17,7 +17,6 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from .difference import Difference, Reference, explains
 from .mistakes import (
     MIRRORS,
     TURNS,
@@ -31,7 +30,7 @@ from .mistakes import (
     of_path,
     readings,
 )
-from .motion import SAME_TIME, Complex, Motion, on_samples_of
+from .motion import SAME_TIME, Complex, Difference, Motion, Reference, explains, on_samples_of
 from .table import POSITION, Array, Values
 
 # how much more motion must agree without the mistake, and how far it must lean while it does, in bounds

@@ -13,7 +13,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Cylinder, Diagnostic, Run, Trace
 from rockwobble.models.shown import Brief
-from rockwobble.multibody.recording.passes import TurningPoint, passes_between, turning_points
+from rockwobble.multibody.passes import TurningPoint, passes_between, turning_points
 
 from ..runs.execution import SAMPLE_STEP
 from .mistakes import readings

@@ -12,12 +12,10 @@ import pandas as pd
 
 from rockwobble.models import AGREEMENT, Case, Trace
 
-from ..metrics.contact import TILTED
-from ..metrics.pair import start_of
-from .difference import Difference, Part, Reference
+from ..metrics.pair import TILTED, start_of
 from .explanation import Explanation, explanations
 from .mistakes import Mistake
-from .motion import Motion, exceeds, motion_at
+from .motion import Difference, Motion, Part, Reference, exceeds, motion_at
 from .table import Values
 from .trajectory import external_motion, measurement, trajectory_of
 

@@ -1,4 +1,8 @@
-"""Two motions of one case on one time axis: what every metric starts from."""
+"""Two motions of one case on one time axis, and their differences: tilt, contact, turning, energy, agreement.
+
+Each near pass of upright may turn one motion to the left and its neighbour to the right, so two
+traces of one problem diverge at some time however good both are. What counts is when.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +10,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from rockwobble.models import Case, Cylinder, Trace
+from rockwobble.models import AGREEMENT, Case, Cylinder, GroundMotion, Trace
 from rockwobble.models.shown import Brief
+
+from ..runs.choice import support_of
 
 FloatArray = NDArray[np.float64]
 
@@ -134,3 +140,256 @@ def _sampled(own: FloatArray, values: FloatArray, time: FloatArray) -> FloatArra
     if values.ndim == 1:
         return np.interp(time, own, values)
     return np.column_stack([np.interp(time, own, column) for column in values.T])
+
+
+def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
+    """Return where a run of a reduced model overturned, by its peak tilt [rad]; False where it failed.
+
+    The models decide, also where a run ends in the middle of a fall, and then give pi/2 and no less.
+    """
+    return np.asarray(peak_tilts, dtype=np.float64) >= 0.5 * math.pi
+
+
+def outcome_of(trace: Trace) -> str:
+    """Return the outcome of a run for a study: the walls of a ring have no top, and hold what has overturned.
+
+    One that leans on a wall beyond its balance at the end of its run counts as overturned: after it the
+    ground is still, as where a fall is decided.
+    """
+    leans = support_of(trace.run).walls and len(trace.tilt) and trace.tilt[-1] > trace.case.cylinder.alpha
+    return "overturned" if leans and trace.outcome != "failed" else trace.outcome
+
+
+def rms(values: NDArray[np.float64]) -> float:
+    """Return the root mean square of values (n,); NaN of none."""
+    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else math.nan
+
+
+def tilt_rms(pair: Pair) -> float:
+    """Root mean square of the tilt difference over all samples, in units of alpha."""
+    return rms(pair.tilt_difference)
+
+
+def tilt_rms_relative(pair: Pair) -> float:
+    """RMS(difference)/RMS(tilt of the reference); NaN where the reference never tilts."""
+    scale = rms(pair.reference_tilt) / pair.cylinder.alpha
+    return tilt_rms(pair) / scale if scale > 0.0 else math.nan
+
+
+# share of the reference peak below which a contact point is too poorly defined to compare
+TILTED = 0.05
+
+
+def contact_rms(pair: Pair) -> float:
+    """Return the RMS distance of the two contact points, in units of b.
+
+    Counted where both tilts exceed 5 % of the reference's peak: near upright the whole base is
+    close to the ground, and where the rim touches says nothing.
+
+    Returns
+    -------
+    float
+        NaN where no sample counts.
+    """
+    least = TILTED * float(pair.reference_tilt.max())
+    distance = np.linalg.norm(pair.contact_point - pair.reference_contact_point, axis=1)
+    counts = (pair.tilt > least) & (pair.reference_tilt > least) & np.isfinite(distance)
+    return rms(distance[counts]) / pair.cylinder.base_radius
+
+
+_HALF_A_TURN = 1e-9  # [rad] rounding of half a turn: motion with spin takes longer than a sample for it
+
+
+def direction_difference(reference: Trace, trial: Trace) -> float:
+    """Return the difference of the directions of uplift or release, in (-pi, pi] [rad]."""
+    return -math.remainder(reference.uplift_direction - trial.uplift_direction, 2.0 * math.pi)
+
+
+def turn_difference(pair: Pair, *, until: float, direction_difference: float = 0.0) -> float:
+    """Return the difference of the angles rolled by the contact points until `until`, whole turns counted.
+
+    Rolling angles are unwrapped from uplift on, so their difference counts the turns that one
+    motion made more than the other since then. Only the whole turn by which the two started apart
+    is taken off: an azimuth is known up to that.
+
+    Parameters
+    ----------
+    pair : Pair
+    until : float
+        Time of the run [s]; the last sample at which both are tilted counts.
+    direction_difference : float, optional
+        Difference of the directions at uplift, in (-pi, pi] [rad].
+
+    Returns
+    -------
+    float
+        Trial minus reference [rad]; NaN where they are never tilted at the same time.
+    """
+    difference = pair.rolling_angle - pair.reference_rolling_angle
+    both = np.flatnonzero(np.isfinite(difference) & (pair.time <= until))
+    if not len(both):
+        return math.nan
+    offset = float(difference[both[0]]) - (
+        direction_difference if math.isfinite(direction_difference) else 0.0
+    )
+    return float(difference[both[-1]]) - 2.0 * math.pi * round(offset / (2.0 * math.pi))
+
+
+def first_unresolved_pass(trial: Trace, *, start: float = 0.0) -> float:
+    """Return the time of the engine's first pass below its contact resolution [s]; inf if none.
+
+    Passes before `start`, the uplift of the reference, are those of a base that settles in its contact.
+    """
+    passes = trial.passes
+    if "resolved" not in passes:
+        return math.inf
+    times = np.asarray(passes["time"], dtype=np.float64)
+    counts = ~np.asarray(passes["resolved"], dtype=bool) & (times > start)
+    return float(times[counts][0]) if counts.any() else math.inf
+
+
+def landings(response: Trace) -> FloatArray:
+    """Return the times at which a reduced model goes through upright itself (n,) [s], to a sample.
+
+    Its contact then jumps to the other end of the diameter. A fall that follows makes no pass of it.
+    """
+    turned = np.abs(np.diff(response.rolling_angle))
+    return np.asarray(response.time)[1:][np.abs(turned - np.pi) < _HALF_A_TURN]
+
+
+# share of the peak tilt: motions that stay below 1 % of alpha agree within that whatever they do
+PEAK_SHARE = 0.1
+# so many times the tolerance a tilt has to change by: half of a small peak; less is known to a fifth at best
+TESTING = 5.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Agreement:
+    """The length of an agreement.
+
+    Parameters
+    ----------
+    length : float
+        From uplift or release to the divergence [s]; the length of the run where there is none.
+    end : float
+        The same in the time of the run [s].
+    diverged : bool
+        Whether there was a divergence.
+    tested : bool
+        Whether the tilt of the reference changes within it by more than `TESTING` tolerances; where it
+        changes by less, anything that moves as little agrees.
+    """
+
+    length: float
+    end: float
+    diverged: bool
+    tested: bool
+
+
+def tolerance_of(reference: Trace, trial: Trace | None = None) -> float:
+    """Return the smaller of 1 % of alpha and a tenth of the peak tilt [alpha].
+
+    The peak is that of the reference, or of the trial where the reference stays at rest.
+    """
+    for trace in (reference, trial):
+        if trace is not None and math.isfinite(trace.uplift_time) and trace.peak_tilt > 0.0:
+            return min(AGREEMENT, PEAK_SHARE * trace.peak_tilt / trace.case.cylinder.alpha)
+    return AGREEMENT
+
+
+def agreement_time(
+    pair: Pair, *, tolerance: float = AGREEMENT, broken: bool = False, allowance: float = 0.0
+) -> Agreement:
+    """Return the time from uplift or release to the first tilt difference above a tolerance.
+
+    Parameters
+    ----------
+    pair : Pair
+    tolerance : float, optional
+        [alpha]
+    broken : bool, optional
+        Whether one of the two traces is broken off by a failure: agreement ends with it at the latest.
+    allowance : float, optional
+        For the noise of a measurement, added to the tolerance [alpha].
+    """
+    beyond = np.flatnonzero(np.abs(pair.tilt_difference) > tolerance + allowance)
+    count = int(beyond[0]) if len(beyond) else len(pair.time)
+    end = float(pair.time[count]) if len(beyond) else pair.end
+    diverged = broken or len(beyond) > 0
+    agreed = pair.reference_tilt[:count]
+    return Agreement(
+        # a trial that moves before the reference uplifts has no agreement at all
+        length=max(0.0, end - pair.start) if diverged else end,
+        end=end,
+        diverged=diverged,
+        tested=count > 0 and float(np.ptp(agreed)) > TESTING * tolerance * pair.cylinder.alpha,
+    )
+
+
+def agreed_passes(reference: Trace, agreement: Agreement) -> int:
+    """Return how many passes of the reference lie within the agreement."""
+    times = np.asarray(reference.passes["time"], dtype=np.float64)
+    return int(np.count_nonzero(times <= agreement.end))
+
+
+def closest_pass(reference: Trace, agreement: Agreement) -> float:
+    """Return the smallest minimum tilt of the passes within the agreement [rad]; NaN without a pass."""
+    minima = np.asarray(reference.passes["minimum_tilt"], dtype=np.float64)[
+        : agreed_passes(reference, agreement)
+    ]
+    return float(minima.min()) if len(minima) else math.nan
+
+
+def energy_loss(trace: Trace, motion: GroundMotion | None) -> float:
+    """Return the energy lost over the run, relative to the largest energy reached.
+
+    In the frame of the ground the excitation is the body force -m a, so what was lost is the energy
+    at the start, plus the work of that force, minus the energy at the end.
+
+    Returns
+    -------
+    float
+        Dimensionless, negative where energy was gained; 0 where there was never any; NaN for a
+        trace with an energy that is not finite.
+    """
+    energy = trace.energy
+    if not (len(energy) and bool(np.isfinite(energy).all())):
+        return math.nan
+    largest = float(energy.max())
+    if largest <= 0.0:
+        return 0.0
+    work = 0.0 if motion is None else _work(motion, trace.time, trace.centre_of_mass)
+    return (float(energy[0]) + work - float(energy[-1])) / largest
+
+
+def _work(motion: GroundMotion, time: FloatArray, place: FloatArray) -> float:
+    """Work of -a along the path of the centre of mass, per unit mass [m^2/s^2].
+
+    Between two samples the mean acceleration is exact; its slope meets the change of velocity,
+    which adds (a1 - a0)(v1 - v0) h/12.
+    """
+    if len(time) < 2:
+        return 0.0
+    work = 0.0
+    step = np.diff(time)
+    for axis, samples in enumerate(motion.acceleration.T):
+        a, mean = _sampled_and_mean(samples, motion.time_step, time)
+        velocity = np.gradient(place[:, axis], time)
+        work -= float((mean * np.diff(place[:, axis])).sum())
+        work -= float((np.diff(a) * np.diff(velocity) * step).sum()) / 12.0
+    return work
+
+
+def _sampled_and_mean(
+    samples: FloatArray, time_step: float, time: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Acceleration at the times `time`, and its exact mean between each two of them [m/s^2]."""
+    # linear between samples, zero after the last: one more knot takes the jump
+    own = np.arange(len(samples)) * time_step
+    own = np.append(own, np.nextafter(own[-1], math.inf))
+    values = np.append(samples, 0.0)
+    knots = np.union1d(own, time)
+    at_knots = np.interp(knots, own, values)
+    impulse = np.concatenate([[0.0], np.cumsum(0.5 * (at_knots[1:] + at_knots[:-1]) * np.diff(knots))])
+    mean = np.diff(np.interp(time, knots, impulse)) / np.diff(time)
+    return np.interp(time, own, values), mean

@@ -4,10 +4,10 @@ from .choice import own_model as own_model
 from .choice import require_runnable as require_runnable
 from .choice import reserved_engines as reserved_engines
 from .choice import runs_here as runs_here
+from .choice import with_settings as with_settings
 from .execution import Job as Job
 from .execution import simulate as simulate
 from .execution import simulate_all as simulate_all
+from .progress import IncompleteError as IncompleteError
 from .progress import Progress as Progress
-from .run_settings import with_settings as with_settings
 from .scheduler import run_tasks as run_tasks
-from .task import IncompleteError as IncompleteError

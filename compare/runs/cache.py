@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from rockwobble.models import plain_json
-from rockwobble.models.traces.parquet_file import pack, read
+from rockwobble.models.parquet_file import pack, read
 
 from ..storage.files import remove_folders, remove_leftovers, sole_writer, write_whole
 

@@ -1,10 +1,11 @@
-"""Default runs of a comparison, and the references that runs are held against."""
+"""Choice of the runs of a comparison: defaults, references, settings, and the labels that tell them apart."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from rockwobble.models import Case, Run
+from rockwobble.models import Case, InitialState, Run
+from rockwobble.models.case import TimeStep
 from rockwobble.models.support import RECESS, Support
 from rockwobble.models.support import SUPPORTS as SUPPORT_FACTS
 from rockwobble.multibody import BrokenEngineError, available_engines
@@ -15,11 +16,136 @@ from rockwobble.multibody.engines.registry import (
     stand_in,
     standard_engines,
 )
-from rockwobble.multibody.scene.froude import default_step, froude_scale
-from rockwobble.multibody.scene.guard import check_time_step
-from rockwobble.multibody.scene_of_case import resolved_settings
+from rockwobble.multibody.guard import check_time_step
+from rockwobble.multibody.scene import default_step, froude_scale
+from rockwobble.multibody.simulation import STEP_SETTINGS, resolved_settings
 
-from .run_settings import at_step, step_settings
+_LEAN = 1e-3  # of alpha: a tilt that fits into any ring
+
+
+def with_settings(case: Case, runs: Sequence[Run], settings: Mapping[str, object]) -> tuple[Run, ...]:
+    """Return the runs with more settings, each where the run has one of that name.
+
+    Parameters
+    ----------
+    case : Case
+    runs : sequence of Run
+    settings : mapping
+
+    Returns
+    -------
+    tuple of Run
+
+    Raises
+    ------
+    ValueError
+        If no run has a setting of that name, with those that there are.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> case = rw.Case(pier, initial=release, duration=4.0)
+    >>> with_settings(case, [Run("mujoco", "recess"), Run(None, "recess")], {"iterations": 50})
+    (Run('mujoco', 'recess', iterations=50), Run(None, 'recess'))
+    """
+    known = [_setting_names(case, run) for run in runs]
+    for name in settings:
+        if not any(name in names for names in known):
+            allowed = dict.fromkeys(each for names in known for each in names)
+            raise ValueError(f"no run has a setting {name!r}; there are {', '.join(allowed)}")
+    return tuple(
+        Run(
+            run.engine,
+            run.support,
+            run.time_step,
+            **{**run.settings, **{name: value for name, value in settings.items() if name in names}},
+        )
+        for run, names in zip(runs, known, strict=True)
+    )
+
+
+def at_step(run: Run, step: TimeStep) -> Run:
+    """Return the run at another time step, without the settings of the way to its own.
+
+    Parameters
+    ----------
+    run : Run
+    step : float or str or None
+        In seconds, or a way to a step, whose settings stay.
+
+    Returns
+    -------
+    Run
+
+    Examples
+    --------
+    >>> at_step(Run("mujoco", "recess", "extrapolated", finest_step=1e-4, iterations=50), 2e-4)
+    Run('mujoco', 'recess', time_step=0.0002, iterations=50)
+    """
+    kept = {name: value for name, value in run.settings.items() if STEP_SETTINGS.get(name, step) == step}
+    return Run(run.engine, run.support, step, **kept)
+
+
+def _setting_names(case: Case, run: Run) -> tuple[str, ...]:
+    # from a release that every engine and every ring can start: what is to be set may be what the case needs
+    start = Case(
+        case.cylinder, initial=InitialState(_LEAN * case.cylinder.alpha), duration=1.0, name=case.name
+    )
+    if run.engine is None:
+        return ("plane", "restitution", "rtol", "rest_tilt")
+    return (*resolved_settings(start, run.engine, run.support, {}), *step_settings(run))
+
+
+def step_settings(run: Run) -> tuple[str, ...]:
+    """Return the settings of the way to a time step that the run takes."""
+    return tuple(name for name, way in STEP_SETTINGS.items() if way == run.time_step)
+
+
+REDUCED = "reduced"  # the engine of a reduced model, in tables
+
+
+def labels_beside_references(runs: Sequence[Run], reference: Run | None) -> tuple[tuple[str, ...], str]:
+    """Return a label for each run and that of the reference, all different and none that of another model.
+
+    A reduced model at its defaults keeps its name.
+    """
+    run_labels(runs)  # none of them twice
+    others: list[Run] = []
+    models = Run(None, "recess"), Run(None, "flat")
+    for each in (*models, *(() if reference is None else (reference,))):
+        if each not in (*runs, *others):
+            others.append(each)
+    labels = run_labels((*runs, *others))
+    named = "" if reference is None else labels[[*runs, *others].index(reference)]
+    return labels[: len(runs)], named
+
+
+def run_labels(runs: Sequence[Run]) -> tuple[str, ...]:
+    """Return a label for each run: engine and support, and as much more as tells them apart."""
+    labels = [str(run) for run in runs]
+    if len(set(labels)) < len(labels):
+        labels = [
+            f"{label} {_step_label(run.time_step)}" if run.time_step and labels.count(label) > 1 else label
+            for label, run in zip(labels, runs, strict=True)
+        ]
+    if len(set(labels)) < len(labels):
+        labels = [
+            " ".join([label, *(f"{key}={value}" for key, value in run.settings.items())])
+            if labels.count(label) > 1
+            else label
+            for label, run in zip(labels, runs, strict=True)
+        ]
+    for label in labels:
+        if labels.count(label) > 1:
+            raise ValueError(f"the runs of a comparison must differ, got {label!r} twice")
+    return tuple(labels)
+
+
+def _step_label(time_step: float | str) -> str:
+    return time_step if isinstance(time_step, str) else f"{time_step:g} s"
+
 
 SUPPORTS = ("recess", "flat")
 

@@ -12,7 +12,7 @@ from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
-from .task import Events, Finished, Lost, Started
+from .progress import Events, Finished, Lost, Started
 
 T = TypeVar("T")
 R = TypeVar("R")

@@ -1,15 +1,46 @@
-"""Progress of tasks and of stages: the share that is done, and the time to go."""
+"""Events and progress of tasks, wherever they run: the share that is done, and the time to go."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
-from typing import Literal
+from typing import Generic, Literal, TypeAlias, TypeVar
 
 from rockwobble.models.shown import Brief
+
+R = TypeVar("R")
+
+
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """A task whose process died, with its last words; it stands in the place of the result."""
+
+    why: str
+
+
+class IncompleteError(RuntimeError):
+    """Some tasks are not finished: their processes died again and again, or the Dask cluster is gone."""
+
+
+@dataclass(frozen=True, slots=True)
+class Started:
+    """A task, by its place among all, has begun."""
+
+    place: int
+
+
+@dataclass(frozen=True, slots=True)
+class Finished(Generic[R]):
+    """A task, by its place among all, has ended."""
+
+    place: int
+    result: R | Lost
+
+
+Events: TypeAlias = Generator[Started | Finished[R], None, None]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

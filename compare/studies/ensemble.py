@@ -17,17 +17,25 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Trace, perturbed_copies
 from rockwobble.models.diagnostic import joined
-from rockwobble.models.records.plausibility import doubts_of
+from rockwobble.models.records.units import doubts_of
 
-from ..metrics.distributions import Array, Contrast, Flags, adjusted, contrast, log_ratios
-from ..metrics.order_statistics import Interval, quantile_interval, stated
-from ..metrics.tilt import outcome_of
-from ..runs.choice import default_runs, require_runnable, support_of
+from ..metrics.pair import outcome_of
+from ..metrics.statistics import (
+    Array,
+    Contrast,
+    Flags,
+    Interval,
+    adjusted,
+    contrast,
+    log_ratios,
+    quantile_interval,
+    stated,
+)
+from ..runs.choice import default_runs, require_runnable, run_labels, support_of
 from ..runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
-from ..runs.labels import run_labels
 from ..runs.progress import ProgressCallback
-from ..storage.fingerprint import fingerprint
 from ..storage.manifest import Number, Stored
+from ..storage.provenance import fingerprint
 from ..storage.results import Results
 from .plans import Copies
 

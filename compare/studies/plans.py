@@ -171,3 +171,32 @@ class SpectrumPlan(Plan):
             given = getattr(self, name)
             if given is not None and len(require_increasing(name, given)) > self._MOST:
                 raise ValueError(f"{name} must be at most {self._MOST} numbers, got {len(given)}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ValidityPlan(Plan):
+    """Limits of the reduced model: the extent of its maps."""
+
+    quick: bool = option(False, "Coarse maps and few runs: some two minutes on two cores.", flag="--quick")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TradeoffPlan(Plan):
+    """Error against computing time: the number of points."""
+
+    quick: bool = option(
+        False,
+        "Fewer points and fewer members: some two minutes on two idle cores.",
+        flag="--quick",
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExtremesPlan(Plan):
+    """Extreme conditions: which of them."""
+
+    quick: bool = option(
+        False,
+        "Only the two ends of each extreme: some two minutes on two idle cores.",
+        flag="--quick",
+    )

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 from rockwobble.models import Case, Run, Trace
-from rockwobble.models.traces.trace_file import COLUMNS, PASS_COLUMNS, case_to_plain, packed
+from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, case_to_plain, packed
 
 from ..comparison.prediction import nudged, reproducible_until
 from ..runs.choice import own_model

@@ -5,15 +5,15 @@ from __future__ import annotations
 import codecs
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
+from importlib.resources import as_file, files
 from pathlib import Path
 
 import numpy as np
 
 from ..ground_motion import GroundMotion
 from ..number_checks import require_one_of
-from .at2_file import is_at2, read_at2
-from .column_file import read_columns, read_table
-from .component import DRIFT, Component, resampled
+from .formats import DRIFT, Component, is_at2, read_at2, read_columns, read_table, resampled
 from .units import UNITS, factor
 
 ZERO = "zero"  # in the place of a file: planar motion
@@ -175,3 +175,36 @@ def _require_same_clock(first: Component, other: Component, length: int) -> None
             f"the components of a record must start at one time, got {first.start:g} s in "
             f"{first.path.name} and {other.start:g} s in {other.path.name}"
         )
+
+
+# provenance and orientation: records/README.md
+_EAST_WEST = "RSN6_IMPVALL.I_I-ELC270-hor2.AT2"
+_NORTH_SOUTH = "RSN6_IMPVALL.I_I-ELC180-hor1.AT2"
+_UP = "RSN6_IMPVALL.I_I-ELC-UP.AT2"
+
+
+@cache
+def el_centro_1940(vertical: bool = False) -> GroundMotion:
+    """Return the record of El Centro Array #9, Imperial Valley, 18 May 1940 (PEER RSN6).
+
+    Parameters
+    ----------
+    vertical : bool, optional
+        Whether to include the vertical component.
+
+    Returns
+    -------
+    GroundMotion
+        5346 samples of 0.01 s; x is the 270 (east-west) and y the 180 (north-south) component.
+        The peak of the horizontal resultant is 0.28648 g.
+
+    Examples
+    --------
+    >>> motion = el_centro_1940()
+    >>> motion.acceleration.shape, round(motion.peak / 9.81, 5)
+    ((5346, 2), 0.28648)
+    """
+    with as_file(files("rockwobble.models") / "records") as folder:
+        motion = read_record(folder / _EAST_WEST, folder / _NORTH_SOUTH, folder / _UP if vertical else None)
+    # both horizontal components reach to the shortest of them, 5346 samples, with or without z
+    return GroundMotion(motion.acceleration, motion.time_step, "El Centro 1940")

@@ -33,11 +33,10 @@ import numpy as np
 
 from rockwobble.models.support import SUPPORTS
 
-from ..facts import EngineFacts
 from ..kinematics import about_vertical, turning
-from ..protocol import Array, Scene, SceneCounts, Settings, Stepper, Steps
-from ..scene.friction import body_friction
-from .declared import GUIDE, Declared, build, positive, whole
+from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
+from ..scene import Scene
+from .declared import GUIDE, Declared, body_friction, build, positive, whole
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""What the engines of this package state alike: members of the protocol, defaults and bounds of settings."""
+"""Common parts of the engines of this package: settings with their bounds, friction of a pair, facts."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from typing import Any, ClassVar, Protocol, TypeVar
 
 from rockwobble.models.number_checks import quoted
 
-from ..facts import EngineFacts
-from ..protocol import Scene, Settings
+from ..protocol import EngineFacts, Settings
+from ..scene import Scene
 
 S = TypeVar("S")
 
@@ -97,3 +97,30 @@ def one_of(settings: object, name: str, allowed: tuple[Any, ...]) -> None:
     value = getattr(settings, name)
     if value not in allowed:
         raise ValueError(f"{name} must be one of {', '.join(map(str, allowed))}, got {quoted(value)}")
+
+
+CONVENTIONS = ("pair", "product")
+
+
+def body_friction(pair: float, convention: str) -> float:
+    """Return the coefficient of cylinder and ground alike whose pair has the coefficient `pair` [-].
+
+    Parameters
+    ----------
+    pair : float
+        Coulomb coefficient between cylinder and ground.
+    convention : {"pair", "product"}
+        How the engine combines two equal bodies: to what both have, or not at all, because it takes that
+        of the pair (MuJoCo's explicit pairs); by the product (Bullet). A rim that slides in Bullet feels
+        2 to 5 % less friction than that; one that holds is not concerned.
+
+    Raises
+    ------
+    ValueError
+        If the convention is unknown.
+    """
+    if convention == "pair":
+        return pair
+    if convention == "product":
+        return math.sqrt(pair)  # neither body is the rough one; Bullet bounds the product at 10
+    raise ValueError(f"convention must be one of {', '.join(CONVENTIONS)}, got {convention!r}")

@@ -31,12 +31,10 @@ import numpy as np
 
 from rockwobble.models.support import SUPPORTS
 
-from ..body import Body
-from ..facts import EngineFacts
 from ..kinematics import about_vertical, turning
-from ..protocol import Array, Scene, SceneCounts, Settings, Stepper, Steps
-from ..scene.friction import body_friction
-from .declared import GUIDE, Declared, build, one_of, positive
+from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
+from ..scene import Body, Scene
+from .declared import GUIDE, Declared, body_friction, build, one_of, positive
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

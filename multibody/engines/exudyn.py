@@ -16,10 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from ..facts import EngineFacts
 from ..kinematics import axis_of
-from ..protocol import Array, Scene, SceneCounts, Settings, Stepper, Steps
-from ..start import Start
+from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
+from ..scene import Scene, Start
 from .declared import Declared, build, one_of, positive, whole
 
 

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..facts import EngineFacts
-from ..protocol import Array, Scene, SceneCounts, Settings, Stepper, Steps, Wall
-from ..scene.ring_geometry import check_start
-from ..scene.ring_settings import RingSettings, take_ring
+from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps, Wall
+from ..ring import RingSettings, check_start, take_ring
+from ..scene import Scene
 from .declared import Declared
 from .mujoco_scene import MujocoSettings, compile_scene, set_start, to_world
 

@@ -14,12 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..protocol import Array, Scene
-from ..scene.friction import body_friction
-from ..scene.ring_geometry import wall_feet, wall_orientations
-from ..scene.ring_settings import RingSettings
-from ..start import Start
-from .declared import GUIDE, build, one_of, positive, whole
+from ..protocol import Array
+from ..ring import RingSettings, wall_feet, wall_orientations
+from ..scene import Scene, Start
+from .declared import GUIDE, body_friction, build, one_of, positive, whole
 
 if TYPE_CHECKING:
     import mujoco  # type: ignore[import-untyped]

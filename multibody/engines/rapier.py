@@ -24,10 +24,9 @@ import numpy as np
 
 from rockwobble.models.support import SUPPORTS
 
-from ..facts import EngineFacts
-from ..protocol import Array, Scene, SceneCounts, Settings, Stepper, Steps
-from ..scene.friction import body_friction
-from .declared import Declared, build, positive, whole
+from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
+from ..scene import Scene
+from .declared import Declared, body_friction, build, positive, whole
 
 _SLOP = 10.0  # depths of the rim that Rapier does not correct: of what lands, it corrects the rest
 # [rad] lean from which the guide acts in full: its torque shakes a closed base, which friction holds as

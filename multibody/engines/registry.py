@@ -20,8 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 from rockwobble.models import Case, WobblingFrame
 
-from ..facts import EngineFacts
-from ..protocol import MEMBERS, Engine
+from ..protocol import MEMBERS, Engine, EngineFacts
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint

@@ -1,8 +1,7 @@
 """Exact solutions of the reduced models, independent of any integrator."""
 
 from .free_motion import FreeResponse, angle_of_turn, free_response, limiting_angle_of_turn
-from .planar import planar_quarter_period, rocking_period
-from .wobble import steady_wobble_rate, wobbling_period
+from .periods import planar_quarter_period, rocking_period, steady_wobble_rate, wobbling_period
 
 __all__ = [
     "FreeResponse",

@@ -26,7 +26,6 @@ from numpy.typing import NDArray
 from .._compile import borrowed, once
 from ..body import Body
 from .events import NO_TURN
-from .log import as_table, empty_log, has_turned, mark_of
 from .progress import Stage, make_progress, time_in
 from .record import piece_of_record, still_from
 from .result import (
@@ -38,11 +37,15 @@ from .result import (
     Driver,
     IntegrationResult,
     Options,
+    State,
+    as_table,
+    empty_log,
+    has_turned,
+    mark_of,
     write,
 )
 from .stepping import Stepper
 from .systems import System
-from .tsit5 import State
 
 _FIRST_STEP = 1e-3  # of 1/p, where a run begins in motion
 _STILL = (0.0, 0.0, 0.0)

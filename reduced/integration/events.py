@@ -13,11 +13,10 @@ from numpy.typing import NDArray
 
 from .._compile import inlined, jit
 from ..body import Body
-from .endings import HALF_PI
-from .result import MAXIMUM, MINIMUM
+from .record import Vector, ground
+from .result import HALF_PI, MAXIMUM, MINIMUM, State
 from .stepping import Stepper
 from .systems import System
-from .tsit5 import State, Vector, ground
 
 TAKEN, REPEATED = range(2)  # what becomes of a step
 NO_TURN = 0.0  # beside MAXIMUM and MINIMUM

@@ -7,24 +7,135 @@ every step.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import pi
-from typing import NamedTuple
+from math import cos, hypot, pi, sin
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._compile import inlined, jit
 from ..body import Body
+from ..equations import energy
 from ..trigonometry import sin_cos
-from .endings import HALF_PI, may_sit_down, surely_overturns
 from .events import NONE, REPEATED, Turn, make_events
-from .record import Piece
-from .result import COMPLETED, MAXIMUM, MINIMUM, OVER_BUDGET, OVERTURNED, STALLED, TURNED, Options
-from .sampling import Wanted, make_sampling
+from .record import Piece, Vector, ground
+from .result import (
+    COMPLETED,
+    HALF_PI,
+    MAXIMUM,
+    MINIMUM,
+    OVER_BUDGET,
+    OVERTURNED,
+    STALLED,
+    TURNED,
+    Options,
+    State,
+    write,
+)
 from .stepping import Stepper
 from .systems import System
-from .tsit5 import State, ground
-from .uplift import nearest_branch, start_length, started, uplift_in
+from .uplift import excess, nearest_branch, start_length, started, uplift_in
+
+
+@inlined
+def may_sit_down(
+    body: Body, rest_tilt: float, theta: float, omega: float, L: float, S: float, a: Vector
+) -> bool:
+    """Return whether the cylinder comes to rest: f < 0 and too little energy left to matter.
+
+    The bound is the energy of a standstill at the tilt `rest_tilt` alpha, less what the ground
+    acceleration takes off the restoring moment.
+    """
+    limit = rest_tilt * body.alpha
+    if theta > 10.0 * limit:  # above the bound, unless az exceeds 9 g
+        return False
+    share = 1.0 + a[2] / body.g - hypot(a[0], a[1]) * body.cos_alpha / (body.g * body.sin_alpha)
+    if share <= 0.0 or excess(body, a) >= 0.0:
+        return False
+    return energy(body, theta, omega, L, S) < share * energy(body, limit, 0.0, 0.0, 0.0)
+
+
+@jit
+def surely_overturns(body: Body, theta: float, strongest: float, lightest: float) -> bool:
+    """Return whether a tilt above alpha that does not decrease is bound to reach pi/2, without twist.
+
+    `strongest` is the largest |a| and `lightest` the least g + az to come: beyond the equilibrium tilt
+    under these two and the couple of rolling resistance, theta'' is positive and grows with theta. Spin
+    only adds to it, (18); a twist rate, which the flat-ground model has, may hold a cylinder up.
+    """
+    beyond = theta - body.alpha
+    held = body.delta * body.sin_alpha / body.b
+    return lightest > 0.0 and lightest * (sin(beyond) - held) > strongest * cos(beyond)
+
+
+Wanted = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]  # times, states there, in motion
+
+
+class Sampling(NamedTuple):
+    """The compiled functions that fill in the samples of a stretch; each returns the next one to fill."""
+
+    of_rest: Callable[..., int]
+    of_uplift: Callable[..., int]
+    of_step: Callable[..., int]
+
+
+def make_sampling(lifted: Callable[..., State], partial: Callable[..., Any]) -> Sampling:
+    """Return the sampling of uplifts by `lifted` and of steps that `partial` fills."""
+
+    @inlined
+    def of_rest(wanted: Wanted, sample: int, until: float, y: State) -> int:
+        """Fill in where the cylinder stands."""
+        times, states, _ = wanted
+        while sample < len(times) and times[sample] <= until:
+            write(y, states[sample])
+            sample += 1
+        return sample
+
+    @inlined
+    def of_uplift(
+        wanted: Wanted,
+        sample: int,
+        until: float,
+        body: Body,
+        time_step: float,
+        piece: Piece,
+        lift: float,
+        begin: float,
+        y: State,
+    ) -> int:
+        """Fill in what the series of an uplift covers, which begins at the time `begin`."""
+        times, states, moving = wanted
+        while sample < len(times) and times[sample] <= until:
+            write(lifted(body, time_step, piece, lift, times[sample] - begin, y), states[sample])
+            moving[sample] = True
+            sample += 1
+        return sample
+
+    @inlined
+    def of_step(
+        wanted: Wanted,
+        sample: int,
+        until: float,
+        body: Body,
+        work: NDArray[np.float64],
+        path: Any,
+        begin: float,
+        y_new: State,
+    ) -> int:
+        """Fill in a step from the time `begin` to `until`, where the state is `y_new`."""
+        times, states, moving = wanted
+        while sample < len(times) and times[sample] <= until:
+            if times[sample] == until:
+                write(y_new, states[sample])
+            else:
+                y_at, _ = partial(body, work, path, times[sample] - begin)
+                write(y_at, states[sample])
+            moving[sample] = True
+            sample += 1
+        return sample
+
+    return Sampling(of_rest, of_uplift, of_step)
+
 
 _LEAST_STEP = 1e-200  # a step that must be shorter fails whatever its length [s]
 _HAIR = 1e-6  # of 1/p; an uplift so near to the next sample leaves no more than its square

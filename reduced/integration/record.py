@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._compile import inlined, jit
-from .tsit5 import Vector
+
+Vector = tuple[float, float, float]
 
 
 class Piece(NamedTuple):
@@ -19,6 +20,12 @@ class Piece(NamedTuple):
     length: float  # [s]
     a: Vector  # acceleration at its beginning [m/s^2]
     slope: Vector  # its rate [m/s^3]
+
+
+@jit
+def ground(a: Vector, slope: Vector, t: float) -> Vector:
+    """Return the ground acceleration a + slope t [m/s^2]."""
+    return a[0] + slope[0] * t, a[1] + slope[1] * t, a[2] + slope[2] * t
 
 
 @inlined

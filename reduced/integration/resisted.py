@@ -18,6 +18,8 @@ from ..body import Body
 from ..equations import flat_rhs, planar_rhs, recess_motion
 from ..rolling import couple, couple_on, hold_time, push, twist_share
 from ..trigonometry import sin_cos
+from .record import Vector
+from .result import State
 from .stepping import runge_kutta
 from .systems import (
     FLAT,
@@ -31,7 +33,6 @@ from .systems import (
     planar_ratio,
     scales,
 )
-from .tsit5 import State, Vector
 
 # squared cosine of the turn of the couple in a step up to which the step follows it
 _FOLLOWED = 0.64

@@ -1,19 +1,22 @@
-"""Options and result of a time integration."""
+"""Options and result of a time integration, and the log from which the tables of the result are made."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from math import pi
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._compile import jit
-from .tsit5 import State
+
+State = tuple[float, ...]
 
 REST, COMPLETED, OVERTURNED, OVER_BUDGET, STALLED = range(5)  # how a time integration ends
 TURNED = 5  # while it runs: the tilt has reached its first maximum after the duration
 MAXIMUM, MINIMUM = 1.0, -1.0
+HALF_PI = 0.5 * pi  # the tilt at which the side lies on the ground
 
 
 class Options(NamedTuple):
@@ -56,3 +59,57 @@ def write(source: State, target: NDArray[np.float64]) -> None:
     """Copy a tuple to an array of its length."""
     for i in range(len(source)):
         target[i] = source[i]
+
+
+class Log(NamedTuple):
+    """Rows of the tables that a time integration returns (`IntegrationResult`).
+
+    Lists, typed by a row and emptied: a growing array would have its references counted in each step.
+    """
+
+    extrema: list[tuple[float, float, float, float]]
+    rests: list[tuple[float, float]]
+    steps: list[tuple[float, ...]]
+
+
+class Mark(NamedTuple):
+    """State at the end of the duration, from which the motion is followed."""
+
+    y: State
+    counts: tuple[int, int, int]  # rows of the log
+
+
+@jit
+def empty_log(y: State) -> Log:
+    """Return a log without rows."""
+    log = Log([(0.0, 0.0, 0.0, 0.0)], [(0.0, 0.0)], [(0.0, *y)])
+    log.extrema.clear()
+    log.rests.clear()
+    log.steps.clear()
+    return log
+
+
+@jit
+def mark_of(y: State, log: Log) -> Mark:
+    """Return the present state."""
+    return Mark(y, (len(log.extrema), len(log.rests), len(log.steps)))
+
+
+@jit
+def has_turned(log: Log, since: float) -> bool:
+    """Return whether the tilt has had a maximum since a time [s]."""
+    for i in range(len(log.extrema) - 1, -1, -1):
+        if log.extrema[i][0] < since:
+            return False
+        if log.extrema[i][3] == MAXIMUM:
+            return True
+    return False
+
+
+@jit
+def as_table(rows: Any, count: int, width: int) -> NDArray[np.float64]:
+    """Return the first `count` tuples of a list as an array (count, width)."""
+    table = np.empty((count, width))
+    for i in range(count):
+        write(rows[i], table[i])
+    return table

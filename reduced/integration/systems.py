@@ -23,7 +23,8 @@ from .._compile import inlined, jit
 from ..body import Body
 from ..equations import flat_rhs, planar_rhs, recess_rhs
 from ..trigonometry import sin_cos
-from .tsit5 import State, Vector
+from .record import Vector
+from .result import State
 
 _ROUNDING = float(np.finfo(np.float64).eps)
 

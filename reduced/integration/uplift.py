@@ -17,7 +17,7 @@ import numpy as np
 from .._compile import jit
 from ..body import Body
 from ..equations import in_plane_below
-from .tsit5 import Vector, ground
+from .record import Vector, ground
 
 # The series is left at the share x of the shortest time scale there: 1/p, and the time in which the
 # ground acceleration turns or changes by its own size. The terms left out are below x^3 relative to

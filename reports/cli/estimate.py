@@ -99,7 +99,7 @@ def _all_seconds(cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> float:
 
 def _seconds(case: rw.Case, run: rw.Run) -> float:
     from rockwobble.compare.runs.execution import SAMPLE_STEP, engine_time
-    from rockwobble.multibody.scene.froude import froude_scale
+    from rockwobble.multibody.scene import froude_scale
 
     if run.engine is not None:
         return engine_time(case, run)

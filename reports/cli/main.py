@@ -6,7 +6,7 @@ import importlib
 import inspect
 import os
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from typing import Annotated, Any
 
@@ -17,67 +17,25 @@ from typer.main import get_command
 from ..console import BAD_INPUT, INTERRUPTED, complain, forgive_output
 from .command import StrictCommand
 
-# heading in the help text: the module of its commands, and an example of each
-_GROUPS: Mapping[str, tuple[str, Mapping[str, str]]] = {
-    "One problem": (
-        "single",
-        {
-            "compare": "rockwobble compare --semidiagonal 10 --tan-alpha 0.1 --engine mujoco",
-            "advise": "rockwobble advise --record-x EW.AT2 --record-y NS.AT2 --friction 0.5",
-            "simulate": "rockwobble simulate --release-tilt-deg 5 --rolling-rate 0.5 --duration 8",
-        },
-    ),
-    "Many problems": (
-        "many",
-        {
-            "spectrum": "rockwobble spectrum --tan-alpha 0.2 --semidiagonal 1:20:50 --intensity 1:9:50",
-            "sweep": "rockwobble sweep --semidiagonal 0.5:30:100 --scale 1,2,4 --out grid",
-            "ensemble": "rockwobble ensemble --synthetic 40 --peak 3 --engine mujoco",
-            "fragility": "rockwobble fragility --p695 --cylinder pier=6,0.2 --engine mujoco",
-        },
-    ),
-    "Results": (
-        "results",
-        {
-            "show": "rockwobble show rockwobble-sweep",
-            "report": "rockwobble report rockwobble-compare",
-            "view": "rockwobble view --scale 2 --support flat",
-        },
-    ),
-    "Trust": (
-        "trust",
-        {
-            "check": "rockwobble check --only equations --only conserved",
-            "certify": "rockwobble certify --engine mujoco --out mujoco.json",
-            "verify": "rockwobble verify mujoco.json",
-        },
-    ),
-    "Published studies": (
-        "published",
-        {
-            "validity": "rockwobble validity --quick --out validity",
-            "figures": "rockwobble figures --out paper",
-            "tradeoff": "rockwobble tradeoff --quick --out tradeoff",
-            "extremes": "rockwobble extremes --quick --out extremes",
-        },
-    ),
+# heading in the help text: the module of its commands, and their names
+_GROUPS: Mapping[str, tuple[str, Sequence[str]]] = {
+    "One problem": ("single", ("compare", "advise", "simulate")),
+    "Many problems": ("many", ("spectrum", "sweep", "ensemble", "fragility")),
+    "Results": ("results", ("show", "report", "view")),
+    "Trust": ("trust", ("check", "certify", "verify")),
+    "Published studies": ("published", ("validity", "figures", "tradeoff", "extremes")),
 }
-_COMMANDS = {
-    name: (group, module, example)
-    for group, (module, examples) in _GROUPS.items()
-    for name, example in examples.items()
-}
-_LOOKS: Mapping[str, Any] = {"rich_markup_mode": "rich", "pretty_exceptions_enable": False}
+_COMMANDS = {name: (group, module) for group, (module, names) in _GROUPS.items() for name in names}
 
 
 @cache
 def _command(name: str) -> TyperCommand:
-    """Return what typer makes of a command, which is imported here."""
-    group, module, example = _COMMANDS[name]
-    command = getattr(importlib.import_module(f".{module}", __package__), name)
-    alone = typer.Typer(add_completion=False, **_LOOKS)
-    text = _help(inspect.getdoc(command) or "", example)
-    alone.command(cls=StrictCommand, help=text, rich_help_panel=group)(command)
+    """Return what typer makes of a command, which is imported here; its docstring ends with an example."""
+    group, module = _COMMANDS[name]
+    function = getattr(importlib.import_module(f".{module}", __package__), name)
+    words, _, example = (inspect.getdoc(function) or "").partition("\n\nExample: ")
+    alone = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
+    alone.command(cls=StrictCommand, help=_help(words, example), rich_help_panel=group)(function)
     made = get_command(alone)
     assert isinstance(made, TyperCommand)
     return made
@@ -117,7 +75,8 @@ app = typer.Typer(
         "rockwobble fragility --p695                              how probable is overturning?",
     ),
     context_settings={"help_option_names": ["-h", "--help"]},
-    **_LOOKS,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
 )
 
 # typer brings its own click in some versions and imports click in others: one base class, two homes

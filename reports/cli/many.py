@@ -58,11 +58,13 @@ def fragility(
 
     Writes fragility.html, the same as fragility.md with its figures, the tables as Parquet, and
     counts.csv and counts.json, from which other tools can fit curves of their own.
+
+    Example: rockwobble fragility --p695 --cylinder pier=6,0.2 --engine mujoco
     """
     with interruptible(out):
         with user_input():
-            from rockwobble.compare.studies.fragility.methods import methods_of
-            from rockwobble.models.records.plausibility import doubts_of
+            from rockwobble.compare.studies.fragility.runs import methods_of
+            from rockwobble.models.records.units import doubts_of
 
             from ..pages.diagnostics import warnings
 
@@ -97,7 +99,7 @@ def fragility(
 def spectrum(
     record: Record,
     plan: SpectrumPlan,
-    tan_alpha: options.TanAlpha = 0.1,
+    tan_alpha: Annotated[float, options.TAN_ALPHA] = 0.1,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-spectrum"),
 ) -> None:
@@ -114,6 +116,8 @@ def spectrum(
     Writes spectrum.html, the same as spectrum.md with spectrum.svg, and as Parquet the cells (spectrum),
     the lowest intensities found to overturn (lowest), the gaps in the overturning region above them
     (islands), the shares by size (contrast), and some cells run again to a tighter tolerance (checked).
+
+    Example: rockwobble spectrum --tan-alpha 0.2 --semidiagonal 1:20:50 --intensity 1:9:50
     """
     with interruptible():
         with user_input():
@@ -173,10 +177,12 @@ def ensemble(
 
     Writes ensemble.html, the same as ensemble.md with ensemble.svg, and members, methods and contrasts as
     Parquet and CSV.
+
+    Example: rockwobble ensemble --synthetic 40 --peak 3 --engine mujoco
     """
     with interruptible(out):
         with user_input():
-            from rockwobble.models.records.plausibility import doubts_of
+            from rockwobble.models.records.units import doubts_of
 
             from ..pages.diagnostics import warnings
 
@@ -283,6 +289,8 @@ def sweep(
     Whatever ends the sweep, the same command resumes.
 
     Writes sweep.parquet, one row for each run, sweep.html (open it in a browser), sweep.md and sweep.svg.
+
+    Example: rockwobble sweep --semidiagonal 0.5:30:100 --scale 1,2,4 --out grid
     """
     with user_input():
         plan: rc.Grid | rw.Suite
@@ -312,7 +320,7 @@ def sweep(
 
 
 def _suite(name: str, models: list[str] | None) -> rw.Suite:
-    from rockwobble.compare.studies.sweep.cases import runnable_suite
+    from rockwobble.compare.studies.sweep import runnable_suite
 
     for model in models or ():
         if model not in rw.reduced.MODELS:
@@ -324,7 +332,7 @@ def _suite(name: str, models: list[str] | None) -> rw.Suite:
 
 
 def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
-    from rockwobble.models.records.plausibility import doubts_of
+    from rockwobble.models.records.units import doubts_of
 
     from ..pages.diagnostics import warnings
 

@@ -141,84 +141,25 @@ def _in_one_turn(plane: float | None) -> float | None:
     raise typer.BadParameter(f"must be from -6.2832 to 6.2832 rad (90 deg is 1.5708), got {plane:g}")
 
 
-body, _ground, _release, method, output = map(
-    panel, ("Cylinder", "Ground motion", "Release", "Method", "Output")
-)
-reduced, work, _external = map(
-    panel, ("Reduced model", "Work", "Trajectory of a shake table or another code")
+body, ground, method, reduced, work, output = map(
+    panel, ("Cylinder", "Ground motion", "Method", "Reduced model", "Work", "Output")
 )
 
-Semidiagonal = Annotated[float | None, body("R = sqrt(b^2 + h^2), in m. Default: 6.")]
 TAN_ALPHA = body("Slenderness b/h, radius over half the height.")
-TanAlpha = Annotated[float, TAN_ALPHA]
-Diameter = Annotated[float | None, body("2b, in m; with --height in place of the two above.")]
-Height = Annotated[float | None, body("2h, in m.")]
-MassCentreHeight = Annotated[
-    float | None,
-    body("Of the mass centre above the base, in m; with --diameter and --height. Default: half of that."),
-]
-TransverseInertia = Annotated[
-    float | None, body("I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder.")
-]
-AxialInertia = Annotated[float | None, body("I2/m about the axis, in m2.")]
 SlabMassRatio = Annotated[
     float | None,
     body("Mass of a rigid slab over that of the cylinders that carry it. Default: a cylinder alone."),
 ]
-Columns = Annotated[
-    int | None,
-    body("Number of the cylinders under the slab: 3 or more, or 1 for a slab that cannot turn. Default: 3."),
-]
-Record = Annotated[
-    Path | None, _ground("Text or CSV of time, x, y and perhaps z, in place of the files below.")
-]
-RecordX = Annotated[
-    Path | None,
-    _ground(
-        "East-west component: PEER AT2, two-column text or CSV, or zero beside the other (planar motion). "
-        "Default: El Centro 1940."
-    ),
-]
-RecordY = Annotated[Path | None, _ground("North-south component, or zero.")]
-RecordZ = Annotated[Path | None, _ground("Vertical component, may be left out.")]
-Units = Annotated[str | None, _ground("g, m/s2 or cm/s2; required where the files do not say.")]
+Units = Annotated[str | None, ground("g, m/s2 or cm/s2; required where the files do not say.")]
 Resample = Annotated[
     bool,
-    _ground(
+    ground(
         "Take components of different time steps at the largest step that divides all; linear between "
         "samples, which stay, so that none changes.",
         "--resample",
     ),
 ]
-Scale = Annotated[float, _ground("Factor on all components.")]
-Gravity = Annotated[float, _ground("g, in m/s2.")]
-Friction = Annotated[
-    float,
-    _ground(
-        "Coefficient of cylinder and ground. The reduced models assume that it suffices and say where it "
-        "would not."
-    ),
-]
-RollingResistance = Annotated[
-    float,
-    _ground(
-        "Length of the couple against the rolling of the rim, in m, below the base radius; 0 loses nothing."
-    ),
-]
-ReleaseTilt = Annotated[
-    float | None, _release("Release at this tilt, in deg; without a record the ground is then still.")
-]
-ReleaseAzimuth = Annotated[
-    float, _release("Direction of the lean at release, in deg, counter-clockwise from x (east).")
-]
-RollingRate = Annotated[float, _release("Rolling rate at release, in rad/s.")]
-Duration = Annotated[
-    float | None,
-    _release(
-        "Length of the run, in s; what moves then is followed over still ground to its next maximum. "
-        "Default: that of the ground motion, 10 s without one."
-    ),
-]
+Gravity = Annotated[float, ground("g, in m/s2.")]
 ALL, NO_ENGINE = "all", "none"  # in place of the names of engines
 
 
@@ -237,7 +178,6 @@ def _named(names: list[str] | None) -> list[str] | None:
 
 ENGINES = "mujoco, pybullet, dart, drake, exudyn, rapier or another that is installed"
 _SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, by engines that have them)"
-Engine = Annotated[str | None, method(f"{ENGINES}. Default: the reduced model.")]
 _DEFAULT = "Default: those that serve any case and are no extra"
 Engines = Annotated[list[str] | None, method(f"{ENGINES}; may be repeated. {_DEFAULT}.", callback=_named)]
 EnginesOrAll = Annotated[
@@ -289,31 +229,6 @@ SuiteName = Annotated[
         show_default=False,
     ),
 ]
-Trajectories = Annotated[
-    list[Path] | None,
-    _external(
-        "CSV of time and: tilt and azimuth, or qw, qx, qy, qz, or x, y, z of the mass centre; from a shake "
-        "table or another code. What it does not hold is not compared; may be repeated."
-    ),
-]
-TrajectoryAngles = Annotated[str | None, _external("deg or rad, where its header does not say.")]
-TrajectoryOffset = Annotated[float, _external("Added to its times, in s, so that 0 is the start of the run.")]
-TrajectoryNoise = Annotated[
-    float | None,
-    _external(
-        "Tilt below which it counts as standing, in deg. Default: as its scatter asks for, at least 1e-4 "
-        "alpha."
-    ),
-]
-Budget = Annotated[
-    bool,
-    method(
-        "Split each difference into model form, numerics and what stays unexplained, by runs at finer "
-        "steps: takes some seven times as long.",
-        "--budget",
-    ),
-]
-Seed = Annotated[int, method("Of everything random.", callback=whole(0))]
 Workers = Annotated[
     int | None, work("Processes on this machine. Default: one for each processor.", callback=whole(1))
 ]

@@ -6,6 +6,7 @@ import math
 import shlex
 from collections.abc import Collection
 from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -16,6 +17,7 @@ from . import options
 
 # length of a free response where the user does not say [s]
 FREE_DURATION = 10.0
+_release = options.panel("Release")
 SEMIDIAGONAL, TAN_ALPHA = 6.0, 0.2  # [m], [-]
 
 
@@ -23,15 +25,30 @@ SEMIDIAGONAL, TAN_ALPHA = 6.0, 0.2  # [m], [-]
 class Body:
     """The options that state a cylinder, or a slab on cylinders."""
 
-    semidiagonal: options.Semidiagonal = None
+    semidiagonal: Annotated[float | None, options.body("R = sqrt(b^2 + h^2), in m. Default: 6.")] = None
     tan_alpha: Annotated[float | None, options.TAN_ALPHA] = None
-    diameter: options.Diameter = None
-    height: options.Height = None
-    mass_centre_height: options.MassCentreHeight = None
-    transverse_inertia: options.TransverseInertia = None
-    axial_inertia: options.AxialInertia = None
+    diameter: Annotated[float | None, options.body("2b, in m; with --height in place of the two above.")] = (
+        None
+    )
+    height: Annotated[float | None, options.body("2h, in m.")] = None
+    mass_centre_height: Annotated[
+        float | None,
+        options.body(
+            "Of the mass centre above the base, in m; with --diameter and --height. Default: half of that."
+        ),
+    ] = None
+    transverse_inertia: Annotated[
+        float | None,
+        options.body("I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder."),
+    ] = None
+    axial_inertia: Annotated[float | None, options.body("I2/m about the axis, in m2.")] = None
     slab_mass_ratio: options.SlabMassRatio = None
-    columns: options.Columns = None
+    columns: Annotated[
+        int | None,
+        options.body(
+            "Number of the cylinders under the slab: 3 or more, or 1 for a slab that cannot turn. Default: 3."
+        ),
+    ] = None
 
     def cylinder(self) -> rw.Cylinder:
         """Return the cylinder, by semidiagonal and slenderness or by diameter and height, or the frame.
@@ -88,13 +105,21 @@ def under_slab(cylinder: rw.Cylinder, slab_mass_ratio: float | None, columns: in
 class Record:
     """The options that state a ground motion."""
 
-    record: options.Record = None
-    record_x: options.RecordX = None
-    record_y: options.RecordY = None
-    record_z: options.RecordZ = None
+    record: Annotated[
+        Path | None, options.ground("Text or CSV of time, x, y and perhaps z, in place of the files below.")
+    ] = None
+    record_x: Annotated[
+        Path | None,
+        options.ground(
+            "East-west component: PEER AT2, two-column text or CSV, or zero beside the other (planar "
+            "motion). Default: El Centro 1940."
+        ),
+    ] = None
+    record_y: Annotated[Path | None, options.ground("North-south component, or zero.")] = None
+    record_z: Annotated[Path | None, options.ground("Vertical component, may be left out.")] = None
     units: options.Units = None
     resample: options.Resample = False
-    scale: options.Scale = 1.0
+    scale: Annotated[float, options.ground("Factor on all components.")] = 1.0
 
     def motion(self, *, still: bool = False) -> rw.GroundMotion | None:
         """Return the ground motion; without a record El Centro, or None where the ground is then `still`.
@@ -138,10 +163,20 @@ class Record:
 class Release:
     """The options that state a release."""
 
-    release_tilt_deg: options.ReleaseTilt = None
-    release_azimuth_deg: options.ReleaseAzimuth = 0.0
-    rolling_rate: options.RollingRate = 0.0
-    duration: options.Duration = None
+    release_tilt_deg: Annotated[
+        float | None, _release("Release at this tilt, in deg; without a record the ground is then still.")
+    ] = None
+    release_azimuth_deg: Annotated[
+        float, _release("Direction of the lean at release, in deg, counter-clockwise from x (east).")
+    ] = 0.0
+    rolling_rate: Annotated[float, _release("Rolling rate at release, in rad/s.")] = 0.0
+    duration: Annotated[
+        float | None,
+        _release(
+            "Length of the run, in s; what moves then is followed over still ground to its next maximum. "
+            "Default: that of the ground motion, 10 s without one."
+        ),
+    ] = None
 
     def initial(self) -> rw.InitialState | None:
         """Return the state at release; None from rest.
@@ -176,8 +211,20 @@ class Problem(Release, Record, Body):
     """The options that state a problem."""
 
     gravity: options.Gravity = 9.81
-    friction: options.Friction = 1.0
-    rolling_resistance: options.RollingResistance = 0.0
+    friction: Annotated[
+        float,
+        options.ground(
+            "Coefficient of cylinder and ground. The reduced models assume that it suffices and say where it "
+            "would not."
+        ),
+    ] = 1.0
+    rolling_resistance: Annotated[
+        float,
+        options.ground(
+            "Length of the couple against the rolling of the rim, in m, below the base radius; 0 loses "
+            "nothing."
+        ),
+    ] = 0.0
 
     def case(self) -> rw.Case:
         """Return the case that they state.

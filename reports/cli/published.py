@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
+from rockwobble.compare.studies.plans import ExtremesPlan, TradeoffPlan, ValidityPlan
+
 from ..console import FAILED, results_in, show_and_save, user_input
 from . import options
+from .command import takes_options
 
 
-def _quick(help_text: str) -> Any:
-    return typer.Option("--quick", help=f"{help_text}: some two minutes on two idle cores.")
-
-
+@takes_options
 def validity(
-    quick: Annotated[bool, _quick("Coarse maps and few runs")] = False,
+    plan: ValidityPlan,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-validity"),
 ) -> None:
@@ -29,20 +29,18 @@ def validity(
 
     Writes validity.html, validity.md with its pictures as SVG, as Parquet the tables of all parts and every
     number of the report (limits). `rockwobble report` draws the pages again.
+
+    Example: rockwobble validity --quick --out validity
     """
     with user_input(), results_in(out, "tasks") as progress:
-        from rockwobble.compare.studies.validity.plan import FULL, QUICK
-        from rockwobble.compare.studies.validity.study import measure_all, validity_of
+        from rockwobble.compare.studies.validity.study import measure_validity
 
-        extent = QUICK if quick else FULL
-        tables = measure_all(extent, out, workers=workers, progress=progress)
-    show_and_save(validity_of(tables, extent), out)
+        found = measure_validity(out, plan, workers=workers, progress=progress)
+    show_and_save(found, out)
 
 
-def tradeoff(
-    quick: Annotated[bool, _quick("Fewer points and fewer members")] = False,
-    out: options.Out = Path("rockwobble-tradeoff"),
-) -> None:
+@takes_options
+def tradeoff(plan: TradeoffPlan, out: options.Out = Path("rockwobble-tradeoff")) -> None:
     """Measure what accuracy costs: the reduced models, scipy's solvers and the engines on three problems.
 
     The angle of turn in free response, two times El Centro until ten seconds after uplift, and the
@@ -51,16 +49,19 @@ def tradeoff(
 
     Writes tradeoff.html (open it in a browser), tradeoff.md with its pictures as SVG, and the tables points,
     problems and scenes as Parquet. `rockwobble report` draws the pages again.
+
+    Example: rockwobble tradeoff --quick --out tradeoff
     """
     with results_in(out, "rounds", resumes=False) as progress:
         from rockwobble.compare.studies.tradeoff.study import measure_tradeoff
 
-        found = measure_tradeoff(quick=quick, progress=progress)
+        found = measure_tradeoff(plan, progress=progress)
     show_and_save(found, out)
 
 
+@takes_options
 def extremes(
-    quick: Annotated[bool, _quick("Only the two ends of each extreme")] = False,
+    plan: ExtremesPlan,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-extremes"),
 ) -> None:
@@ -72,11 +73,13 @@ def extremes(
 
     Writes extremes.html (open it in a browser), extremes.md and the table as extremes.parquet. `rockwobble
     report` draws the pages again. Exit code 1 if anything is wrong and nothing explains it.
+
+    Example: rockwobble extremes --quick --out extremes
     """
     with user_input(), results_in(out) as progress:
-        from rockwobble.compare.studies.extremes.study import measure_extremes
+        from rockwobble.compare.studies.extremes import measure_extremes
 
-        found = measure_extremes(out, quick=quick, workers=workers, progress=progress)
+        found = measure_extremes(out, plan, workers=workers, progress=progress)
     show_and_save(found, out)
     if (found.extremes["verdict"] == "silent").any():
         raise typer.Exit(FAILED)
@@ -97,7 +100,7 @@ def figures(
     Writes paper.md and paper.html with a verdict on each statement, the figures as SVG, and the data of each
     and the numbers of the statements as Parquet.
 
-    Example: rockwobble figures --grid 20 --out paper
+    Example: rockwobble figures --out paper
     """
     with results_in(out, "figures", resumes=False) as progress:
         from ..paper.page import compute

@@ -158,6 +158,8 @@ def view(
     Without options: MuJoCo recess under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
 
     Writes view.html, which needs nothing else and works offline, and the comparison that it plays.
+
+    Example: rockwobble view --scale 2 --support flat
     """
     with interruptible():
         with user_input():

@@ -126,7 +126,7 @@ class ManyMethods:
         ValueError
             If an engine has none of the supports, or nothing has a setting.
         """
-        from rockwobble.compare.studies.fragility.methods import MODELS
+        from rockwobble.compare.studies.fragility.runs import MODELS
         from rockwobble.multibody.engines.registry import find_engine
 
         given, supports = settings(self.setting), self.support

@@ -6,7 +6,7 @@ import dataclasses
 import math
 import sys
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -27,21 +27,83 @@ from .options import settings
 from .problem import Problem, given_options, refuse_options_of_engines, restated
 from .suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
 
+_external = options.panel("Trajectory of a shake table or another code")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trajectories:
+    """The options that name external trajectories."""
+
+    trajectory: Annotated[
+        list[Path] | None,
+        _external(
+            "CSV of time and: tilt and azimuth, or qw, qx, qy, qz, or x, y, z of the mass centre; from a "
+            "shake table or another code. What it does not hold is not compared; may be repeated."
+        ),
+    ] = None
+    trajectory_angles: Annotated[str | None, _external("deg or rad, where its header does not say.")] = None
+    trajectory_offset: Annotated[
+        float, _external("Added to its times, in s, so that 0 is the start of the run.")
+    ] = 0.0
+    trajectory_noise_deg: Annotated[
+        float | None,
+        _external(
+            "Tilt below which it counts as standing, in deg. Default: as its scatter asks for, at least 1e-4 "
+            "alpha."
+        ),
+    ] = None
+
+    def read(self, cases: Sequence[rw.Case]) -> list[rw.External]:
+        """Return the trajectories, each of which has been read once for the only case.
+
+        Raises
+        ------
+        ValueError
+            If an option is out of range or alone, there are more cases, or a file cannot be read.
+        """
+        angles, offset, noise_deg = (
+            self.trajectory_angles,
+            self.trajectory_offset,
+            self.trajectory_noise_deg,
+        )
+        if not self.trajectory:
+            if angles is not None or offset or noise_deg is not None:
+                raise ValueError("--trajectory-angles, -offset and -noise-deg need a --trajectory")
+            return []
+        if len(cases) > 1:
+            raise ValueError(f"--trajectory belongs to one case, got a suite of {len(cases)}")
+        if noise_deg is not None and not 0.0 < noise_deg < 90.0:
+            raise ValueError(f"--trajectory-noise-deg must be above 0 and below 90 [deg], got {noise_deg:g}")
+        if not math.isfinite(offset):
+            raise ValueError(f"--trajectory-offset must be finite [s], got {offset:g}")
+        noise = None if noise_deg is None else math.radians(noise_deg)
+        found = [
+            rw.External(path=path, angle_unit=angles, time_offset=offset, noise=noise)
+            for path in self.trajectory
+        ]
+        for each in found:  # whatever is wrong with a file is said before anything runs
+            rc.read_trajectory(each, cases[0])
+        return found
+
 
 @takes_options
 def compare(
     context: typer.Context,
     problem: Problem,
+    external: Trajectories,
     suite: options.SuiteName = None,
     engine: options.EnginesOrAll = None,
     support: options.Supports = None,
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
-    trajectory: options.Trajectories = None,
-    trajectory_angles: options.TrajectoryAngles = None,
-    trajectory_offset: options.TrajectoryOffset = 0.0,
-    trajectory_noise_deg: options.TrajectoryNoise = None,
-    budget: options.Budget = False,
+    budget: Annotated[
+        bool,
+        options.method(
+            "Split each difference into model form, numerics and what stays unexplained, by runs at finer "
+            "steps: takes some seven times as long.",
+            "--budget",
+        ),
+    ] = False,
     out: options.Out = Path("rockwobble-compare"),
 ) -> None:
     """Run the reduced model and the engines on one problem, and report how long they agree.
@@ -58,6 +120,8 @@ def compare(
     compared with the reduced model alone.
 
     Writes summary.csv, the samples as Parquet, report.html and figure.svg.
+
+    Example: rockwobble compare --semidiagonal 10 --tan-alpha 0.1 --engine mujoco
     """
     with interruptible(out if suite else None):
         with user_input():
@@ -69,7 +133,7 @@ def compare(
                 cases, runs = _suite(suite, engine, support, time_step)
             else:
                 cases = [problem.case()]
-                runs = _runs(cases[0], engine, support, time_step, alone=bool(trajectory))
+                runs = _runs(cases[0], engine, support, time_step, alone=bool(external.trajectory))
             if setting:
                 runs = list(rr.with_settings(cases[0], runs, settings(setting)))
             rs.require_writable(out)
@@ -77,9 +141,7 @@ def compare(
             for each in cases:
                 for run in runs:
                     rr.require_runnable(each, run)
-            external = _external(
-                trajectory, cases, trajectory_angles, trajectory_offset, trajectory_noise_deg
-            )
+            trajectories = external.read(cases)
         if suite is None:
             print(*describe(cases[0]), *time_needed(cases, runs), sep="\n")
         else:
@@ -94,7 +156,7 @@ def compare(
                 rw.Suite(cases, runs),
                 runs=runs,
                 progress=tell,
-                external=external,
+                external=trajectories,
                 resume=None if suite is None else out,
                 budget=budget,
             )
@@ -133,30 +195,6 @@ def _runs(
     return [rw.Run(run.engine, run.support, time_step) for run in runs]
 
 
-def _external(
-    paths: list[Path] | None,
-    cases: Sequence[rw.Case],
-    angles: str | None,
-    offset: float,
-    noise_deg: float | None,
-) -> list[rw.External]:
-    if not paths:
-        if angles is not None or offset or noise_deg is not None:
-            raise ValueError("--trajectory-angles, -offset and -noise-deg need a --trajectory")
-        return []
-    if len(cases) > 1:
-        raise ValueError(f"--trajectory belongs to one case, got a suite of {len(cases)}")
-    if noise_deg is not None and not 0.0 < noise_deg < 90.0:
-        raise ValueError(f"--trajectory-noise-deg must be above 0 and below 90 [deg], got {noise_deg:g}")
-    if not math.isfinite(offset):
-        raise ValueError(f"--trajectory-offset must be finite [s], got {offset:g}")
-    noise = None if noise_deg is None else math.radians(noise_deg)
-    external = [rw.External(path=path, angle_unit=angles, time_offset=offset, noise=noise) for path in paths]
-    for each in external:  # whatever is wrong with a file is said before anything runs
-        rc.read_trajectory(each, cases[0])
-    return external
-
-
 def _say_what_is_left_out(supports: list[str]) -> None:
     from rockwobble.compare.runs.choice import left_out, unsupported
 
@@ -176,7 +214,7 @@ RestTilt = Annotated[
 def simulate(
     context: typer.Context,
     problem: Problem,
-    engine: options.Engine = None,
+    engine: Annotated[str | None, options.method(f"{options.ENGINES}. Default: the reduced model.")] = None,
     support: options.Support = "recess",
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
@@ -192,6 +230,8 @@ def simulate(
     Writes the samples to run.csv, the passes to passes.csv, all to run.parquet, which Trace.load reads,
     manifest.json, which says units and meaning of each column, and run.html, run.md and trace.svg; SI units
     and radians.
+
+    Example: rockwobble simulate --release-tilt-deg 5 --rolling-rate 0.5 --duration 8
     """
     with interruptible():
         from rockwobble.compare.studies.single_run import single_run
@@ -267,6 +307,8 @@ def advise(
 
     Writes advice.html, one page that needs nothing else, the same as advice.md with advice.svg, and
     the runs as Parquet.
+
+    Example: rockwobble advise --record-x EW.AT2 --record-y NS.AT2 --friction 0.5
     """
     with interruptible():
         with user_input():

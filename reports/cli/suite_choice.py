@@ -52,7 +52,7 @@ def chosen_runs(
             runs = [run for run in runs if run.support in supports]
             runs += [rw.Run(maker, place) for place in supports if place not in known for maker in makers]
     if time_step is not None:
-        from rockwobble.compare.runs.run_settings import at_step
+        from rockwobble.compare.runs.choice import at_step
 
         runs = [at_step(run, time_step) for run in runs]
     return runs
@@ -76,8 +76,8 @@ def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list
 
 def describe_suite(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> Iterator[str]:
     """Yield the lines that echo what will run, and how long it may take."""
-    from rockwobble.compare.runs.labels import run_labels
-    from rockwobble.models.records.plausibility import doubts_of
+    from rockwobble.compare.runs.choice import run_labels
+    from rockwobble.models.records.units import doubts_of
 
     from ..pages.diagnostics import warnings
 

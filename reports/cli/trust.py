@@ -95,6 +95,8 @@ def check(
     run leaves, measured by a second run of twice that step.
 
     Exit code 0 if all checks hold, 1 if one does not, 2 for bad input.
+
+    Example: rockwobble check --only equations --only conserved
     """
     with interruptible():
         begun = time.monotonic()
@@ -214,14 +216,14 @@ def update(reason: str | None) -> None:
     ValueError
         If there is no reason, or the file cannot be written.
     """
-    from rockwobble.compare.check import baseline
-    from rockwobble.compare.check.summary import baseline_subjects
+    from rockwobble.compare.check import agreement
+    from rockwobble.compare.check.groups import baseline_subjects
     from rockwobble.compare.storage.provenance import package_versions
 
     with shown_progress("engine runs"):
-        new = baseline.measure(baseline_subjects())
-    old = baseline.read_baseline()
-    changed = baseline.changes(old, new)
+        new = agreement.baseline_numbers(baseline_subjects())
+    old = agreement.read_baseline()
+    changed = agreement.baseline_changes(old, new)
     _show(changed)
     if not changed:
         print("Nothing would change.")
@@ -231,9 +233,9 @@ def update(reason: str | None) -> None:
     if not (reason or "").strip():
         raise ValueError("nothing was changed: a new baseline needs a --reason, got none")
     date = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
-    text = baseline.updated(old, new, reason=reason or "", date=date, versions=package_versions())
-    rs.replace_files(baseline.folder(), {baseline.FILE: text.encode()})
-    print(f"Written: {baseline.folder() / baseline.FILE}")
+    text = agreement.updated_baseline(old, new, reason=reason or "", date=date, versions=package_versions())
+    rs.replace_files(agreement.baseline_folder(), {agreement.BASELINES: text.encode()})
+    print(f"Written: {agreement.baseline_folder() / agreement.BASELINES}")
 
 
 def _show(changed: Sequence[tuple[str, str, float | None, float | None]]) -> None:
@@ -277,6 +279,8 @@ def certify(
     check fails.
 
     Exit code 0 if it is written, 2 for bad input or a check that fails.
+
+    Example: rockwobble certify --engine mujoco --out mujoco.json
     """
     with interruptible(), user_input():
         from rockwobble.compare.certificate import CLAIMING, models, write_certificate
@@ -311,6 +315,8 @@ def verify(
     agree. changed: something differs before that; the claim and the first term concerned are named.
 
     Exit code 0 for same and chaotic, 1 for changed, 2 for bad input.
+
+    Example: rockwobble verify mujoco.json
     """
     with interruptible(), user_input():
         from rockwobble.compare.certificate import read_certificate

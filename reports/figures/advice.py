@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.metrics.tilt import overturned
+from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.studies.advice.advice import Advice
 from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
 

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare import Ensemble
-from rockwobble.compare.metrics.distributions import MARGIN
+from rockwobble.compare.metrics.statistics import MARGIN
 from rockwobble.compare.studies.ensemble import pairs
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles

@@ -11,9 +11,8 @@ import pandas as pd
 
 from rockwobble.compare import Fragility
 from rockwobble.compare.studies.fragility.intensity import MEASURES
-from rockwobble.compare.studies.fragility.samples import OVERTURNED
 from rockwobble.compare.studies.fragility.study import main_contrasts
-from rockwobble.compare.studies.fragility.tables import ALL
+from rockwobble.compare.studies.fragility.tables import ALL, OVERTURNED
 
 from .ensemble import margin_rules, ratio_axes
 from .palette import DARK, GREY, ORDER, Style, mark_styles, pale

@@ -252,7 +252,7 @@ def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
 
 
 def colours(shades: Shades) -> Colormap:
-    """Return the colours of a scale, over 0 to 1."""
+    """Return the colour map of a scale, in steps where it has some."""
     found: Colormap = mpl.colormaps[shades.colours]
     return found.resampled(shades.steps) if shades.steps else found
 

@@ -7,18 +7,17 @@ from collections.abc import Iterator
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.studies.validity.distributions import (
+from rockwobble.compare.studies.validity.limits import (
     CONTRASTS,
     FEWEST,
     POINT,
     Tables,
     cells,
     column,
+    models_apart,
     ratios,
 )
-from rockwobble.compare.studies.validity.el_centro import FREE
-from rockwobble.compare.studies.validity.limits import models_apart
-from rockwobble.compare.studies.validity.records import FLAT, PERTURBED, RECESS
+from rockwobble.compare.studies.validity.shaken import FLAT, FREE, PERTURBED, RECESS
 from rockwobble.compare.studies.validity.study import Validity
 
 from .heat import Gap, Heat, Shades, contour, names

@@ -7,13 +7,13 @@ from collections.abc import Hashable, Iterator, Mapping
 from typing import Any
 
 from rockwobble.compare.comparison.prediction import BEATEN
-from rockwobble.compare.metrics.order_statistics import FEWEST
+from rockwobble.compare.metrics.statistics import FEWEST
 from rockwobble.compare.studies.advice.advice import Advice
 from rockwobble.compare.studies.advice.grades import BROKEN, GRADES, NEAR, SENSITIVE, UNSAFE, Grade
 from rockwobble.compare.studies.advice.members import COPIES, SPIKES
 from rockwobble.compare.studies.advice.scales import planar_shares
 from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL
-from rockwobble.compare.studies.spectrum.tables import CHECK_RTOL, NUDGE
+from rockwobble.compare.studies.spectrum.study import CHECK_RTOL, NUDGE
 from rockwobble.models import AGREEMENT
 from rockwobble.models.diagnostic import CODES, parted
 from rockwobble.models.support import support_named
@@ -202,7 +202,7 @@ def _demand(name: str, row: Mapping[Hashable, Any]) -> str:
     """A demand in weights, and per tonne that is carried."""
     value = number(row["value"]) + ("" if row["unit"] == "-" else f" {row['unit']}")
     unit = "kNm" if name == "moment" else "kN"
-    return value if math.isnan(row["per_tonne"]) else f"{value} = {number(row['per_tonne'])} {unit} per tonne"
+    return value if math.isnan(row["per_tonne"]) else f"{value} = {number(row['per_tonne'])} {unit}/t"
 
 
 def _checks(found: Advice) -> Iterator[Row]:

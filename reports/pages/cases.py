@@ -22,7 +22,7 @@ def describe(case: Case) -> list[str]:
     if motion is not None:
         # here, because the help of the command line needs no numpy
         from rockwobble.compare.studies.spectrum.maps import uplift_factor
-        from rockwobble.models.records.plausibility import doubts_of
+        from rockwobble.models.records.units import doubts_of
 
         from .diagnostics import warnings
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from rockwobble.models import Diagnostic
 from rockwobble.models.diagnostic import FAILURES
-from rockwobble.models.records.plausibility import likely_unit
+from rockwobble.models.records.units import likely_unit
 
 # why halving the step did not settle it
 _UNSETTLED = {

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from rockwobble.compare import Ensemble
-from rockwobble.compare.metrics.distributions import (
+from rockwobble.compare.metrics.statistics import (
+    FEWEST,
     MARGIN,
     POWER,
     SIGNIFICANCE,
     largest_share_unseen,
     least_significant_count,
+    stated,
 )
-from rockwobble.compare.metrics.order_statistics import FEWEST, stated
 
 from ..figures.ensemble import main_pairs, pictures
 from .page import Page

@@ -6,8 +6,7 @@ import math
 
 import pandas as pd
 
-from rockwobble.compare.studies.extremes.study import Extremes
-from rockwobble.compare.studies.extremes.verdict import FINE
+from rockwobble.compare.studies.extremes import FINE, Extremes
 from rockwobble.models.diagnostic import CODES, parted
 
 from .page import Page

@@ -16,7 +16,7 @@ from rockwobble.compare.comparison.prediction import BEATEN
 from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
 from rockwobble.compare.external.verdict import mistakes_of
 from rockwobble.compare.metrics.pair import make_pair
-from rockwobble.compare.runs.labels import REDUCED
+from rockwobble.compare.runs.choice import REDUCED
 from rockwobble.models import AGREEMENT, Run
 from rockwobble.models.diagnostic import parted
 from rockwobble.models.support import FLAT, RECESS, SUPPORTS

@@ -6,12 +6,11 @@ import math
 from typing import Any
 
 from rockwobble.compare import Fragility
-from rockwobble.compare.metrics.order_statistics import FEWEST
+from rockwobble.compare.metrics.statistics import FEWEST
 from rockwobble.compare.studies.fragility.fit import ALWAYS, FITTED, NEVER, TOO_FEW
 from rockwobble.compare.studies.fragility.intensity import MEASURES
-from rockwobble.compare.studies.fragility.samples import OVERTURNED
 from rockwobble.compare.studies.fragility.study import FEWEST_LEVELS, main_contrasts
-from rockwobble.compare.studies.fragility.tables import ALL
+from rockwobble.compare.studies.fragility.tables import ALL, OVERTURNED
 
 from ..figures.fragility import pictures
 from .page import Page

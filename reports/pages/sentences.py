@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from rockwobble.compare.runs.labels import REDUCED
+from rockwobble.compare.runs.choice import REDUCED
 
 from .diagnostics import warnings
 

@@ -10,8 +10,13 @@ import pandas as pd
 
 from rockwobble.compare.studies.spectrum.maps import SPATIAL, TiltMaps
 from rockwobble.compare.studies.spectrum.search import gap_bound
-from rockwobble.compare.studies.spectrum.study import OverturningSpectrum
-from rockwobble.compare.studies.spectrum.tables import AGREEMENT, CHECK_RTOL, NUDGE, unconservative_from
+from rockwobble.compare.studies.spectrum.study import (
+    AGREEMENT,
+    CHECK_RTOL,
+    NUDGE,
+    OverturningSpectrum,
+    unconservative_from,
+)
 
 from ..figures.spectrum import pictures
 from .page import Page

@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import pandas as pd
 
-from rockwobble.compare.studies.tradeoff.conclusions import costs, engine_factors, plateaus, rest_tilt_price
-from rockwobble.compare.studies.tradeoff.study import ROUNDS, Tradeoff
+from rockwobble.compare.studies.tradeoff.study import (
+    ROUNDS,
+    Tradeoff,
+    costs,
+    engine_factors,
+    plateaus,
+    rest_tilt_price,
+)
 
 from ..figures.tradeoff import ERRORS, TITLES, pictures
 from .page import Page

@@ -7,11 +7,10 @@ import math
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.metrics.distributions import MARGIN
-from rockwobble.compare.studies.validity.distributions import cells, contrasts
-from rockwobble.compare.studies.validity.el_centro import FREE
-from rockwobble.compare.studies.validity.limits import damping, limits_of, needs
+from rockwobble.compare.metrics.statistics import MARGIN
+from rockwobble.compare.studies.validity.limits import cells, contrasts, damping, limits_of, needs
 from rockwobble.compare.studies.validity.plan import LARGEST_PEAK
+from rockwobble.compare.studies.validity.shaken import FREE
 from rockwobble.compare.studies.validity.study import Validity
 
 from ..figures.validity import METHODS, pictures

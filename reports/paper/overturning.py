@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL, TiltMaps
-from rockwobble.compare.studies.spectrum.tables import planar_contrast, unconservative_from
+from rockwobble.compare.studies.spectrum.study import planar_contrast, unconservative_from
 from rockwobble.models import el_centro_1940
 
 from . import Statement, verdict_of

@@ -12,9 +12,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.compare.runs.progress import ProgressCallback, Stages
-from rockwobble.compare.storage.fingerprint import fingerprint
 from rockwobble.compare.storage.manifest import Number
-from rockwobble.compare.storage.provenance import code_digests, package_versions
+from rockwobble.compare.storage.provenance import code_digests, fingerprint, package_versions
 from rockwobble.compare.storage.results import Results
 from rockwobble.compare.studies.spectrum.maps import (
     PLANAR_X,
@@ -25,7 +24,7 @@ from rockwobble.compare.studies.spectrum.maps import (
     maps_of,
     tilt_maps,
 )
-from rockwobble.compare.studies.spectrum.tables import tables_of
+from rockwobble.compare.studies.spectrum.study import tables_of
 from rockwobble.models import Run
 
 from ..figures.palette import DARK, ORDER, SHADED, Style, model_style, run_styles

@@ -20,7 +20,7 @@ from typing import Any
 from rockwobble import multibody, reduced
 from rockwobble.compare.storage.provenance import commit
 from rockwobble.models import Case, Trace
-from rockwobble.multibody.scene.froude import REFERENCE_SEMIDIAGONAL, REFERENCE_TIME_STEP, default_step
+from rockwobble.multibody.scene import REFERENCE_SEMIDIAGONAL, REFERENCE_TIME_STEP, default_step
 
 from .submission import cases_of, spacing, submit, tilt_and_azimuth
 

@@ -22,10 +22,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.compare.external.difference import Reference
 from rockwobble.compare.external.explanation import Explanation, explanations
 from rockwobble.compare.external.mistakes import Change, Mistake, corrected, in_time_scale, readings
-from rockwobble.compare.external.motion import Motion, exceeds, maxima, motion_at, pose_of
+from rockwobble.compare.external.motion import Motion, Reference, exceeds, maxima, motion_at, pose_of
 from rockwobble.compare.external.table import Array, Table, Values, listed, read_tables
 
 LEVELS = ("exact", "good", "pass")

@@ -164,7 +164,7 @@ def program() -> str:
     Their code stands there letter for letter; the imports are those of all of them, without the project.
     """
     sources = [
-        *(COMPARED / f"{name}.py" for name in ("table", "motion", "difference", "mistakes", "explanation")),
+        *(COMPARED / f"{name}.py" for name in ("table", "motion", "mistakes", "explanation")),
         Path(__file__).with_name("program.py"),
     ]
     imports: dict[tuple[str, str], set[str]] = {}

@@ -18,8 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble.compare.comparison.prediction import estimated_error, predict, verdict
-from rockwobble.compare.metrics.agreement import agreement_time
-from rockwobble.compare.metrics.pair import Pair, make_pair
+from rockwobble.compare.metrics.pair import Pair, agreement_time, make_pair
 from rockwobble.compare.runs.choice import SUPPORTS
 from rockwobble.compare.runs.execution import Job, simulate_all, simulate_run
 from rockwobble.compare.runs.progress import ProgressCallback

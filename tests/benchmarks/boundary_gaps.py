@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.compare.metrics.tilt import overturned
+from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.runs.progress import Stages
 from rockwobble.compare.studies.plans import PROBES, STEP
 from rockwobble.compare.studies.spectrum.maps import RTOL, intensity_unit, uplift_factor

@@ -110,9 +110,8 @@ def measure(
     """
     import pandas as pd
 
-    from rockwobble.compare.runs.progress import Progress
+    from rockwobble.compare.runs.progress import Lost, Progress
     from rockwobble.compare.runs.scheduler import run_tasks
-    from rockwobble.compare.runs.task import Lost
 
     def tell(event: Progress) -> None:
         if say is not None and event.state == "finished":

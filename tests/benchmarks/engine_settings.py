@@ -22,8 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import multibody
-from rockwobble.compare.metrics.pair import make_pair
-from rockwobble.compare.metrics.tilt import tilt_rms_relative
+from rockwobble.compare.metrics.pair import make_pair, tilt_rms_relative
 from rockwobble.compare.runs.choice import SUPPORTS
 from rockwobble.compare.runs.execution import Job, simulate_all
 from rockwobble.compare.runs.progress import ProgressCallback

@@ -14,8 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.compare.metrics.distributions import log_ratios, mcnemar_p, paired_difference, signed_rank_p
-from rockwobble.compare.metrics.order_statistics import quantile_interval
+from rockwobble.compare.metrics.statistics import (
+    log_ratios,
+    mcnemar_p,
+    paired_difference,
+    quantile_interval,
+    signed_rank_p,
+)
 
 from .console import options_of
 

@@ -19,8 +19,7 @@ import numpy as np
 
 from rockwobble import reduced
 from rockwobble.compare.check import FAILED, NOT_RUN
-from rockwobble.compare.check.agreement import check_suite
-from rockwobble.compare.check.own_bounds import SuiteRuns
+from rockwobble.compare.check.suite import SuiteRuns, check_suite
 from rockwobble.compare.runs.choice import SUPPORTS
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace, el_centro_1940, p695_far_field

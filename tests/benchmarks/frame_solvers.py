@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, WobblingFrame
-from rockwobble.multibody.body import Body, scaled_body
-from rockwobble.multibody.start import starting_state
+from rockwobble.multibody.scene import Body, scaled_body, starting_state
 
 Array = NDArray[np.float64]
 G, R = 9.81, 6.0

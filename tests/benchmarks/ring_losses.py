@@ -13,13 +13,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.compare.metrics.pair import make_pair
-from rockwobble.compare.metrics.tilt import tilt_rms_relative
+from rockwobble.compare.metrics.pair import make_pair, tilt_rms_relative
 from rockwobble.compare.runs.execution import simulate_run
+from rockwobble.compare.runs.progress import Lost
 from rockwobble.compare.runs.scheduler import run_tasks
-from rockwobble.compare.runs.task import Lost
-from rockwobble.compare.studies.validity.el_centro import has_room, losses, release_of
 from rockwobble.compare.studies.validity.plan import EL_CENTRO, shaken_case
+from rockwobble.compare.studies.validity.shaken import has_room, losses, release_of
 from rockwobble.models import Case, Run, Trace
 
 from .console import options_of, tell

@@ -16,7 +16,7 @@ import numpy as np
 
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
-from rockwobble.multibody.scene_of_case import open_scene
+from rockwobble.multibody.simulation import open_scene
 
 from .console import options_of
 

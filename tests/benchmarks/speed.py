@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.compare.studies.tradeoff.scipy_solver import SOLVERS, TOLERANCE_SCALE, SolverName, start_of
+from rockwobble.compare.studies.tradeoff.methods import SOLVERS, TOLERANCE_SCALE, SolverName, start_of
 from rockwobble.models import Case, Cylinder, el_centro_1940
 from rockwobble.reduced.solution import Solution
 

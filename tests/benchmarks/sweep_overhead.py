@@ -21,8 +21,8 @@ from pathlib import Path
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.compare.studies.sweep.grid import Grid
-from rockwobble.compare.studies.sweep.study import sweep
+from rockwobble.compare.studies.grid import Grid
+from rockwobble.compare.studies.sweep import sweep
 from rockwobble.models import el_centro_1940
 
 from .console import options_of

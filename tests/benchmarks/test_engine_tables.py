@@ -10,7 +10,7 @@ import pytest
 from benchmarks import agreement_times, convergence, engine_settings
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
-from rockwobble.models.traces.trace_source import Known
+from rockwobble.models.trace_source import Known
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = InitialState(0.8 * PIER.alpha, rolling_rate=0.5)

@@ -13,7 +13,7 @@ import numpy as np
 
 from rockwobble import multibody, reduced
 from rockwobble.compare.check import engine as subject_of
-from rockwobble.compare.check.rest import static_loads
+from rockwobble.compare.check.laws import static_loads
 from rockwobble.models import Case, Cylinder, InitialState, Trace, el_centro_1940
 from rockwobble.multibody.engines.registry import find_engine
 

@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 from rockwobble.models import Case, Cylinder, Run, Trace
-from rockwobble.models.traces.trace_source import Array, Known
+from rockwobble.models.trace_source import Array, Known
 
 
 @pytest.fixture

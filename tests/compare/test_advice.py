@@ -12,8 +12,8 @@ import pytest
 from showing import shows_itself
 
 from rockwobble import reduced
-from rockwobble.compare.metrics.distributions import contrast
-from rockwobble.compare.metrics.tilt import overturned
+from rockwobble.compare.metrics.pair import overturned
+from rockwobble.compare.metrics.statistics import contrast
 from rockwobble.compare.studies.advice import advice as study
 from rockwobble.compare.studies.advice.advice import Advice, advice_of, advise, vertical_effect
 from rockwobble.compare.studies.advice.grades import (

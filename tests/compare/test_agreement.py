@@ -7,8 +7,13 @@ import pytest
 
 from rockwobble.compare.comparison.prediction import Prediction, close_pass
 from rockwobble.compare.comparison.summary import summary_row
-from rockwobble.compare.metrics.agreement import agreed_passes, agreement_time, closest_pass, tolerance_of
-from rockwobble.compare.metrics.pair import make_pair
+from rockwobble.compare.metrics.pair import (
+    agreed_passes,
+    agreement_time,
+    closest_pass,
+    make_pair,
+    tolerance_of,
+)
 
 SAMPLE = 0.01  # an agreement time is known to one sample
 

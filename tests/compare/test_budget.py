@@ -22,9 +22,9 @@ from rockwobble.compare.comparison.budget import (
     findings,
     limits,
 )
-from rockwobble.compare.metrics.agreement import Agreement
+from rockwobble.compare.metrics.pair import Agreement
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite
-from rockwobble.models.traces.lost_trace import lost_trace
+from rockwobble.models.trace import lost_trace
 
 ROUNDING = 1e-12
 STEP = 4e-4  # coarse, so that four runs take a second

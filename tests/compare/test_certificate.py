@@ -26,7 +26,7 @@ from rockwobble.compare.certificate import (
     verify,
     write_certificate,
 )
-from rockwobble.compare.certificate.fingerprint import fingerprint, repeated, short_cases
+from rockwobble.compare.certificate.certificate import fingerprint, repeated, short_cases
 from rockwobble.compare.certificate.verdict import (
     CHANGED,
     CHAOTIC,
@@ -36,7 +36,7 @@ from rockwobble.compare.certificate.verdict import (
     late_peaks,
 )
 from rockwobble.compare.check import Result, Subject
-from rockwobble.compare.check.result import Bound, at_most, not_run
+from rockwobble.compare.check.measurement import Bound, at_most, not_run
 from rockwobble.models import Case, GroundMotion, Trace
 
 ROOT = Path(__file__).resolve().parents[2]

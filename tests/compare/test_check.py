@@ -23,23 +23,18 @@ from rockwobble.compare.check import (
     PASSED,
     Result,
     Subject,
-    baseline,
-    conserved,
-    equations,
-    exact,
+    agreement,
     external_model,
     invariance,
     lagrange,
-    order,
+    laws,
     reduced_model,
-    rest,
     run_checks,
     subject,
-    trace,
     trajectories,
 )
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
-from rockwobble.models.traces.trace_source import Known
+from rockwobble.models.trace_source import Known
 from rockwobble.reduced.body import body_of
 
 CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.4, transverse_inertia=9.0, axial_inertia=2.0)
@@ -161,26 +156,26 @@ def test_the_reduced_models_hold(right: Subject, group: str) -> None:
 @pytest.mark.parametrize(
     ("measure", "support", "fault"),
     [
-        (equations.residual, "recess", heavy),
-        (equations.residual, "recess", field("contact_force", lambda force: force * [1.0, 1.0, 1.0 + 1e-8])),
-        (equations.residual, "recess", field("tilt_rate", lambda rate: (1.0 + 1e-8) * rate)),
-        (exact.free_response, "recess", asked(larger)),
-        (exact.steady_wobble, "flat", heavy),
-        (exact.vanishing_spin, "recess", answered(lambda found: dataclasses.replace(
+        (lagrange.residual, "recess", heavy),
+        (lagrange.residual, "recess", field("contact_force", lambda force: force * [1.0, 1.0, 1.0 + 1e-8])),
+        (lagrange.residual, "recess", field("tilt_rate", lambda rate: (1.0 + 1e-8) * rate)),
+        (laws.free_response, "recess", asked(larger)),
+        (laws.steady_wobble, "flat", heavy),
+        (laws.vanishing_spin, "recess", answered(lambda found: dataclasses.replace(
             found, passes=found.passes.assign(angle_of_turn=1.00001 * found.passes["angle_of_turn"])))),
-        (exact.planar_rocking, "planar", heavy),
-        (conserved.free_motion, "recess", field("energy", lambda e: e * (1.0 + 1e-7 * np.arange(len(e))))),
-        (conserved.free_motion, "recess", field("rolling_rate", lambda rate: 1.0001 * rate)),
-        (conserved.work_of_the_ground, "flat", moved(vertical_reversed)),
-        (conserved.work_of_the_ground, "recess", moved(held_after_its_end)),
-        (conserved.work_of_a_record, "flat", moved(half_a_sample_late)),
-        (rest.stands, "recess", moved(lambda motion: motion.scaled(1.02))),
-        (rest.uplift, "recess", moved(lambda motion: motion.scaled(1.001))),
-        (rest.uplift, "flat", moved(vertical_reversed)),
-        (rest.after_uplift, "recess", field("tilt", lambda tilt: 1.001 * tilt)),
-        (rest.force_at_rest, "recess", field("contact_force", lambda force: force * [1.0, 1.0, 0.9])),
-        (rest.falls, "recess", field("peak_tilt", lambda peak: 0.9 * peak)),
-        (rest.landing, "planar", option("restitution", lambda ratio: ratio**2 if ratio < 1.0 else 0.99)),
+        (laws.planar_rocking, "planar", heavy),
+        (lagrange.free_motion, "recess", field("energy", lambda e: e * (1.0 + 1e-7 * np.arange(len(e))))),
+        (lagrange.free_motion, "recess", field("rolling_rate", lambda rate: 1.0001 * rate)),
+        (lagrange.work_of_the_ground, "flat", moved(vertical_reversed)),
+        (lagrange.work_of_the_ground, "recess", moved(held_after_its_end)),
+        (lagrange.work_of_a_record, "flat", moved(half_a_sample_late)),
+        (laws.stands, "recess", moved(lambda motion: motion.scaled(1.02))),
+        (laws.uplift, "recess", moved(lambda motion: motion.scaled(1.001))),
+        (laws.uplift, "flat", moved(vertical_reversed)),
+        (laws.after_uplift, "recess", field("tilt", lambda tilt: 1.001 * tilt)),
+        (laws.force_at_rest, "recess", field("contact_force", lambda force: force * [1.0, 1.0, 0.9])),
+        (laws.falls, "recess", field("peak_tilt", lambda peak: 0.9 * peak)),
+        (laws.landing, "planar", option("restitution", lambda ratio: ratio**2 if ratio < 1.0 else 0.99)),
         (invariance.frame, "recess", moved(one_sided)),
         (invariance.scale, "flat", answered(lambda found: dataclasses.replace(
             found, tilt=found.tilt + 1e-6 / found.case.cylinder.semidiagonal))),
@@ -189,13 +184,13 @@ def test_the_reduced_models_hold(right: Subject, group: str) -> None:
         (invariance.falling_ground, "planar", moved(vertical_reversed)),
         (invariance.after_rest, "recess", option("rest_tilt", lambda _: 0.0)),
         (invariance.backwards, "recess", field("tilt_rate", lambda rate: 1.0001 * rate)),
-        (order.tolerance, "recess", never_finer),
-        (trace.place, "recess", field("twist", lambda twist: twist + 1e-6)),
-        (trace.place, "recess", field("contact_point", lambda point: 1.0001 * point)),
-        (trace.place, "recess", field("centre_of_mass", lambda place: 1.0001 * place)),
-        (trace.turning, "recess", field("peak_tilt", lambda peak: 0.999 * peak)),
-        (trace.turning, "flat", field("extrema", lambda rows: rows * [1.0001, 1.0, 1.0, 1.0])),
-        (baseline.kept_numbers, "recess", field("tilt", lambda tilt: tilt + 1e-6)),
+        (agreement.order_by_tolerance, "recess", never_finer),
+        (laws.place, "recess", field("twist", lambda twist: twist + 1e-6)),
+        (laws.place, "recess", field("contact_point", lambda point: 1.0001 * point)),
+        (laws.place, "recess", field("centre_of_mass", lambda place: 1.0001 * place)),
+        (laws.turning, "recess", field("peak_tilt", lambda peak: 0.999 * peak)),
+        (laws.turning, "flat", field("extrema", lambda rows: rows * [1.0001, 1.0, 1.0, 1.0])),
+        (agreement.kept_numbers, "recess", field("tilt", lambda tilt: tilt + 1e-6)),
     ],
 )  # fmt: skip
 def test_a_check_finds_a_fault_of_its_kind(right: Subject, measure: Any, support: str, fault: Any) -> None:
@@ -205,7 +200,7 @@ def test_a_check_finds_a_fault_of_its_kind(right: Subject, measure: Any, support
 
 def test_a_cause_is_named_where_it_stands_alone(right: Subject) -> None:
     def causes(fault: Callable[[Subject], Subject]) -> list[str]:
-        return [result.cause for result in equations.residual(fault(right), "recess") if result.failed]
+        return [result.cause for result in lagrange.residual(fault(right), "recess") if result.failed]
 
     assert causes(field("tilt_rate", lambda rate: 1.001 * rate)) == ["tilt rate"]
     assert set(causes(heavy)) == {""}
@@ -415,10 +410,10 @@ def test_a_trajectory_without_tilt_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_version_without_a_baseline_is_no_failure_but_said(right: Subject) -> None:
-    kept = baseline.read_baseline()
+    kept = agreement.read_baseline()
     known = next(name for name in kept.values if name.startswith("mujoco "))
     engine = dataclasses.replace(right, label="mujoco", run=rw.Run("mujoco", "recess"))
-    found = list(baseline.kept_numbers(engine, "recess"))
+    found = list(agreement.kept_numbers(engine, "recess"))
     assert {each.outcome for each in found} == {NO_BASELINE}
     assert all(
         each.note.startswith(f"no baseline for mujoco {rw.__version__}; compared with {known}")
@@ -429,15 +424,15 @@ def test_a_version_without_a_baseline_is_no_failure_but_said(right: Subject) -> 
 def test_an_update_keeps_the_reason_and_the_other_groups() -> None:
     import json
 
-    old = baseline.Baseline(values={"a 1": {"x": 1.0}, "b 1": {"y": 2.0}}, reasons=({"reason": "first"},))
+    old = agreement.Baseline(values={"a 1": {"x": 1.0}, "b 1": {"y": 2.0}}, reasons=({"reason": "first"},))
     new = {"a 1": {"x": 1.5, "z": 3.0}}
-    assert baseline.changes(old, new) == [("a 1", "x", 1.0, 1.5), ("a 1", "z", None, 3.0)]
+    assert agreement.baseline_changes(old, new) == [("a 1", "x", 1.0, 1.5), ("a 1", "z", None, 3.0)]
     made_with = {"date": "2026-11-21", "versions": {"numpy": "2"}}
-    found = json.loads(baseline.updated(old, new, reason=" a  new kernel ", **made_with))
+    found = json.loads(agreement.updated_baseline(old, new, reason=" a  new kernel ", **made_with))
     assert found["values"] == {"a 1": {"x": 1.5, "z": 3.0}, "b 1": {"y": 2.0}}
     assert [entry["reason"] for entry in found["reasons"]] == ["first", "a new kernel"]
     with pytest.raises(ValueError, match="a reason must be given"):
-        baseline.updated(old, new, reason="  ", **made_with)
+        agreement.updated_baseline(old, new, reason="  ", **made_with)
 
 
 def one(*values: float) -> list[np.ndarray]:
@@ -481,13 +476,13 @@ def test_differences_are_exact_for_polynomials_and_good_for_sines() -> None:
 
 def test_quadratures_are_the_exact_solutions_of_the_package() -> None:
     tilt = 0.4 * CYLINDER.alpha
-    _, turn = exact.period_and_turn(SHAPE, tilt, 0.3)
+    _, turn = laws.period_and_turn(SHAPE, tilt, 0.3)
     # rounding of the energies near both ends
     stated = reduced.angle_of_turn(CYLINDER, InitialState(tilt=tilt, rolling_rate=0.3))
     assert turn == pytest.approx(stated, abs=1e-9)
     quarter = reduced.planar_quarter_period(CYLINDER, tilt)
-    assert exact.planar_quarter(SHAPE, tilt) == pytest.approx(quarter, rel=1e-10)
-    assert exact.steady_rate(SHAPE, tilt) == pytest.approx(
+    assert laws.planar_quarter(SHAPE, tilt) == pytest.approx(quarter, rel=1e-10)
+    assert laws.steady_rate(SHAPE, tilt) == pytest.approx(
         reduced.steady_wobble_rate(CYLINDER, tilt), rel=ROUNDING
     )
-    assert exact.tilt_inertia(SHAPE) == pytest.approx(9.0 + 36.0, rel=ROUNDING)
+    assert laws.tilt_inertia(SHAPE) == pytest.approx(9.0 + 36.0, rel=ROUNDING)

@@ -10,21 +10,9 @@ import numpy as np
 import pytest
 from declared_engines import Install, installer
 
-from rockwobble.compare.check import (
-    GROUPS,
-    Subject,
-    agreement,
-    conserved,
-    engine,
-    exact,
-    invariance,
-    order,
-    protocol,
-    rest,
-    trace,
-)
+from rockwobble.compare.check import GROUPS, Subject, agreement, engine, invariance, lagrange, laws
 from rockwobble.models import Trace
-from rockwobble.models.traces.trace_source import Known
+from rockwobble.models.trace_source import Known
 from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import engine_facts, standard_engines
 
@@ -51,8 +39,8 @@ def asked_of(name: str) -> tuple[str, ...]:
 def test_an_engine_that_is_installed_holds(name: str, group: str, monkeypatch: pytest.MonkeyPatch) -> None:
     # 72 deg apart, close to between the corners of any polygon of 4, 8 or 12 of them; all directions are
     # tried by `tests/benchmarks version_figures`
-    monkeypatch.setattr(rest, "DIRECTIONS", 5)
-    monkeypatch.setattr(rest, "SLENDERNESS", (0.1, 1.0))
+    monkeypatch.setattr(laws, "DIRECTIONS", 5)
+    monkeypatch.setattr(laws, "SLENDERNESS", (0.1, 1.0))
     subject, brief = ENGINES[name], name not in standard_engines()
     # of an engine that is an extra with its first support, and of the agreement what `check` asks of it, too
     chosen = [each for each in GROUPS[group] if each.extra or not (brief and group == "agreement")]
@@ -66,14 +54,14 @@ def test_an_engine_that_is_installed_holds(name: str, group: str, monkeypatch: p
     [
         ("Backwards", agreement.fields),
         ("OneSided", invariance.frame),
-        ("Heavy", exact.steady_wobble),
-        ("Heavy", conserved.free_motion),
-        ("Random", protocol.repetition),
-        ("Loud", protocol.repetition),
-        ("Careless", protocol.description),
+        ("Heavy", laws.steady_wobble),
+        ("Heavy", lagrange.free_motion),
+        ("Random", invariance.repetition),
+        ("Loud", invariance.repetition),
+        ("Careless", invariance.description),
         ("Absolute", invariance.scale),
-        ("Early", protocol.stepping),
-        ("Slippery", trace.slip),
+        ("Early", invariance.stepping),
+        ("Slippery", laws.slip),
     ],
 )
 def test_a_fault_of_an_engine_is_found(
@@ -110,10 +98,10 @@ def changed(field: str, change: Any) -> Subject:
         (agreement.release, "rolling_angle", lambda values: values + 1e-3),
         (agreement.ramp, "tilt", lambda values: 1.1 * values),
         (agreement.record, "tilt", lambda values: 1.01 * values),
-        (rest.uplift, "uplift_time", lambda value: value + 1e-3),
-        (rest.uplift, "uplift_direction", lambda value: -value),
-        (trace.slip, "slip", lambda values: values + 1e-2),
-        (protocol.time_grid, "time", lambda values: values + 1e-6),
+        (laws.uplift, "uplift_time", lambda value: value + 1e-3),
+        (laws.uplift, "uplift_direction", lambda value: -value),
+        (laws.slip, "slip", lambda values: values + 1e-2),
+        (invariance.time_grid, "time", lambda values: values + 1e-6),
     ],
 )
 def test_a_wrong_field_is_found(measure: Any, field: str, change: Any) -> None:
@@ -141,7 +129,10 @@ def test_samples_at_the_nearest_step_are_found() -> None:
 
 @pytest.mark.parametrize(
     ("measure", "settings"),
-    [(order.time_step, {"contact_damping_ratio": 0.01}), (exact.free_response, {"time_step": 1e-3})],
+    [
+        (agreement.order_by_time_step, {"contact_damping_ratio": 0.01}),
+        (laws.free_response, {"time_step": 1e-3}),
+    ],
 )
 def test_settings_that_spoil_contact_are_found(measure: Any, settings: dict[str, float]) -> None:
     assert [each for each in measure(engine("mujoco", **settings), "recess") if each.failed]

@@ -12,10 +12,9 @@ import pytest
 from benchmarks.false_alarms import case_of, larger, records
 
 from rockwobble import reduced
-from rockwobble.compare.check import Result, external_model, own_bounds
-from rockwobble.compare.check.agreement import check_suite
-from rockwobble.compare.check.own_bounds import SuiteRuns
-from rockwobble.compare.check.scenes import PIER, released
+from rockwobble.compare.check import Result, external_model, suite
+from rockwobble.compare.check.measurement import PIER, released
+from rockwobble.compare.check.suite import SuiteRuns, check_suite
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Case, Cylinder, Run, Trace, el_centro_1940
 from rockwobble.multibody import available_engines
@@ -80,14 +79,14 @@ def test_an_engine_that_is_off_is_found_and_blamed() -> None:
 
 
 def test_without_a_second_engine_no_cause_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(own_bounds, "standard_engines", lambda: ("mujoco",))
+    monkeypatch.setattr(suite, "standard_engines", lambda: ("mujoco",))
     *_, failed = (f for f in found(SHORT, Run("mujoco", "recess"), reference=larger) if f.failed)
     assert failed.cause == ""
     assert "add one to the runs" in failed.note
 
 
 def test_a_step_that_is_too_large_is_named_with_one_that_would_do(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(own_bounds, "_by_step", lambda _, __, trace: np.full(len(trace.time) - 1, 0.01))
+    monkeypatch.setattr(suite, "_by_step", lambda _, __, trace: np.full(len(trace.time) - 1, 0.01))
     findings = found(SHORT, Run("mujoco", "recess"), reference=slower)
     assert findings[-1].cause == "time step of mujoco"
     assert findings[-1].note.endswith(
@@ -101,7 +100,7 @@ def slower(case: Case, **options: Any) -> Trace:
 
 
 def test_a_motion_is_met_where_it_is_strongest() -> None:
-    met = own_bounds.in_motion(SHORT)
+    met = suite.in_motion(SHORT)
     assert met is not None
     assert met.motion is not None
     assert met.length == 2.0
@@ -117,7 +116,7 @@ def test_sizes_meet_the_same_motion() -> None:
     motion = el_centro_1940()
     four = dataclasses.replace(motion, time_step=2.0 * motion.time_step)
     large = Cylinder(semidiagonal=24.0, tan_alpha=0.2)
-    small, big = (own_bounds.in_motion(Case(*each)) for each in ((PIER, motion), (large, four)))
+    small, big = (suite.in_motion(Case(*each)) for each in ((PIER, motion), (large, four)))
     assert small is not None
     assert big is not None
     tilts = [reduced.simulate(c, sample_step=c.length).peak_tilt for c in (small, big)]
@@ -126,10 +125,10 @@ def test_sizes_meet_the_same_motion() -> None:
 
 def test_of_a_release_the_first_seconds_are_taken_and_of_what_stands_nothing() -> None:
     release = released(0.5, 0.5, 8.0)
-    first = own_bounds.in_motion(release)
+    first = suite.in_motion(release)
     assert first is not None
     assert (first.length, first.initial, first.motion) == (2.0, release.initial, None)
-    assert own_bounds.in_motion(Case(PIER, duration=1.0)) is None
+    assert suite.in_motion(Case(PIER, duration=1.0)) is None
 
 
 @pytest.mark.parametrize("spin", [0.5, 0.05, 0.0])
@@ -144,7 +143,7 @@ def test_a_release_that_passes_upright_gives_no_alarm_and_finds_a_wrong_model(sp
 def test_twice_the_step_or_half_of_it() -> None:
     job = Job(case=SHORT, run=Run("mujoco", "recess"))
     for step, other_one, factor in ((1e-4, 2e-4, 1.0), (1e-3, 5e-4, 2.0), (math.nan, 2e-4, 1.0)):
-        other, given = own_bounds.other_step(job, made(np.arange(2.0), np.zeros(2), time_step=step))
+        other, given = suite.other_step(job, made(np.arange(2.0), np.zeros(2), time_step=step))
         assert (other.run.time_step, given) == (other_one, factor)
 
 
@@ -155,7 +154,7 @@ def test_twice_the_step_or_half_of_it() -> None:
 def test_a_run_of_several_steps_has_one_beside_it(way: str, settings: dict[str, float]) -> None:
     run = Run("mujoco", "recess", way, iterations=50, **settings)
     job = Job(case=SHORT, run=run)
-    other, _ = own_bounds.other_step(job, made(np.arange(2.0), np.zeros(2), time_step=math.nan))
+    other, _ = suite.other_step(job, made(np.arange(2.0), np.zeros(2), time_step=math.nan))
     assert other.run == Run("mujoco", "recess", 2e-4, iterations=50)
 
 
@@ -184,6 +183,6 @@ def test_a_second_engine_decides(
     model = made(TIME, RAMP, run=Run(None, "recess"))
     job = Job(case=model.case, run=Run("mujoco", "recess"))
     wrong = made(TIME, (1.0 + engine) * RAMP)
-    found = own_bounds.likely_cause(SuiteRuns(), job, model, wrong, until=1.0)
+    found = suite.likely_cause(SuiteRuns(), job, model, wrong, until=1.0)
     assert found[0] == cause
     assert note in found[1]

@@ -13,7 +13,7 @@ from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job, simulate_all, simulate_run
 from rockwobble.compare.storage.manifest import read_manifests
 from rockwobble.models import Case, Cylinder, Diagnostic, GroundMotion, InitialState, Run, Suite
-from rockwobble.models.traces.lost_trace import lost_trace
+from rockwobble.models.trace import lost_trace
 
 ROUNDING = 1e-12
 

@@ -9,7 +9,7 @@ import pytest
 from rockwobble.compare import Comparison, compare
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite
-from rockwobble.models.traces.parquet_file import read_about
+from rockwobble.models.parquet_file import read_about
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2, height=11.0)
 SHAKE = GroundMotion(

@@ -14,21 +14,24 @@ import pytest
 from scipy.special import betainc, betaincinv
 from scipy.stats import PermutationMethod, binom, binomtest, norm, wilcoxon
 
-from rockwobble.compare.metrics.distributions import (
+from rockwobble.compare.metrics.statistics import (
     CONFIDENCE,
     MARGIN,
     POWER,
+    Interval,
     adjusted,
     contrast,
+    end_index,
     largest_share_unseen,
     least_significant_count,
     log_ratios,
     mcnemar_p,
     paired_difference,
+    quantile_interval,
     ratio_within_reach,
+    share_interval,
     signed_rank_p,
 )
-from rockwobble.compare.metrics.order_statistics import Interval, end_index, quantile_interval, share_interval
 
 ROUNDING = 1e-12
 COUNT = 22  # far-field pairs of FEMA P-695

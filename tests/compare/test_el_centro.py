@@ -9,8 +9,7 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare import compare
-from rockwobble.compare.metrics.pair import make_pair
-from rockwobble.compare.metrics.tilt import tilt_rms_relative
+from rockwobble.compare.metrics.pair import make_pair, tilt_rms_relative
 from rockwobble.models import Case, Cylinder, Run, el_centro_1940
 
 STEP = 1e-4  # [s]

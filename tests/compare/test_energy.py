@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.metrics.energy import energy_loss
+from rockwobble.compare.metrics.pair import energy_loss
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 # the path is known at samples 0.01 s apart: what the fourth differences leave of the work

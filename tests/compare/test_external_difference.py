@@ -5,10 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from rockwobble.compare.external.difference import AZIMUTH_BOUND, Part, Reference, explains
 from rockwobble.compare.external.explanation import fitted_frames, fitted_offsets, fitted_rate
 from rockwobble.compare.external.mistakes import Frame
-from rockwobble.compare.external.motion import Motion
+from rockwobble.compare.external.motion import AZIMUTH_BOUND, Motion, Part, Reference, explains
 from rockwobble.models import Cylinder
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

@@ -9,10 +9,8 @@ import numpy as np
 import pytest
 
 from rockwobble.compare.runs.execution import simulate_run
-from rockwobble.compare.studies.extremes import verdict
-from rockwobble.compare.studies.extremes.conditions import EXTREMES, Condition, conditions
-from rockwobble.compare.studies.extremes.study import methods
-from rockwobble.compare.studies.extremes.verdict import FINE, judge
+from rockwobble.compare.studies import extremes
+from rockwobble.compare.studies.extremes import FINE, Condition, conditions, judge, methods
 from rockwobble.models import Case, Diagnostic, InitialState, Run, Trace
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 
@@ -25,10 +23,14 @@ def at(extreme: str, value: str) -> Condition:
 
 
 def test_every_extreme_has_conditions_and_quick_keeps_its_ends() -> None:
-    assert {each.extreme for each in conditions()} == set(EXTREMES)
-    quick = conditions(quick=True)
-    assert len(quick) == 2 * len(EXTREMES)
-    assert len({(each.extreme, each.value) for each in conditions()}) == len(conditions())
+    every = [(each.extreme, each.value) for each in conditions()]
+    assert len(set(every)) == len(every)
+    names = {extreme for extreme, _ in every}
+    assert len(names) == 10
+    quick = [(each.extreme, each.value) for each in conditions(quick=True)]
+    for name in names:
+        own = [each for each in every if each[0] == name]
+        assert [each for each in quick if each[0] == name] == [own[0], own[-1]]
 
 
 @pytest.mark.parametrize("extreme", [("size", "R = 0.001 m"), ("slenderness", "tan α = 100")])
@@ -69,7 +71,7 @@ def test_every_refusal_is_one_line_before_anything_runs(monkeypatch: pytest.Monk
     def none(*_: object, **__: object) -> Trace:
         raise ZeroDivisionError("it runs")
 
-    monkeypatch.setattr(verdict, "simulate_run", none)
+    monkeypatch.setattr(extremes, "simulate_run", none)
     refused = []
     for condition in conditions():
         for run in (PLANAR, RECESS, ENGINE, RING):
@@ -89,7 +91,7 @@ def test_an_error_in_the_middle_of_a_run_is_no_refusal(monkeypatch: pytest.Monke
     def broken(*_: object, **__: object) -> Trace:
         raise ValueError("operands could not be broadcast together")
 
-    monkeypatch.setattr(verdict, "simulate_run", broken)
+    monkeypatch.setattr(extremes, "simulate_run", broken)
     with pytest.raises(ValueError, match="broadcast"):
         judge(at("size", "R = 0.001 m"), RECESS)
 
@@ -101,7 +103,7 @@ def test_a_ring_is_held_against_itself_at_half_the_step(monkeypatch: pytest.Monk
         steps.append((run.support, run.time_step))
         return simulate_run(case, run, sample_step=sample_step)
 
-    monkeypatch.setattr(verdict, "simulate_run", counted)
+    monkeypatch.setattr(extremes, "simulate_run", counted)
     condition = at("time step", "5 times the default")
     assert judge(condition, RING).reference == "half_step"
     (ours, step), (other, half) = steps
@@ -140,7 +142,7 @@ def test_only_a_diagnostic_that_explains_an_error_and_is_no_later_flags_it(
         found = simulate_run(moved, run, sample_step=sample_step)
         return dataclasses.replace(found, facts=facts, case=case)
 
-    monkeypatch.setattr(verdict, "simulate_run", other)
+    monkeypatch.setattr(extremes, "simulate_run", other)
     found = judge(longer, ENGINE)
     assert found.verdict == wanted
     assert found.limit == (min(facts, key=lambda fact: fact.time).code if wanted == "flagged" else "")

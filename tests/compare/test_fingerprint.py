@@ -10,7 +10,7 @@ import pytest
 
 from rockwobble.compare.runs.execution import Job, job_fingerprint
 from rockwobble.compare.storage import provenance
-from rockwobble.compare.storage.fingerprint import fingerprint
+from rockwobble.compare.storage.provenance import fingerprint
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -52,7 +52,7 @@ def test_equal_values_have_one_name():
 
 
 def test_the_name_is_that_of_another_process():
-    module = "rockwobble.compare.storage.fingerprint"
+    module = "rockwobble.compare.storage.provenance"
     code = f"import {module} as there; print(there.fingerprint({{'a': [0.1, 'x', None]}}))"
     there = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert there.strip() == fingerprint({"a": [0.1, "x", None]})

@@ -13,10 +13,9 @@ import pytest
 from rockwobble import reduced
 from rockwobble.compare import Fragility, IncompleteError, fragility
 from rockwobble.compare.runs import execution
-from rockwobble.compare.studies.fragility import plan as running
-from rockwobble.compare.studies.fragility.samples import exceeded, require_limits
+from rockwobble.compare.studies.fragility import runs as running
 from rockwobble.compare.studies.fragility.study import fragility_of
-from rockwobble.compare.studies.fragility.tables import incremental, islands
+from rockwobble.compare.studies.fragility.tables import exceeded, incremental, islands, require_limits
 from rockwobble.models import Case, Cylinder, Run, WobblingFrame, synthetic_motions
 
 COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)

@@ -13,7 +13,7 @@ from scipy.optimize import root
 from scipy.special import log_ndtr
 from scipy.stats import norm
 
-from rockwobble.compare.metrics.order_statistics import Interval
+from rockwobble.compare.metrics.statistics import Interval
 from rockwobble.compare.studies.fragility.fit import (
     ALWAYS,
     FALLING,

@@ -9,7 +9,7 @@ import pytest
 
 from rockwobble.compare import LIMITS, MEASURES, fragility
 from rockwobble.compare.runs.plan import options_of
-from rockwobble.compare.studies.fragility.methods import methods_of, own_model
+from rockwobble.compare.studies.fragility.runs import methods_of, own_model
 from rockwobble.compare.studies.plans import FragilityPlan
 from rockwobble.models import Cylinder, Run, el_centro_1940, read_records, synthetic_motions
 

@@ -10,8 +10,7 @@ from scipy.integrate import solve_ivp
 
 from rockwobble import reduced
 from rockwobble.compare.studies.fragility.intensity import MEASURES, Array, intensity, measures_of, velocity
-from rockwobble.compare.studies.fragility.methods import methods_of
-from rockwobble.compare.studies.fragility.plan import RunPlan, default_levels
+from rockwobble.compare.studies.fragility.runs import RunPlan, default_levels, methods_of
 from rockwobble.compare.studies.plans import FragilityPlan
 from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
 

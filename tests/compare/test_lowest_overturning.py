@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.metrics.tilt import overturned
+from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.studies.plans import STEP
 from rockwobble.compare.studies.spectrum.maps import uplift_factor
 from rockwobble.compare.studies.spectrum.search import (

@@ -18,7 +18,7 @@ from rockwobble.compare.storage.manifest import (
     write_pages,
     write_results,
 )
-from rockwobble.models.traces.parquet_file import read_about
+from rockwobble.models.parquet_file import read_about
 
 TABLE = pd.DataFrame({"peak": [0.1, float("nan")], "run": ["a", "b"]})
 

@@ -14,7 +14,7 @@ from rockwobble.compare.comparison.prediction import (
     reproducible_until,
     verdict,
 )
-from rockwobble.compare.metrics.turning import landings
+from rockwobble.compare.metrics.pair import landings
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, el_centro_1940
 
 TIME = np.arange(1001) * 0.01

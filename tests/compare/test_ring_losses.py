@@ -7,7 +7,7 @@ import math
 from benchmarks.ring_losses import against_models
 
 from rockwobble.compare.runs.execution import simulate_run
-from rockwobble.compare.studies.validity.el_centro import has_room, losses
+from rockwobble.compare.studies.validity.shaken import has_room, losses
 from rockwobble.models import Case, Cylinder, InitialState, Run
 
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=1.0)

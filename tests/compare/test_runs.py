@@ -9,14 +9,15 @@ import pytest
 
 from rockwobble.compare import compare, default_runs, own_model, simulate
 from rockwobble.compare.runs.choice import (
+    labels_beside_references,
     missing_engines,
     references_of,
     require_runnable,
     reserved_engines,
+    run_labels,
     runs_here,
     unsupported,
 )
-from rockwobble.compare.runs.labels import labels_beside_references, run_labels
 from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines import registry

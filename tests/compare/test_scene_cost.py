@@ -6,7 +6,7 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.compare.runs.progress import Progress, Stages
-from rockwobble.compare.studies.tradeoff.scene_cost import scene_costs
+from rockwobble.compare.studies.scene_cost import scene_costs
 
 ENGINES = multibody.available_engines()
 

@@ -19,9 +19,8 @@ from scheduled import die_once, killed, multiples, never_the_same, refuse, signa
 from rockwobble.compare.runs import dask_backend
 from rockwobble.compare.runs.cache import CACHE, open_table_cache, unfinished
 from rockwobble.compare.runs.dask_backend import ClusterError
-from rockwobble.compare.runs.progress import Progress
+from rockwobble.compare.runs.progress import Lost, Progress
 from rockwobble.compare.runs.scheduler import run_tasks
-from rockwobble.compare.runs.task import Lost
 from rockwobble.models import cpus
 from rockwobble.models.cpus import usable_cpus
 
@@ -233,7 +232,7 @@ def test_a_script_without_a_main_guard_runs_once(tmp_path):
 def test_workers_end_with_a_caller_that_iskilled(tmp_path):
     script = (
         "import os, time\n"
-        "from rockwobble.compare.runs.worker import Worker\n"
+        "from rockwobble.compare.runs.scheduler import Worker\n"
         "worker = Worker()\n"
         "print(worker.call(os.getpid), flush=True)\n"
         "worker.call(time.sleep, 60.0)\n"

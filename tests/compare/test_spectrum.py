@@ -8,7 +8,7 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare.studies.plans import STEP
-from rockwobble.compare.studies.spectrum import tables as verification
+from rockwobble.compare.studies.spectrum import study as verification
 from rockwobble.compare.studies.spectrum.maps import (
     PLANAR_X,
     PLANAR_Y,
@@ -17,7 +17,7 @@ from rockwobble.compare.studies.spectrum.maps import (
     TiltMaps,
     tilt_maps,
 )
-from rockwobble.compare.studies.spectrum.tables import CELLS, check_cells, confirm_lowest
+from rockwobble.compare.studies.spectrum.study import CELLS, check_cells, confirm_lowest
 from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame, el_centro_1940
 
 WHOLE = el_centro_1940()

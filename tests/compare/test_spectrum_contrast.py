@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from showing import shows_itself
 
-from rockwobble.compare.studies.spectrum import tables as bands
+from rockwobble.compare.studies.spectrum import study as bands
 from rockwobble.compare.studies.spectrum.maps import (
     PLANAR_X,
     PLANAR_Y,
@@ -16,11 +16,11 @@ from rockwobble.compare.studies.spectrum.maps import (
     safe_islands,
 )
 from rockwobble.compare.studies.spectrum.search import lowest_on_grid
-from rockwobble.compare.studies.spectrum.study import spectrum_of
-from rockwobble.compare.studies.spectrum.tables import (
+from rockwobble.compare.studies.spectrum.study import (
     edge_difference,
     planar_contrast,
     size_bands,
+    spectrum_of,
     unconservative_from,
 )
 from rockwobble.models import GroundMotion

@@ -9,11 +9,11 @@ import pytest
 from scheduled import multiples
 
 from rockwobble.compare import IncompleteError
-from rockwobble.compare.runs import tables
+from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.cache import CACHE
+from rockwobble.compare.runs.execution import run_tables
+from rockwobble.compare.runs.progress import Lost
 from rockwobble.compare.runs.scheduler import run_tasks
-from rockwobble.compare.runs.tables import run_tables
-from rockwobble.compare.runs.task import Lost
 
 TASKS = [1, 2, 3]
 
@@ -24,7 +24,7 @@ def second_dies(monkeypatch: pytest.MonkeyPatch) -> None:
         first, _, third = run_tasks(*given, **options)
         return [first, Lost("out of memory"), third]
 
-    monkeypatch.setattr(tables, "run_tasks", losing)
+    monkeypatch.setattr(execution, "run_tasks", losing)
 
 
 def ran(tasks: list[int] = TASKS, **options) -> pd.DataFrame:

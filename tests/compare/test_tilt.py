@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rockwobble.compare.metrics.pair import make_pair
-from rockwobble.compare.metrics.tilt import tilt_rms, tilt_rms_relative
+from rockwobble.compare.metrics.pair import make_pair, tilt_rms, tilt_rms_relative
 
 ROUNDING = 1e-12  # sums of some thousand terms of order one
 GRID = 1e-3  # a mean over samples against the integral: one sample more than a whole period

@@ -12,9 +12,9 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare.runs.progress import Progress
+from rockwobble.compare.studies.plans import TradeoffPlan
 from rockwobble.compare.studies.tradeoff import problem as problems
 from rockwobble.compare.studies.tradeoff import study
-from rockwobble.compare.studies.tradeoff.conclusions import costs, engine_factors, plateaus, rest_tilt_price
 from rockwobble.compare.studies.tradeoff.methods import (
     BASE_LINE,
     BASE_TOLERANCE,
@@ -24,6 +24,7 @@ from rockwobble.compare.studies.tradeoff.methods import (
     rest_line,
 )
 from rockwobble.compare.studies.tradeoff.problem import FINE_REST_TILT, PIER, Problem
+from rockwobble.compare.studies.tradeoff.study import costs, engine_factors, plateaus, rest_tilt_price
 from rockwobble.multibody.engines import registry
 
 # a release at a tolerance of 1e-8 turns by 1.5e-7 deg too much or too little
@@ -115,10 +116,10 @@ def test_all_methods_are_timed_in_turn_and_told_in_times_of_one(
     def standard_here() -> tuple[str, ...]:
         return tuple(name for name in registry.standard_engines() if name in registry.own_engines())
 
-    for each in ("methods", "scene_cost"):  # what is installed beyond these is timed in the same way
-        monkeypatch.setattr(f"rockwobble.compare.studies.tradeoff.{each}.own_engines", standard_here)
+    for each in ("tradeoff.methods", "scene_cost"):  # what is installed beyond these is timed in the same way
+        monkeypatch.setattr(f"rockwobble.compare.studies.{each}.own_engines", standard_here)
     told: list[Progress] = []
-    found = study.measure_tradeoff(quick=True, progress=told.append)
+    found = study.measure_tradeoff(TradeoffPlan(quick=True), progress=told.append)
     assert (told[-1].state, told[-1].done, told[-1].share) == ("finished", told[-1].total, 1.0)
     base = found.points[(found.points["line"] == BASE_LINE) & (found.points["value"] == BASE_TOLERANCE)]
     assert base[["ratio", "ratio_low", "ratio_high"]].to_numpy().tolist() == [[1.0, 1.0, 1.0]]

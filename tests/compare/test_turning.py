@@ -5,9 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from rockwobble.compare.metrics.contact import contact_rms
-from rockwobble.compare.metrics.pair import make_pair
-from rockwobble.compare.metrics.turning import direction_difference, first_unresolved_pass, turn_difference
+from rockwobble.compare.metrics.pair import (
+    contact_rms,
+    direction_difference,
+    first_unresolved_pass,
+    make_pair,
+    turn_difference,
+)
 
 ROUNDING = 1e-12
 

@@ -17,17 +17,20 @@ from tiny_validity import TINY, kept_engine_runs, tiny_tables, tiny_validity
 from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.validity import study
-from rockwobble.compare.studies.validity.distributions import (
+from rockwobble.compare.studies.validity.limits import (
     FEWEST,
+    LIMITS,
     cells,
     contrasts,
+    damping,
     first_failing,
+    friction,
+    limits_of,
+    needs,
     reached,
     up_to,
     vertical,
 )
-from rockwobble.compare.studies.validity.el_centro import FREE
-from rockwobble.compare.studies.validity.limits import LIMITS, damping, friction, limits_of, needs
 from rockwobble.compare.studies.validity.plan import (
     EL_CENTRO,
     FULL,
@@ -36,7 +39,7 @@ from rockwobble.compare.studies.validity.plan import (
     shaken_case,
     source_of,
 )
-from rockwobble.compare.studies.validity.records import HALVED, RECESS
+from rockwobble.compare.studies.validity.shaken import FREE, HALVED, RECESS
 from rockwobble.compare.studies.validity.study import PARTS, measure_all, part_named
 from rockwobble.models import Cylinder, Run
 from rockwobble.reduced import body, problem

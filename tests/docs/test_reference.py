@@ -15,7 +15,7 @@ import rockwobble
 from rockwobble import compare, reduced
 from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.models.suites.tables import TABLES
-from rockwobble.models.traces.trace_file import COLUMNS, OF_FRAMES, PASS_COLUMNS
+from rockwobble.models.trace_file import COLUMNS, OF_FRAMES, PASS_COLUMNS
 from rockwobble.reports.cli.main import app
 
 DOCS = Path(__file__).parents[2] / "docs"

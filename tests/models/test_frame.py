@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from rockwobble.models import Case, Cylinder, InitialState, WobblingFrame, read_suite
-from rockwobble.models.traces.trace_file import case_from_plain
+from rockwobble.models.trace_file import case_from_plain
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2, axial_inertia=1.1)
 SUITE = """

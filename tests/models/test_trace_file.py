@@ -11,7 +11,7 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, InitialState, Trace, plain_json
-from rockwobble.models.traces.trace_file import case_to_plain
+from rockwobble.models.trace_file import case_to_plain
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 

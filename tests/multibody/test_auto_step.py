@@ -11,9 +11,8 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace
-from rockwobble.models.traces.trace_source import Known
-from rockwobble.multibody.time_step.attempts import Closeness, closeness
-from rockwobble.multibody.time_step.auto import COARSEST, SMALLEST, find_step
+from rockwobble.models.trace_source import Known
+from rockwobble.multibody.auto_step import COARSEST, SMALLEST, Closeness, closeness, find_step
 
 ALPHA = 0.2
 # Richardson with a measured order is good for a factor; three is what it misses by at the bounds of the order

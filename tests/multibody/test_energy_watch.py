@@ -10,7 +10,7 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
-from rockwobble.multibody.recording.energy_watch import DRIFT, EnergyWatch
+from rockwobble.multibody.guard import DRIFT, EnergyWatch
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 # samples at the steps are the steps, but for the rounding of their times

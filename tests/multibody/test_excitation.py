@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rockwobble.models import GroundMotion
-from rockwobble.multibody.scene.excitation import StepMeans
-from rockwobble.multibody.scene.froude import froude_scale
+from rockwobble.multibody.excitation import StepMeans
+from rockwobble.multibody.scene import froude_scale
 
 UNIT = froude_scale(6.0, 9.81)
 MOTION = GroundMotion([[0.0, 1.0], [2.0, -1.0], [1.0, 3.0], [1.0, 1.0]], 0.02)

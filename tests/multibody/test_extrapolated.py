@@ -21,9 +21,9 @@ from rockwobble.models import (
     Trace,
     el_centro_1940,
 )
-from rockwobble.models.traces.trace_source import Known
-from rockwobble.multibody.scene.guard import LARGEST_STEP
-from rockwobble.multibody.time_step.extrapolated import extrapolation, to_zero_step
+from rockwobble.models.trace_source import Known
+from rockwobble.multibody.extrapolated_step import extrapolation, to_zero_step
+from rockwobble.multibody.guard import LARGEST_STEP
 
 ALPHA = 0.2
 # of alpha, after a release: what the second order leaves of an engine of first order

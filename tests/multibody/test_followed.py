@@ -13,9 +13,9 @@ import pytest
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody import stepping
-from rockwobble.multibody.recording.passes import TurningPoint
-from rockwobble.multibody.scene.excitation import StepMeans
-from rockwobble.multibody.scene.froude import froude_scale
+from rockwobble.multibody.excitation import StepMeans
+from rockwobble.multibody.passes import TurningPoint
+from rockwobble.multibody.scene import froude_scale
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 PERIOD = 1.2  # [s]

@@ -7,13 +7,11 @@ import numpy as np
 import pytest
 
 from rockwobble.models import Cylinder, InitialState
-from rockwobble.multibody.body import scaled_body
 from rockwobble.multibody.engines.mujoco import MujocoEngine
 from rockwobble.multibody.engines.mujoco_scene import MujocoSettings, compile_scene
-from rockwobble.multibody.protocol import Scene
-from rockwobble.multibody.recording.forces import HALF_WINDOW, ForceSamples, force_of_steps
-from rockwobble.multibody.recording.recorder import Recorder
-from rockwobble.multibody.start import starting_state
+from rockwobble.multibody.reaction import HALF_WINDOW, ForceSamples, force_of_steps
+from rockwobble.multibody.recorder import Recorder
+from rockwobble.multibody.scene import Scene, scaled_body, starting_state
 
 STEP = 1e-4
 

@@ -7,7 +7,7 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
-from rockwobble.multibody.scene.friction import body_friction
+from rockwobble.multibody.engines.declared import body_friction
 
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=3.0)
 

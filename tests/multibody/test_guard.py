@@ -10,11 +10,10 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
-from rockwobble.multibody.body import scaled_body
+from rockwobble.multibody.guard import energy_scale, first_breach
 from rockwobble.multibody.kinematics import Kinematics, kinematics
 from rockwobble.multibody.protocol import Steps
-from rockwobble.multibody.scene.guard import energy_scale, first_breach
-from rockwobble.multibody.start import starting_state
+from rockwobble.multibody.scene import scaled_body, starting_state
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = InitialState(PIER.alpha / 2, rolling_rate=0.5)

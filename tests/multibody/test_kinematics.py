@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from rockwobble.models import Cylinder, InitialState
-from rockwobble.multibody.body import scaled_body
 from rockwobble.multibody.kinematics import (
     Kinematics,
     Rim,
@@ -19,7 +18,7 @@ from rockwobble.multibody.kinematics import (
     unwrap,
 )
 from rockwobble.multibody.protocol import Steps
-from rockwobble.multibody.start import Start, starting_state
+from rockwobble.multibody.scene import Start, scaled_body, starting_state
 
 CYLINDER = Cylinder(semidiagonal=2.0, tan_alpha=0.4)
 BODY = scaled_body(CYLINDER, 1.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rockwobble.multibody.recording.passes import TurningPoint, passes_between, turning_points
+from rockwobble.multibody.passes import TurningPoint, passes_between, turning_points
 
 
 def test_a_straight_way_past_upright_is_exact_at_any_step() -> None:

@@ -10,10 +10,10 @@ import pytest
 
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
-from rockwobble.multibody.body import scaled_body
 from rockwobble.multibody.engines.rapier import RapierSettings
 from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.recording.uplift import sure_tilt
+from rockwobble.multibody.reaction import sure_tilt
+from rockwobble.multibody.scene import scaled_body
 
 if "rapier" not in multibody.available_engines():
     pytest.skip("needs rapier3d", allow_module_level=True)

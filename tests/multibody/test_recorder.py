@@ -10,15 +10,13 @@ import pytest
 from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, GroundMotion, InitialState
-from rockwobble.multibody.body import scaled_body
 from rockwobble.multibody.engines.mujoco import MujocoEngine
+from rockwobble.multibody.excitation import StepMeans
 from rockwobble.multibody.kinematics import axis_of, unwrap_twist
-from rockwobble.multibody.protocol import Scene, Steps
-from rockwobble.multibody.recording.passes import TurningPoint
-from rockwobble.multibody.recording.recorder import COLUMNS, Recorder
-from rockwobble.multibody.scene.excitation import StepMeans
-from rockwobble.multibody.scene.froude import froude_scale
-from rockwobble.multibody.start import Start, starting_state
+from rockwobble.multibody.passes import TurningPoint
+from rockwobble.multibody.protocol import Steps
+from rockwobble.multibody.recorder import COLUMNS, Recorder
+from rockwobble.multibody.scene import Scene, Start, froude_scale, scaled_body, starting_state
 
 STEP = 1e-4
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

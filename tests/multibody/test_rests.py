@@ -7,8 +7,7 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
-from rockwobble.multibody.recording.passes import TurningPoint, passes_between
-from rockwobble.multibody.recording.rests import SHORTEST, RestWatch
+from rockwobble.multibody.passes import SHORTEST, RestWatch, TurningPoint, passes_between
 
 STEP = 1e-3
 

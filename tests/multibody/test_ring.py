@@ -10,12 +10,11 @@ import pytest
 
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
-from rockwobble.multibody.body import scaled_body
+from rockwobble.multibody.guard import PENETRATION, first_breach
 from rockwobble.multibody.kinematics import kinematics
 from rockwobble.multibody.protocol import Steps, Wall
-from rockwobble.multibody.scene.guard import PENETRATION, first_breach
-from rockwobble.multibody.scene.ring_geometry import clearance_needed
-from rockwobble.multibody.start import starting_state
+from rockwobble.multibody.ring import clearance_needed
+from rockwobble.multibody.scene import scaled_body, starting_state
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=1.0)

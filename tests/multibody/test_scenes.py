@@ -10,13 +10,10 @@ import pytest
 
 import rockwobble.models
 from rockwobble.models import Cylinder, InitialState
-from rockwobble.multibody.body import scaled_body
 from rockwobble.multibody.engines.mujoco import MujocoEngine
 from rockwobble.multibody.engines.mujoco_scene import MujocoSettings, compile_scene
-from rockwobble.multibody.protocol import Scene
-from rockwobble.multibody.scene.ring_geometry import wall_feet, wall_orientations
-from rockwobble.multibody.scene.ring_settings import RingSettings, take_ring
-from rockwobble.multibody.start import starting_state
+from rockwobble.multibody.ring import RingSettings, take_ring, wall_feet, wall_orientations
+from rockwobble.multibody.scene import Scene, scaled_body, starting_state
 
 FOLDER = Path(next(iter(rockwobble.models.__path__))) / "scenes"
 SCENES = sorted(FOLDER.glob("*.xml"))

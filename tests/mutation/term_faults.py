@@ -1,6 +1,6 @@
 """Faults in every term of the equations of the recess model, found in the source itself.
 
-`reduced/integration/recurrences.py` builds (18) and (19) from sums with names of their own. Each term of each
+`reduced/integration/taylor.py` builds (18) and (19) from sums with names of their own. Each term of each
 of these sums, at the start of a step and in its series, is one place for a fault: a factor of 1.01, or -1. A
 rewritten kernel keeps its faults, as long as it keeps these names.
 """
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from .mutant import Fault, source_folder
 from .places import Change
 
-FILE = "integration/recurrences.py"
+FILE = "integration/taylor.py"
 # name of a sum, and the equations that a wrong term shows in; B of (19) is the one whose B' stands in (18)
 SUMS: Mapping[str, tuple[str, ...]] = {
     "Q0": ("(18)",),  # B'/2A

@@ -11,7 +11,7 @@ from mutation.mutant import Fault, mutated
 from mutation.places import Change, after_assignment, appended, before_assignment, scaled_argument, wrapped
 from mutation.term_faults import SUMS, term_faults
 from rockwobble import reduced
-from rockwobble.compare.check import equations
+from rockwobble.compare.check import lagrange
 
 # its inertias are no function of its shape, so that its motions alone tell all terms apart
 ONE = "own inertias, tan alpha = 0.5"
@@ -19,8 +19,8 @@ ONE = "own inertias, tan alpha = 0.5"
 
 @pytest.fixture(autouse=True)
 def short_motions(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(equations, "CYLINDERS", {ONE: equations.CYLINDERS[ONE]})
-    monkeypatch.setattr(equations, "RUNS", 4)
+    monkeypatch.setattr(lagrange, "CYLINDERS", {ONE: lagrange.CYLINDERS[ONE]})
+    monkeypatch.setattr(lagrange, "RUNS", 4)
 
 
 @pytest.mark.parametrize("mutation", mutations(), ids=lambda mutation: mutation.name)

@@ -11,8 +11,8 @@ from rockwobble.models import Cylinder
 from rockwobble.reduced._compile import jit
 from rockwobble.reduced.body import body_of
 from rockwobble.reduced.integration import taylor
+from rockwobble.reduced.integration.record import ground
 from rockwobble.reduced.integration.systems import RECESS
-from rockwobble.reduced.integration.tsit5 import ground
 
 RTOL = 1e-12
 # what a step leaves out, over the largest term of each rate: the tolerance times the order, as a derivative

@@ -8,7 +8,8 @@ import pytest
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 from rockwobble.reduced.body import body_of
-from rockwobble.reduced.integration import tsit5, uplift
+from rockwobble.reduced.integration import stepping, uplift
+from rockwobble.reduced.integration.record import ground
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 BODY = body_of(PIER, 9.81)
@@ -51,7 +52,7 @@ def test_the_solution_does_not_depend_on_where_the_series_is_left(turning, jump)
     theta, omega, phi, rate = uplift.started(BODY, 0.01, a, slope, 0.0, begin)
     L = spin_momentum(theta, rate)
     run = solve_ivp(
-        lambda t, y: recess_rhs(BODY, *y, *tsit5.ground(a, slope, t)),
+        lambda t, y: recess_rhs(BODY, *y, *ground(a, slope, t)),
         (begin, end),
         [theta, omega, phi, L],
         "DOP853",
@@ -97,10 +98,10 @@ def test_a_later_uplift_takes_the_nearest_branch():
 
 
 def test_the_runge_kutta_pair_satisfies_its_order_conditions():
-    rows = [(), tsit5.A2, tsit5.A3, tsit5.A4, tsit5.A5, tsit5.A6, tsit5.B5]
+    rows = [(), stepping.A2, stepping.A3, stepping.A4, stepping.A5, stepping.A6, stepping.B5]
     A = np.array([row + (0.0,) * (7 - len(row)) for row in rows])
-    c = np.array([0.0, tsit5.C2, tsit5.C3, tsit5.C4, tsit5.C5, 1.0, 1.0])
-    b, low = A[6], A[6] - np.array(tsit5.ERROR)
+    c = np.array([0.0, stepping.C2, stepping.C3, stepping.C4, stepping.C5, 1.0, 1.0])
+    b, low = A[6], A[6] - np.array(stepping.ERROR)
     assert A.sum(axis=1) == pytest.approx(c, abs=1e-14)
     trees = {  # elementary weights of all rooted trees to order 5
         1: [(np.ones(7), 1)],

@@ -13,18 +13,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from rockwobble.compare.check import (
-    FAILED,
-    NOT_RUN,
-    PASSED,
-    Checks,
-    Result,
-    Subject,
-    baseline,
-    groups,
-    summary,
-)
-from rockwobble.compare.check.result import Bound, at_most, not_run
+from rockwobble.compare.check import FAILED, NOT_RUN, PASSED, Checks, Result, Subject, agreement, groups
+from rockwobble.compare.check.measurement import Bound, at_most, not_run
 from rockwobble.compare.storage.files import replace_files
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.check import as_junit, check_page, headline
@@ -43,7 +33,7 @@ GOOD, BAD, NONE, LEFT = (
 
 
 def checks(*results: Result) -> Checks:
-    return summary._summed(results)
+    return groups._summed(results)
 
 
 def check_of(measure: Any) -> tuple[groups.Check, ...]:
@@ -79,9 +69,9 @@ def test_groups_that_hold(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
 def test_failures_alone_are_printed_and_end_with_1(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(summary, "_of_this_machine", lambda: [summary.subjects.reduced_model()])
+    monkeypatch.setattr(groups, "_of_this_machine", lambda: [groups.subjects.reduced_model()])
     monkeypatch.setattr(groups, "GROUPS", {"agreement": check_of(lambda *_: iter(MADE))})
-    monkeypatch.setattr(summary, "GROUPS", groups.GROUPS)
+    monkeypatch.setattr(groups, "GROUPS", groups.GROUPS)
     assert run("--only", "agreement") == 1
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith(
@@ -132,7 +122,7 @@ def test_a_report_that_cannot_be_written_in_the_end_is_one_line_after_the_result
         (tmp_path / "a").mkdir(exist_ok=True)
         yield GOOD
 
-    monkeypatch.setattr(summary, "_of_this_machine", lambda: [summary.subjects.reduced_model()])
+    monkeypatch.setattr(groups, "_of_this_machine", lambda: [groups.subjects.reduced_model()])
     monkeypatch.setitem(groups.GROUPS, "exact", check_of(in_the_way))
     assert run("--only", "exact", option, str(tmp_path / "a")) == 2
     out, err = capsys.readouterr()
@@ -186,12 +176,12 @@ def test_outcomes() -> None:
 def test_an_update_needs_a_reason_and_keeps_it(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    kept = {baseline.FILE: (baseline.folder() / baseline.FILE).read_bytes()}
+    kept = {agreement.BASELINES: (agreement.baseline_folder() / agreement.BASELINES).read_bytes()}
     replace_files(tmp_path, kept)
-    monkeypatch.setattr(baseline, "folder", lambda: tmp_path)
-    name, value = next(iter(baseline.read_baseline().values["reduced model"].items()))
+    monkeypatch.setattr(agreement, "baseline_folder", lambda: tmp_path)
+    name, value = next(iter(agreement.read_baseline().values["reduced model"].items()))
     new = {"reduced model": {name: value + 0.25}, "engine 1": {"x": 0.5}}
-    monkeypatch.setattr(baseline, "measure", lambda _: new)
+    monkeypatch.setattr(agreement, "baseline_numbers", lambda _: new)
     assert run("--update-baseline") == 2
     out, err = capsys.readouterr()
     assert f"reduced model, {name}: {value:.12g} -> {value + 0.25:.12g} (+2.5e-01)" in out
@@ -200,6 +190,6 @@ def test_an_update_needs_a_reason_and_keeps_it(
     assert last == "rockwobble: nothing was changed: a new baseline needs a --reason, got none"
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == kept
     assert run("--update-baseline", "--reason", "a better kernel") == 0
-    written = json.loads((tmp_path / baseline.FILE).read_text())
+    written = json.loads((tmp_path / agreement.BASELINES).read_text())
     assert written["values"]["engine 1"] == {"x": 0.5}
     assert written["reasons"][-1]["reason"] == "a better kernel"

@@ -17,7 +17,7 @@ import pytest
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Trace
-from rockwobble.models.traces.lost_trace import lost_trace
+from rockwobble.models.trace import lost_trace
 from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import engine_packages, standard_engines
 from rockwobble.reports.cli.main import main

@@ -12,7 +12,7 @@ import pytest
 from fragility_example import METHODS, made_up
 
 from rockwobble.compare import Fragility
-from rockwobble.compare.metrics.order_statistics import Interval
+from rockwobble.compare.metrics.statistics import Interval
 from rockwobble.compare.studies.fragility.study import fragility_of, main_contrasts
 from rockwobble.compare.studies.fragility.tables import margin_of
 from rockwobble.reports.figures.fragility import pictures

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from typer.main import get_command
 
-from rockwobble.compare.runs.run_settings import with_settings
+from rockwobble.compare.runs.choice import with_settings
 from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.reports.cli.main import app, main
 from rockwobble.reports.cli.options import settings

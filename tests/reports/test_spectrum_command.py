@@ -22,8 +22,7 @@ from rockwobble.compare.studies.spectrum.maps import (
     safe_islands,
     tilt_maps,
 )
-from rockwobble.compare.studies.spectrum.study import KIND, OverturningSpectrum
-from rockwobble.compare.studies.spectrum.tables import planar_contrast
+from rockwobble.compare.studies.spectrum.study import KIND, OverturningSpectrum, planar_contrast
 from rockwobble.models import GroundMotion, el_centro_1940
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.heat import Heat

@@ -48,7 +48,7 @@ def found() -> Tradeoff:
 def test_the_command_writes_its_pages_and_all_that_they_are_drawn_from(
     found: Tradeoff, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(study, "measure_tradeoff", lambda **_: found)
+    monkeypatch.setattr(study, "measure_tradeoff", lambda *_, **__: found)
     done = CliRunner().invoke(app, ["tradeoff", "--quick", "--out", str(tmp_path)])
     assert done.exit_code == 0
     assert {path.name for path in tmp_path.iterdir() if path.is_file()} >= {

@@ -12,7 +12,7 @@ from tiny_validity import TINY, tiny_validity
 from typer.testing import CliRunner
 
 from rockwobble.compare.studies.validity import study
-from rockwobble.compare.studies.validity.records import RECESS
+from rockwobble.compare.studies.validity.shaken import RECESS
 from rockwobble.compare.studies.validity.study import Validity, validity_of
 from rockwobble.reports.cli.main import app, main
 from rockwobble.reports.pages import page as page_module

@@ -17,9 +17,8 @@ import numpy as np
 
 from rockwobble.compare.runs.cache import CACHE
 from rockwobble.compare.runs.progress import Progress
-from rockwobble.compare.studies.sweep.grid import Grid
-from rockwobble.compare.studies.sweep.result import KIND
-from rockwobble.compare.studies.sweep.study import sweep
+from rockwobble.compare.studies.grid import Grid
+from rockwobble.compare.studies.sweep import KIND, sweep
 from rockwobble.models import el_centro_1940
 
 if TYPE_CHECKING:

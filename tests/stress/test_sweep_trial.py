@@ -10,7 +10,7 @@ import pytest
 
 from rockwobble.compare import sweep
 from rockwobble.compare.runs.cache import CACHE
-from rockwobble.compare.studies.sweep.result import KIND
+from rockwobble.compare.studies.sweep import KIND
 from stress.sweep_trial import CHUNK_SIZE, dask_sweep_with_a_death, killed_sweep, trial_grid
 
 

@@ -13,17 +13,16 @@ import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace, el_centro_1940, perturbed_copies
 from rockwobble.models.cylinder import cylinder_of
-from rockwobble.models.records.plausibility import doubts_of
+from rockwobble.models.records.units import doubts_of
 from rockwobble.models.support import support_named
 
-from ...metrics.agreement import tolerance_of
-from ...metrics.distributions import Contrast, contrast
-from ...metrics.tilt import overturned
+from ...metrics.pair import overturned, tolerance_of
+from ...metrics.statistics import Contrast, contrast
 from ...runs.choice import require_runnable
 from ...runs.execution import SAMPLE_STEP, Job, job_fingerprint, simulate_run
 from ...runs.progress import ProgressCallback, Stages
-from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Number, Stored
+from ...storage.provenance import fingerprint
 from ...storage.results import Results
 from ..plans import AdvicePlan
 from ..spectrum.maps import SPATIAL, uplift_factor

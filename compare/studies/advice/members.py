@@ -21,10 +21,9 @@ from rockwobble.models import (
 )
 from rockwobble.models.records import p695
 from rockwobble.models.support import support_named
-from rockwobble.multibody.scene.ring_geometry import rim_overhang
+from rockwobble.multibody.ring import rim_overhang
 
-from ...metrics.distributions import Contrast
-from ...metrics.order_statistics import Interval, quantile_interval, share_interval, stated
+from ...metrics.statistics import Contrast, Interval, quantile_interval, share_interval, stated
 from ..fragility.intensity import largest_resultant, velocity
 
 Array = NDArray[np.float64]

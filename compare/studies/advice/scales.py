@@ -15,12 +15,12 @@ from rockwobble import reduced
 from rockwobble.models import Case
 from rockwobble.models.cpus import in_threads
 
-from ...metrics.order_statistics import share_interval
-from ...metrics.tilt import overturned
+from ...metrics.pair import overturned
+from ...metrics.statistics import share_interval
 from ..plans import STEP
 from ..spectrum.maps import RTOL, SERIES, SPATIAL, intensity_unit, series_options, uplift_of_series
 from ..spectrum.search import Array, lowest_on_grid, run_searches, search_lowest
-from ..spectrum.tables import CHECK_RTOL, NUDGE
+from ..spectrum.study import CHECK_RTOL, NUDGE
 
 # twelve scales for each factor of two, from a quarter to sixteen times the record as it is given
 FACTORS: Array = 2.0 ** (np.arange(-24, 49) / 12.0)

@@ -12,11 +12,11 @@ import pandas as pd
 
 from rockwobble.models import Case, Run, Trace
 from rockwobble.multibody import DEFAULT_ENGINE
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
+from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 
 from ...comparison.driver import compare
 from ...comparison.prediction import Prediction, estimated_error, predict, time_scale
-from ...metrics.agreement import tolerance_of
+from ...metrics.pair import tolerance_of
 from ...runs.execution import simulate_run
 
 # A trace is lost where the copies are spread over half of the peak tilt. A percent of alpha, the limit of

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...metrics.order_statistics import CONFIDENCE, Interval
+from ...metrics.statistics import CONFIDENCE, Interval
 
 Array = NDArray[np.float64]
 

@@ -12,20 +12,21 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.models import Cylinder, GroundMotion, Run
-from rockwobble.models.records.plausibility import doubts_of
-from rockwobble.models.traces.trace_file import run_to_plain
+from rockwobble.models.records.units import doubts_of
+from rockwobble.models.trace_file import run_to_plain
 
-from ...metrics.order_statistics import FEWEST
+from ...metrics.statistics import FEWEST
 from ...runs.progress import ProgressCallback
-from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Number
+from ...storage.provenance import fingerprint
 from ...storage.results import Results
 from ..plans import FragilityPlan
 from .fit import TOO_FEW, resamples
-from .methods import MODELS, Method, methods_of, own_model
-from .plan import RunPlan, default_levels, run_plan
-from .samples import DEFAULT_LIMITS, OVERTURNED, blocks_of, require_limits
+from .runs import MODELS, Method, RunPlan, default_levels, methods_of, own_model, run_plan
 from .tables import (
+    DEFAULT_LIMITS,
+    OVERTURNED,
+    blocks_of,
     contrast_table,
     count_table,
     curve_table,
@@ -33,6 +34,7 @@ from .tables import (
     efficiency_table,
     fit_table,
     island_table,
+    require_limits,
 )
 
 KIND = "fragility"

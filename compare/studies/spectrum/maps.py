@@ -20,7 +20,7 @@ from rockwobble import reduced
 from rockwobble.models import GroundMotion
 from rockwobble.models.number_checks import require_increasing
 
-from ...metrics.tilt import overturned
+from ...metrics.pair import overturned
 from ...runs.progress import ProgressCallback, Stages
 from ..plans import SpectrumPlan
 from .search import lowest_on_grid, probe_below, run_searches, search_lowest

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from rockwobble.models.cpus import in_threads
 
-from ...metrics.order_statistics import CONFIDENCE
-from ...metrics.tilt import overturned
+from ...metrics.pair import overturned
+from ...metrics.statistics import CONFIDENCE
 
 Array = NDArray[np.float64]
 T = TypeVar("T")

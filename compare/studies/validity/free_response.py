@@ -10,8 +10,7 @@ from rockwobble import multibody, reduced
 from rockwobble.models import Assumptions, Case, Run, Trace
 from rockwobble.multibody import DEFAULT_ENGINE
 
-from ...metrics.pair import make_pair
-from ...metrics.tilt import tilt_rms
+from ...metrics.pair import make_pair, tilt_rms
 from ...runs.choice import SUPPORTS, own_model
 from ...runs.execution import simulate_run
 from .plan import Extent, Inputs, Part, Row, release_case

@@ -17,7 +17,7 @@ from rockwobble.models import (
     synthetic_motions,
 )
 from rockwobble.models.records.p695 import missing_packages
-from rockwobble.multibody.scene.ring_settings import RingSettings
+from rockwobble.multibody.ring import RingSettings
 
 Inputs = Mapping[str, object]  # arguments of `Part.measure` by name: numbers, text and tuples of them
 Row = dict[str, float | str | bool]

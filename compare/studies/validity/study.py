@@ -10,17 +10,27 @@ from pathlib import Path
 
 import pandas as pd
 
+from ...runs.execution import run_tables
 from ...runs.progress import ProgressCallback
-from ...runs.tables import run_tables
-from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Number
-from ...storage.provenance import engine_makers, reduced_makers
+from ...storage.provenance import engine_makers, fingerprint, reduced_makers
 from ...storage.results import Results
-from .el_centro import CONTACT, FOLLOWING, RINGS
+from ..plans import ValidityPlan
 from .free_response import FREE_RESPONSE, SLIP, VERIFICATION
 from .limits import limits_of
-from .plan import Extent, Inputs, Part, motion_named, record_names, release_case, shaken_case, source_of
-from .records import PEAKS, RECORDS
+from .plan import (
+    FULL,
+    QUICK,
+    Extent,
+    Inputs,
+    Part,
+    motion_named,
+    record_names,
+    release_case,
+    shaken_case,
+    source_of,
+)
+from .shaken import CONTACT, FOLLOWING, PEAKS, RECORDS, RINGS
 
 PARTS: tuple[Part, ...] = (
     FREE_RESPONSE,
@@ -77,6 +87,18 @@ class Validity(Results, kind=KIND):
         return {"motions": self.facts["records"]} | {
             name: f"{len(table)} rows" for name, table in self.tables.items()
         }
+
+
+def measure_validity(
+    folder: str | Path,
+    plan: ValidityPlan,
+    *,
+    workers: int | None = None,
+    progress: ProgressCallback | None = None,
+) -> Validity:
+    """Measure the limits of the reduced model; the arguments and errors are those of `measure_all`."""
+    extent = QUICK if plan.quick else FULL
+    return validity_of(measure_all(extent, folder, workers=workers, progress=progress), extent)
 
 
 def measure_all(

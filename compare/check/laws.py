@@ -1,0 +1,356 @@
+"""What a single motion must be: its exact solution, its rest and uplift, and a trace consistent with itself.
+
+The exact solutions are quadratures of the energies of `lagrange` alone. Free motion in a recess conserves its
+energy e and L = B phi', so that
+
+    A theta'^2 = 2 (e - V) - L^2/B,    phi' = L/B,
+
+and the time and the turn from one turning tilt to the other are integrals over the tilt. With
+theta = mid - half cos(u) the roots at both ends cancel, and Gauss-Legendre nodes give 12 digits for
+spins that are not small.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from rockwobble.models import Case, GroundMotion, InitialState
+
+from . import lagrange
+from .lagrange import Shape, kinetic, potential, shape_of
+from .measurement import (
+    GRAVITY,
+    PIER,
+    RELEASE,
+    SHOCK,
+    SHOCK_TIMES,
+    SQUAT,
+    THRESHOLD,
+    Array,
+    Result,
+    at_most,
+    largest,
+    polyline,
+    released,
+    steady,
+    turning_points,
+)
+from .subject import Subject
+
+_NODES = 64  # more of them come nearer to the ends, where rounding of the energies counts
+_BISECTIONS = 200
+_QUADRATURE = "quadrature of the energies, good to 1e-9"
+VANISHING_SPIN = 1e-8  # [rad/s]
+
+
+def free_response(subject: Subject, support: str) -> Iterator[Result]:
+    """Period, angle of turn and regained tilt of releases in a recess, slender and squat.
+
+    Time and turn between two tilt maxima are those of the quadrature; without loss the tilt comes back.
+    """
+    for cylinder in (PIER, SQUAT):
+        case = released(0.5, 0.5, RELEASE.length, cylinder)
+        assert case.initial is not None
+        start = case.initial
+        time, turn = period_and_turn(shape_of(cylinder), start.tilt, start.rolling_rate)
+        found = subject.simulate(case, support)
+        maxima = found.extrema[(found.extrema[:, 3] > 0.0) & (found.extrema[:, 0] > 0.5 * time)]
+        first = maxima[0] if len(maxima) else np.full(4, math.nan)
+        bound, of = subject.within(3.0, _QUADRATURE), f"tan alpha = {cylinder.tan_alpha:g}"
+        yield at_most(f"period of a release, {of}", abs(first[0] / time - 1.0), bound)
+        yield at_most(f"tilt that a release returns to, {of}", abs(first[1] / start.tilt - 1.0), bound)
+        if "rolling_angle" in subject.knows:
+            off = math.remainder(first[2] - start.rolling_angle - turn, 2.0 * math.pi)
+            yield at_most(f"angle of turn of a release, {of}", abs(off) / turn, bound)
+
+
+def steady_wobble(subject: Subject, support: str) -> Iterator[Result]:
+    """At the rate at which (18) balances, phi'^2 = 2 V'/B', the tilt stays, on any support."""
+    tilt = 0.3 * PIER.alpha  # with less energy than that of the balance
+    case = released(0.3, steady_rate(shape_of(PIER), tilt), 1.0)
+    found = subject.simulate(case, support)
+    bound = subject.within(10.0, "an error of the balance makes the tilt oscillate by as much")
+    yield at_most("tilt of a steady wobble", largest(found.tilt - tilt) / tilt, bound)
+
+
+def vanishing_spin(subject: Subject, support: str) -> Iterator[Result]:
+    """Angle of turn in the limit of vanishing spin: pi sqrt(A/J) (Srinivasan and Ruina)."""
+    shape = shape_of(PIER)
+    limit = math.pi * math.sqrt(tilt_inertia(shape) / cone_inertia(shape))
+    found = subject.simulate(released(0.5, VANISHING_SPIN, 4.0), support, rest_tilt=0.0)
+    first = np.asarray(found.passes["angle_of_turn"])[:1]
+    bound = subject.within(1e4, "the spin that is left is 1e-8 of p, and the turn off by some 10 times that")
+    yield at_most("angle of turn in the limit of vanishing spin", largest(first - limit), bound)
+
+
+def planar_rocking(subject: Subject, support: str) -> Iterator[Result]:
+    """Time from rest to upright in one plane: a quadrature, Housner's quarter period."""
+    quarter = planar_quarter(shape_of(PIER), 0.5 * PIER.alpha)
+    case = Case(PIER, initial=InitialState(0.5 * PIER.alpha), duration=1.5 * quarter)
+    found = subject.simulate(case, support)
+    minima = found.extrema[found.extrema[:, 3] < 0.0]
+    off = largest(minima[:1, 0] / quarter - 1.0)
+    yield at_most("planar rocking, time to upright", off, subject.within(30.0, _QUADRATURE))
+
+
+def tilt_inertia(shape: Shape) -> float:
+    """Return A, twice the kinetic energy of a unit tilt rate [m^2]."""
+    at, none = np.array([0.3]), np.array([0.0])
+    return float(2.0 * kinetic(shape, at, none, np.array([1.0]), none)[0])
+
+
+def turn_inertia(shape: Shape, tilt: Array) -> Array:
+    """Return B (n,) of tilts (n,), twice the kinetic energy of a unit rolling rate [m^2]."""
+    none = np.zeros_like(tilt)
+    return np.asarray(2.0 * kinetic(shape, tilt, none, none, np.ones_like(tilt)), dtype=float)
+
+
+def cone_inertia(shape: Shape) -> float:
+    """Return J of B = J theta^2 near upright [m^2]."""
+    small = 1e-4
+    near, double = turn_inertia(shape, np.array([small, 2.0 * small]))
+    # the next term is one of theta^3: extrapolated
+    return float(2.0 * near - 0.25 * double) / small**2
+
+
+def height_energy(shape: Shape, tilt: Array) -> Array:
+    """Return V (n,) of tilts (n,) over still ground [m^2/s^2]."""
+    still = np.zeros((len(tilt), 3))
+    return np.asarray(potential(shape, tilt, np.zeros_like(tilt), still), dtype=float)
+
+
+def period_and_turn(shape: Shape, tilt: float, spin: float) -> tuple[float, float]:
+    """Return time [s] and turn [rad] between two tilt maxima, released at `tilt` with `spin` [rad/s]."""
+    top = np.array([tilt])
+    L = float(turn_inertia(shape, top)[0]) * spin
+    e = float(height_energy(shape, top)[0]) + 0.5 * L * spin
+
+    def excess(theta: Array) -> Array:
+        return np.asarray(2.0 * (e - height_energy(shape, theta)) - L * L / turn_inertia(shape, theta))
+
+    low, high = 1e-12, 0.5 * tilt
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if excess(np.array([middle]))[0] < 0.0 else (low, middle)
+    lowest = 0.5 * (low + high)
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    u = 0.5 * math.pi * (nodes + 1.0)
+    theta = lowest + (tilt - lowest) * np.sin(0.5 * u) ** 2
+    factor = np.sqrt(tilt_inertia(shape) / excess(theta)) * 0.5 * (tilt - lowest) * np.sin(u)
+    scale = 2.0 * 0.5 * math.pi  # there and back
+    time = scale * float((weights * factor).sum())
+    turn = scale * float((weights * factor * L / turn_inertia(shape, theta)).sum())
+    return time, turn
+
+
+def planar_quarter(shape: Shape, tilt: float) -> float:
+    """Return the time of planar rocking from rest at `tilt` to the upright position [s]."""
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    x = 0.5 * (nodes + 1.0)
+    theta = tilt * (1.0 - x * x)
+    drop = height_energy(shape, np.array([tilt])) - height_energy(shape, theta)
+    speed = np.sqrt(2.0 * drop / tilt_inertia(shape))
+    return float((0.5 * weights * 2.0 * tilt * x / speed).sum())
+
+
+def steady_rate(shape: Shape, tilt: float) -> float:
+    """Return the rolling rate at which the tilt stays [rad/s]: V' = B'/2 of its square."""
+    none, still = np.array([0.0]), np.zeros((1, 3))
+    by_height = lagrange.slope(lambda at: potential(shape, at, none + 0j, still), tilt)
+    by_inertia = lagrange.slope(lambda at: 2.0 * kinetic(shape, at, none, none, none + 1.0), tilt)
+    return math.sqrt(2.0 * by_height / by_inertia)
+
+
+# two straight pieces; in the second the threshold is crossed inside a sample, as the load turns and the
+# weight falls
+LIFTING = GroundMotion(
+    GRAVITY * np.array([[0.0, 0.0, 0.0], [0.12, 0.06, 0.1], [0.20, 0.20, -0.1], [0.20, 0.22, -0.12]]), 0.2
+)
+# ratio of the rates in a landing, and acceleration of the ground over that of gravity
+GROUNDS = {
+    "still ground": (0.9, (0.0, 0.0, 0.0)),
+    "horizontal acceleration and more weight": (0.9, (0.02, 0.0, 0.25)),
+    "less weight, no loss": (1.0, (0.01, 0.0, -0.25)),
+}
+DIRECTIONS, SLENDERNESS = 24, (0.1, 0.2, 0.5, 1.0)  # of the sweep of static loads
+_ASIDE = 0.04  # [-] no symmetry of a collision detector, in steps of the sweep
+
+
+def stands(subject: Subject, support: str) -> Iterator[Result]:
+    """Below |a| = (g + az) tan(alpha), equation (25), the cylinder stands."""
+    level = 0.99 * THRESHOLD * np.array([0.6, 0.8])
+    found = subject.simulate(Case(PIER, GroundMotion(np.outer([0.0, 1.0, 0.0], level), 0.5)), support)
+    bound = subject.within(1.0, "it stands")
+    yield at_most("tilt below the threshold of uplift", largest(found.tilt) / PIER.alpha, bound)
+
+
+def uplift(subject: Subject, support: str) -> Iterator[Result]:
+    """Time and direction of uplift: the root of (25) inside a sample, against the acceleration there (26).
+
+    At a first sample above the threshold it is at once.
+    """
+    time, a, _ = crossing(LIFTING)
+    push = np.array([0.9, 1.2]) * THRESHOLD
+    for words, motion, begin, load in (
+        ("inside a sample", LIFTING, time, a),
+        ("at the first sample", steady(push, 0.3), 0.0, push),
+    ):
+        found = subject.simulate(Case(PIER, motion), support, sample_step=0.05)
+        bound = subject.within(50.0, "closed form, to some steps", "s, rad")
+        yield at_most(f"time of uplift {words}", abs(found.uplift_time - begin), bound)
+        away = math.remainder(found.uplift_direction - math.atan2(-load[1], -load[0]), 2.0 * math.pi)
+        yield at_most(f"direction of uplift {words}", abs(away), bound)
+
+
+def after_uplift(subject: Subject, support: str) -> Iterator[Result]:
+    """Tilt just after an uplift on a ramp: K t^3/6 + K2 t^4/24, the series of the solution at tilt zero.
+
+    K = (h/A) (d|a|/dt - tan(alpha) daz/dt), K2 = (h/A) |a| W^2 with W the turning rate of the direction.
+    """
+    time, a, slope = crossing(LIFTING)
+    shape, size = shape_of(PIER), math.hypot(a[0], a[1])
+    growth = float(a[:2] @ slope[:2]) / size - PIER.tan_alpha * slope[2]
+    turning = float(a[0] * slope[1] - a[1] * slope[0]) / size**2
+    at = 2e-3 / math.sqrt(GRAVITY * PIER.semidiagonal / tilt_inertia(shape))
+    found = subject.simulate(Case(PIER, LIFTING, duration=time + at), support, sample_step=1.0, rtol=1e-12)
+    expected = growth * at**3 / 6.0 + size * turning**2 * at**4 / 24.0
+    off = found.tilt[-1] / (shape.h / tilt_inertia(shape) * expected) - 1.0
+    yield at_most("tilt just after the uplift", abs(off), subject.within(2e5, "without its third term"))
+
+
+def force_at_rest(subject: Subject, support: str) -> Iterator[Result]:
+    """Contact force of a cylinder that stands: Newton's law with the acceleration of the ground."""
+    ground = np.array([0.5, 0.2, -0.3 * GRAVITY])
+    found = subject.simulate(Case(PIER, steady(ground, 0.4)), support, sample_step=0.1)
+    off = found.contact_force[1:4] - (ground + np.array([0.0, 0.0, GRAVITY])) / GRAVITY
+    bound = subject.within(5.0, "Newton's law; means over 60 steps", "weights")
+    yield at_most("contact force at rest", largest(off), bound, "contact force")
+
+
+def falls(subject: Subject, support: str) -> Iterator[Result]:
+    """A release beyond the balance ends with the side on the ground, as an outcome."""
+    start = InitialState(1.5 * PIER.alpha, rolling_rate=0.1)
+    found = subject.simulate(Case(PIER, initial=start, duration=4.0, friction=5.0), support)
+    ends = found.outcome == "overturned" and found.tilt[-1] == found.peak_tilt == 0.5 * math.pi
+    right = ends and bool((np.diff(found.time) > 0.0).all())
+    yield at_most(
+        "end of a fall", float(not right), subject.within(0.0, "at pi/2", ""), "", f"{found.outcome}"
+    )
+
+
+def landing(subject: Subject, support: str) -> Iterator[Result]:
+    """Energy after a planar landing is r^2 of that before it, and constant in between.
+
+    On ground that accelerates evenly the energy holds its inertia force; upright, all of it is kinetic.
+    """
+    shape = shape_of(PIER)
+    for words, (ratio, share) in GROUNDS.items():
+        ground = tuple(GRAVITY * each for each in share)
+        case = dataclasses.replace(released(0.25, 0.0, 5.0), motion=steady(ground, 10.0))
+        case = dataclasses.replace(case, initial=InitialState(0.25 * PIER.alpha))
+        found = subject.simulate(case, support, sample_step=0.05, rest_tilt=0.0, restitution=ratio)
+        force = np.tile(np.array(ground), (len(found.time), 1))
+        energy = 0.5 * tilt_inertia(shape) * found.tilt_rate**2
+        energy += lagrange.potential(shape, found.tilt, found.rolling_angle, force)
+        landed = found.extrema[(found.extrema[:, 3] < 0.0) & (found.extrema[:, 1] == 0.0), 0]
+        kept = ratio ** (2.0 * np.searchsorted(landed, found.time, side="right"))
+        off = largest(energy / (energy[0] * kept) - 1.0) if len(landed) > 1 else math.nan
+        bound = subject.within(1.0, "r^2 of what it was")
+        yield at_most(f"energy after each landing, {words}", off, bound, note=f"{len(landed)} landings")
+
+
+def static_loads(subject: Subject, support: str) -> Iterator[Result]:
+    """A cylinder stands at 0.98 and uplifts at 1.02 of g tan(alpha), against the load, in any direction."""
+    off, wrong = 0.0, list[str]()
+    for tan_alpha in SLENDERNESS:
+        cylinder = dataclasses.replace(PIER, tan_alpha=tan_alpha)
+        for azimuth in 2.0 * math.pi * (np.arange(DIRECTIONS) + _ASIDE) / DIRECTIONS:
+            for share in (0.98, 1.02):
+                push = share * GRAVITY * tan_alpha * np.array([math.cos(azimuth), math.sin(azimuth)])
+                motion = GroundMotion([0.0 * push, *[push] * 6], 0.02)
+                found = subject.simulate(Case(cylinder, motion, friction=2.0), support)
+                # after 0.1 s of a load 2 % over the threshold it is 1.2e-4 alpha
+                lifted = found.tilt[-1] > 1e-4 * cylinder.alpha and math.isfinite(found.uplift_time)
+                if lifted != (share > 1.0) or (share < 1.0 and math.isfinite(found.uplift_time)):
+                    wrong.append(f"{share:g} g tan(alpha) = {tan_alpha:g}, {math.degrees(azimuth):.1f} deg")
+                elif lifted:
+                    angles = found.uplift_direction, found.rolling_angle[-1]
+                    off = max(off, *(abs(math.remainder(a - azimuth - math.pi, math.tau)) for a in angles))
+    bound = dataclasses.replace(subject.within(0.0, "equation (25)"), unit="loads")
+    yield at_most("static loads that do not lift it, or do", len(wrong), bound, note="; ".join(wrong[:3]))
+    yield at_most("direction of its lean", off, subject.within(2e3, "1 deg, however it stands", "rad"))
+
+
+def crossing(motion: GroundMotion) -> tuple[float, Array, Array]:
+    """Return when |a| first reaches (g + az) tan(alpha) [s], a there and its slope: root of a quadratic."""
+    steep = PIER.tan_alpha**2 * np.array([0.0, 0.0, 1.0]) - np.array([1.0, 1.0, 0.0])
+    samples, step = motion.acceleration, motion.time_step
+    for index in range(len(samples) - 1):
+        a, slope = samples[index], (samples[index + 1] - samples[index]) / step
+        total = a + np.array([0.0, 0.0, GRAVITY])
+        roots = np.roots([steep @ slope**2, 2.0 * steep @ (total * slope), steep @ total**2])
+        inside = [float(r.real) for r in roots if abs(r.imag) == 0.0 and 0.0 <= r.real < step]
+        if inside:
+            return index * step + min(inside), a + slope * min(inside), slope
+    raise AssertionError("the record of this check uplifts the cylinder")
+
+
+_SAMPLE = 0.002  # [s] 1/400 of 1/p, and 1/20 of the shortest pass
+_SHAKEN = Case(PIER, polyline(SHOCK_TIMES, SHOCK, 0.5), duration=8.0)
+
+
+def place(subject: Subject, support: str) -> Iterator[Result]:
+    """No twist and no roll-out in a recess: psi = -phi (14), and the contact stays on its circle.
+
+    The base centre is off its place by b (1 - cos theta), (10), and the mass centre h further along the axis.
+    """
+    found = subject.simulate(RELEASE, support)
+    b, h = PIER.base_radius, PIER.mass_centre_height
+    yield at_most("twist phi + psi", largest(found.twist), subject.within(10.0, "none in a recess", "rad"))
+    moving = np.isfinite(found.rolling_angle) & (found.tilt > 0.0)
+    off = np.hypot(*found.contact_point[moving].T) / b - 1.0
+    bound = subject.within(10.0, "it stays in its place", "b")
+    yield at_most("contact point on the original circle", largest(off), bound)
+    s, c = np.sin(found.tilt)[:, None], np.cos(found.tilt)
+    ahead = np.column_stack([np.cos(found.rolling_angle), np.sin(found.rolling_angle)])
+    base = np.hypot(*(found.centre_of_mass[:, :2] - h * s * ahead).T)
+    yield at_most("base centre in its place", largest(base - b * (1.0 - c)) / b, bound)
+
+
+def slip(subject: Subject, support: str) -> Iterator[Result]:
+    """The rim rolls without slip, in a recess and on flat ground; a rim that is held by contact creeps."""
+    found = subject.simulate(RELEASE, support)
+    bound = subject.within(100.0, "creep of a rim that rolls for 3 s", "b")
+    yield at_most("slip", largest(found.slip) / PIER.base_radius, bound)
+
+
+def turning(subject: Subject, support: str) -> Iterator[Result]:
+    """Turning points, passes and peak are those of the sampled tilt: vertices of polynomials through it."""
+    case = RELEASE if "stepper" in subject.options else _SHAKEN
+    found = subject.simulate(case, support, sample_step=_SAMPLE, rest_tilt=0.0)
+    moving = np.flatnonzero(np.isfinite(found.rolling_angle))
+    turns = turning_points(*(values[moving] for values in (found.time, found.tilt, found.rolling_angle)))
+    rows, bound = found.extrema, subject.within(100.0, "vertex of samples 0.002 s apart", "s, rad")
+    if case.initial is not None and len(rows) == len(turns) + 1:
+        rows = rows[1:]  # a release from rest begins with a turning point
+    yield at_most("turning points", _apart(rows, turns), bound)
+    tops = [*turns[turns[:, 3] > 0.0, 1], found.tilt[0], found.tilt[-1]]
+    peak = subject.within(1.0, "the highest turning point of the samples", "rad")
+    yield at_most("peak of the continuous motion", abs(found.peak_tilt - max(tops)), peak)
+    starts = np.vstack([[found.time[0], found.tilt[0], found.rolling_angle[0], 1.0], turns])
+    listed = starts if case.initial is not None else turns
+    passes = [
+        [low[0], low[1], after[2] - before[2]]
+        for before, low, after in zip(listed, listed[1:], listed[2:], strict=False)
+        if low[3] < 0.0
+    ]
+    stated = found.passes[["time", "minimum_tilt", "angle_of_turn"]].to_numpy(dtype=float)
+    yield at_most("passes", _apart(stated, np.array(passes).reshape(-1, 3)), bound, note=f"{len(passes)}")
+
+
+def _apart(stated: Array, sampled: Array) -> float:
+    return largest(stated - sampled) if len(sampled) and stated.shape == sampled.shape else np.nan

@@ -1,0 +1,310 @@
+"""Runs of a suite compared with the models: by the bounds that it states, or by a second run of another step.
+
+Where none is stated every case is compared with its model twice. As it is: engines err at uplift, and near
+passes magnify what they err, so the bound is a wide one. It grows with the difference of the two steps and
+with copies of the model: off by as much as the engine is at first, and with a base that closes below the tilt
+that contact resolves. The window ends where those reach 1 % of alpha. In motion: the first seconds of a
+release, or, of a case that begins at rest, the strongest seconds of its motion, at half of what uplifts, as
+they meet a cylinder that rocks and wobbles. There the error is what the step leaves and no more, and what
+0.5 % of R does is a hundred times the bound.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from rockwobble import reduced
+from rockwobble.models import AGREEMENT, Bounds, Case, GroundMotion, InitialState, Run, Trace
+from rockwobble.multibody.engines.registry import available_engines, find_engine, standard_engines
+from rockwobble.multibody.scene import default_step
+from rockwobble.reduced.problem import LARGEST_REST_TILT, REST_TILT
+
+from ..comparison.prediction import Prediction, early_rms, estimated_error, predict, time_scale
+from ..comparison.summary import SUMMARY_COLUMNS, summary_row
+from ..external.verdict import numbers_of
+from ..metrics.pair import is_release, landings, rms
+from ..runs.choice import at_step, own_model, require_runnable
+from ..runs.execution import Job, simulate_all
+from ..runs.progress import ProgressCallback
+from ..storage.provenance import fingerprint
+from .agreement import walls
+from .measurement import Array, Bound, Result, at_most, not_run, why
+from .subject import Simulate
+
+# times the difference of two steps, of which the error is once or twice as much; `benchmarks false_alarms`
+CLEAN, WIDE = 5.0, 10.0
+LEAST = 1e-5  # [alpha] of contact, whatever the step
+_COPY = 1e-6  # relative change of gravity of a copy whose distance sets the scale
+_MOST = 1e-2  # and the largest that still is a copy
+# of the cylinder that the motion meets: tilt over alpha, rolling rate and length in units of its time scale,
+# and strength of the motion over what uplifts
+_LEAN, _SPIN, _LENGTH, _STRENGTH = 0.4, 0.5, 2.0, 0.5
+# what a trace holds after these is not what its model describes
+_LIMITS = ("slip", "lift_off", "tension", "friction_needed", "wall_contact", "unresolved_pass", "side")
+ENDS = Bound(AGREEMENT, "the run must reach its end", "alpha")
+# which engine is nearer to a second one than this share of what engine and model differ by agrees with it
+_SIDES = 0.3
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class SuiteRuns:
+    """Runs of a suite, each made once and kept for the questions that follow.
+
+    Parameters
+    ----------
+    reference : callable, optional
+        The reduced models, called as `reduced.simulate`.
+    workers : int, optional
+        Number of processes for engines. Default: one for each core.
+    progress : callable, optional
+        Called at the start and the end of each engine run.
+    kept : dict, optional
+        Engine runs that were made before.
+    """
+
+    reference: Simulate = reduced.simulate
+    workers: int | None = None
+    progress: ProgressCallback | None = None
+    kept: dict[str, Trace] = dataclasses.field(default_factory=dict)
+
+    def traces(self, jobs: Sequence[Job]) -> list[Trace]:
+        """Return the trace of each job."""
+        keys = [fingerprint([job.case, job.run]) for job in jobs]
+        missing = {key: job for key, job in zip(keys, jobs, strict=True) if key not in self.kept}
+        made = simulate_all(list(missing.values()), workers=self.workers, progress=self.progress)
+        self.kept.update(zip(missing, made, strict=True))
+        return [self.kept[key] for key in keys]
+
+    def solve(self, case: Case, support: str, **options: float) -> Trace:
+        """Return the motion of the reduced model of a support."""
+        return self.reference(case, support=support, **options)
+
+
+def check_suite(runs: SuiteRuns, jobs: Sequence[Job], bounds: Bounds | None) -> Iterator[Result]:
+    """Yield the results of the runs of a suite, by the bounds that it states, or by its own runs."""
+    traces = runs.traces(jobs)
+    if bounds is None:
+        prepare(runs, jobs, traces)
+    for job, trace in zip(jobs, traces, strict=True):
+        for result in check_run(runs, job, trace, bounds):
+            yield dataclasses.replace(result, subject=job.label)
+
+
+def reference_of(run: Run, bounds: Bounds | None) -> Run:
+    """Return the reduced model that a run is compared with."""
+    return own_model(run) if bounds is None or bounds.reference == "own" else Run(None, bounds.reference)
+
+
+def check_run(runs: SuiteRuns, job: Job, trace: Trace, bounds: Bounds | None) -> Iterator[Result]:
+    """Yield the results on one run of an engine."""
+    reference = reference_of(job.run, bounds)
+    name = f"{job.case.name}, {job.label} compared with {reference.support}"
+    if trace.outcome == "failed":
+        yield at_most(name, math.nan, ENDS, f"contact of {job.run.engine}", why(trace))
+        return
+    if job.run.support == "ring":
+        yield from walls(f"{job.case.name}, {job.label}", job.case, trace)
+    model = runs.solve(job.case, reference.support)
+    if bounds is None:
+        yield from compared(runs, job, name, model, trace)
+        return
+    prediction = predict(
+        job.case,
+        reference=model,
+        own=model,
+        contact_resolution=trace.contact_resolution,
+        error=estimated_error(job.case, job.run.engine, trace.time_step),
+        simulate=lambda case, run: runs.solve(case, run.support),
+    )
+    yield from _stated(bounds, job, name, model, trace, prediction)
+
+
+def _stated(
+    bounds: Bounds, job: Job, name: str, model: Trace, trace: Trace, prediction: Prediction
+) -> Iterator[Result]:
+    """One result for each bound that the suite states."""
+    row = summary_row(job.case, str(model.run), model, job.label, trace, prediction=prediction)
+    for column, most in bounds.given().items():
+        unit, meaning = SUMMARY_COLUMNS[column]
+        value = abs(numbers_of(row)[column])
+        if column == "agreement_time":
+            # the shorter the worse: what is missing may be nothing
+            missing = max(0.0, most - value) if row["diverged"] else 0.0
+            bound = Bound(0.0, f"the suite asks for {most:g} s", unit)
+            yield at_most(f"{name}: agreement_time missing", missing, bound, note=f"it is {value:.3g} s")
+        else:
+            bound = Bound(most, f"stated by the suite: {meaning}", unit)
+            yield at_most(f"{name}: {column}", value, bound, note=str(row["diagnostics"]))
+
+
+def compared(runs: SuiteRuns, job: Job, name: str, model: Trace, trace: Trace) -> Iterator[Result]:
+    """Yield the findings on a run of a suite that states no bounds."""
+    yield _compared(runs, job, name, model, trace, clean=False)
+    if (other := _in_motion(job)) is not None:
+        (trace,) = runs.traces([other])
+        words = "first seconds" if is_release(job.case) else "met rocking"
+        name = f"{name}, {words}"
+        model = runs.solve(other.case, model.run.support)
+        if trace.outcome == "failed":
+            yield at_most(name, math.nan, ENDS, f"contact of {job.run.engine}", why(trace))
+        else:
+            yield _compared(runs, other, name, model, trace, clean=True)
+
+
+def prepare(runs: SuiteRuns, jobs: Sequence[Job], traces: Sequence[Trace]) -> None:
+    """Make what `compared` asks for of many runs, side by side."""
+    others = [other for job in jobs if (other := _in_motion(job)) is not None]
+    known = [*zip(jobs, traces, strict=True), *zip(others, runs.traces(others), strict=True)]
+    runs.traces([other_step(job, trace)[0] for job, trace in known if trace.outcome != "failed"])
+
+
+def in_motion(case: Case) -> Case | None:
+    """Return the first seconds of a release, or the strongest of a motion as a rocking cylinder meets them.
+
+    None where nothing moves.
+    """
+    motion, unit = case.motion, time_scale(case)
+    if is_release(case):
+        return dataclasses.replace(case, duration=min(case.length, _LENGTH * unit))
+    if motion is None or motion.peak == 0.0:
+        return None
+    size = np.hypot(*motion.acceleration[:, :2].T)
+    strongest, reach = int(np.argmax(size)), math.ceil(0.5 * _LENGTH * unit / motion.time_step)
+    cut = motion.acceleration[max(0, strongest - reach) : strongest + reach + 1]
+    scale = _STRENGTH * case.gravity * case.cylinder.tan_alpha / size[strongest]
+    return dataclasses.replace(
+        case,
+        motion=GroundMotion(np.vstack([cut, cut[-1:]]) * scale, motion.time_step, motion.name),
+        initial=InitialState(_LEAN * case.cylinder.alpha, rolling_rate=_SPIN / unit),
+        duration=_LENGTH * unit,
+    )
+
+
+def other_step(job: Job, trace: Trace) -> tuple[Job, float]:
+    """Return the run at twice its step, or at half of it, and what their difference is to be taken times."""
+    case, step = job.case, trace.time_step
+    if not math.isfinite(step):  # of several steps: that of the engine by default
+        step = default_step(case.cylinder.semidiagonal, case.gravity)
+    for times, factor in ((2.0, 1.0), (0.5, 2.0)):
+        run = at_step(job.run, times * step)
+        try:
+            require_runnable(case, run)
+        except ValueError:  # twice the step is more than contact allows
+            continue
+        return Job(case=case, run=run, label=f"{job.label}, {times:g} times the step"), factor
+    raise ValueError(f"the run must have a step beside {step:g} s, got none for {job.label}")
+
+
+def _in_motion(job: Job) -> Job | None:
+    # a ring has no model of its own once its walls are touched
+    case = None if job.run.support == "ring" else in_motion(job.case)
+    return None if case is None else Job(case=case, run=job.run, label=job.label)
+
+
+def _compared(runs: SuiteRuns, job: Job, name: str, model: Trace, trace: Trace, *, clean: bool) -> Result:
+    if not any(math.isfinite(each.uplift_time) for each in (model, trace)):
+        return not_run(name, "neither uplifts: there is nothing to compare")
+    by_step = _by_step(runs, job, trace)
+    if by_step is None:
+        return not_run(name, "the run of another step failed: there is nothing to judge it by")
+    parts = [by_step, *([] if clean else _copies(runs, job, model, trace, by_step))]
+    apart = _apart(model, trace)
+    count = min(len(each) for each in (apart, *parts))
+    allowed = np.maximum.reduce([np.abs(each[:count]) for each in parts])
+    if not clean:
+        allowed = np.maximum.accumulate(allowed)  # never less than it was before
+    time = trace.time[:count]
+    limit = min([model.first(*_LIMITS), trace.first(*_LIMITS), *landings(model)[:1], job.case.length])
+    within = (time >= np.nan_to_num(model.uplift_time)) & (time < limit) & (clean | (allowed < AGREEMENT))
+    if np.count_nonzero(within) < 2:
+        return not_run(name, "the agreement is predicted to end at once: there is nothing to compare")
+    until, step = float(time[within][-1]), rms(allowed[within])
+    most = (CLEAN if clean else WIDE) * step + LEAST
+    grown = "" if clean else " and what as large an error grows to"
+    reason = f"{CLEAN if clean else WIDE:g} times what the step changes{grown}, and contact"
+    bound = Bound(min(most, AGREEMENT) if clean else most, reason, "alpha")
+    found = at_most(name, rms(apart[:count][within]), bound, note=f"to {until:.3g} s")
+    if not found.failed:
+        return found
+    if clean and most > AGREEMENT:
+        part = f"time step of {job.run.engine}"
+        fits = trace.time_step * AGREEMENT / most
+        advice = f"the trace changes by {step:.1e} alpha with its step: try a time step of {fits:.1g} s"
+    else:
+        part, advice = likely_cause(runs, job, model, trace, until=until)
+    return dataclasses.replace(found, cause=part, note=f"{found.note}; {advice}")
+
+
+def _by_step(runs: SuiteRuns, job: Job, trace: Trace) -> Array | None:
+    """By how much a run changes with its step (n,) [alpha]; None where the other one fails."""
+    other, factor = other_step(job, trace)
+    (second,) = runs.traces([other])
+    return None if second.outcome == "failed" else factor * np.abs(_apart(trace, second))
+
+
+def _apart(one: Trace, other: Trace) -> Array:
+    """Difference of the tilts at the samples that both have [alpha]; a fall ends at a time of its own."""
+    count = max(min(len(one.time), len(other.time)) - 1, 0)
+    return np.asarray(other.tilt[:count] - one.tilt[:count]) / one.case.cylinder.alpha
+
+
+def _copies(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, by_step: Array) -> list[Array]:
+    """Distance of copies of the model [alpha]: off by as much as the engine at first, and closing as it does.
+
+    A base that opens by less than the contact sinks in stays closed in every engine, at every step: after
+    weak shaking a model chatters there, and the strong motion that follows finds it elsewhere.
+    """
+    case, start = job.case, float(np.nan_to_num(model.uplift_time))
+    threshold = trace.contact_resolution / case.cylinder.alpha
+    closing = []
+    if threshold > REST_TILT:
+        closed = runs.solve(case, model.run.support, rest_tilt=min(threshold, LARGEST_REST_TILT))
+        closing.append(_apart(model, closed))
+
+    def copy(relative: float) -> Array:
+        disturbed = dataclasses.replace(case, gravity=case.gravity * (1.0 + relative))
+        return _apart(model, runs.solve(disturbed, model.run.support))
+
+    trial = copy(_COPY)
+    distance = early_rms(case, model.time[: len(trial)], trial, start)
+    if distance == 0.0:
+        return closing
+    by_table = estimated_error(case, job.run.engine, trace.time_step)
+    error = max(early_rms(case, trace.time[: len(by_step)], by_step, start), by_table)
+    relative = min(_COPY * error / distance, _MOST)
+    return [*closing, copy(relative), copy(-relative)]
+
+
+def likely_cause(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, *, until: float) -> tuple[str, str]:
+    """Return what is likely wrong where engine and model differ, and why; a second engine decides.
+
+    If that agrees with the model the first engine is wrong; if it agrees with the first engine the model is.
+    Where it agrees with neither, nothing is named.
+    """
+    engine, support = job.run.engine, job.run.support
+    here = [name for name in standard_engines() if name in available_engines() and name != engine]
+    others = [name for name in here if support in find_engine(name).supports]
+    if not others:
+        return "", "a second engine would tell which is wrong: add one to the runs of the suite"
+    (second,) = runs.traces([Job(case=job.case, run=Run(others[0], support))])
+    if second.outcome == "failed":
+        return "", f"{others[0]} fails on this case, and tells nothing"
+
+    def differ(one: Trace, other: Trace) -> float:
+        value = rms(_apart(one, other)[one.time[: len(_apart(one, other))] <= until])
+        return value if math.isfinite(value) else math.inf
+
+    apart, from_model, from_engine = differ(model, trace), differ(model, second), differ(trace, second)
+    if from_model < _SIDES * apart:
+        settings = "settings" if job.run.settings else "contact"
+        return (
+            f"{settings} of {engine} ({support})",
+            f"{others[0]} follows the model to {from_model:.1e} alpha",
+        )
+    if from_engine < _SIDES * apart:
+        return f"the {model.run}", f"{engine} and {others[0]} agree to {from_engine:.1e} alpha"
+    return "", f"{others[0]} agrees with neither: {from_model:.1e} alpha from the model"

@@ -1,1 +1,0 @@
-"""Sweeps: grids of runs in chunks that are kept as they are finished."""

@@ -1,0 +1,385 @@
+"""Shaken cylinders: peaks over records, agreement times, soft contact, and recesses with clearance."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from rockwobble import reduced
+from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
+from rockwobble.multibody import DEFAULT_ENGINE
+from rockwobble.multibody.ring import clearance_needed, take_ring
+from rockwobble.multibody.scene import REFERENCE_TIME_STEP
+from rockwobble.reduced.body import body_of
+
+from ...comparison.driver import compare
+from ...metrics.pair import FloatArray
+from ...runs.choice import SUPPORTS
+from ...runs.execution import simulate_run
+from .plan import (
+    AMPLE,
+    EL_CENTRO,
+    LARGEST_PEAK,
+    REFERENCE_SIZE,
+    Extent,
+    Inputs,
+    Part,
+    Row,
+    motion_named,
+    record_names,
+    release_case,
+    shaken_case,
+)
+
+# the record of the perturbed copy is stronger by this: no record is known better, and no model can be asked
+# for more than what it changes
+COPY = 0.01
+_RTOL = 1e-7
+
+
+def _peaks_tasks(extent: Extent) -> Iterable[Inputs]:
+    # El Centro besides, which has a vertical component
+    for motion in [*record_names(extent.members), EL_CENTRO]:
+        for tan_alpha in extent.shaken_tan_alphas:
+            for size in extent.sizes:
+                yield {
+                    "motion": motion,
+                    "tan_alpha": tan_alpha,
+                    "semidiagonal": size,
+                    "intensities": tuple(i for i in extent.intensities if i * tan_alpha <= LARGEST_PEAK),
+                }
+
+
+def measure_peaks(
+    motion: str, tan_alpha: float, semidiagonal: float, intensities: Sequence[float]
+) -> list[Row]:
+    """Return one row for each intensity.
+
+    The columns: motion, tan_alpha, semidiagonal [m], intensity; peak tilt over alpha, pi/2 over alpha if
+    overturned, of the recess model, of its perturbed copy under a record stronger by 1 %, of the flat-ground
+    model, and of the recess model with the vertical component (NaN where the record has none). Needs of the
+    recess model: friction, least_normal [weights], moment, the restraining moment over weight and base
+    radius; NaN where it does not move or overturns.
+    """
+    return [_row(motion, tan_alpha, semidiagonal, intensity) for intensity in intensities]
+
+
+def _row(motion: str, tan_alpha: float, size: float, intensity: float) -> Row:
+    case = shaken_case(motion, tan_alpha, size, intensity)
+    recess = _run(case)
+    stronger = shaken_case(motion, tan_alpha, size, intensity * (1.0 + COPY))
+    found = {"recess": recess, "copy": _run(stronger), "flat": _run(case, "flat")}
+    if motion_named(motion).acceleration.shape[1] == 3:
+        found["vertical"] = _run(shaken_case(motion, tan_alpha, size, intensity, vertical=True))
+    row: Row = {
+        "intensity": intensity,
+        "vertical": math.nan,
+        **{name: trace.peak_tilt / case.cylinder.alpha for name, trace in found.items()},
+        "friction": math.nan,
+        "least_normal": math.nan,
+        "moment": math.nan,
+    }
+    if recess.peak_tilt > 0.0 and recess.outcome == "stands":
+        needs = recess.assumptions
+        assert needs is not None
+        row["friction"] = needs.largest_friction_needed
+        row["least_normal"] = needs.least_normal_force
+        row["moment"] = needs.largest_restraining_moment / case.cylinder.base_radius
+    return row
+
+
+def _run(case: Case, support: str = "recess") -> Trace:
+    return reduced.simulate(case, support=support, rtol=_RTOL)
+
+
+PEAKS = Part(
+    name="peaks",
+    title="peak tilt over records",
+    tasks=_peaks_tasks,
+    measure=measure_peaks,
+    keys=("motion", "tan_alpha", "semidiagonal"),
+    cost=lambda intensities, **_: 0.03 * len(intensities),
+)
+
+
+RECESS, FLAT, PERTURBED = "recess model", "flat-ground model", "perturbed copy"
+HALVED = "ring, half the step"
+
+
+def _records_tasks(extent: Extent) -> Iterable[Inputs]:
+    for tan_alpha, size, intensity in extent.record_points:
+        for motion in record_names(extent.members):
+            yield {
+                "motion": motion,
+                "tan_alpha": tan_alpha,
+                "semidiagonal": size,
+                "intensity": intensity,
+                "time_step": extent.record_step,
+            }
+
+
+def measure_records(
+    motion: str, tan_alpha: float, semidiagonal: float, intensity: float, time_step: float
+) -> list[Row]:
+    """Return a row for each method.
+
+    The columns: motion, tan_alpha, semidiagonal [m], intensity, method, peak over alpha, outcome;
+    contact_time with walls [s] and loss, energy that contact took over the largest that was reached. The
+    methods: the two reduced models, the perturbed copy of the recess model under a record stronger by 1 %,
+    the engine in a recess, on flat ground and in a ring, and this at half its step.
+    """
+    case = shaken_case(motion, tan_alpha, semidiagonal, intensity)
+    stronger = shaken_case(motion, tan_alpha, semidiagonal, intensity * (1.0 + COPY))
+    plan = {
+        RECESS: (case, Run(None, "recess")),
+        FLAT: (case, Run(None, "flat")),
+        PERTURBED: (stronger, Run(None, "recess")),
+        **{
+            support: (case, Run(DEFAULT_ENGINE, support, time_step)) for support in ("recess", "flat", "ring")
+        },
+        HALVED: (case, Run(DEFAULT_ENGINE, "ring", 0.5 * time_step)),
+    }
+    rows: list[Row] = []
+    for method, (problem, run) in plan.items():
+        trace = simulate_run(problem, run)
+        largest = float(trace.energy.max())
+        rows.append(
+            {
+                "method": method,
+                "peak": trace.peak_tilt / case.cylinder.alpha,
+                "outcome": trace.outcome,
+                "contact_time": float(trace.wall_contact[-1]),
+                "loss": -float(trace.energy_error[-1]) / largest if largest > 0.0 else 0.0,
+            }
+        )
+    return rows
+
+
+RECORDS = Part(
+    name="records",
+    title="peak tilt over records in the engine",
+    tasks=_records_tasks,
+    measure=measure_records,
+    keys=("motion", "tan_alpha", "semidiagonal", "intensity"),
+    cost=lambda time_step, **_: 16.0 * 2e-4 / time_step,
+    engine=DEFAULT_ENGINE,
+)
+
+
+_COLUMNS = (
+    *("support", "reference_support", "outcome", "reference_outcome", "peak_tilt", "reference_peak_tilt"),
+    *("tilt_rms", "tilt_rms_relative", "agreement_time", "predicted_agreement_time", "diverged"),
+    *("agreed_passes", "residual_displacement", "residual_twist"),
+)
+
+
+def _following_tasks(extent: Extent) -> Iterable[Inputs]:
+    for tan_alpha, size, intensity in extent.trace_points:
+        for support in SUPPORTS:
+            yield {
+                "tan_alpha": tan_alpha,
+                "semidiagonal": size,
+                "intensity": intensity,
+                "support": support,
+                "duration": extent.trace_length,
+            }
+
+
+def measure_following(
+    tan_alpha: float, semidiagonal: float, intensity: float, support: str, duration: float
+) -> list[Row]:
+    """Return the summary of a run of the engine against the recess and, on flat ground, the flat model.
+
+    The columns are tan_alpha, semidiagonal, intensity, duration and those of `SUMMARY_COLUMNS`.
+    """
+    case = shaken_case(EL_CENTRO, tan_alpha, semidiagonal, intensity, duration=duration)
+    summary = compare(case, runs=[Run(DEFAULT_ENGINE, support)], workers=1).summary[list(_COLUMNS)]
+    return [{str(name): value for name, value in row.items()} for row in summary.to_dict("records")]
+
+
+FOLLOWING = Part(
+    name="following",
+    title="traces under El Centro in the engine",
+    tasks=_following_tasks,
+    measure=measure_following,
+    keys=("tan_alpha", "semidiagonal", "intensity", "duration"),
+    cost=lambda duration, **_: 0.04 * duration,
+    engine=DEFAULT_ENGINE,
+)
+
+
+_RELEASE, _SPIN, _PASSES = 0.5, 0.1, 4
+_INTENSITY, _LENGTH = 2.0, 10.0
+
+
+def _contact_tasks(extent: Extent) -> Iterable[Inputs]:
+    for tan_alpha in extent.contact_tan_alphas:
+        for time_constant in extent.time_constants:
+            for damping in extent.dampings:
+                yield {"tan_alpha": tan_alpha, "time_constant": time_constant, "damping": damping}
+
+
+def measure_contact(tan_alpha: float, time_constant: float, damping: float) -> list[Row]:
+    """Return a row: what free response in a recess loses, and the peak tilt under El Centro.
+
+    The columns: tan_alpha, time_constant [s] in which contact removes a normal velocity, damping ratio,
+    softness, the time constant times the frequency parameter p; loss of energy per pass over the energy of
+    the release, passes, peak and recess_peak under El Centro over alpha, free_outcome, outcome.
+    """
+    run = Run(DEFAULT_ENGINE, "recess", contact_time_constant=time_constant, contact_damping_ratio=damping)
+    free = simulate_run(release_case(tan_alpha, _RELEASE, _SPIN, _PASSES), run)
+    case = shaken_case(EL_CENTRO, tan_alpha, REFERENCE_SIZE, _INTENSITY, duration=_LENGTH)
+    shaken, recess = simulate_run(case, run), reduced.simulate(case)
+    lost = -float(free.energy_error[-1]) / float(free.energy[0])
+    return [
+        {
+            "softness": time_constant * body_of(case.cylinder, case.gravity).p,
+            "loss": lost / max(len(free.passes), 1),
+            "passes": len(free.passes),
+            "peak": shaken.peak_tilt / case.cylinder.alpha,
+            "recess_peak": recess.peak_tilt / case.cylinder.alpha,
+            "free_outcome": free.outcome,
+            "outcome": shaken.outcome,
+        }
+    ]
+
+
+CONTACT = Part(
+    name="contact",
+    title="contact that gives, in the engine",
+    tasks=_contact_tasks,
+    measure=measure_contact,
+    keys=("tan_alpha", "time_constant", "damping"),
+    cost=lambda **_: 1.0,
+    engine=DEFAULT_ENGINE,
+)
+
+
+# strong rocking without a fall
+INTENSITY = 1.5
+FREE, SHAKEN = "free response", EL_CENTRO
+
+
+def _rings_tasks(extent: Extent) -> Iterable[Inputs]:
+    walls = [
+        {"clearance": ring.clearance, "inclination": ring.inclination, "friction": ring.friction}
+        for ring in extent.rings
+    ]
+    none = {"clearance": math.nan, "inclination": math.nan, "friction": math.nan}
+    for tan_alpha in extent.ring_tan_alphas:
+        for turn in extent.ring_turns:
+            problem = {"tan_alpha": tan_alpha, "turn": turn, "length": extent.ring_length}
+            yield {**problem, "support": "recess", **none}
+            yield {**problem, "support": "flat", **none}
+            for ring in walls:
+                yield {**problem, "support": "ring", **ring}
+
+
+def measure_rings(
+    tan_alpha: float,
+    turn: float,
+    length: float,
+    support: str,
+    clearance: float,
+    inclination: float,
+    friction: float,
+) -> list[Row]:
+    """Return a row for free response and one for El Centro, where the walls leave room for the release.
+
+    The columns: motion, tan_alpha, turn [rad], support, clearance [b], inclination [rad] (0 for alpha) and
+    friction of the walls, those of `losses`; recess_peak, and halved_peak, that of the same ring at half the
+    step [alpha].
+    """
+    walls: dict[str, float] = {}
+    if support == "ring":
+        walls = {"ring_clearance": clearance, "ring_friction": friction}
+        walls |= {"ring_inclination": inclination} if inclination > 0.0 else {}
+    release = release_of(tan_alpha, turn, length)
+    shaken = shaken_case(EL_CENTRO, tan_alpha, REFERENCE_SIZE, INTENSITY, duration=length, turn=turn)
+    rows: list[Row] = []
+    for motion, case in ((FREE, release), (SHAKEN, shaken)):
+        run = Run(DEFAULT_ENGINE, support, REFERENCE_TIME_STEP, **walls)
+        if not has_room(case, run):
+            continue
+        halved = math.nan
+        if support == "ring":
+            finer = Run(DEFAULT_ENGINE, support, 0.5 * REFERENCE_TIME_STEP, **walls)
+            halved = simulate_run(case, finer).peak_tilt / case.cylinder.alpha
+        rows.append(
+            {
+                "motion": motion,
+                "tan_alpha": tan_alpha,
+                "turn": turn,
+                "support": support,
+                "clearance": clearance,
+                "inclination": inclination,
+                "friction": friction,
+                **losses(simulate_run(case, run)),
+                "recess_peak": reduced.simulate(case).peak_tilt / case.cylinder.alpha,
+                "halved_peak": halved,
+            }
+        )
+    return rows
+
+
+def release_of(tan_alpha: float, turn: float, length: float) -> Case:
+    """Return a release at alpha/2 in an azimuth [rad], of so long [s]."""
+    cylinder = Cylinder(semidiagonal=REFERENCE_SIZE, tan_alpha=tan_alpha)
+    initial = InitialState(tilt=0.5 * cylinder.alpha, rolling_angle=turn, rolling_rate=0.5)
+    return Case(cylinder, initial=initial, duration=length, friction=AMPLE, name=FREE)
+
+
+def has_room(case: Case, run: Run) -> bool:
+    """Return whether the release is outside of the walls."""
+    _, ring = take_ring(run.settings, run.support, case.cylinder.tan_alpha)
+    if ring is None or case.initial is None:
+        return True
+    return clearance_needed(case.cylinder, case.initial.tilt, ring.ring_inclination) <= ring.ring_clearance
+
+
+def losses(trace: Trace) -> Row:
+    """Return the losses of a run in a recess of any kind.
+
+    outcome; first_contact with a wall (inf where there is none) and contact_time [s]; passes; loss of energy
+    over the largest reached; rolled_out and at_end, distance from O of the place on which the cylinder would
+    come down, largest and last [b]; residual displacement of the base [b]; twist at the end [rad]; peak
+    [alpha].
+    """
+    largest, out = float(trace.energy.max()), _rolled_out(trace)
+    return {
+        "outcome": trace.outcome,
+        "first_contact": trace.first("wall_contact"),
+        "contact_time": float(trace.wall_contact[-1]),
+        "passes": len(trace.passes),
+        "loss": -float(trace.energy_error[-1]) / largest if largest > 0.0 else math.nan,
+        "rolled_out": float(out.max(initial=0.0)),
+        "at_end": float(out[-1]) if len(out) else 0.0,
+        "residual": trace.residual_displacement / trace.case.cylinder.base_radius,
+        "twist": trace.residual_twist,
+        "peak": trace.peak_tilt / trace.case.cylinder.alpha,
+    }
+
+
+def _rolled_out(trace: Trace) -> FloatArray:
+    """Distance from O of the place to which a cylinder would come down, while it is tilted [b].
+
+    The contact point less a radius in the direction of the lean: in the recess model that is O.
+    """
+    radius = trace.case.cylinder.base_radius
+    lean = np.column_stack([np.cos(trace.rolling_angle), np.sin(trace.rolling_angle)])
+    place = trace.contact_point - radius * lean
+    distance: FloatArray = np.hypot(place[:, 0], place[:, 1]) / radius
+    return distance[np.isfinite(distance)]
+
+
+RINGS = Part(
+    name="rings",
+    title="a ring of walls in the engine",
+    tasks=_rings_tasks,
+    measure=measure_rings,
+    keys=(),
+    cost=lambda support, length, **_: (0.8 if support == "ring" else 0.25) * length,
+    engine=DEFAULT_ENGINE,
+)

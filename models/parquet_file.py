@@ -1,0 +1,54 @@
+"""Tables as Parquet files that say in their metadata what they are and what made them."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import plain_json
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+# the name of our part of a file's metadata, beside that of pandas
+METADATA = b"rockwobble"
+
+
+def pack(table: pd.DataFrame | Mapping[str, object], about: Mapping[str, object]) -> bytes:
+    """Return a table, or columns by name, as the bytes of a Parquet file with `about` in its metadata."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    if isinstance(table, Mapping):
+        packed = pa.table(dict(table))
+    else:
+        packed = pa.Table.from_pandas(table, preserve_index=False)
+    metadata = {**(packed.schema.metadata or {}), METADATA: plain_json.dumps(about).encode()}
+    buffer = io.BytesIO()
+    pq.write_table(packed.replace_schema_metadata(metadata), buffer, write_page_checksum=True)
+    return buffer.getvalue()
+
+
+def read(content: bytes) -> tuple[pd.DataFrame, dict[str, Any]]:
+    """Return the table of a file that `pack` made, and what it says of itself.
+
+    Raises
+    ------
+    ValueError or OSError
+        If it cannot be read, or its data are damaged.
+    """
+    import pyarrow.parquet as pq
+
+    table = pq.read_table(io.BytesIO(content), page_checksum_verification=True)
+    return table.to_pandas(), read_about(content)
+
+
+def read_about(source: bytes | Path) -> dict[str, Any]:
+    """Return what a Parquet file says of itself; nothing where rockwobble did not write it."""
+    import pyarrow.parquet as pq
+
+    metadata = pq.read_schema(io.BytesIO(source) if isinstance(source, bytes) else source).metadata or {}
+    found: dict[str, Any] = plain_json.loads(metadata.get(METADATA, b"{}"))
+    return found

@@ -1,0 +1,375 @@
+"""The motion of one cylinder, or of one column of a frame, whoever computed or measured it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import trace_file
+from .case import Case, Run
+from .cylinder import WobblingFrame
+from .diagnostic import Assumptions, Diagnostic, joined
+from .shown import Shown, line
+from .trace_source import Array, Known, Late, Source, friction_of, no_passes
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class Trace(Shown):
+    """Motion of one cylinder at n samples; positions are relative to O, which moves with the ground.
+
+    In a frame it is that of each of its columns.
+
+    What a source does not know is NaN.
+
+    Attributes
+    ----------
+    case : Case
+    run : Run
+        The method: an engine, or None for a reduced model; support and settings.
+    version : str
+        Of the engine, or of rockwobble for a reduced model.
+    time : ndarray, shape (n,)
+        Multiples of the sample step and the exact end [s]; the end of a fall may be later than the run.
+    tilt, tilt_rate : ndarray, shape (n,)
+        theta >= 0 [rad], theta' [rad/s].
+    rolling_angle, rolling_rate : ndarray, shape (n,)
+        phi, azimuth of the contact point, unwrapped [rad], NaN at rest; phi' [rad/s], 0 at rest.
+    twist : ndarray, shape (n,)
+        phi + psi, turn of the body about its axis, unwrapped [rad].
+    contact_point : ndarray, shape (n, 2)
+        On the ground [m]; NaN at rest.
+    centre_of_mass : ndarray, shape (n, 3)
+        [m]
+    energy : ndarray, shape (n,)
+        Relative to the ground, per unit mass, zero standing [m^2/s^2]; in a frame per unit of the mass of a
+        column and twice its share of the slab, which rises twice as far.
+    contact_force : ndarray, shape (n, 3)
+        Of the ground, and of walls, on the cylinder, in weights, world axes; in a frame the weight of a
+        column and its share of the slab.
+    top_contact_force : ndarray, shape (n, 3)
+        In a frame with a slab, of a column on the slab, in weights of its share of the slab, world axes.
+    friction_needed, top_friction_needed : ndarray, shape (n,)
+        Horizontal over normal force at the base, and at the top of a column of a frame [-]; inf where the
+        normal force is not positive.
+    slab_displacement : ndarray, shape (n, 3)
+        In a frame, of the slab from where it stood, relative to the ground [m].
+    restraining_moment : ndarray, shape (n,)
+        Kappa of the moment kappa (z_world + z_body) that the recess supplies, over the weight [m]; about the
+        vertical, as about the axis, that is 1 + cos(tilt) times kappa.
+    energy_lost : ndarray, shape (n,)
+        Energy that rolling resistance and impacts took so far, per unit mass [m^2/s^2].
+    energy_error : ndarray, shape (n,)
+        Energy that neither the start nor the excitation supplied [m^2/s^2].
+    slip, wall_contact, wall_impulse : ndarray, shape (n,)
+        Distance slipped so far [m], time in contact with walls so far [s], size of the force of the walls
+        summed over time so far, per unit mass [m/s].
+    peak_tilt : float
+        Largest tilt of the continuous motion that the record causes [rad], a swing that goes on when the run
+        ends included; pi/2 if overturned, NaN if failed.
+    outcome : {"stands", "overturned", "failed"}
+    rests : bool
+        Whether it stands still at the end.
+    followed_until : float
+        When the tilt of one that moves at the end of the run was at its next maximum, or it came to rest or
+        overturned, over still ground [s]: of that time only the peak is kept, and all of an overturning. NaN
+        if there was nothing to follow: it stands still, or has had a maximum since the ground keeps still.
+    facts, diagnostics : tuple of Diagnostic
+        What ended or limits the motion; the latter with breaches of the model's assumptions.
+    uplift_time, uplift_direction : float
+        First uplift [s] and rolling angle there [rad]; 0 and that of the start for a release, NaN without.
+    passes : DataFrame
+        Tilt minima between two maxima of one motion: time [s], minimum_tilt [rad], angle_of_turn [rad] from
+        maximum to maximum, resolved [bool].
+    rest_intervals : ndarray, shape (r, 2)
+        When it came to rest after it had moved, and when it uplifted again; NaN if it did not [s].
+    extrema : ndarray, shape (k, 4)
+        Turning points of the tilt: time [s], tilt [rad], rolling angle [rad], 1 for a maximum and -1 for
+        a minimum.
+    settings : mapping
+        Every setting of the method, given or default.
+    time_step : float
+        Of the engine, or between samples of a file [s].
+    wall_time : float
+        Computing time without compilation [s].
+    step_count : int
+        Steps tried; 0 where that is not known.
+    contact_resolution : float
+        Smallest minimum tilt of a pass that the engine resolves [rad]: by which contact gives, or by which
+        the tilt changes in a time step where it is fastest, whichever is more.
+    residual_displacement : float
+        Horizontal distance of the base centre from O at the end [m].
+    error_estimate, settled_until : float
+        Error of the tilt that the time step leaves [rad], and until when traces of successive steps agree
+        [s]; NaN unless the step was sought, the error also where it cannot be known, as of an unsettled run.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> trace = rw.simulate(rw.Case(pier, rw.el_centro_1940(), duration=15.0))
+    >>> trace.outcome, round(trace.peak_tilt / pier.alpha, 4), len(trace.passes)
+    ('stands', 0.2471, 18)
+    >>> trace.tilt.shape, trace.contact_point.shape
+    ((1501,), (1501, 2))
+    """
+
+    case: Case
+    run: Run
+    version: str
+    time: Array
+    tilt: Array
+    tilt_rate: Array
+    rolling_angle: Array
+    twist: Array
+    contact_point: Array
+    centre_of_mass: Array
+    peak_tilt: float
+    outcome: str
+    uplift_time: float
+    uplift_direction: float
+    source: Source
+    passes: pd.DataFrame = field(default_factory=no_passes)
+    facts: tuple[Diagnostic, ...] = ()
+    rests: bool = False
+    followed_until: float = math.nan
+    rest_intervals: Array = field(default_factory=lambda: np.empty((0, 2)))
+    extrema: Array = field(default_factory=lambda: np.empty((0, 4)))
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    time_step: float = math.nan
+    wall_time: float = math.nan
+    step_count: int = 0
+    contact_resolution: float = math.nan
+    residual_displacement: float = math.nan
+    error_estimate: float = math.nan
+    settled_until: float = math.nan
+
+    rolling_rate = Late(1)
+    energy = Late(1)
+    contact_force = Late(3)
+    top_contact_force = Late(3)
+    restraining_moment = Late(1)
+    energy_lost = Late(1)
+    energy_error = Late(1)
+    slip = Late(1)
+    wall_contact = Late(1)
+    wall_impulse = Late(1)
+
+    @property
+    def friction_needed(self) -> Array:
+        """Horizontal over normal force (n,) [-]; inf where the normal force is not positive."""
+        return friction_of(self.contact_force)
+
+    @property
+    def top_friction_needed(self) -> Array:
+        """Horizontal over normal force at the top of a column of a frame (n,) [-], as at its base."""
+        return friction_of(self.top_contact_force)
+
+    @property
+    def slab_displacement(self) -> Array:
+        """Displacement of the slab of a frame relative to the ground (n, 3) [m].
+
+        The top of a column moves with twice the velocity of its mass centre, as long as neither end slips.
+        """
+        cylinder = self.case.cylinder
+        stood = np.array([0.0, 0.0, cylinder.mass_centre_height])
+        moves = 2.0 if isinstance(cylinder, WobblingFrame) else math.nan
+        return np.asarray(moves * (self.centre_of_mass - stood))
+
+    @property
+    def contact_offset(self) -> Array:
+        """Distance of the contact point (n,) outwards of the circle of radius b about O [m]; NaN at rest."""
+        x, y = self.contact_point.T
+        return np.asarray(np.hypot(x, y) - self.case.cylinder.base_radius)
+
+    @property
+    def peak_time(self) -> float:
+        """Time of the largest tilt, to a sample, or of the swing after the end that is larger [s]."""
+        later = self.peak_tilt > self.peak_within_run
+        return self.followed_until if later else float(self.time[self.tilt.argmax()])
+
+    @property
+    def peak_within_run(self) -> float:
+        """Largest tilt while the run lasts, of samples and turning points [rad]."""
+        if math.isnan(self.followed_until):
+            return self.peak_tilt
+        return float(max(self.tilt.max(initial=0.0), self.extrema[:, 1].max(initial=0.0)))
+
+    @property
+    def residual_twist(self) -> float:
+        """Twist at the end, whole turns included [rad]."""
+        return float(self.twist[-1]) if len(self.twist) else math.nan
+
+    @cached_property
+    def assumptions(self) -> Assumptions | None:
+        """Whether contact and friction held, from extrema of the continuous motion; None if not known."""
+        return self.source.assumptions(math.inf)
+
+    def assumptions_until(self, end: float) -> Assumptions | None:
+        """Return whether contact and friction held until the time `end` [s], such as that of a fall.
+
+        A trace that was stored knows it of its whole run alone.
+        """
+        return self.source.assumptions(end)
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What ended or limits the motion, breaches of the model's assumptions included."""
+        return self.facts + (self.assumptions.breaches if self.assumptions else ())
+
+    def first(self, *codes: str) -> float:
+        """Return the earliest time at which a diagnostic of these codes holds [s]; infinite if none does.
+
+        Parameters
+        ----------
+        *codes : str
+            Of `rockwobble.models.diagnostic.CODES`.
+
+        Examples
+        --------
+        >>> import rockwobble as rw
+        >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+        >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+        >>> case = rw.Case(pier, initial=release, duration=4.0)
+        >>> rw.simulate(case).first("slip", "friction_needed")
+        inf
+        """
+        return min((fact.time for fact in self.diagnostics if fact.code in codes), default=math.inf)
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return the samples as a table, one column for each component, SI units and radians.
+
+        Examples
+        --------
+        >>> import rockwobble as rw
+        >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+        >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+        >>> case = rw.Case(pier, initial=release, duration=4.0)
+        >>> list(rw.simulate(case).to_frame().columns[:5])
+        ['time', 'tilt', 'tilt_rate', 'rolling_angle', 'rolling_rate']
+        """
+        import pandas as pd
+
+        vectors = trace_file.VECTORS
+        parts = {
+            name: part
+            for field, names in vectors.items()
+            for name, part in zip(names, getattr(self, field).T, strict=True)
+        }
+        left_out = () if isinstance(self.case.cylinder, WobblingFrame) else trace_file.OF_FRAMES
+        return pd.DataFrame(
+            {
+                name: parts[name] if name in parts else getattr(self, name)
+                for name in trace_file.COLUMNS
+                if name not in left_out
+            }
+        )
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return all of it but its case and samples, for JSON."""
+        numbers = {name: getattr(self, name) for name in trace_file.NUMBERS}
+        return {
+            "run": trace_file.run_to_plain(self.run),
+            **numbers,
+            "settings": dict(self.settings),
+            "facts": self.facts,
+            "assumptions": self.assumptions,
+            "rest_intervals": self.rest_intervals,
+            "extrema": self.extrema,
+            "passes": {name: self.passes[name].to_numpy() for name in self.passes.columns},
+        }
+
+    @classmethod
+    def from_plain(cls, facts: Mapping[str, Any], samples: pd.DataFrame, case: Case) -> Trace:
+        """Return the trace of what `to_plain` and `to_frame` gave, and its case."""
+        return cls(case=case, **trace_file.restored(facts, samples))
+
+    def save(self, path: str | Path) -> None:
+        """Write the motion to a Parquet file, from which `load` returns it with the same bits.
+
+        Parameters
+        ----------
+        path : str or Path
+        """
+        Path(path).write_bytes(trace_file.packed(self.to_frame(), self.to_plain(), self.case))
+
+    @classmethod
+    def load(cls, path: str | Path) -> Trace:
+        """Return the motion that `save` wrote.
+
+        Parameters
+        ----------
+        path : str or Path
+
+        Returns
+        -------
+        Trace
+
+        Raises
+        ------
+        ValueError
+            If the file is not one of a trace.
+        """
+        facts, samples, case = trace_file.unpacked(path)
+        return cls.from_plain(facts, samples, case)
+
+    def summary(self) -> dict[str, str]:
+        """Return the main facts in words and numbers, by name."""
+        alpha = self.case.cylinder.alpha
+        found = {
+            "case": self.case.name or str(self.case),
+            "run": str(self.run),
+            "outcome": f"{self.outcome} at {self.time[-1]:.4g} s" if len(self.time) else self.outcome,
+            "peak tilt": f"{self.peak_tilt / alpha:.4g} alpha",
+            "uplift": "none" if math.isnan(self.uplift_time) else f"{self.uplift_time:.4g} s",
+            "passes": str(len(self.passes)),
+        }
+        if self.outcome == "stands" and not self.rests:
+            found["outcome"] += ", moving"
+            if not math.isnan(self.followed_until):
+                found["outcome"] += f", followed to {self.followed_until:.4g} s"
+        if self.facts:
+            found["diagnostics"] = joined(fact.code for fact in self.facts)
+        return found
+
+    _said = summary
+
+    def __repr__(self) -> str:
+        facts = [f"{name} {value}" for name, value in self.summary().items() if name not in ("case", "run")]
+        return line("Trace", [f"{self.run}: {facts[0]}", *facts[1:]])
+
+    @cached_property
+    def late(self) -> Mapping[str, Array]:
+        """The sampled quantities that its source gave beyond the fields."""
+        return self.source.sampled()
+
+
+def lost_trace(case: Case, run: Run, why: str) -> Trace:
+    """Return the trace of a run that left none, as where its process died: no samples, outcome "failed"."""
+    none = np.empty(0)
+    return Trace(
+        case=case,
+        run=run,
+        version="",
+        time=none,
+        tilt=none,
+        tilt_rate=none,
+        rolling_angle=none,
+        twist=none,
+        contact_point=np.empty((0, 2)),
+        centre_of_mass=np.empty((0, 3)),
+        peak_tilt=math.nan,
+        outcome="failed",
+        uplift_time=math.nan,
+        uplift_direction=math.nan,
+        source=Known({}),
+        facts=(Diagnostic(code="died", detail=why),),
+    )

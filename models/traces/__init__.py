@@ -1,1 +1,0 @@
-"""The motion of a cylinder, whoever computed or measured it."""

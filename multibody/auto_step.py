@@ -1,0 +1,214 @@
+"""time_step="auto": the step is halved until the tilt no longer depends on it.
+
+Runs of successive steps are compared, each with the one of twice its step. Two traces
+that near passes of upright tell apart are compared only up to the last pass before they diverge, for
+beyond it no step is small enough: they diverge where they differ by 1 % of alpha. The tilt has settled when
+
+* the two agree within the tolerance to the end of the run; or
+* they agree within the tolerance until they diverge, and a further halving does not put that off.
+
+Halving ends without that where it no longer brings the traces closer, which engines know (a smaller step
+is not always better), or at the smallest step. The run that is kept is the last that was an improvement.
+
+The estimate of the remaining error is Richardson's: with differences d1 and then d2 of successive
+halvings, the order is p = log2(d1/d2), and what is left of the finer one d2/(2^p - 1). Near passes mix the
+orders, so p counts as 1 at most. Only a run that has settled states an error; one with a pass that is not
+resolved, or in which contact makes or takes energy, has not.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rockwobble.models import Diagnostic, Trace
+
+from .guard import LARGEST_STEP
+
+_DIVERGED = 0.01  # of alpha
+# diagnostics beside which no estimate of the error is known: a pass is left to chance, or contact drives
+UNKNOWN = ("unresolved_pass", "energy")
+_SAME_TIME = 1e-9  # of the length of a run
+
+Progress = Callable[[float], None]
+Attempt = Callable[[float, Progress], Trace]
+"""Runs with a time step [s] and a callback for its fraction done."""
+
+
+@dataclass(frozen=True, slots=True)
+class Closeness:
+    """Closeness of two traces of one case.
+
+    Attributes
+    ----------
+    difference : float
+        Largest difference of the tilt until `until` [rad].
+    until : float
+        The end of the shorter trace, or the last pass before the divergence [s].
+    divergence : float
+        Where they diverge; infinite if they do not [s].
+    """
+
+    difference: float
+    until: float
+    divergence: float
+
+
+def closeness(coarse: Trace, fine: Trace, alpha: float) -> Closeness:
+    """Return the closeness of two traces in tilt, by their samples."""
+    count = common_count([coarse, fine])
+    distance = np.abs(coarse.tilt[:count] - fine.tilt[:count])
+    beyond = np.flatnonzero(distance > _DIVERGED * alpha)
+    if not len(beyond):
+        ends_alike = coarse.outcome == fine.outcome or "overturned" not in (coarse.outcome, fine.outcome)
+        end = float(fine.time[count - 1])
+        return Closeness(float(distance.max(initial=0.0)), end, math.inf if ends_alike else end)
+    divergence = float(fine.time[beyond[0]])
+    passes = np.asarray(fine.passes["time"], dtype=float)
+    earlier = passes[passes < divergence]
+    until = float(earlier[-1]) if len(earlier) else 0.0
+    within = distance[: int(np.searchsorted(fine.time, until, side="right"))]
+    return Closeness(float(within.max(initial=0.0)), until, divergence)
+
+
+def unknown_from(trace: Trace) -> tuple[float, str]:
+    """Return from when on no estimate of the error of a trace is known [s], and the code that says so."""
+    return min(((trace.first(code), code) for code in UNKNOWN), default=(math.inf, ""))
+
+
+def common_count(traces: Sequence[Trace]) -> int:
+    """Return up to which sample all traces have the same times."""
+    count = min(len(trace.time) for trace in traces)
+    first = traces[0].time[:count]
+    # the last sample of a run that overturned stands at its own time
+    near = _SAME_TIME * max(*(trace.time[-1] for trace in traces), 1.0)
+    different = np.flatnonzero(
+        np.any([np.abs(trace.time[:count] - first) > near for trace in traces], axis=0)
+    )
+    return int(different[0]) if len(different) else count
+
+
+def shares(steps: Sequence[float]) -> list[float]:
+    """Return the fractions of the whole work that are done before each step and after the last."""
+    work = np.cumsum([0.0, *(1.0 / step for step in steps)])
+    return [float(value) for value in work / work[-1]]
+
+
+def part_of(progress: Progress | None, start: float, end: float) -> Progress:
+    """Return a callback for one run, which is the work from `start` to `end` of the whole."""
+
+    def tell(fraction: float) -> None:
+        if progress is not None:
+            progress(start + (end - start) * fraction)
+
+    return tell
+
+
+AUTO = "auto"
+COARSEST = 4e-4  # [s] at the reference size: four times the default, so that easy cases cost a fourth
+SMALLEST = 6.25e-6  # [s] at the reference size: six halvings; below it rounding and cost grow, not accuracy
+STEP_TOLERANCE = 1e-3  # of alpha; the default, a tenth of the difference at which traces diverge
+_PUT_OFF = 1.05  # a divergence later by less is no gain
+_CLOSER = 0.9  # a difference reduced by less is no gain
+_ORDERS = 0.5, 1.0  # least and largest order that an estimate relies on
+
+assert COARSEST <= LARGEST_STEP
+
+
+def find_step(
+    attempt: Attempt, unit_time: float, alpha: float, tolerance: float, progress: Progress | None
+) -> Trace:
+    """Return the run whose tilt has settled, or the best one with the reason why it has not.
+
+    Parameters
+    ----------
+    attempt : callable
+        Runs with a time step [s] and a callback for its fraction done.
+    unit_time : float
+        User seconds in one second of the reference scene.
+    alpha : float
+        Of the cylinder [rad].
+    tolerance : float
+        In alpha.
+    progress : callable, optional
+        Called with the fraction done, as if all steps down to the smallest had to be tried.
+    """
+    steps = [COARSEST * unit_time]
+    while steps[-1] > SMALLEST * unit_time * 1.5:
+        steps.append(0.5 * steps[-1])
+    parts = shares(steps)
+    best, coarser = None, None  # the run to keep, and the last one
+    found: list[Closeness] = []  # of the run to keep and all before it
+    verdict, spent = "still_changes", 0.0
+    for index, step in enumerate(steps):
+        run = attempt(step, part_of(progress, parts[index], parts[index + 1]))
+        spent += run.wall_time
+        if best is None or best.outcome == "failed":
+            best = run
+        elif run.outcome == "failed":
+            verdict = "fails"
+            break
+        else:
+            assert coarser is not None
+            trial = [*found, closeness(coarser, run, alpha)]
+            end, gain = _judge(trial, tolerance * alpha)
+            if gain:
+                best, found = run, trial
+            if end is not None:
+                verdict = end
+                break
+        coarser = run
+    if progress is not None:
+        progress(1.0)
+    assert best is not None
+    return replace(_reported(best, found, verdict, alpha), wall_time=spent)
+
+
+def _judge(found: list[Closeness], tolerance: float) -> tuple[str | None, bool]:
+    """Return why to stop, "" where the tilt has settled and None to go on, and whether the last is a gain."""
+    last = found[-1]
+    close = last.difference <= tolerance
+    if math.isinf(last.divergence) and close:
+        return "", True
+    if len(found) < 2:
+        return None, True
+    before = found[-2]
+    if last.divergence > before.divergence * _PUT_OFF:
+        return None, True
+    if math.isfinite(last.divergence):
+        # the one before diverged later: the smaller step is the worse one
+        gain = last.divergence >= before.divergence / _PUT_OFF
+        return ("" if close and gain else "no_later"), gain
+    if last.difference > _CLOSER * before.difference:
+        return "no_closer", last.difference <= before.difference
+    return None, True
+
+
+def _estimate(found: list[Closeness]) -> tuple[float, float]:
+    """Return Richardson's estimate of the error that is left [rad], and the order that it rests on."""
+    last = found[-1]
+    order = 1.0
+    if len(found) > 1 and last.difference > 0.0 and found[-2].until >= last.until / _PUT_OFF:
+        order = math.log2(max(found[-2].difference, 1e-300) / last.difference)
+    order = min(max(order, _ORDERS[0]), _ORDERS[1])
+    return last.difference / (2.0**order - 1.0), order
+
+
+def _reported(run: Trace, found: list[Closeness], verdict: str, alpha: float) -> Trace:
+    """The run with what halving found; `verdict` says why it has not settled, and is empty if it has."""
+    if not found:
+        fact = Diagnostic(code="unsettled", detail=verdict)
+        return run if run.outcome == "failed" else replace(run, facts=(*run.facts, fact))
+    last = found[-1]
+    unknown, code = unknown_from(run)
+    verdict = verdict or (code if math.isfinite(unknown) else "")
+    if verdict:
+        error = math.nan
+        fact = Diagnostic(code="unsettled", duration=last.until, size=last.difference / alpha, detail=verdict)
+    else:
+        error, order = _estimate(found)
+        fact = Diagnostic(code="settled", duration=last.until, size=error / alpha, bound=order)
+    return replace(run, error_estimate=error, settled_until=last.until, facts=(*run.facts, fact))

@@ -1,0 +1,169 @@
+"""Turning points of the tilt, and rests between two motions, from the engine's own steps."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class TurningPoint:
+    """An extremum of the tilt: time [s], tilt [rad], rolling angle [rad]."""
+
+    time: float
+    tilt: float
+    rolling_angle: float
+    is_maximum: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Pass:
+    """A tilt minimum between two maxima.
+
+    Attributes
+    ----------
+    time : float
+        Of the minimum [s].
+    minimum_tilt : float
+        [rad]
+    angle_of_turn : float
+        Change of the rolling angle from maximum to maximum [rad].
+    """
+
+    time: float
+    minimum_tilt: float
+    angle_of_turn: float
+
+
+def turning_points(time: Array, tilt: Array, rolling_angle: Array) -> list[TurningPoint]:
+    """Return the extrema among the inner steps, each refined by a parabola through three steps.
+
+    The parabola is that of the squared tilt: near upright the axis goes past in a straight line, on
+    which the squared tilt is exactly a parabola however few steps the pass takes.
+    """
+    rising = np.diff(tilt) > 0.0
+    found = []
+    for index in np.flatnonzero(rising[1:] != rising[:-1]) + 1:
+        around = slice(index - 1, index + 2)
+        offset, square = _vertex(tilt[around] ** 2)
+        step = time[index] - time[index - 1]
+        at = time[index] + offset * step
+        angle = np.interp(at, time[around], rolling_angle[around])
+        found.append(
+            TurningPoint(float(at), float(np.sqrt(max(square, 0.0))), float(angle), not rising[index])
+        )
+    return found
+
+
+def true_swings(points: list[TurningPoint], threshold: float) -> list[TurningPoint]:
+    """Leave out swings smaller than `threshold` [rad]: those are contact noise."""
+    kept: list[TurningPoint] = []
+    for point in points:
+        if kept and point.is_maximum != kept[-1].is_maximum and abs(point.tilt - kept[-1].tilt) < threshold:
+            kept.pop()
+        if kept and point.is_maximum == kept[-1].is_maximum:
+            # two of a kind meet where a small swing between them was dropped: the outer one is real
+            if (point.tilt > kept[-1].tilt) == point.is_maximum:
+                kept[-1] = point
+        else:
+            kept.append(point)
+    return kept
+
+
+def passes_between(
+    points: list[TurningPoint], threshold: float, rests: Sequence[tuple[float, float]] = ()
+) -> list[Pass]:
+    """Return the passes, without swings smaller than `threshold` [rad].
+
+    A pass belongs to one motion: both its maxima lie on the same side of every rest, of which `rests` holds
+    start and end [s].
+    """
+    motions: list[list[TurningPoint]] = [[] for _ in range(len(rests) + 1)]
+    ends = [end for _, end in rests]
+    for point in points:
+        number = bisect_right(ends, point.time)
+        # what happens in a rest is no swing of either motion
+        if number == len(rests) or point.time < rests[number][0]:
+            motions[number].append(point)
+    return [found for motion in motions for found in _passes(true_swings(motion, threshold))]
+
+
+def _passes(kept: list[TurningPoint]) -> list[Pass]:
+    return [
+        Pass(low.time, low.tilt, after.rolling_angle - before.rolling_angle)
+        for before, low, after in zip(kept, kept[1:], kept[2:], strict=False)
+        if before.is_maximum and not low.is_maximum
+    ]
+
+
+def _vertex(values: Array) -> tuple[float, float]:
+    """Vertex of the parabola through three values one step apart: offset in steps, value."""
+    left, middle, right = (float(value) for value in values)
+    curve = left - 2.0 * middle + right
+    if curve == 0.0:
+        return 0.0, middle
+    slope = 0.5 * (right - left)
+    offset = min(max(-slope / curve, -1.0), 1.0)
+    return offset, middle + 0.5 * slope * offset
+
+
+# [s] at the reference size. A base that rocks by the 1e-5 alpha at which it counts as closed goes up and down
+# in 8 ms, whatever its slenderness; what stays below for longer than two such swings stands.
+SHORTEST = 0.02
+
+
+class RestWatch:
+    """Notes, chunk by chunk, the stretches over which the tilt stays below a level.
+
+    Parameters
+    ----------
+    level : float
+        Of the tilt [rad].
+    """
+
+    def __init__(self, level: float) -> None:
+        self._level = level
+        self._since: float | None = None  # time from which the tilt has been below the level
+        self._last = 0.0
+        self._over: list[tuple[float, float]] = []
+
+    def take(self, time: Array, tilt: Array) -> None:
+        """Take the next steps (n,)."""
+        closed = tilt < self._level
+        change = np.flatnonzero(np.diff(closed, prepend=self._since is not None))
+        for index in change:
+            if closed[index]:
+                self._since = float(time[index])
+            else:
+                self._close(float(time[index]))
+        self._last = float(time[-1])
+
+    def _close(self, end: float) -> None:
+        if self._since is not None and end - self._since > SHORTEST:
+            self._over.append((self._since, end))
+        self._since = None
+
+    @property
+    def resting(self) -> bool:
+        """Whether the last step taken belongs to a rest."""
+        return self._since is not None and self._last - self._since > SHORTEST
+
+    def rests(self) -> list[tuple[float, float]]:
+        """Return start and end of every rest so far [s]; one that lasts ends at the last step."""
+        if self._since is None or not self.resting:
+            return list(self._over)
+        return [*self._over, (self._since, self._last)]
+
+    def after_motion(self) -> list[tuple[float, float]]:
+        """Return the same without the stand before the first motion; NaN ends one that lasts."""
+        later = [rest for rest in self.rests() if rest[0] > 0.0]
+        if later and self.resting:
+            later[-1] = (later[-1][0], math.nan)
+        return later

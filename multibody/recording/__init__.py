@@ -1,1 +1,0 @@
-"""Recording of an engine's steps: kinematics, turning points, forces, energy, rests."""

@@ -1,1 +1,0 @@
-"""A scene: body, start, support and excitation at the reference size, stated for every engine."""

@@ -1,1 +1,0 @@
-"""Time steps that are sought, or extrapolated, in place of one that is given."""
