@@ -163,8 +163,8 @@ def _numbers(found: Advice) -> list[Row]:
     """Rows of the three numbers: as given, and what 95 % of each group do not exceed."""
     alpha = math.degrees(found.cylinder.alpha)
     part = "slab" if "columns" in found.facts["cylinder"] else "top"
-    tilt: Row = {"name": "largest tilt, 95 % of the runs [°]"}
-    top: Row = {"name": f"displacement of the {part}, 95 % [m]"}
+    tilt: Row = {"name": "largest tilt, 95 % of runs [°]"}
+    top: Row = {"name": f"{part} displacement, 95 % [m]"}
     chance: Row = {"name": "overturning probability (95 %)"}
     given = math.inf if found.overturned else found.peak
     for group, peak in [("given", given), *((row["group"], row["peak_tilt_95"]) for row in _groups(found))]:
@@ -172,7 +172,7 @@ def _numbers(found: Advice) -> list[Row]:
         top[group] = "overturns" if math.isinf(peak) else number(found.top(peak))
     chance["given"] = "overturns" if found.overturned else "stands"
     for row in _groups(found):
-        low, high = (number(100.0 * row[f"chance_{end}"], ".2g") for end in ("low", "high"))
+        low, high = (number(row[f"chance_{end}"], "percent").removesuffix(" %") for end in ("low", "high"))
         share = f"{number(row['chance'], 'percent')} ({low} to {high} %)"
         chance[row["group"]] = "one run" if math.isnan(row["chance"]) else share
     return [tilt, top, chance]
