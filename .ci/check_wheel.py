@@ -1,4 +1,4 @@
-"""Hold what a wheel contains against the files of the checkout: all that is needed and nothing else."""
+"""Compare what a wheel contains with the files of the checkout: all that is needed and nothing else."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def main(checkout: Path, wheel: Path) -> None:
         for path in (checkout / folder).rglob("*")
         if path.is_file() and "__pycache__" not in path.parts and "published" not in path.parts
     }
-    wanted |= {f"rockwobble/{name}" for name in ("__init__.py", "__main__.py", "py.typed")}
+    wanted |= {f"rockwobble/{name}" for name in ("__init__.py", "__init__.pyi", "__main__.py", "py.typed")}
     packed = {name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/" not in name}
     problems = [f"missing: {name}" for name in sorted(wanted - packed)]
     problems += [f"not wanted: {name}" for name in sorted(packed - wanted)]

@@ -3,11 +3,18 @@
 The names stand in `__init__.pyi`, and each is imported when it is first used.
 """
 
+from __future__ import annotations
+
 import sys
+from collections.abc import Callable
+from inspect import Signature, signature
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING
 
 import lazy_loader
+
+if TYPE_CHECKING:
+    from .comparison.comparison import Comparison
 
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
@@ -19,14 +26,14 @@ class _Callable(ModuleType):
     function of the same name would stay beside it.
     """
 
-    def __call__(self, *arguments: Any, **options: Any) -> Any:
-        """Run engines and reduced models on the same problem; see the function `compare`."""
-        return self.compare(*arguments, **options)
+    @property
+    def __call__(self) -> Callable[..., Comparison]:
+        """The function `compare`, which runs engines and reduced models on the same problem."""
+        found: Callable[..., Comparison] = self.compare
+        return found
 
     @property
-    def __signature__(self) -> Any:
-        from inspect import signature
-
+    def __signature__(self) -> Signature:
         return signature(self.compare)
 
 

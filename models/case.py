@@ -82,8 +82,8 @@ class Case:
         For tables, figures and file names. Default: that of the motion, or "free response".
     rolling_resistance : float, optional
         Length delta of the couple of at most delta times the normal force against the rolling of the rim
-        [m], below the base radius: the pressure of a contact stays within the base. 0 loses nothing; a frame,
-        which would roll with loss at both ends of its columns, has no other.
+        [m], below the base radius: the pressure of a contact stays within the base. 0 loses nothing. The
+        columns of a frame roll with it at both ends.
 
     Raises
     ------
@@ -124,8 +124,6 @@ class Case:
                 f"rolling_resistance must be from 0 to below the base radius, "
                 f"{self.cylinder.base_radius:g} m, got {length!r} m"
             )
-        if length and self.cylinder.slab_mass_ratio:
-            raise ValueError(f"rolling_resistance must be 0 for a frame, got {length!r} m")
         if not self.name:
             name = "free response" if self.motion is None else self.motion.name
             object.__setattr__(self, "name", name or "record")
@@ -261,7 +259,7 @@ class Run:
         planar = self.settings.get("plane") is not None
         return "planar model" if planar else _MODEL_NAMES.get(self.support, f"{self.support} model")
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         # a mapping proxy does not pickle, and runs travel to worker processes
         return _restore_run, (self.engine, self.support, self.time_step, dict(self.settings))
 

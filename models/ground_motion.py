@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -80,7 +79,7 @@ class GroundMotion:
     def __hash__(self) -> int:
         return hash((self.time_step, self.name, self.acceleration.tobytes()))
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         # a copy or a worker process must not get a writable array
         return GroundMotion, (self.acceleration, self.time_step, self.name)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -51,7 +50,7 @@ def require_one_of(name: str, value: object, allowed: Iterable[str]) -> None:
         raise ValueError(f"{name} must be one of {', '.join(words)}, got {quoted(value)}")
 
 
-def quoted(value: Any) -> str:
+def quoted(value: object) -> str:
     """Return a bad value as it is told: itself, or what it is where that would be longer than a line."""
     text = repr(value)
     return text if len(text) <= _MOST and "\n" not in text else brief(value)

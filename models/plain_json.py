@@ -13,7 +13,7 @@ import numpy as np
 _FLOAT = "float"
 
 
-def dumps(value: Any, *, indent: int | None = None) -> str:
+def dumps(value: object, *, indent: int | None = None) -> str:
     """Return strict JSON; nan and the infinities become ``{"float": "nan"}`` and the like.
 
     Dataclasses and mappings become objects, arrays and tuples lists, and what JSON does not know text.
@@ -26,7 +26,7 @@ def loads(text: str | bytes) -> Any:
     return json.loads(text, object_hook=_float)
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> object:
     if isinstance(value, np.generic | np.ndarray):
         value = value.tolist()
     if isinstance(value, float) and not math.isfinite(value):
@@ -42,5 +42,6 @@ def _plain(value: Any) -> Any:
     return str(value)
 
 
-def _float(found: dict[str, Any]) -> Any:
-    return float(found[_FLOAT]) if set(found) == {_FLOAT} and isinstance(found[_FLOAT], str) else found
+def _float(found: dict[str, object]) -> object:
+    word = found.get(_FLOAT)
+    return float(word) if len(found) == 1 and isinstance(word, str) else found

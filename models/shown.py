@@ -6,7 +6,7 @@ import dataclasses
 import html
 from collections.abc import Iterable, Mapping, Sequence, Sized
 from importlib.metadata import entry_points
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -40,7 +40,7 @@ class Brief:
         return line(type(self).__name__, told)
 
 
-def _is_default(field: dataclasses.Field[Any], value: Any) -> bool:
+def _is_default(field: dataclasses.Field[object], value: object) -> bool:
     if field.default_factory is not dataclasses.MISSING:
         return isinstance(value, Sized) and not len(value)
     if value is None or value is field.default:
@@ -53,7 +53,7 @@ def _cut(text: str, length: int) -> str:
     return text if len(text) <= length else f"{text[: length - 3]}..."
 
 
-def brief(value: Any) -> str:
+def brief(value: object) -> str:
     """Return a value in words for a part of a line."""
     if isinstance(value, float):
         return f"{value:.6g}"
@@ -61,13 +61,13 @@ def brief(value: Any) -> str:
         return f"array{value.shape}"
     if isinstance(value, str):
         return repr(_cut(value, _MOST // 2))
-    many = isinstance(value, Mapping | Sequence)
-    if not many or len(value) <= _FEW:
+    items = len(value) if isinstance(value, Mapping | Sequence) else 0
+    if items <= _FEW:
         text = repr(value)
         if "\n" not in text and len(text) <= _MOST:
             return text
-    if many:
-        return f"{len(value)} item{'' if len(value) == 1 else 's'}"
+    if isinstance(value, Mapping | Sequence):
+        return f"{items} item{'' if items == 1 else 's'}"
     kind, name = type(value).__name__, getattr(value, "name", None)
     return f"{kind} {brief(name)}" if isinstance(name, str) else f"a {kind}"
 

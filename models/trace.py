@@ -273,7 +273,7 @@ class Trace(Shown):
             }
         )
 
-    def to_plain(self) -> dict[str, Any]:
+    def to_plain(self) -> dict[str, object]:
         """Return all of it but its case and samples, for JSON."""
         numbers = {name: getattr(self, name) for name in trace_file.NUMBERS}
         return {

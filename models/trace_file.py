@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +15,7 @@ from .cylinder import cylinder_of
 from .diagnostic import Assumptions, Diagnostic
 from .ground_motion import GroundMotion
 from .parquet_file import pack, read
-from .trace_source import Known
+from .trace_source import Array, Known
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -80,7 +80,7 @@ def restored(facts: Mapping[str, Any], samples: pd.DataFrame) -> dict[str, Any]:
     """Return the arguments of a trace, but its case, of what `Trace.to_plain` and its samples hold."""
     import pandas as pd
 
-    def array(name: str) -> Any:
+    def array(name: str) -> Array:
         columns = VECTORS.get(name)
         return samples[name].to_numpy() if columns is None else samples[list(columns)].to_numpy()
 
@@ -115,11 +115,11 @@ def restored(facts: Mapping[str, Any], samples: pd.DataFrame) -> dict[str, Any]:
     }
 
 
-def _diagnostics(given: list[dict[str, Any]]) -> tuple[Diagnostic, ...]:
+def _diagnostics(given: Iterable[Mapping[str, Any]]) -> tuple[Diagnostic, ...]:
     return tuple(Diagnostic(**each) for each in given)
 
 
-def run_to_plain(run: Run) -> dict[str, Any]:
+def run_to_plain(run: Run) -> dict[str, object]:
     """Return a run for JSON."""
     return {
         "engine": run.engine,
@@ -134,7 +134,7 @@ def run_from_plain(given: Mapping[str, Any]) -> Run:
     return Run(given["engine"], given["support"], given["time_step"], **given["settings"])
 
 
-def case_to_plain(case: Case) -> dict[str, Any]:
+def case_to_plain(case: Case) -> dict[str, object]:
     """Return a case for JSON, with the samples of its motion."""
     fields = {field.name: getattr(case, field.name) for field in dataclasses.fields(case)}
     return {**fields, "motion": case.motion and dataclasses.asdict(case.motion)}
@@ -151,7 +151,7 @@ def case_from_plain(given: Mapping[str, Any]) -> Case:
     return Case(**{**given, **fields})
 
 
-def packed(samples: pd.DataFrame, facts: Mapping[str, Any], case: Case) -> bytes:
+def packed(samples: pd.DataFrame, facts: Mapping[str, object], case: Case) -> bytes:
     """Return a trace as the bytes of a Parquet file."""
     return pack(samples, {"case": case_to_plain(case), "trace": facts})
 

@@ -51,9 +51,9 @@ from rockwobble.models.shown import Brief
 
 from .scene import Scene
 
-Options = Mapping[str, Any]
+Settings = Mapping[str, Any]
 
-_NOTHING: Options = MappingProxyType({})
+_NOTHING: Settings = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -101,13 +101,11 @@ class EngineFacts(Brief):
     carries_slab: bool = False
     rolling_friction: bool = False
     contact_time: str = ""
-    alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)
-    standing_alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)
+    alternatives: Mapping[str, Settings] = field(default_factory=lambda: _NOTHING)
+    standing_alternatives: Mapping[str, Settings] = field(default_factory=lambda: _NOTHING)
 
 
 Array = NDArray[np.float64]
-
-Settings = Mapping[str, Any]
 
 MEMBERS = ("supports", "uplifts", "facts", "version", "settings", "open")  # of an Engine
 
@@ -213,7 +211,7 @@ class Engine(Protocol):
         """Return the version of the package, for the record: results differ between versions."""
         ...
 
-    def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
+    def settings(self, given: Settings, scene: Scene) -> Mapping[str, object]:
         """Return every setting, from those `given` (in the units of the user) and the time step.
 
         Raises

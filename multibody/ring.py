@@ -42,25 +42,25 @@ cylinder that rolls out touches a ring when it has gone as far as the clearance.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder
-from rockwobble.models.number_checks import quoted
 from rockwobble.models.support import SUPPORTS
 
 from .kinematics import axis_of
+from .protocol import Array, Settings
 from .scene import Scene
+from .settings import EngineSettings, positive, whole
 
+_ROUNDING = 1e-12  # [b] of a tilt that comes back from a quaternion
 STEEPEST = 1.5  # [rad] a wall that leans further is a floor
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RingSettings:
+class RingSettings(EngineSettings):
     """A ring of facets around the base, each an infinite half-space.
 
     Attributes
@@ -87,26 +87,13 @@ class RingSettings:
         If a value is out of range.
     """
 
-    ring_clearance: float = 1e-3
-    ring_inclination: float
-    ring_facets: int = 128
-    ring_friction: float = 0.5
-
-    def __post_init__(self) -> None:
-        _require("ring_clearance", self.ring_clearance, 100.0, "base radii")
-        _require("ring_inclination", self.ring_inclination, STEEPEST, "rad, outward from the vertical")
-        _require("ring_friction", self.ring_friction, 100.0, "")
-        if type(self.ring_facets) is not int or not 3 <= self.ring_facets <= 1000:
-            raise ValueError(f"ring_facets must be a whole number from 3 to 1000, got {self.ring_facets!r}")
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return the settings by name."""
-        return asdict(self)
+    ring_clearance: Annotated[float, positive(most=100.0, or_zero=True)] = 1e-3
+    ring_inclination: Annotated[float, positive(most=STEEPEST, or_zero=True)]
+    ring_facets: Annotated[int, whole(least=3, most=1000)] = 128
+    ring_friction: Annotated[float, positive(most=100.0, or_zero=True)] = 0.5
 
 
-def take_ring(
-    given: Mapping[str, Any], support: str, tan_alpha: float
-) -> tuple[dict[str, Any], RingSettings | None]:
+def take_ring(given: Settings, support: str, tan_alpha: float) -> tuple[Settings, RingSettings | None]:
     """Return the settings that are not of the ring, and the ring; None for every other support.
 
     The inclination is arctan(tan_alpha) unless given.
@@ -124,19 +111,6 @@ def take_ring(
     if walls:
         raise ValueError(f"{', '.join(walls)} is for support 'ring' only, got support {support!r}")
     return others, None
-
-
-def _require(name: str, value: Any, high: float, unit: str) -> None:
-    number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-    if not (number and 0.0 <= value <= high):
-        raise ValueError(
-            f"{name} must be from 0 to {high:g}{f' [{unit}]' if unit else ''}, got {quoted(value)}"
-        )
-
-
-Array = NDArray[np.float64]
-
-_ROUNDING = 1e-12  # [b] of a tilt that comes back from a quaternion
 
 
 def clearance_needed(cylinder: Cylinder, tilt: float, inclination: float) -> float:
@@ -233,4 +207,4 @@ def wall_feet(ring: RingSettings, base_radius: float) -> Array:
     """Return the point of each wall on the ground that is nearest to O, shape (facets, 3) [m]."""
     azimuth = 2.0 * math.pi * np.arange(ring.ring_facets) / ring.ring_facets
     distance = base_radius * (1.0 + ring.ring_clearance)
-    return distance * np.column_stack([np.cos(azimuth), np.sin(azimuth), np.zeros(len(azimuth))])
+    return np.asarray(distance * np.column_stack([np.cos(azimuth), np.sin(azimuth), np.zeros(len(azimuth))]))

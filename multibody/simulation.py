@@ -22,7 +22,7 @@ from .excitation import StepMeans
 from .extrapolated_step import EXTRAPOLATED, FINEST, extrapolate, require_finest
 from .guard import check_time_step
 from .passes import passes_between, true_swings
-from .protocol import Engine
+from .protocol import Engine, Settings
 from .recorder import COLUMNS, Recorder
 from .scene import REFERENCE_GRAVITY, Scale, Scene, default_step, froude_scale, scaled_body, starting_state
 from .stepping import Progress, run_steps
@@ -53,9 +53,9 @@ def simulate(
     case : Case
         Cylinder, ground motion, initial state, length, gravity, and the Coulomb coefficient of the pair
         cylinder and ground.
-    engine : {"mujoco", "pybullet", "dart", "drake", "exudyn", "rapier"}
-        Or one that another package declares. Exudyn is an ideal rim: flat ground, from a release only.
-        Rapier computes in single precision.
+    engine : str
+        One of `engine_names()`; `available_engines()` are installed. Exudyn is an ideal rim: flat
+        ground, from a release only. Rapier computes in single precision.
     support : {"recess", "flat", "ring"}
         The ideal recess, which holds the twist at zero; flat ground; or a recess of inclined walls with
         clearance, which MuJoCo has.
@@ -72,8 +72,7 @@ def simulate(
     progress : callable, optional
         Called now and then with the fraction done.
     **settings
-        Of the engine: see `MujocoSettings`, `PybulletSettings`, `DartSettings`, `DrakeSettings`,
-        `ExudynSettings` and `RapierSettings`; of a ring: see `RingSettings`.
+        Of the engine, as those of MuJoCo in `MujocoSettings`; of a recess with clearance: see `RingSettings`.
 
     Returns
     -------
@@ -128,7 +127,7 @@ def _simulate(
     time_step: float | None,
     sample_step: float,
     progress: Progress | None,
-    settings: Mapping[str, Any],
+    settings: Settings,
 ) -> Trace:
     """Run with one time step [s]; None is the default."""
     started = clock.perf_counter()
@@ -185,6 +184,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         "contact_force": forces,
         "energy": table["energy"] * scale.energy,
         "energy_error": table["energy_error"] * scale.energy,
+        "energy_lost": _energy_lost(table["energy_error"], scene) * scale.energy,
         "slip": table["slip"] * scale.length,
         "wall_contact": table["wall_contact"] * scale.time,
         "wall_impulse": table["wall_impulse"] * scale.length / scale.time,
@@ -212,6 +212,14 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         residual_displacement=float(np.hypot(table["base_x"][-1], table["base_y"][-1])) * scale.length,
         **method,
     )
+
+
+def _energy_lost(error: Array, scene: Scene) -> Array:
+    """Return what the start and the ground supplied and the energy lacks; unknown without a couple of loss.
+
+    All that contact took is in it, of which the couple's part is not known alone.
+    """
+    return -error if scene.rolling_resistance > 0.0 else np.full(len(error), math.nan)
 
 
 def _extrema(recorder: Recorder, scene: Scene, scale: Scale) -> Array:
@@ -288,8 +296,8 @@ def make_scene(case: Case, support: str, step: float, scale: Scale) -> Scene:
 
 
 def resolved_settings(
-    case: Case, engine: str, support: str, settings: Mapping[str, Any], time_step: float | None = None
-) -> dict[str, Any]:
+    case: Case, engine: str, support: str, settings: Settings, time_step: float | None = None
+) -> Mapping[str, object]:
     """Return every setting with which `simulate` would run a case, without running it.
 
     Raises
@@ -302,7 +310,7 @@ def resolved_settings(
 
 
 @contextlib.contextmanager
-def open_scene(case: Case, engine: str, support: str, settings: Mapping[str, Any]) -> Iterator[Any]:
+def open_scene(case: Case, engine: str, support: str, settings: Settings) -> Iterator[Any]:
     """Open the scene of a case as `simulate` does at its default step, for who wants to step it alone.
 
     Yields

@@ -11,7 +11,6 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Callable, Mapping
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +37,7 @@ _STEADY = 1e-3  # of its tilt, within which a wobble counts as steady
 def run_steps(
     backend: Engine,
     scene: Scene,
-    settings: Mapping[str, Any],
+    settings: Mapping[str, object],
     recorder: Recorder,
     means: StepMeans,
     sample_step: float,

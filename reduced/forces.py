@@ -53,7 +53,9 @@ def contact_force(
     turning = 0.0
     if body.delta > 0.0:
         spin = tau_rate - phi_rate
-        tilting, turning = couple_on(body, theta, omega, phi, spin, theta_acceleration, (ax, ay, az))
+        tilting, turning = couple_on(
+            body, theta, omega, phi, spin, tau_rate, theta_acceleration, (ax, ay, az), free_twist
+        )
         theta_acceleration += tilting / body.A
         S_rate += twist_share(body, s, c) * turning
     t = s / (1.0 + c)
@@ -83,7 +85,7 @@ def contact_force(
     up = D_2 * theta_acceleration - D_1 * omega * omega
     F_t = nu * across + a_t * (1.0 - nu * reach * reach / H)
     if body.delta > 0.0:
-        F_t -= reach / H * turning
+        F_t -= nu * reach / H * turning
     return nu * outward + a_r, F_t, body.g + az + nu * up, kappa
 
 

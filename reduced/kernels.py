@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder
 
@@ -12,7 +11,7 @@ from .body import Body, body_of
 from .integration.driver import make_driver
 from .integration.progress import spin_momentum
 from .integration.resisted import RESISTED_FLAT, RESISTED_PLANAR, RESISTED_RECESS, STEPPERS
-from .integration.result import IntegrationResult, Options, State
+from .integration.result import Driver, IntegrationResult, Options, Task
 from .integration.stepping import runge_kutta, taylor_series
 from .integration.systems import (
     FLAT,
@@ -33,87 +32,39 @@ _driver_resisted_flat = make_driver(RESISTED_FLAT, STEPPERS["flat"])
 
 
 @kernel
-def integrate_planar(
-    body: Body,
-    options: Options,
-    record: NDArray[np.float64],
-    time_step: float,
-    initial: State,
-    times: NDArray[np.float64],
-    later: NDArray[np.float64],
-) -> IntegrationResult:
-    """Solve the planar model; see `driver.make_driver`."""
-    return _driver_planar(body, options, record, time_step, initial, times, later)
+def integrate_planar(body: Body, options: Options, task: Task) -> IntegrationResult:
+    """Solve the planar model."""
+    return _driver_planar(body, options, task)
 
 
 @kernel
-def integrate_recess(
-    body: Body,
-    options: Options,
-    record: NDArray[np.float64],
-    time_step: float,
-    initial: State,
-    times: NDArray[np.float64],
-    later: NDArray[np.float64],
-) -> IntegrationResult:
-    """Solve the recess model; see `driver.make_driver`."""
-    return _driver_recess(body, options, record, time_step, initial, times, later)
+def integrate_recess(body: Body, options: Options, task: Task) -> IntegrationResult:
+    """Solve the recess model."""
+    return _driver_recess(body, options, task)
 
 
 @kernel
-def integrate_flat(
-    body: Body,
-    options: Options,
-    record: NDArray[np.float64],
-    time_step: float,
-    initial: State,
-    times: NDArray[np.float64],
-    later: NDArray[np.float64],
-) -> IntegrationResult:
-    """Solve the flat-ground model; see `driver.make_driver`."""
-    return _driver_flat(body, options, record, time_step, initial, times, later)
+def integrate_flat(body: Body, options: Options, task: Task) -> IntegrationResult:
+    """Solve the flat-ground model."""
+    return _driver_flat(body, options, task)
 
 
 @kernel
-def integrate_resisted_planar(
-    body: Body,
-    options: Options,
-    record: NDArray[np.float64],
-    time_step: float,
-    initial: State,
-    times: NDArray[np.float64],
-    later: NDArray[np.float64],
-) -> IntegrationResult:
-    """Solve the planar model with rolling resistance; see `driver.make_driver`."""
-    return _driver_resisted_planar(body, options, record, time_step, initial, times, later)
+def integrate_resisted_planar(body: Body, options: Options, task: Task) -> IntegrationResult:
+    """Solve the planar model with rolling resistance."""
+    return _driver_resisted_planar(body, options, task)
 
 
 @kernel
-def integrate_resisted_recess(
-    body: Body,
-    options: Options,
-    record: NDArray[np.float64],
-    time_step: float,
-    initial: State,
-    times: NDArray[np.float64],
-    later: NDArray[np.float64],
-) -> IntegrationResult:
-    """Solve the recess model with rolling resistance; see `driver.make_driver`."""
-    return _driver_resisted_recess(body, options, record, time_step, initial, times, later)
+def integrate_resisted_recess(body: Body, options: Options, task: Task) -> IntegrationResult:
+    """Solve the recess model with rolling resistance."""
+    return _driver_resisted_recess(body, options, task)
 
 
 @kernel
-def integrate_resisted_flat(
-    body: Body,
-    options: Options,
-    record: NDArray[np.float64],
-    time_step: float,
-    initial: State,
-    times: NDArray[np.float64],
-    later: NDArray[np.float64],
-) -> IntegrationResult:
-    """Solve the flat-ground model with rolling resistance; see `driver.make_driver`."""
-    return _driver_resisted_flat(body, options, record, time_step, initial, times, later)
+def integrate_resisted_flat(body: Body, options: Options, task: Task) -> IntegrationResult:
+    """Solve the flat-ground model with rolling resistance."""
+    return _driver_resisted_flat(body, options, task)
 
 
 @kernel
@@ -122,7 +73,7 @@ def momentum_of_release(body: Body, tilt: float, rolling_rate: float) -> float:
     return spin_momentum(body, tilt, rolling_rate)
 
 
-INTEGRATORS = {
+INTEGRATORS: dict[str, Driver] = {
     "planar": integrate_planar,
     "recess": integrate_recess,
     "flat": integrate_flat,
@@ -139,6 +90,6 @@ def load(model: str) -> None:
     body = body_of(Cylinder(semidiagonal=1.0, tan_alpha=0.2), 9.81)
     options = Options(1e-6, 0.0, 1.0, 1.0, 1, False)
     start = (0.0,) * SIZES[model]
-    INTEGRATORS[model](body, options, np.zeros((0, 3)), 1.0, start, np.zeros(1), np.zeros((0, 2)))
+    INTEGRATORS[model](body, options, Task(np.zeros((0, 3)), 1.0, start, np.zeros(1), np.zeros((0, 2))))
     if not model.endswith("planar"):
         momentum_of_release(body, 0.1, 0.0)  # or the first release would be timed with its loading

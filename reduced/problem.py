@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cached_property
 from numbers import Real
@@ -15,14 +14,15 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.models.number_checks import quoted
+from rockwobble.models.support import SUPPORTS as FACTS
 
 from . import kernels
 from .body import Body, body_of, restitution_from_momentum
 from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
-from .integration.result import IntegrationResult, Options
+from .integration.result import Driver, IntegrationResult, Options, Task
 from .rolling import impact_ratio
 
-SUPPORTS = ("recess", "flat")
+SUPPORTS = tuple(name for name, support in FACTS.items() if support.modelled)
 _OUT_OF_PLANE = 1e-9  # [rad] more than what rounding makes of an azimuth
 
 # Tilt (over alpha) below which the base is closed again. A rest forgets which way the cylinder leans, and
@@ -51,19 +51,11 @@ class Plane(NamedTuple):
 
 
 class SetUp(NamedTuple):
-    """Arguments of a time integration."""
+    """A time integration, whatever the size of the cylinder where it starts at rest."""
 
-    integrate: Callable[..., Any]
-    record: NDArray[np.float64]  # (n, 3) [m/s^2]
-    start: tuple[float, ...]  # (size,) state at time zero
+    integrate: Driver
+    task: Task
     azimuth: float  # from which the angles of the result count [rad]
-
-
-class Shaking(NamedTuple):
-    """Arguments that runs from rest under one motion share, whatever the size of the cylinder."""
-
-    set_up: SetUp
-    later: NDArray[np.float64]  # (n, 2) largest |a| and least az from each sample on [m/s^2]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -82,7 +74,7 @@ class Problem:
     restitution: float
     rolling_resistance: float
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         # what is derived stays behind: compiled code that travels is compiled again where it arrives
         return _restored, ({field.name: getattr(self, field.name) for field in fields(self)},)
 
@@ -98,42 +90,30 @@ class Problem:
         record_steps: bool = False,
     ) -> tuple[IntegrationResult, float]:
         """Return the result with states at `times` (n,) [s], and the azimuth its angles count from."""
+        integrate, task, azimuth = self._set_up
         # a column of a table would have the time integration compiled for its stride
-        times = np.ascontiguousarray(times)
-        set_up = self._set_up
-        result: IntegrationResult = set_up.integrate(
-            self.body,
-            self._options(record_steps),
-            set_up.record,
-            self._time_step,
-            set_up.start,
-            times,
-            np.empty((0, 2)),
-        )
-        return result, set_up.azimuth
+        task = task._replace(times=np.ascontiguousarray(times))
+        return integrate(self.body, self._options(record_steps), task), azimuth
 
-    def shaking(self, factor: float) -> Shaking:
-        """Return the arguments of a run from rest under ``motion.scaled(factor)``, whatever the size."""
+    def shaking(self, factor: float) -> SetUp:
+        """Return the integration of a run from rest under ``motion.scaled(factor)``, for its peak only."""
         assert self.motion is not None
         if self.model == "planar" or not is_spatial(self.motion) or not math.isfinite(factor * self._peak):
             scaled = dataclasses.replace(self, motion=self.motion.scaled(factor))
-            return Shaking(scaled._set_up, scaled._later)
+            return scaled._set_up._replace(task=scaled._set_up.task._replace(later=scaled._later))
         # far from planar, so that the plane need not be looked for: a third of the time of a short run
-        return Shaking(self._set_up._replace(record=self._set_up.record * factor), self._later * factor)
+        task = self._set_up.task
+        task = task._replace(record=task.record * factor, later=self._later * factor)
+        return self._set_up._replace(task=task)
 
-    def solve_under(self, shaking: Shaking) -> IntegrationResult:
+    def solve_under(self, shaking: SetUp) -> IntegrationResult:
         """Return the result for this body under a motion of another size, for the peak only."""
-        set_up, later = shaking
-        result: IntegrationResult = set_up.integrate(
-            self.body,
-            self._options(False),
-            set_up.record,
-            self._time_step,
-            set_up.start,
-            np.empty(0),
-            later,
-        )
-        return result
+        return shaking.integrate(self.body, self._options(False), shaking.task)
+
+    @property
+    def free_twist(self) -> bool:
+        """Whether the model has a twist: on flat ground, but not where it is planar by choice."""
+        return self.model in SUPPORTS and not FACTS[self.model].guided
 
     def is_planar(self) -> bool:
         """Return whether the run stays in one vertical plane."""
@@ -149,10 +129,6 @@ class Problem:
     def _peak(self) -> float:
         return 0.0 if self.motion is None else float(np.abs(self.motion.acceleration).max())
 
-    @property
-    def _time_step(self) -> float:
-        return 1.0 if self.motion is None else self.motion.time_step
-
     def _options(self, record_steps: bool) -> Options:
         restitution = self.restitution
         if self.rolling_resistance > 0.0:
@@ -166,16 +142,16 @@ class Problem:
 
         Rounding would otherwise choose on which side such motion passes upright.
         """
-        plane, integrate = self._plane, kernels.INTEGRATORS[self.kernel]
-        if plane is not None:
-            return SetUp(integrate, plane.record, self._start(plane.azimuth), plane.azimuth)
-        return SetUp(integrate, three_columns(self.motion), self._start(0.0), 0.0)
+        azimuth, record = self._plane or Plane(0.0, three_columns(self.motion))
+        time_step = 1.0 if self.motion is None else self.motion.time_step
+        task = Task(record, time_step, self._start(azimuth), np.empty(0), np.empty((0, 2)))
+        return SetUp(kernels.INTEGRATORS[self.kernel], task, azimuth)
 
     @cached_property
     def _later(self) -> NDArray[np.float64]:
         """Largest |a| and least az from each sample on (m, 2) [m/s^2]; none where a fall may yet be held."""
-        record = self._set_up.record
-        if self.kernel.endswith("flat"):
+        record = self._set_up.task.record
+        if self.free_twist and not self.is_planar():
             return np.empty((0, 2))
         strongest = np.maximum.accumulate(np.hypot(record[::-1, 0], record[::-1, 1]))[::-1]
         # the ground is still after the record, so az reaches 0

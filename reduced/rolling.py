@@ -11,21 +11,31 @@ it is the generalised force
     Q_theta = -delta N theta'/w,   Q_tau = -delta N s^2 psi'/w = -Q_phi.
 
 In the recess tau' = 0 and psi' = -phi'. On flat ground Lambda' has Q_phi and S' has Q_tau + (G/B) Q_phi.
-The normal force is that of the same motion, N = load + lift theta'', and theta'' has Q_theta/A: both follow
-from one linear equation. Where w = 0 the couple is what holds the body, if delta N suffices: standing still
-N = g + az, theta'' = 0 and L' = 0 need
+The normal force is that of the same motion, N = load + mu lift theta'', and theta'' has Q_theta/A: both
+follow from one linear equation. In a frame the rim of the top rolls on the slab at the same angular velocity,
+so N is the sum of the forces on base and top. Where w = 0 the couple is what holds the body, if delta N
+suffices: standing still N = g + az, theta'' = 0 and L' = 0 need
 
     M_theta = (g + az) D'' + D' a_r,   M_psi = -(D/s) a_t,   |M| <= delta (g + az).
+
+On flat ground no couple of rolling keeps the body from turning about the vertical through its contact. What
+neither tilts nor rolls pivots there at the rate Omega = phi' = tau', and with the mass centre beside that
+vertical by D'' and above the ground by D' Euler's equations of this rotation are
+
+    I_v Omega' = D'' a_t,  M_theta = (g + az) D'' + D' a_r - P Omega^2,  M_psi = -(D' + P D''/I_v) a_t,
+    I_v = I1 s^2 + I2 c^2 + mu D''^2,   P = (I1 - I2) s c - mu D' D''.
 
 ========= ======== ============================================================
 symbol    unit     meaning
 ========= ======== ============================================================
 delta     m        length of rolling resistance
-N         m/s^2    normal force on the base, over m
-load      m/s^2    its part without theta'', g + az - D' theta'^2
+N         m/s^2    normal force on the base, and on the top of a column; over m, in a frame w m
+load      m/s^2    its part without theta'', g + az - mu D' theta'^2
 lift      m        z'' of the mass centre for each theta'', D'' = b c - h s
 w         rad/s    horizontal part of the angular velocity
 side      -        sign of the tilt rate, of motion in one plane
+Omega     rad/s    rate at which a body pivots on its contact: `pivoting`
+I_v, P    m^2      moment and product of inertia about the contact, of that
 ========= ======== ============================================================
 """
 
@@ -39,14 +49,18 @@ from .equations import in_plane_below
 
 Vector = tuple[float, float, float]
 
+# side of a body that neither tilts nor rolls, but pivots (`integration.resisted`)
+PIVOTS = 2.0
 # of 1/p: a hold that ends so soon is over. By rounding the end of one would be followed by another
 _HAIR = 1e-9
+# of tau': what is left of psi' = tau' - phi' where both are the same
+_ROUNDING = 1e-12
 
 
 @inlined
 def normal_force(body: Body, s: float, c: float, omega: float, az: float) -> tuple[float, float]:
-    """Return load [m/s^2] and lift [m] of the normal force N = load + lift theta''."""
-    return body.g + az - (body.b * s + body.h * c) * omega * omega, body.b * c - body.h * s
+    """Return load [m/s^2] and lift [m] of the normal force N = load + mu lift theta''."""
+    return body.g + az - (body.b * s + body.h * c) * omega * (body.mu * omega), body.b * c - body.h * s
 
 
 @inlined
@@ -77,14 +91,15 @@ def couple(
     """
     across = s * spin
     load, lift = normal_force(body, s, c, omega, az)
-    # delta N/w of theta'' = free - delta N theta'/(A w), by one division; none where contact is lost
-    pressed = body.delta * body.A * max(0.0, load + lift * free)
+    # delta N/w of theta'' = free - delta N theta'/(A w), by one division; none where contact is lost. mu = 1
+    # times a rate leaves every sum of a cylinder as it rounds, which times a difference it does not
+    pressed = body.delta * body.A * max(0.0, load + lift * (body.mu * free))
     if across != 0.0:
         speed = sqrt(omega * omega + across * across)
-        per_speed = pressed / (body.A * speed + body.delta * lift * omega)
+        per_speed = pressed / (body.A * speed + body.delta * lift * (body.mu * omega))
         return -per_speed * omega, -per_speed * across, per_speed * speed * speed
     tilting = side if side != 0.0 or omega == 0.0 else copysign(1.0, omega)
-    largest = pressed / (body.A + body.delta * lift * tilting)
+    largest = pressed / (body.A + body.delta * lift * (body.mu * tilting))
     return -largest * tilting, 0.0, largest * tilting * omega
 
 
@@ -95,22 +110,106 @@ def twist_share(body: Body, s: float, c: float) -> float:
     return s - (body.E + body.C * t) / (body.J + (2.0 * body.E + body.C * t) * t)
 
 
+@inlined
+def pivot(body: Body, s: float, c: float) -> tuple[float, float]:
+    """Return I_v and P [m^2]."""
+    beside, above = body.b * c - body.h * s, body.b * s + body.h * c
+    difference = (body.I1 - body.I2) * s * c
+    moved = body.mu * beside
+    return body.I1 * s * s + body.I2 * c * c + moved * beside, difference - moved * above
+
+
+@inlined
+def across_rate(body: Body, s: float, c: float, Lambda: float, S: float) -> float:
+    """Return s psi' [rad/s]."""
+    t = s / (1.0 + c)
+    H = body.J + (2.0 * body.E + body.C * t) * t
+    twist_rate = S * H / (body.J * body.C - body.E * body.E)
+    return twist_share(body, s, c) * twist_rate - Lambda / (s * H)
+
+
+@inlined
+def across_inertia(body: Body, s: float, c: float, pivots: bool) -> float:
+    """Return the inertia of s psi' [m^2], of what pivots beside that as it did."""
+    t = s / (1.0 + c)
+    if pivots:
+        return (body.J * body.C - body.E * body.E) / pivot(body, s, c)[0]
+    return body.J + (2.0 * body.E + body.C * t) * t
+
+
+@inlined
+def rolling_momentum(body: Body, theta: float, Lambda: float, S: float) -> float:
+    """Return B phi' [m^2/s], Lambda and what the twist rate takes off it."""
+    s, c = sin(theta), cos(theta)
+    t = s / (1.0 + c)
+    H = body.J + (2.0 * body.E + body.C * t) * t
+    return Lambda + s * (body.E + body.C * t) * H / (body.J * body.C - body.E * body.E) * S
+
+
+@inlined
+def pivoting_rate(body: Body, s: float, c: float, Lambda: float, S: float) -> float:
+    """Return Omega [rad/s] of the moment of momentum about the vertical through the contact.
+
+    The couple is horizontal and does not change it: S + (1 - G/B) Lambda.
+    """
+    return (S + twist_share(body, s, c) / s * Lambda) / pivot(body, s, c)[0]
+
+
 @jit
-def needed_to_stand(body: Body, theta: float, phi: float, vertical: float, a: Vector) -> tuple[float, float]:
+def momenta_of(body: Body, s: float, c: float, pivoting: float, across: float) -> tuple[float, float]:
+    """Return Lambda and S [m^2/s] for the moment of momentum of `pivoting` and the rate `across`, s psi'."""
+    t = s / (1.0 + c)
+    H = body.J + (2.0 * body.E + body.C * t) * t
+    share, M = twist_share(body, s, c), (body.J * body.C - body.E * body.E) / H
+    # what pivots slower by as much as it rolls: tau' = Omega + (share H/I_v) across, by (1 - G/B) and B
+    twist_rate = pivoting + share * H / pivot(body, s, c)[0] * across
+    return s * H * (share * twist_rate - across), M * twist_rate
+
+
+@jit
+def needed_to_stand(
+    body: Body, theta: float, phi: float, pivoting: float, vertical: float, a: Vector, pivots: bool
+) -> tuple[float, float]:
     """Return the couple that holds a tilted body, on theta and along the lean, over m [m^2/s^2].
 
-    Linear in `vertical`, g + az or its rate, and `a`, the ground acceleration or its rate.
+    Linear in `vertical`, g + az or its rate, `a`, the ground acceleration or its rate, and the square of
+    the rate `pivoting`. `pivots` says that nothing but its inertia keeps the body from that.
     """
     s, c = sin(theta), cos(theta)
     b, h = body.b, body.h
     a_r = a[0] * cos(phi) + a[1] * sin(phi)
     a_t = a[1] * cos(phi) - a[0] * sin(phi)
-    return vertical * (b * c - h * s) + (b * s + h * c) * a_r, -(h + b * s / (1.0 + c)) * a_t
+    beside, above = b * c - h * s, b * s + h * c
+    tilting, arm = vertical * beside + above * a_r, h + b * s / (1.0 + c)
+    if pivots:
+        I_v, P = pivot(body, s, c)
+        tilting -= P * pivoting * pivoting
+        arm = above + P * beside / I_v
+    return tilting, -arm * a_t
 
 
 @jit
-def push(body: Body, theta: float, phi: float, a: Vector, slope: Vector) -> tuple[float, float, float, float]:
-    """Return what moves a tilted body that stands still.
+def _needed_and_its_rate(
+    body: Body, theta: float, phi: float, pivoting: float, a: Vector, slope: Vector, pivots: bool
+) -> tuple[float, float, float, float]:
+    """Return the couple that holds a body, on theta and along the lean, and the rates of both."""
+    tilting, turning = needed_to_stand(body, theta, phi, pivoting, body.g + a[2], a, pivots)
+    # seen from the body that pivots, the ground acceleration turns
+    seen = slope[0] + pivoting * a[1], slope[1] - pivoting * a[0], slope[2]
+    tilting_1, turning_1 = needed_to_stand(body, theta, phi, 0.0, slope[2], seen, pivots)
+    if pivoting != 0.0:
+        s, c = sin(theta), cos(theta)
+        I_v, P = pivot(body, s, c)
+        a_t = a[1] * cos(phi) - a[0] * sin(phi)
+        tilting_1 -= 2.0 * P * pivoting * (body.b * c - body.h * s) * a_t / I_v
+    return tilting, turning, tilting_1, turning_1
+
+
+@jit
+def push(
+    body: Body, theta: float, phi: float, pivoting: float, a: Vector, slope: Vector, pivots: bool
+) -> tuple[float, float, float, float]:
+    """Return what moves a tilted body that stands still, or only pivots.
 
     Returns
     -------
@@ -118,8 +217,9 @@ def push(body: Body, theta: float, phi: float, a: Vector, slope: Vector) -> tupl
         Excess of the push over the couple [m^2/s^2], its rate [m^2/s^3], and the direction of the push on
         theta and along the lean; the last is exactly 0 in one plane.
     """
-    tilting, turning = needed_to_stand(body, theta, phi, body.g + a[2], a)
-    tilting_1, turning_1 = needed_to_stand(body, theta, phi, slope[2], slope)
+    tilting, turning, tilting_1, turning_1 = _needed_and_its_rate(
+        body, theta, phi, pivoting, a, slope, pivots
+    )
     if abs(turning) <= (body.h + body.b) * in_plane_below(body, a[0], a[1]):
         turning = 0.0
     size = sqrt(tilting * tilting + turning * turning)
@@ -134,12 +234,11 @@ def push(body: Body, theta: float, phi: float, a: Vector, slope: Vector) -> tupl
 def hold_time(body: Body, theta: float, phi: float, a: Vector, slope: Vector, pivots: bool) -> float:
     """Return for how long the couple holds a tilted body that stands still [s]; 0 if it does not.
 
-    The ground acceleration is a + slope t, so |M|^2 - (delta N)^2 is a parabola in t. `pivots` says that
-    the body may turn about the vertical through its contact, which no couple of rolling resists.
+    The ground acceleration is a + slope t, so |M|^2 - (delta N)^2 is a parabola in t. What `pivots` does not
+    stand still under a force across its lean.
     """
     allowed, allowed_1 = body.delta * (body.g + a[2]), body.delta * slope[2]
-    tilting, turning = needed_to_stand(body, theta, phi, body.g + a[2], a)
-    tilting_1, turning_1 = needed_to_stand(body, theta, phi, slope[2], slope)
+    tilting, turning, tilting_1, turning_1 = _needed_and_its_rate(body, theta, phi, 0.0, a, slope, pivots)
     below = (body.h + body.b) * in_plane_below(body, a[0], a[1])
     if pivots and (abs(turning) > below or abs(turning_1) > below):
         return 0.0
@@ -158,14 +257,23 @@ def hold_time(body: Body, theta: float, phi: float, a: Vector, slope: Vector, pi
 
 @jit
 def couple_on(
-    body: Body, theta: float, omega: float, phi: float, spin: float, free: float, a: Vector
+    body: Body,
+    theta: float,
+    omega: float,
+    phi: float,
+    spin: float,
+    twist_rate: float,
+    free: float,
+    a: Vector,
+    pivots: bool,
 ) -> tuple[float, float]:
-    """Return the couple on a body in motion, or on one that stands still, on theta and along the lean.
+    """Return the couple on a body in motion, or on one that it holds, on theta and along the lean.
 
-    Per unit mass [m^2/s^2]; arguments as for `couple`, with the ground acceleration `a`.
+    Per unit mass [m^2/s^2]; arguments as for `couple` and `needed_to_stand`, with tau' and the ground
+    acceleration `a`.
     """
-    if omega == 0.0 and spin == 0.0 and theta > 0.0:
-        tilting, turning = needed_to_stand(body, theta, phi, body.g + a[2], a)
+    if omega == 0.0 and abs(spin) <= _ROUNDING * abs(twist_rate) and theta > 0.0:
+        tilting, turning = needed_to_stand(body, theta, phi, twist_rate, body.g + a[2], a, pivots)
         allowed, needed = body.delta * (body.g + a[2]), sqrt(tilting * tilting + turning * turning)
         if needed <= allowed:
             return tilting, turning
@@ -173,6 +281,7 @@ def couple_on(
             # about to move the way that it is pushed, as far as both inertias are alike: for a first moment
             share = max(0.0, allowed) / needed
             return share * tilting, share * turning
+        spin = 0.0
     side = copysign(1.0, free) if omega == 0.0 else 0.0
     tilting, turning, _ = couple(body, sin(theta), cos(theta), omega, spin, free, a[2], side)
     return tilting, turning
@@ -181,9 +290,9 @@ def couple_on(
 def impact_ratio(body: Body, restitution: float) -> float:
     """Return the ratio of tilt rates at an impact of planar motion with rolling resistance.
 
-    The vertical impulse on the base is n = m b (omega + omega'), and the couple takes delta n of the moment
-    of momentum: A omega' = r A omega - delta b (omega + omega'), r being the ratio without it. To first
-    order r of Housner is the ratio of delta = b without impact.
+    The vertical impulse on the base, and on the top of a column, is n = mu b (omega + omega') per unit mass,
+    and the couple takes delta n of the moment of momentum: A omega' = r A omega - delta n, r being the ratio
+    without it. To first order r of Housner is the ratio of delta = b without impact.
 
     Parameters
     ----------
@@ -196,5 +305,5 @@ def impact_ratio(body: Body, restitution: float) -> float:
     float
         omega'/omega [-], not negative.
     """
-    taken = body.delta * body.b
+    taken = body.delta * body.mu * body.b
     return max(0.0, (body.A * restitution - taken) / (body.A + taken))

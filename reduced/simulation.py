@@ -6,7 +6,7 @@ import importlib.metadata
 import math
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any
 
@@ -125,7 +125,7 @@ def _trace(
     times: NDArray[np.float64],
     case: Case,
     run: Run,
-    settings: dict[str, Any],
+    settings: Mapping[str, object],
     wall_time: float,
 ) -> Trace:
     reached = result.reached

@@ -163,7 +163,7 @@ class Solution(Brief):
         if problem.model == "planar":
             ground = in_plane(ground, problem.plane)
         derived = forces.derived_quantities(
-            problem.body, np.ascontiguousarray(states), ground, problem.model == "flat"
+            problem.body, np.ascontiguousarray(states), ground, problem.free_twist
         )
         if problem.cylinder.slab_mass_ratio == 0.0:
             return derived, None

@@ -84,7 +84,7 @@ def interruptible(kept: Path | None = None) -> Iterator[None]:
         raise typer.Exit(FAILED) from None
     except KeyboardInterrupt:
         if kept is not None and kept.is_dir():
-            complain(f"interrupted, the finished runs are kept in {kept}, and the same command goes on")
+            complain(f"interrupted, the finished runs are kept in {kept}, and the same command resumes")
         else:
             complain("interrupted, nothing was written")
         raise typer.Exit(INTERRUPTED) from None
@@ -133,7 +133,7 @@ class _Forgiving(io.FileIO):
         try:
             return super().write(data)
         except BrokenPipeError:
-            pass  # whoever read it has seen enough
+            pass  # the reader has closed it
         except OSError as error:
             if self.said:
                 complain(f"{self.said} cannot be written: {error.strerror}")
@@ -164,14 +164,14 @@ def shown_progress(what: str = "runs", *, heading: str = "") -> Iterator[Progres
     named: set[str] = set()
     with _bar(what) if sys.stderr.isatty() else _lines(what) as show:
 
-        def tell(event: Progress) -> None:
+        def show_progress(event: Progress) -> None:
             for path in event.damaged:
                 if path not in named:
                     named.add(path)
                     complain(f"{path} is damaged, what it held is computed again")
             show(event)
 
-        yield tell
+        yield show_progress
 
 
 def sentence(event: Progress, what: str = "runs") -> str:
@@ -205,7 +205,7 @@ def _bar(what: str) -> Iterator[ProgressCallback]:
         task = bars.add_task("", total=None, far="")
         running: dict[str, None] = {}
 
-        def tell(event: Progress) -> None:
+        def show_progress(event: Progress) -> None:
             if event.state == "started":
                 running[event.label] = None
             else:
@@ -217,7 +217,7 @@ def _bar(what: str) -> Iterator[ProgressCallback]:
                 task, total=event.total, completed=done, far=far, description=next(reversed(running), "")
             )
 
-        yield tell
+        yield show_progress
 
 
 @contextmanager
@@ -225,7 +225,7 @@ def _lines(what: str) -> Iterator[ProgressCallback]:
     begun: dict[str, float] = {}
     last = time.monotonic()
 
-    def tell(event: Progress) -> None:
+    def show_progress(event: Progress) -> None:
         nonlocal last
         now = time.monotonic()
         if event.total - event.found <= _FEW:
@@ -239,7 +239,7 @@ def _lines(what: str) -> Iterator[ProgressCallback]:
             last = now
             _say(sentence(event, what))
 
-    yield tell
+    yield show_progress
 
 
 @contextmanager

@@ -47,6 +47,8 @@ import rockwobble.compare as rc
 import rockwobble.compare.runs as rr
 
 if TYPE_CHECKING:
+    from _pytest._code.code import TerminalRepr, TracebackStyle
+
     from rockwobble.compare.check import Result
 # of models.suites, which would be imported with every run of pytest
 ENDING = ".suite.toml"
@@ -96,7 +98,9 @@ class CertificateItem(pytest.Item):
             raise ChangedError(verdict.words())
         self.add_report_section("call", "certificate", verdict.words())
 
-    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
+    def repr_failure(
+        self, excinfo: pytest.ExceptionInfo[BaseException], style: TracebackStyle | None = None
+    ) -> str | TerminalRepr:
         """Return what changed; anything else as pytest has it."""
         if isinstance(excinfo.value, ChangedError | ValueError):
             return str(excinfo.value)
@@ -144,7 +148,7 @@ class SuiteFile(pytest.File):
 
 
 class SuiteItem(pytest.Item):
-    """One engine run of one case, held against the reduced model."""
+    """One engine run of one case, compared with the reduced model."""
 
     def __init__(self, *, suite: rw.Suite, case: rw.Case, run: rw.Run, label: str, **common: Any) -> None:
         super().__init__(**common)
@@ -167,7 +171,9 @@ class SuiteItem(pytest.Item):
             budget = budget_of_run(self.case, self.run, reference) if wanted else []
             raise DisagreementError(failed, budget)
 
-    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
+    def repr_failure(
+        self, excinfo: pytest.ExceptionInfo[BaseException], style: TracebackStyle | None = None
+    ) -> str | TerminalRepr:
         """Return the bounds that do not hold, and the budget; anything else as pytest has it."""
         if isinstance(excinfo.value, DisagreementError):
             return str(excinfo.value)

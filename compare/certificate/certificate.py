@@ -35,6 +35,7 @@ from rockwobble.models import (
     el_centro_1940,
 )
 from rockwobble.models.members import perturbed
+from rockwobble.models.support import SUPPORTS
 
 from ..check import GROUPS, NOT_RUN, Result, Subject, engine, reduced_model
 from ..storage.files import replace_files
@@ -127,7 +128,7 @@ def _release(
     name: str, term: str, body: Cylinder, spin: float, length: float, *, support: str = "recess"
 ) -> ShortCase:
     start = InitialState(0.5 * body.alpha, 0.0, 0.3, spin)
-    claim = "free response by (18) and (19)" if support == "recess" else "free response on flat ground"
+    claim = f"free response {'by (18) and (19)' if SUPPORTS[support].guided else 'on flat ground'}"
     case = Case(body, initial=start, duration=length)
     return ShortCase(name=name, claim=claim, term=term, case=case, support=support)
 
@@ -177,7 +178,7 @@ def fingerprint(subject: Subject) -> Iterator[Entry]:
 
 
 def repeated(subject: Subject, old: Sequence[Entry]) -> Iterator[Sample]:
-    """Yield the parts of the entries needed to hold them against older ones: the copies are theirs."""
+    """Yield the parts of the entries needed to compare them with older ones: the copies are theirs."""
     for short, one in zip(short_cases(), old, strict=True):
         found = entry(short, _run(subject, short, short.case))
         if one["agreement_time"] is not None and compare_entries(one, found).word != SAME:

@@ -25,15 +25,17 @@ import numpy as np
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, el_centro_1940
 
-from ..metrics.pair import energy_loss, rms
+from ..external.motion import exceeds
+from ..metrics.pair import agreement_time, energy_loss, make_pair, rms
 from .measurement import (
+    FRAME_RELEASE,
     GRAVITY,
     NO_BASELINE,
     PIER,
     RELEASE,
     SQUAT,
     THRESHOLD,
-    Array,
+    WALLED,
     Bound,
     Result,
     at_most,
@@ -110,6 +112,13 @@ def release(subject: Subject, support: str) -> Iterator[Result]:
         yield at_most("passes of a release", off, subject.within(10.0, "as the model", "s, rad"))
 
 
+def frame(subject: Subject, support: str) -> Iterator[Result]:
+    """Tilt of a release of a frame: one column under a slab that can only translate."""
+    found, model = _both(subject, FRAME_RELEASE, support)
+    apart = _difference(found, model, FRAME_RELEASE.length)
+    yield at_most("tilt and azimuth of a frame", apart, subject.within(1.0, "contact at its step", "alpha"))
+
+
 def ramp(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt after an uplift on a load that rises, as far as 1.5 times the load that lifts the pier."""
     found, model = _both(subject, _RAMP, support, 0.05)
@@ -145,8 +154,8 @@ def trajectory(subject: Subject, support: str) -> Iterator[Result]:
         found, model = _both(subject, case, support)
         alpha = case.cylinder.alpha
         if case.initial is None:
-            seen = [_rises(each.time, each.tilt, _LEVEL * alpha) for each in (found, model)]
-            off = 0.0 if all(map(math.isnan, seen)) else abs(seen[0] - seen[1])
+            seen = [exceeds(each.time, each.tilt, _LEVEL * alpha, 3.0) for each in (found, model)]
+            off = 0.0 if seen[0] == seen[1] else abs(seen[0] - seen[1])
             yield at_most("time of uplift", off, subject.within(1.0, "as the model", "s"))
         else:
             off = abs(float(found.tilt[0]) - case.initial.tilt) / alpha
@@ -204,19 +213,7 @@ def _agreement(subject: Subject, case: Case, support: str, model: Trace) -> floa
         start = dataclasses.replace(start, tilt=1.001 * start.tilt)
     other = dataclasses.replace(case, motion=motion, initial=start, duration=case.length)
     copy = subject.reference(other, support=support, rtol=1e-11)
-    count = min(len(copy.tilt), len(model.tilt))
-    beyond = np.flatnonzero(np.abs(copy.tilt[:count] - model.tilt[:count]) > 0.01 * case.cylinder.alpha)
-    return float(model.time[beyond[0]] if len(beyond) else model.time[-1])
-
-
-def _rises(time: Array, tilt: Array, level: float) -> float:
-    """Return when the tilt first exceeds a level [s]; its cube root is linear in between. NaN if never."""
-    beyond = np.flatnonzero(tilt > level)
-    if not len(beyond) or not beyond[0]:
-        return math.nan
-    i = int(beyond[0])
-    low, high = np.cbrt(np.maximum(tilt[i - 1 : i + 1], 0.0))
-    return float(time[i - 1] + (time[i] - time[i - 1]) * (np.cbrt(level) - low) / (high - low))
+    return agreement_time(make_pair(case.cylinder, model, copy)).end
 
 
 _FREE = released(0.5, 0.05, 20.0, name="free motion")
@@ -268,7 +265,7 @@ _CASES: tuple[tuple[Case, bool, float], ...] = (
     (_VERTICAL, True, 10.0),
 )
 _INSTANTS = 8  # evenly over the run
-_RING = 500.0  # times the tolerance: the impact on a wall comes a step earlier or later
+_AT_WALLS = 500.0  # times the tolerance: the impact on a wall comes a step earlier or later
 _LOOSE = 20.0  # times as much for a version that has no baseline
 
 
@@ -299,7 +296,7 @@ def kept_numbers(subject: Subject, support: str) -> Iterator[Result]:
         before: Values = kept.values.get(known, {})
         apart = {key: value - before.get(key, math.nan) for key, value in _numbers(case, support, trace)}
         worst = max(apart, key=lambda key: abs(apart[key]) if math.isfinite(apart[key]) else math.inf)
-        most = (1.0 if known == group else _LOOSE) * (_RING if support == "ring" else times)
+        most = (1.0 if known == group else _LOOSE) * (_AT_WALLS if support in WALLED else times)
         bound = Bound(most * subject.tolerance, "the number that is kept", "alpha")
         found = at_most(case.name, abs(apart[worst]), bound, note=worst)
         if known != group:
@@ -323,7 +320,7 @@ def _runs(subject: Subject, support: str) -> Iterator[tuple[Case, Trace, float]]
     for case, of_models, times in _CASES:
         # planar motion has no rolling rate, and some engines cannot start from a cylinder that stands
         fits = support != "planar" if case.initial is not None else subject.uplifts
-        fits &= support != "ring" or case.cylinder is SQUAT  # which reaches the walls
+        fits &= support not in WALLED or case.cylinder is SQUAT  # which reaches the walls
         if fits and not (of_models and subject.run is not None):
             yield case, subject.simulate(case, support), times
 

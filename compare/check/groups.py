@@ -59,6 +59,8 @@ class Check:
         Whether it is for trajectories of cases of their own.
     from_rest : bool
         Whether it starts from a cylinder that stands.
+    slab : bool
+        Whether it is for subjects that know a wobbling frame.
     extra : bool
         Whether it runs for an engine that is an extra where no engine is named.
     """
@@ -70,6 +72,7 @@ class Check:
     reference: bool = False
     files: bool = False
     from_rest: bool = False
+    slab: bool = False
     extra: bool = False
 
     def applies(self, subject: Subject) -> bool:
@@ -79,6 +82,7 @@ class Check:
             and self.files == (subject.cases is not None)
             and (subject.reference is not None or not self.reference)
             and (subject.uplifts or not self.from_rest)
+            and (subject.carries_slab or not self.slab)
         )
 
     def run(self, subject: Subject, *, brief: bool = False) -> Iterator[Result]:
@@ -117,6 +121,7 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
     ),
     "conserved": (
         Check(measure=lagrange.free_motion, knows=("energy",)),
+        Check(measure=lagrange.rolling_loss, supports=("recess",), options=("rolling_resistance",)),
         Check(measure=lagrange.work_of_the_ground, knows=("energy", "centre_of_mass")),
         Check(measure=lagrange.work_of_a_record, supports=MODELS, knows=("energy",), options=("rtol",)),
     ),
@@ -149,6 +154,7 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
     "agreement": (
         Check(measure=agreement.fields, knows=("twist", "centre_of_mass"), reference=True, extra=True),
         Check(measure=agreement.release, reference=True),
+        Check(measure=agreement.frame, reference=True, slab=True),
         Check(measure=agreement.ramp, reference=True, from_rest=True),
         Check(measure=agreement.record, reference=True, from_rest=True),
         Check(measure=agreement.ring, supports=("ring",), options=("stepper",), reference=True),
@@ -280,7 +286,7 @@ def check(
     workers: int | None = None,
     progress: ProgressCallback | None = None,
     announce: Callable[[str], None] | None = None,
-    **settings: Any,
+    **settings: object,
 ) -> Checks:
     """Check a reduced model, an engine, somebody's model or a trajectory by physics.
 
@@ -339,7 +345,7 @@ def check(
         results = [*_of_suite(runs, read_suite(suite) if not isinstance(suite, Suite) else suite)]
         return _summed(results)
     if engine is not None:
-        chosen = [subjects.engine(engine, time_step, **settings)]
+        chosen = [subjects.engine(engine, time_step, reference=None, **settings)]
     elif model is not None:
         function = subjects.load_model(model) if isinstance(model, str) else model
         chosen = [subjects.external_model(function, support=support, tolerance=tolerance)]

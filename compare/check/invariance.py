@@ -21,10 +21,11 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 from rockwobble.multibody.engines.registry import find_engine
-from rockwobble.multibody.protocol import Engine, Scene, Settings
+from rockwobble.multibody.protocol import Engine, Settings
 from rockwobble.multibody.scene import (
     REFERENCE_GRAVITY,
     REFERENCE_TIME_STEP,
+    Scene,
     froude_scale,
     scaled_body,
     starting_state,

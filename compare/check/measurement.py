@@ -11,8 +11,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Trace
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Trace, WobblingFrame
 from rockwobble.models.shown import Brief
+from rockwobble.models.support import SUPPORTS
 from rockwobble.models.trace_source import Known
 
 Outcome = Literal["passed", "FAILED", "no baseline", "not run"]
@@ -109,8 +110,10 @@ def not_run(name: str, note: str) -> Result:
 
 
 GRAVITY = 9.81  # [m/s^2], the default of a case
+WALLED = tuple(each.name for each in SUPPORTS.values() if each.walls)
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
+FRAME = WobblingFrame(Cylinder(semidiagonal=3.0, tan_alpha=0.2), 1.0, columns=1)
 THRESHOLD = GRAVITY * PIER.tan_alpha  # ground acceleration of its uplift [m/s^2]
 
 
@@ -150,6 +153,7 @@ def steady(acceleration: ArrayLike, duration: float) -> GroundMotion:
 
 # one pass of the upright position, at 0.1 alpha
 RELEASE = released(0.5, 0.5, 3.0, name="release")
+FRAME_RELEASE = released(0.5, 0.5, 2.4, FRAME, "release of a frame")
 # rocks in three dimensions from rest, through several passes that are not near; one for each component
 SHOCK_TIMES = (0.0, 0.5, 1.0, 1.5, 2.0)
 SHOCK = THRESHOLD * np.array(

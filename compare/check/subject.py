@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 
@@ -58,7 +57,8 @@ class Subject(Brief):
     knows : frozenset of str
         Fields of a trace that it fills.
     options : frozenset of str
-        Further options of `source`; "stepper" says that it is an engine of the protocol.
+        Further options of `source`; "stepper" says that it is an engine of the protocol, "rolling_resistance"
+        that it takes that of a case.
     tolerance : float
         Relative accuracy that it claims: of alpha, of a time or of an energy.
     repeatability : float
@@ -77,6 +77,8 @@ class Subject(Brief):
         The only cases that it answers. Default: any.
     uplifts : bool
         Whether it can start from a cylinder that stands.
+    carries_slab : bool
+        Whether it knows a wobbling frame.
     """
 
     label: str
@@ -93,9 +95,10 @@ class Subject(Brief):
     run: Run | None = None
     cases: tuple[Case, ...] | None = None
     uplifts: bool = True
+    carries_slab: bool = False
 
     def simulate(
-        self, case: Case, support: str, *, sample_step: float = SAMPLE_STEP, **options: Any
+        self, case: Case, support: str, *, sample_step: float = SAMPLE_STEP, **options: object
     ) -> Trace:
         """Return the motion of a case; options that the source does not take are left out."""
         known = {name: value for name, value in options.items() if name in self.options}
@@ -121,7 +124,9 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
     Subject
     """
 
-    def source(case: Case, support: str, *, sample_step: float, rtol: float = rtol, **options: Any) -> Trace:
+    def source(
+        case: Case, support: str, *, sample_step: float, rtol: float = rtol, **options: object
+    ) -> Trace:
         way = {"plane": 0.0} if support == "planar" else {"support": support}
         found: Trace = module.simulate(case, sample_step=sample_step, rtol=rtol, **way, **options)
         return found
@@ -131,16 +136,17 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
         source=_remembered(source),
         supports=("recess", "flat", "planar"),
         knows=FIELDS,
-        options=frozenset({"rtol", "rest_tilt", "restitution", "plane"}),
+        options=frozenset({"rtol", "rest_tilt", "restitution", "plane", "rolling_resistance"}),
         tolerance=MODEL_TOLERANCE,
         repeatability=MODEL_TOLERANCE,
         steps=(1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10),
         at_step=lambda rtol: reduced_model(module, rtol=rtol),
+        carries_slab=True,
     )
 
 
 def engine(
-    name: str, time_step: TimeStep | None = None, *, reference: Simulate | None = None, **settings: Any
+    name: str, time_step: TimeStep | None = None, *, reference: Simulate | None = None, **settings: object
 ) -> Subject:
     """Return an engine with its settings.
 
@@ -174,7 +180,7 @@ def engine(
         source=_remembered(source),
         supports=found.supports,
         knows=FIELDS.union(_ENGINE_FIELDS),
-        options=frozenset({"stepper"}),
+        options=frozenset({"stepper", *(["rolling_resistance"] if facts.rolling_friction else [])}),
         tolerance=tolerance,
         repeatability=ENGINE_REPEATABILITY,
         steps=tuple(
@@ -186,6 +192,7 @@ def engine(
         reference=reference or reduced.simulate,
         run=Run(name, found.supports[0], time_step, **settings),
         uplifts=found.uplifts,
+        carries_slab=facts.carries_slab,
     )
 
 
@@ -316,7 +323,7 @@ def _remembered(source: Simulate) -> Simulate:
     """Return the source that runs each case once, since many checks look at one motion."""
     kept: dict[str, Trace] = {}
 
-    def simulate(case: Case, support: str, **options: Any) -> Trace:
+    def simulate(case: Case, support: str, **options: object) -> Trace:
         key = fingerprint([case, support, options])
         if key not in kept:
             kept[key] = source(case, support, **options)

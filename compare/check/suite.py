@@ -23,11 +23,19 @@ from rockwobble.multibody.engines.registry import available_engines, find_engine
 from rockwobble.multibody.scene import default_step
 from rockwobble.reduced.problem import LARGEST_REST_TILT, REST_TILT
 
-from ..comparison.prediction import Prediction, early_rms, estimated_error, predict, time_scale
+from ..comparison.prediction import (
+    Prediction,
+    disturbance,
+    disturbed,
+    early_rms,
+    estimated_error,
+    predict,
+    time_scale,
+)
 from ..comparison.summary import SUMMARY_COLUMNS, summary_row
 from ..external.verdict import numbers_of
 from ..metrics.pair import is_release, landings, rms
-from ..runs.choice import at_step, own_model, require_runnable
+from ..runs.choice import at_step, own_model, require_runnable, support_of
 from ..runs.execution import Job, simulate_all
 from ..runs.progress import ProgressCallback
 from ..storage.provenance import fingerprint
@@ -38,8 +46,6 @@ from .subject import Simulate
 # times the difference of two steps, of which the error is once or twice as much; `benchmarks false_alarms`
 CLEAN, WIDE = 5.0, 10.0
 LEAST = 1e-5  # [alpha] of contact, whatever the step
-_COPY = 1e-6  # relative change of gravity of a copy whose distance sets the scale
-_MOST = 1e-2  # and the largest that still is a copy
 # of the cylinder that the motion meets: tilt over alpha, rolling rate and length in units of its time scale,
 # and strength of the motion over what uplifts
 _LEAN, _SPIN, _LENGTH, _STRENGTH = 0.4, 0.5, 2.0, 0.5
@@ -83,6 +89,10 @@ class SuiteRuns:
         """Return the motion of the reduced model of a support."""
         return self.reference(case, support=support, **options)
 
+    def simulate(self, case: Case, run: Run) -> Trace:
+        """Return the motion of the reduced model that a run names."""
+        return self.solve(case, run.support)
+
 
 def check_suite(runs: SuiteRuns, jobs: Sequence[Job], bounds: Bounds | None) -> Iterator[Result]:
     """Yield the results of the runs of a suite, by the bounds that it states, or by its own runs."""
@@ -106,7 +116,7 @@ def check_run(runs: SuiteRuns, job: Job, trace: Trace, bounds: Bounds | None) ->
     if trace.outcome == "failed":
         yield at_most(name, math.nan, ENDS, f"contact of {job.run.engine}", why(trace))
         return
-    if job.run.support == "ring":
+    if support_of(job.run).walls:
         yield from walls(f"{job.case.name}, {job.label}", job.case, trace)
     model = runs.solve(job.case, reference.support)
     if bounds is None:
@@ -118,7 +128,7 @@ def check_run(runs: SuiteRuns, job: Job, trace: Trace, bounds: Bounds | None) ->
         own=model,
         contact_resolution=trace.contact_resolution,
         error=estimated_error(job.case, job.run.engine, trace.time_step),
-        simulate=lambda case, run: runs.solve(case, run.support),
+        simulate=runs.simulate,
     )
     yield from _stated(bounds, job, name, model, trace, prediction)
 
@@ -200,8 +210,8 @@ def other_step(job: Job, trace: Trace) -> tuple[Job, float]:
 
 
 def _in_motion(job: Job) -> Job | None:
-    # a ring has no model of its own once its walls are touched
-    case = None if job.run.support == "ring" else in_motion(job.case)
+    # none has a model once its walls are touched
+    case = in_motion(job.case) if support_of(job.run).modelled else None
     return None if case is None else Job(case=case, run=job.run, label=job.label)
 
 
@@ -265,18 +275,11 @@ def _copies(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, by_step: Arra
         closed = runs.solve(case, model.run.support, rest_tilt=min(threshold, LARGEST_REST_TILT))
         closing.append(_apart(model, closed))
 
-    def copy(relative: float) -> Array:
-        disturbed = dataclasses.replace(case, gravity=case.gravity * (1.0 + relative))
-        return _apart(model, runs.solve(disturbed, model.run.support))
-
-    trial = copy(_COPY)
-    distance = early_rms(case, model.time[: len(trial)], trial, start)
-    if distance == 0.0:
-        return closing
     by_table = estimated_error(case, job.run.engine, trace.time_step)
     error = max(early_rms(case, trace.time[: len(by_step)], by_step, start), by_table)
-    relative = min(_COPY * error / distance, _MOST)
-    return [*closing, copy(relative), copy(-relative)]
+    relative = disturbance(case, model, error, runs.simulate)
+    moved = [disturbed(case, share) for share in ((relative, -relative) if relative else ())]
+    return [*closing, *(_apart(model, runs.simulate(each, model.run)) for each in moved)]
 
 
 def likely_cause(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, *, until: float) -> tuple[str, str]:

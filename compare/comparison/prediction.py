@@ -40,7 +40,7 @@ from .budget import ErrorBudget
 
 # a prediction is in time if the measured agreement time is within this factor of it, either way
 IN_TIME = 2.0
-# one that is beaten by more than this factor foretold nothing, and a run that beats it proves nothing
+# one that is beaten by more than this factor predicted nothing, and a run that beats it proves nothing
 BEATEN = 10.0
 # of `verdict` and of an agreement without motion: the run has not tested the model
 UNTESTED = ("much later", "too little motion")
@@ -150,7 +150,7 @@ def predict(
 
 def nudged(case: Case) -> list[Case]:
     """Return the case with an input that is off by less than anybody knows it, to either side."""
-    return [_disturbed(case, relative) for relative in (NUDGE, -NUDGE)]
+    return [disturbed(case, relative) for relative in (NUDGE, -NUDGE)]
 
 
 def reproducible_until(own: Trace, copies: Iterable[Trace]) -> float:
@@ -209,17 +209,38 @@ def _close_pass(own: Trace, contact_resolution: float, length: float) -> float:
 
 
 def _copy_diverges(case: Case, own: Trace, error: float, simulate: Simulate, tolerance: float) -> float:
-    if not math.isfinite(own.uplift_time):
+    relative = disturbance(case, own, error, simulate)
+    if not relative:
         return case.length
-    disturbed = simulate(_disturbed(case, _TRIAL), own.run)
-    trial = make_pair(case.cylinder, own, disturbed, until=case.length)
-    distance = early_rms(case, trial.time, trial.tilt_difference, start_of(own))
-    if distance == 0.0:
-        return case.length
-    disturbance = min(_TRIAL * error / distance, _LARGEST)
     # what is disturbed by less than the reduced model's own tolerance is no copy
-    return _diverges(case, own, simulate(_disturbed(case, disturbance), own.run), tolerance)
+    return _diverges(case, own, simulate(disturbed(case, relative), own.run), tolerance)
 
 
-def _disturbed(case: Case, relative: float) -> Case:
+def disturbance(case: Case, own: Trace, error: float, simulate: Simulate) -> float:
+    """Return the relative change of gravity of a copy that is as far off as an engine early on.
+
+    Parameters
+    ----------
+    case : Case
+    own : Trace
+        Response of the reduced model.
+    error : float
+        RMS error of the engine's tilt in the first second of motion [alpha].
+    simulate : callable
+        Runs a reduced model on a case.
+
+    Returns
+    -------
+    float
+        0 where nothing moves.
+    """
+    if not math.isfinite(own.uplift_time):
+        return 0.0
+    trial = make_pair(case.cylinder, own, simulate(disturbed(case, _TRIAL), own.run), until=case.length)
+    distance = early_rms(case, trial.time, trial.tilt_difference, start_of(own))
+    return min(_TRIAL * error / distance, _LARGEST) if distance else 0.0
+
+
+def disturbed(case: Case, relative: float) -> Case:
+    """Return a copy of a case whose gravity is off by a relative change."""
     return dataclasses.replace(case, gravity=case.gravity * (1.0 + relative))

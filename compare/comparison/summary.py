@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from itertools import permutations
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -16,6 +15,7 @@ from rockwobble.models.diagnostic import joined
 from ..external.verdict import VERDICT_COLUMNS, Row, judge, no_verdict
 from ..metrics.pair import (
     Agreement,
+    Pair,
     agreed_passes,
     agreement_time,
     closest_pass,
@@ -145,10 +145,8 @@ def summary_row(
     """
     cylinder = case.cylinder
     alpha, radius = cylinder.alpha, cylinder.base_radius
-    whole = make_pair(cylinder, reference, trial, until=case.length)  # a fall after it multiplies differences
-    window = whole if until is None else make_pair(cylinder, reference, trial, until=until)
+    whole, agreement, difference = _difference(case, trial, reference, until, allowance)
     broken = "failed" in (trial.outcome, reference.outcome)
-    agreement = agreement_time(whole, broken=broken, allowance=allowance)
     tolerance, within = tolerance_of(reference, trial), within or prediction
     close = agreement_time(whole, tolerance=tolerance, broken=broken, allowance=allowance)
     direction = direction_difference(reference, trial)
@@ -158,17 +156,12 @@ def summary_row(
         "time_step": trial.time_step,
         "peak_tilt": trial.peak_tilt / alpha,
         "reference_peak_tilt": reference.peak_tilt / alpha,
-        "peak_tilt_difference": (trial.peak_tilt - reference.peak_tilt) / alpha,
-        "tilt_rms": tilt_rms(window),
-        "tilt_rms_relative": tilt_rms_relative(window),
-        "contact_rms": contact_rms(window),
+        **difference,
         "turn_difference": math.degrees(
             turn_difference(whole, until=turned_until, direction_difference=direction)
         ),
         "uplift_time_difference": trial.uplift_time - reference.uplift_time,
         "uplift_direction_difference": direction,
-        "agreement_time": agreement.length,
-        "diverged": agreement.diverged,
         "agreed_passes": agreed_passes(reference, agreement),
         "predicted_agreement_time": prediction.length,
         "residual_displacement": trial.residual_displacement / radius,
@@ -309,32 +302,33 @@ def agreement_matrix(
 
 def _rows(
     name: str, case: Case, traces: Mapping[tuple[str, str], Trace], until: float | None
-) -> Iterator[dict[str, Any]]:
+) -> Iterator[Row]:
     own = {label: trace for (of, label), trace in traces.items() if of == name and len(trace.time)}
     for support in dict.fromkeys(trace.run.support for trace in own.values()):
         members = {label: trace for label, trace in own.items() if trace.run.support == support}
         if len({trace.run.engine for trace in members.values()} - {None}) < 2:
             continue
         for run, other in permutations(members, 2):
-            yield {
-                "case": name,
-                "support": support,
-                "run": run,
-                "other": other,
-                **_difference(case, members[run], members[other], until),
-            }
+            whole, _, difference = _difference(case, members[run], members[other], until)
+            named = {"case": name, "support": support, "run": run, "other": other}
+            yield {**named, **difference, "other_uplift_time": whole.start}
 
 
-def _difference(case: Case, trial: Trace, reference: Trace, until: float | None) -> dict[str, Any]:
+def _difference(
+    case: Case, trial: Trace, reference: Trace, until: float | None, allowance: float = 0.0
+) -> tuple[Pair, Agreement, Row]:
+    """Return two motions on one time axis, their agreement, and the columns that every two motions have."""
     cylinder = case.cylinder
-    whole = make_pair(cylinder, reference, trial, until=case.length)
+    whole = make_pair(cylinder, reference, trial, until=case.length)  # a fall after it multiplies differences
     window = whole if until is None else make_pair(cylinder, reference, trial, until=until)
-    found = agreement_time(whole, broken="failed" in (trial.outcome, reference.outcome))
-    return {
+    broken = "failed" in (trial.outcome, reference.outcome)
+    found = agreement_time(whole, broken=broken, allowance=allowance)
+    columns: Row = {
         "tilt_rms": tilt_rms(window),
         "tilt_rms_relative": tilt_rms_relative(window),
+        "contact_rms": contact_rms(window),
         "peak_tilt_difference": (trial.peak_tilt - reference.peak_tilt) / cylinder.alpha,
         "agreement_time": found.length,
         "diverged": found.diverged,
-        "other_uplift_time": whole.start,
     }
+    return whole, found, columns

@@ -25,7 +25,7 @@ _SAME_TIME = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Pair(Brief):
-    """A trial held against a reference, sample by sample.
+    """A trial compared with a reference, sample by sample.
 
     The samples are those of the reference, up to the earliest of: the end of either trace, the
     first value that is not finite, and the window that was asked for.
@@ -148,6 +148,11 @@ def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
     The models decide, also where a run ends in the middle of a fall, and then give pi/2 and no less.
     """
     return np.asarray(peak_tilts, dtype=np.float64) >= 0.5 * math.pi
+
+
+def outcome_of_peak(peak: float) -> str:
+    """Return the outcome of a run of a reduced model by its peak tilt [rad], NaN where it failed."""
+    return "failed" if math.isnan(peak) else "overturned" if overturned(peak) else "stands"
 
 
 def outcome_of(trace: Trace) -> str:

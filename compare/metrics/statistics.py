@@ -228,7 +228,7 @@ class Contrast:
 
 
 def contrast(peaks: Array, against: Array, overturned: Flags, against_overturned: Flags) -> Contrast:
-    """Hold the peak tilts of one method against those of another, member by member.
+    """Compare the peak tilts of one method with those of another, member by member.
 
     Parameters
     ----------

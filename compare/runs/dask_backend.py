@@ -8,9 +8,9 @@ import platform
 import re
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
 from contextlib import contextmanager
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from .progress import Events, Finished, Lost, Started
 
@@ -86,13 +86,18 @@ def _with_the_same_code(
     return function(task)
 
 
+Cluster = tuple[Executor, Callable[[], Mapping[str, int]], tuple[type[BaseException], ...]]
+
+
 @contextmanager
-def _cluster(address: str) -> Iterator[tuple[Any, Callable[[], Mapping[str, int]], Any]]:
+def _cluster(
+    address: str,
+) -> Iterator[Cluster]:
     """Open executor, threads of each worker, and what a future raises whose worker died."""
     if re.fullmatch(r"\w+://\S+", address) is None:
         raise ValueError(f"a Dask scheduler has an address such as tcp://10.0.0.1:8786, got {address!r}")
     try:
-        distributed: Any = importlib.import_module("distributed")  # it has no types
+        distributed = importlib.import_module("distributed")
     except ImportError:
         raise ValueError("--scheduler needs Dask: pip install 'dask[distributed]'") from None
     # it repeats each failed try of a connection, and each lost one; one clear line follows

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import pandas as pd
 
@@ -63,7 +63,7 @@ class Job(Brief):
 
     @property
     def name(self) -> str:
-        """Case and label, for whoever waits."""
+        """Case and label, for the progress callback."""
         return f"{self.case.name}, {self.label}"
 
 
@@ -74,7 +74,7 @@ def simulate(
     engine: str | None = None,
     time_step: TimeStep = None,
     sample_step: float = SAMPLE_STEP,
-    **settings: Any,
+    **settings: object,
 ) -> Trace:
     """Run a case in a reduced model or an engine.
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, fields
 from numbers import Integral, Real
-from typing import Any, get_type_hints
+from typing import Any, TypeVar, get_type_hints
 
+T = TypeVar("T")
 _KEY = "option"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Option:
-    """What is to be known of an option besides its name, type and default.
+    """Help, range and form of an option; name, type and default are those of its field.
 
     Attributes
     ----------
@@ -50,7 +51,7 @@ class Option:
         return " and ".join(part for part in (low, high) if part) or "finite"
 
 
-def option(default: Any, text: str, *, group: str = "Method", **more: Any) -> Any:
+def option(default: T, text: str, *, group: str = "Method", **more: Any) -> T:
     """Return the field of a plan that is an option; `text` is its help, `more` are attributes of `Option`."""
     return field(default=default, metadata={_KEY: Option(help=text, group=group, **more)})
 

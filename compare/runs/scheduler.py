@@ -176,7 +176,7 @@ def run_tasks(
         Rough computing time of a task in any unit, by which the longest begin first; infinite: before all, of
         unknown length. Default: all alike, in their order.
     label : callable, optional
-        Name of a task, for whoever waits.
+        Name of a task, for the progress callback.
     progress : callable, optional
         Told in this thread of the start and the end of each task that runs.
     cache : Cache, optional

@@ -138,7 +138,7 @@ def remove_folders(folders: Sequence[Path], *, without: Sequence[str] = ()) -> N
 
 @contextmanager
 def sole_writer(folder: Path) -> Iterator[None]:
-    """Hold `folder`, made where it does not exist, against other processes that would write to it.
+    """Lock `folder`, made where it does not exist, for this process alone.
 
     The hold ends with the process, however that ends. Where the system has no such locks there is none.
 

@@ -5,22 +5,31 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockwobble import reduced
 from rockwobble.models import GroundMotion
+from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import Brief
 
-from ..metrics.pair import overturned
+from ..metrics.pair import outcome_of_peak
 from ..storage.provenance import fingerprint, reduced_makers
+from .plans import GridPlan
 
 MODELS = ("recess", "flat", "planar")
 # The runs of a chunk take about a second together: little is lost with it, and keeping it takes a few
 # thousandths of that.
 _CHUNK_SIZE = 1000
+_OPTIONS: Mapping[str, float | None] = {  # of `reduced.peak_tilts`, and their defaults
+    "rtol": None,
+    "rest_tilt": None,
+    "gravity": 9.81,
+    "slab_mass_ratio": 0.0,
+    "plane": None,
+    "restitution": None,
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -32,8 +41,8 @@ class GridChunk:
     label: str  # of the motion
     model: str
     tan_alpha: float
-    semidiagonals: tuple[float, ...]
-    scales: tuple[float, ...]
+    semidiagonals: Sequence[float]
+    scales: Sequence[float]
     options: Mapping[str, object]  # of `reduced.peak_tilts`
 
     @property
@@ -80,28 +89,27 @@ class GridChunk:
             "scale": scales.ravel(),
             "peak_tilt": peaks,
             "peak_tilt_over_alpha": peaks / math.atan(self.tan_alpha),
-            "outcome": [_outcome(float(peak)) for peak in peaks],
+            "outcome": [outcome_of_peak(float(peak)) for peak in peaks],
         }
 
 
-@dataclass(frozen=True, slots=True, eq=False, init=False, repr=False)
-class Grid(Brief):
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Grid(Brief, GridPlan):
     """Every size with every slenderness, scale, motion and model, each run from rest for its peak tilt.
 
     Parameters
     ----------
-    semidiagonals : array_like, shape (n_R,)
+    semidiagonals : sequence of float
         Sizes R [m].
-    tan_alphas : array_like, shape (n_a,)
+    tan_alphas : sequence of float
         Slendernesses b/h [-].
-    scales : array_like, shape (n_s,)
+    scales : sequence of float
         Factors on the motions, not negative [-].
     motions : sequence of GroundMotion
         With different names.
     models : sequence of {"recess", "flat", "planar"}, optional
-    **options
-        rtol, rest_tilt, gravity, slab_mass_ratio, and for a grid of planar runs alone plane and restitution:
-        as in `reduced.peak_tilts`.
+    gravity, slab_mass_ratio, rtol, rest_tilt
+        As in `reduced.peak_tilts`; and for a grid of planar runs alone plane and restitution.
 
     Raises
     ------
@@ -117,39 +125,35 @@ class Grid(Brief):
     8
     """
 
-    semidiagonals: tuple[float, ...]
-    tan_alphas: tuple[float, ...]
-    scales: tuple[float, ...]
-    motions: tuple[GroundMotion, ...]
-    models: tuple[str, ...]
-    options: Mapping[str, object]
+    semidiagonals: Sequence[float]
+    tan_alphas: Sequence[float]
+    scales: Sequence[float]
+    motions: Sequence[GroundMotion]
+    models: Sequence[str] = ("recess",)
+    rtol: float | None = None
+    rest_tilt: float | None = None
 
-    def __init__(
-        self,
-        *,
-        semidiagonals: ArrayLike,
-        tan_alphas: ArrayLike,
-        scales: ArrayLike,
-        motions: Sequence[GroundMotion],
-        models: Sequence[str] = ("recess",),
-        **options: Any,
-    ) -> None:
-        labels = [motion.name or "record" for motion in motions]
-        _require_different("motions", labels)
-        _require_different("models", models)
-        for model in models:
-            if model not in MODELS:
-                raise ValueError(f"models must be of {', '.join(MODELS)}, got {model!r}")
-        planar = [name for name in ("plane", "restitution") if name in options]
-        if planar and tuple(models) != ("planar",):
-            raise ValueError(f"{planar[0]} is of planar motion, got models {', '.join(models)}")
-        object.__setattr__(self, "semidiagonals", _axis("semidiagonals", semidiagonals, above_zero=True))
-        object.__setattr__(self, "tan_alphas", _axis("tan_alphas", tan_alphas, above_zero=True))
-        object.__setattr__(self, "scales", _axis("scales", scales, above_zero=False))
-        object.__setattr__(self, "motions", tuple(motions))
-        object.__setattr__(self, "models", tuple(models))
-        object.__setattr__(self, "options", options)
-        self._try_options()
+    def __post_init__(self) -> None:
+        GridPlan.__post_init__(self)
+        _require_different("motions", [motion.name or "record" for motion in self.motions])
+        _require_different("models", self.models)
+        for model in self.models:
+            require_one_of("a model of a grid", model, MODELS)
+        planar = [name for name in ("plane", "restitution") if name in self.options]
+        if planar and tuple(self.models) != ("planar",):
+            raise ValueError(f"{planar[0]} is of planar motion, got models {', '.join(self.models)}")
+        for name in ("semidiagonals", "tan_alphas", "scales"):
+            object.__setattr__(self, name, _axis(name, getattr(self, name), zero=name == "scales"))
+        # looks at the options here, not first in another process
+        for model in self.models if self.options else ():
+            run = {**reduced.MODELS[model], **self.options}
+            reduced.peak_tilts([1.0], 0.2, self.motions[0], [], **run)
+
+    @property
+    def options(self) -> Mapping[str, object]:
+        """Options of `reduced.peak_tilts` that are not its defaults."""
+        given = {name: getattr(self, name) for name in _OPTIONS}
+        return {name: value for name, value in given.items() if value != _OPTIONS[name]}
 
     @property
     def rows(self) -> int:
@@ -185,21 +189,15 @@ class Grid(Brief):
             "tan_alphas": self.tan_alphas,
             "scales": self.scales,
             "motions": [
-                {
-                    "name": motion.name or "record",
-                    "time_step": motion.time_step,
-                    "samples": len(motion.acceleration),
-                    "components": motion.acceleration.shape[1],
-                    "peak": motion.peak,
-                    "fingerprint": _motion_key(motion),
-                }
+                described_motion(motion)
+                | {"name": motion.name or "record", "fingerprint": _motion_key(motion)}
                 for motion in self.motions
             ],
             "models": self.models,
             "options": self.options,
         }
 
-    def _blocks(self, size: int) -> Iterator[tuple[tuple[float, ...], tuple[float, ...]]]:
+    def _blocks(self, size: int) -> Iterator[tuple[Sequence[float], Sequence[float]]]:
         # whole rows of scales where they fit, because a row shares what depends on the size alone
         width = min(size, len(self.scales))
         height = max(1, size // width)
@@ -207,40 +205,28 @@ class Grid(Brief):
             for j in range(0, len(self.scales), width):
                 yield self.semidiagonals[i : i + height], self.scales[j : j + width]
 
-    def _try_options(self) -> None:
-        """Let `reduced.peak_tilts` look at the options here, not first in another process."""
-        if not self.options:
-            return
-        for model in self.models:
-            try:
-                reduced.peak_tilts(
-                    [1.0], 0.2, self.motions[0], [], **{**reduced.MODELS[model], **self.options}
-                )
-            except TypeError:
-                allowed = "rtol, rest_tilt, gravity, slab_mass_ratio, plane and restitution"
-                raise ValueError(
-                    f"the options of a grid are {allowed}, got {', '.join(self.options)}"
-                ) from None
+
+def described_motion(motion: GroundMotion) -> dict[str, object]:
+    """Return the numbers that state a ground motion, without its samples."""
+    return {
+        "name": motion.name,
+        "time_step": motion.time_step,
+        "samples": len(motion.acceleration),
+        "components": motion.acceleration.shape[1],
+        "peak": motion.peak,
+    }
 
 
 def _motion_key(motion: GroundMotion) -> str:
     return fingerprint((motion.acceleration, motion.time_step))
 
 
-def _outcome(peak: float) -> str:
-    if math.isnan(peak):
-        return "failed"
-    return "overturned" if overturned(peak) else "stands"
-
-
-def _axis(name: str, values: ArrayLike, *, above_zero: bool) -> tuple[float, ...]:
+def _axis(name: str, values: ArrayLike, *, zero: bool) -> tuple[float, ...]:
     axis: NDArray[np.float64] = np.atleast_1d(np.asarray(values, dtype=np.float64))
     if axis.ndim != 1 or not np.isfinite(axis).all():
         raise ValueError(f"{name} must be a sequence of finite numbers, got {values!r}")
-    if (axis < 0.0).any() or (above_zero and (axis == 0.0).any()):
-        raise ValueError(
-            f"{name} must {'be above zero' if above_zero else 'not be negative'}, got {values!r}"
-        )
+    if (axis < 0.0).any() or (not zero and (axis == 0.0).any()):
+        raise ValueError(f"{name} must {'not be negative' if zero else 'be above zero'}, got {values!r}")
     numbers = tuple(axis.tolist())
     _require_different(name, numbers)
     return numbers

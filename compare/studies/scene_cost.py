@@ -11,12 +11,13 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 
 import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+from rockwobble.models.support import support_named
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 from rockwobble.multibody.protocol import SceneCounts
 from rockwobble.multibody.simulation import open_scene
@@ -65,11 +66,11 @@ def variants(engine: str) -> list[Variant]:
         If there is no such engine, or it is not installed.
     """
     backend = find_engine(engine)
-    supports, facts = backend.supports, backend.facts
-    # what changes is the main support of an engine: the recess, where it has one
-    main = "recess" if "recess" in supports else supports[0]
+    facts, supports = backend.facts, [support_named(name) for name in backend.supports]
+    # what changes is the main support of an engine: the ideal recess, where it has one
+    main = next((support for support in supports if support.guided), supports[0]).name
     return [
-        *(Variant(support=name, option="released") for name in ("flat", "recess") if name in supports),
+        *(Variant(support=each.name, option="released") for each in supports if each.modelled),
         Variant(support=main, option="ground motion x, y", components="xy"),
         Variant(support=main, option="ground motion x, y, z", components="xyz"),
         *(
@@ -78,12 +79,13 @@ def variants(engine: str) -> list[Variant]:
         ),
         *(
             Variant(
-                support="ring",
+                support=each.name,
                 option=f"{count} walls",
                 settings={"ring_facets": count, "ring_clearance": 0.1},
             )
+            for each in supports
+            if each.walls
             for count in _WALLS
-            if "ring" in supports
         ),
         *(
             Variant(support=main, option=option, standing=True, components="xy", settings=given)
@@ -139,18 +141,11 @@ def scene_costs(
         ours = np.array([engine == name for engine, _ in scenes])
         cheapest = np.flatnonzero(ours)[np.argmin(np.median(times[:, ours], axis=0))]
         ratio[ours] = np.median(times[:, ours] / times[:, [cheapest]], axis=0)
-    return pd.DataFrame(
-        {
-            "engine": [engine for engine, _ in scenes],
-            "support": [variant.support for _, variant in scenes],
-            "option": [variant.option for _, variant in scenes],
-            "degrees_of_freedom": [count.degrees_of_freedom for count in counts],
-            "contacts": [count.contacts for count in counts],
-            "constraint_rows": [count.constraint_rows for count in counts],
-            "microseconds": 1e6 * np.median(times, axis=0),
-            "ratio": ratio,
-        }
-    )
+    rows = [
+        {"engine": engine, "support": variant.support, "option": variant.option, **asdict(count)}
+        for (engine, variant), count in zip(scenes, counts, strict=True)
+    ]
+    return pd.DataFrame(rows).assign(microseconds=1e6 * np.median(times, axis=0), ratio=ratio)
 
 
 def step_cost(engine: str, variant: Variant, steps: int) -> tuple[float, SceneCounts]:

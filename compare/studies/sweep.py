@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -24,7 +25,7 @@ from ..runs.progress import ProgressCallback
 from ..storage.manifest import Number
 from ..storage.provenance import fingerprint
 from ..storage.results import Results
-from .grid import Grid, GridChunk
+from .grid import Grid, GridChunk, described_motion
 
 # An engine's run takes seconds, a reduced one milliseconds.
 _REDUCED_CHUNK_SIZE, _ENGINE_CHUNK_SIZE = 200, 1
@@ -47,7 +48,7 @@ class CaseChunk:
 
     @property
     def name(self) -> str:
-        """Description of the chunk, for whoever waits."""
+        """Description of the chunk, for the progress callback."""
         more = f" and {len(self.jobs) - 1} more" if len(self.jobs) > 1 else ""
         return f"{self.jobs[0].name}{more}"
 
@@ -115,23 +116,8 @@ def _described(case: Case) -> dict[str, object]:
         "gravity": case.gravity,
         "friction": case.friction,
         "rolling_resistance": case.rolling_resistance,
-        "motion": None
-        if motion is None
-        else {
-            "name": motion.name,
-            "time_step": motion.time_step,
-            "samples": len(motion.acceleration),
-            "components": int(motion.acceleration.shape[1]),
-            "peak": motion.peak,
-        },
-        "initial": None
-        if initial is None
-        else {
-            "tilt": initial.tilt,
-            "tilt_rate": initial.tilt_rate,
-            "rolling_angle": initial.rolling_angle,
-            "rolling_rate": initial.rolling_rate,
-        },
+        "motion": motion and described_motion(motion),
+        "initial": initial and dataclasses.asdict(initial),
     }
 
 
@@ -163,7 +149,7 @@ _OUTCOMES = ("stands", "overturned", "failed")
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Sweep(Results, kind=KIND):
-    """What became of each run.
+    """Outcome and numbers of each run.
 
     Attributes
     ----------

@@ -9,12 +9,15 @@ from __future__ import annotations
 import importlib.util
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..ground_motion import GroundMotion
 from ..number_checks import require_positive
+
+if TYPE_CHECKING:
+    import h5py
 
 PAIRS = 22
 # acceleration of the files, and of the whole package: 1 g is 9.81 m/s^2
@@ -105,7 +108,7 @@ def _file() -> Path:
     return path
 
 
-def _opened(path: Path) -> Any:
+def _opened(path: Path) -> h5py.File:
     try:
         import h5py
         import hdf5plugin  # noqa: F401 - teaches h5py the compression of the file
@@ -114,7 +117,7 @@ def _opened(path: Path) -> Any:
     return h5py.File(path, "r")
 
 
-def _name(table: Any, pair: int) -> str:
+def _name(table: h5py.Dataset, pair: int) -> str:
     # a table of pandas: row `pair`, integers (RSN, year, ...), texts (earthquake, station, ...)
     row = table[pair - 1]
     earthquake, station = (text.decode() for text in row["values_block_2"][:2])

@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -135,12 +134,12 @@ def doubts(motion: GroundMotion) -> tuple[Diagnostic, ...]:
     return tuple(_doubts(motion))
 
 
-def doubts_of(motions: Iterable[GroundMotion | None]) -> list[dict[str, Any]]:
+def doubts_of(motions: Iterable[GroundMotion | None]) -> list[dict[str, object]]:
     """Return the doubts about many motions as plain values, for a file: record and fields of each.
 
     Of a record that comes several times, as at several scales, each doubt is there once.
     """
-    found: dict[tuple[str, str], dict[str, Any]] = {}
+    found: dict[tuple[str, str], dict[str, object]] = {}
     for motion in motions:
         if motion is None:
             continue

@@ -6,9 +6,9 @@ import difflib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from types import MappingProxyType
-from typing import Any
 
 from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
 
 # what pydantic says, in the words of the other messages
 _WORDS: Mapping[str, str] = MappingProxyType(
@@ -78,7 +78,7 @@ def first_line(error: ValidationError, tables: Mapping[str, type[BaseModel]]) ->
     return f"{_line(errors[0], tables)}{also}"
 
 
-def _line(error: Any, tables: Mapping[str, type[BaseModel]]) -> str:
+def _line(error: ErrorDetails, tables: Mapping[str, type[BaseModel]]) -> str:
     place: Sequence[str | int] = error["loc"]
     path = ""
     for part in place:
@@ -96,7 +96,7 @@ def _line(error: Any, tables: Mapping[str, type[BaseModel]]) -> str:
     return f"{path}: {words.format(given=shown(error['input'])) if words else error['msg']}"
 
 
-def shown(value: Any) -> str:
+def shown(value: object) -> str:
     """Return a value for a message, short."""
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."

@@ -14,11 +14,11 @@ A number is one, a list, or a range; each becomes the tuple of its values.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from ..bounds import REFERENCES
 from ..case import WAYS_TO_A_STEP, TimeStep
@@ -56,7 +56,7 @@ def whole(value: float) -> str:
     return "" if fine else f"must be a positive whole number, got {value:g}"
 
 
-def expanded(given: Any, check: Check = any_number) -> tuple[float, ...]:
+def expanded(given: object, check: Check = any_number) -> tuple[float, ...]:
     """Return the values of a number, a list or a range.
 
     Raises
@@ -85,7 +85,7 @@ def expanded(given: Any, check: Check = any_number) -> tuple[float, ...]:
     return values
 
 
-def _number(given: Any, check: Check) -> float:
+def _number(given: object, check: Check) -> float:
     if isinstance(given, bool) or not isinstance(given, int | float):
         raise ValueError(  # noqa: TRY004 - a wrong type in a file is bad input like any other
             "must be a number, a list, or a range such as { from = 1, to = 3, step = 0.5 }, "
@@ -106,7 +106,7 @@ def _require(complaint: str) -> None:
         raise ValueError(complaint)
 
 
-def _range(given: dict[str, Any]) -> tuple[float, ...]:
+def _range(given: Mapping[str, object]) -> tuple[float, ...]:
     for key in given:
         if key not in _RANGE:
             raise KeyedError(key, nearest(key, _RANGE))
@@ -156,12 +156,12 @@ def _counted(low: float, high: float, count: int, spacing: str) -> tuple[float, 
     return _tidy(low * (high / low) ** (index / (count - 1)) for index in range(count))
 
 
-def _tidy(values: Any) -> tuple[float, ...]:
+def _tidy(values: Iterable[float]) -> tuple[float, ...]:
     # 0.3 and not 0.30000000000000004
     return tuple(float(f"{value:.12g}") for value in values)
 
 
-def _values(check: Check) -> Any:
+def _values(check: Check) -> BeforeValidator:
     return BeforeValidator(lambda given: expanded(given, check))
 
 
@@ -172,6 +172,15 @@ Wholes = Annotated[tuple[float, ...], _values(whole)]
 
 
 RECORDS = ("el_centro_1940", "p695")
+
+
+def _known(*allowed: str) -> AfterValidator:
+    def check(value: str) -> str:
+        if value not in allowed:
+            raise ValueError(f"must be one of {', '.join(allowed)}, got {shown(value)}")
+        return value
+
+    return AfterValidator(check)
 
 
 class _Table(BaseModel):
@@ -229,15 +238,15 @@ class CylinderTable(_Table):
 class MotionTable(_Table):
     """The ground motion: a record that ships, files of a record, or a pulse."""
 
-    record: str | None = None
+    record: Annotated[str, _known(*RECORDS)] | None = None
     vertical: bool | None = None
     pair: Wholes | None = None
     x: str | None = None
     y: str | None = None
     z: str | None = None
-    units: str | None = None
+    units: Annotated[str, _known(*UNITS)] | None = None
     resample: bool | None = None
-    pulse: str | None = None
+    pulse: Annotated[str, _known(*PULSES)] | None = None
     amplitude: Positives | None = None
     period: Positives | None = None
     azimuth_deg: Numbers | None = None
@@ -250,18 +259,13 @@ class MotionTable(_Table):
     def _keys_go_together(self) -> MotionTable:
         kind = "x" if self.given("x", "y") else self.require_one_of("record", "x", "pulse")
         self.refuse_others(kind)
-        if kind == "record":
-            _require_known("record", self.record, RECORDS)
-            if self.record == "p695" and not self.given("pair"):
-                raise KeyedError("pair", "must be given: 1 to 22")
+        if self.record == "p695" and not self.given("pair"):
+            raise KeyedError("pair", "must be given: 1 to 22")
         if kind == "x":
             for name in ("x", "y"):
                 if not self.given(name):
                     raise KeyedError(name, "must be given: a record has two horizontal components")
-            if self.units is not None:
-                _require_known("units", self.units, UNITS)
         if kind == "pulse":
-            _require_known("pulse", self.pulse, PULSES)
             if not self.given("period"):
                 raise KeyedError("period", "must be given with a pulse [s]")
             self.require_one_of("amplitude", "times_uplift")
@@ -325,18 +329,18 @@ class CaseTable(_Table):
         return self
 
 
-def _texts(given: Any) -> Any:
+def _texts(given: object) -> object:
     return given if isinstance(given, list) else [given]
 
 
-def _steps(given: Any) -> Any:
+def _steps(given: object) -> tuple[object, ...]:
     """Values of a time step; the ways to one are left to the engine."""
     if given in WAYS_TO_A_STEP:
         return (given,)
     return expanded(given, positive)
 
 
-def _one_positive(given: Any) -> float:
+def _one_positive(given: object) -> float:
     if isinstance(given, list | dict):
         raise ValueError(f"must be one number, got {shown(given)}")  # noqa: TRY004 (bad input)
     return expanded(given, positive)[0]
@@ -375,13 +379,7 @@ class BoundsTable(_Table):
     residual_twist: Positive | None = None
     energy_loss: Positive | None = None
     agreement_time: Positive | None = None
-    reference: str | None = None
-
-    @model_validator(mode="after")
-    def _known_reference(self) -> BoundsTable:
-        if self.reference is not None:
-            _require_known("reference", self.reference, REFERENCES)
-        return self
+    reference: Annotated[str, _known(*REFERENCES)] | None = None
 
 
 class SuiteTable(_Table):
@@ -390,11 +388,6 @@ class SuiteTable(_Table):
     cases: list[CaseTable] = Field(min_length=1)
     runs: list[RunTable] = Field(default_factory=list)
     bounds: BoundsTable | None = None
-
-
-def _require_known(key: str, value: str | None, allowed: tuple[str, ...]) -> None:
-    if value not in allowed:
-        raise KeyedError(key, f"must be one of {', '.join(allowed)}, got {shown(value)}")
 
 
 # by their keys, "" for the whole file

@@ -25,22 +25,26 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from rockwobble.models.support import SUPPORTS
-
-from ..kinematics import about_vertical, turning
+from ..kinematics import about_vertical
 from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
 from ..scene import Scene
-from .declared import GUIDE, Declared, body_friction, build, positive, whole
+from ..settings import Count, EngineSettings, Positive, Share, Small, positive
+from .declared import Declared, Leapfrog, body_friction, contact_counts
+
+if TYPE_CHECKING:
+    from dartpy.constraint import BoxedLcpSolver
+    from dartpy.dynamics import BodyNode, FreeJoint, Shape, ShapeNode, TranslationalJoint
+    from dartpy.simulation import World
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DartSettings:
+class DartSettings(EngineSettings):
     """Settings of DART: hard contact has neither stiffness nor damping.
 
     Attributes
@@ -65,30 +69,12 @@ class DartSettings:
         some hundreds, and fewer leave it a velocity.
     """
 
-    guide_stiffness: float
-    depth: float = 1e-6
-    depth_gain: float = 0.3
-    friction_damping: float = 1.8
-    tolerance: float = 1e-12
-    iterations: int = 1000
-
-    @classmethod
-    def resolve(cls, given: Mapping[str, Any], time_step: float) -> DartSettings:
-        """Return the settings for a time step [s], with those `given` in place of the defaults.
-
-        Raises
-        ------
-        ValueError
-            If a setting is unknown or out of range.
-        """
-        settings = build(cls, "dart", given, {"guide_stiffness": (GUIDE / time_step) ** 2 / 4.0})
-        positive(settings, "guide_stiffness")
-        positive(settings, "depth", most=1e-3)
-        positive(settings, "depth_gain", most=1.0)
-        positive(settings, "friction_damping", most=2.0)
-        positive(settings, "tolerance", most=1e-3)
-        whole(settings, "iterations")
-        return settings
+    guide_stiffness: Positive
+    depth: Small = 1e-6
+    depth_gain: Share = 0.3
+    friction_damping: Annotated[float, positive(most=2.0)] = 1.8
+    tolerance: Small = 1e-12
+    iterations: Count = 1000
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -107,13 +93,13 @@ class DartScene:
     flat_solver, rim_solver : dartpy.constraint.BoxedLcpSolver
     """
 
-    world: Any
-    ground: Any
-    cylinder: Any
-    joint: Any
-    use: Callable[[Any], None]
-    flat_solver: Any
-    rim_solver: Any
+    world: World
+    ground: TranslationalJoint
+    cylinder: BodyNode
+    joint: FreeJoint
+    use: Callable[[BoxedLcpSolver], None]
+    flat_solver: BoxedLcpSolver
+    rim_solver: BoxedLcpSolver
 
 
 def make_scene(scene: Scene, settings: DartSettings) -> DartScene:
@@ -129,7 +115,7 @@ def make_scene(scene: Scene, settings: DartSettings) -> DartScene:
     solver.setCollisionDetector(dartpy.collision.OdeCollisionDetector())
     friction = body_friction(scene.friction, "pair")
 
-    def collide(node: Any, outline: Any) -> Any:
+    def collide(node: BodyNode, outline: Shape) -> ShapeNode:
         placed = node.createShapeNode(outline)
         placed.createCollisionAspect()
         placed.createDynamicsAspect().setFrictionCoeff(friction)
@@ -211,19 +197,15 @@ class DartEngine(Declared):
         yield _DartStepper(scene, DartSettings(**settings))
 
 
-class _DartStepper:
+class _DartStepper(Leapfrog):
     def __init__(self, scene: Scene, settings: DartSettings) -> None:
-        self._scene, self._step, self._settings = scene, scene.time_step, settings
-        # guide_stiffness is in the time of the user; of both halves of the guide, torque for each twist
-        stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
-        self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
+        super().__init__(scene, settings.guide_stiffness, settings.depth)
+        self._settings = settings
         self._dart: DartScene = make_scene(scene, settings)
-        self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
         self._kept = settings.depth  # depth at which the rim is kept just now [m]
         self._open = False
         self._lost = False
         start = scene.start
-        self._position, self._quaternion = start.position, start.quaternion
         position = start.position - [0.0, 0.0, settings.depth]
         velocity, spin = start.velocity, start.angular_velocity
         self._put(start.quaternion, position, velocity, spin)
@@ -233,33 +215,18 @@ class _DartStepper:
             after, spin_after = self._rates()
             self._put(start.quaternion, position, 1.5 * velocity - 0.5 * after, 1.5 * spin - 0.5 * spin_after)
 
-    @property
-    def hold_centre(self) -> float:
-        """DART steps as leapfrog does."""
-        return 0.0
-
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
         rows = np.array(self._loop(acceleration.tolist()))
-        heading = rows[:, 6]
-        position = about_vertical(rows[:, 3:6], heading)
-        quaternion = quaternions(rows[:, :3], _SPIN)
-        quaternion[:, 1:] = about_vertical(quaternion[:, 1:], heading)
-        position[:, 2] += self._settings.depth
-        # the new velocity moves the pose, so poses give the velocities, and the loop is spared a call
-        velocity = np.diff(np.vstack([self._position, position]), axis=0) / self._step
-        spin = turning(self._quaternion, quaternion) / self._step
-        self._position, self._quaternion = position[-1], quaternion[-1]
-        return Steps(position, quaternion, velocity, spin)
+        return self._steps_to(rows[:, 3:6], quaternions(rows[:, :3], _SPIN), rows[:, 6])
 
     def warnings(self) -> str:
         """Say that it went out of reach: DART does not warn, and would end the process."""
         return "the cylinder is out of reach" if self._lost else ""
 
     def counts(self) -> SceneCounts:
-        """Return the counts of the last step: a normal and two directions of friction for each contact."""
-        contacts = self._dart.world.getLastCollisionResult().getNumContacts()
-        return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
+        """Return the counts of the last step."""
+        return contact_counts(self._dart.world.getLastCollisionResult().getNumContacts())
 
     def _loop(self, acceleration: list[list[float]]) -> list[list[float]]:
         """Step; return rotation vector, position and heading of the scene after each step."""

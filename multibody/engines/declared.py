@@ -1,33 +1,22 @@
-"""Common parts of the engines of this package: settings with their bounds, friction of a pair, facts."""
+"""Common parts of the engines of this package: members of the protocol, steps of leapfrog, friction."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import asdict
 from functools import cache
 from importlib.metadata import version
-from typing import Any, ClassVar, Protocol, TypeVar
+from typing import ClassVar
 
-from rockwobble.models.number_checks import quoted
+import numpy as np
 
-from ..protocol import EngineFacts, Settings
+from rockwobble.models.support import SUPPORTS
+
+from ..kinematics import about_vertical, turning
+from ..protocol import Array, EngineFacts, SceneCounts, Settings, Steps
 from ..scene import Scene
-
-S = TypeVar("S")
-
-GUIDE = 0.2  # 2 h sqrt(stiffness of the guide): see `MujocoSettings.guide_stiffness`
-
-
-class _SettingsType(Protocol):
-    """A dataclass of settings."""
-
-    __dataclass_fields__: ClassVar[dict[str, Any]]
-
-    @classmethod
-    def resolve(cls, given: Mapping[str, Any], time_step: float) -> object:
-        """Return the settings for a time step [s], with those given in place of the defaults."""
-        ...
+from ..settings import EngineSettings
 
 
 class Declared:
@@ -47,7 +36,7 @@ class Declared:
     """
 
     package: ClassVar[str]
-    settings_type: ClassVar[type[_SettingsType]]
+    settings_type: ClassVar[type[EngineSettings]]
     facts: EngineFacts
     supports: tuple[str, ...] = ("recess", "flat")
     uplifts: bool = True
@@ -56,10 +45,9 @@ class Declared:
         """Version of the package."""
         return _version(self.package)
 
-    def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
+    def settings(self, given: Settings, scene: Scene) -> Mapping[str, object]:
         """Return every setting; see the type of the settings."""
-        resolved = self.settings_type.resolve(given, scene.time_step * scene.unit_time)
-        return {name: getattr(resolved, name) for name in self.settings_type.__dataclass_fields__}
+        return asdict(self.settings_type.resolve(given, scene.time_step * scene.unit_time))
 
 
 @cache  # to read it takes as long as a hundred steps
@@ -67,36 +55,48 @@ def _version(package: str) -> str:
     return version(package)
 
 
-def build(kind: type[S], engine: str, given: Mapping[str, Any], defaults: Mapping[str, Any]) -> S:
-    """Return the settings of an engine: those given in place of the defaults."""
-    names = [field.name for field in fields(kind)]  # type: ignore[arg-type]
-    for name in given:
-        if name not in names:
-            raise ValueError(f"{name!r} is not a setting of {engine}; allowed are {', '.join(names)}")
-    return kind(**{**defaults, **given})
+class Leapfrog:
+    """Scene whose new velocity moves the pose, so that the poses give the velocities.
+
+    Parameters
+    ----------
+    scene : Scene
+    guide_stiffness : float
+        In the time of the user [1/s^2].
+    depth : float
+        At which the rim is kept, taken off the poses [m].
+    """
+
+    hold_centre = 0.0
+
+    def __init__(self, scene: Scene, guide_stiffness: float, depth: float = 0.0) -> None:
+        self._scene, self._step, self._depth = scene, scene.time_step, depth
+        # of both halves of the guide, torque for each twist
+        stiffness = guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
+        self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
+        self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
+        self._position, self._quaternion = scene.start.position, scene.start.quaternion
+
+    def warnings(self) -> str:
+        """Return none: the engine does not warn."""
+        return ""
+
+    def _steps_to(
+        self, position: Array, quaternion: Array, heading: Array | float = 0.0, *, unsolved: bool = False
+    ) -> Steps:
+        """Return the steps to poses (n, 3), (n, 4) in the scene, whose x axis is at azimuths (n,) [rad]."""
+        position = about_vertical(position, heading)
+        quaternion[:, 1:] = about_vertical(quaternion[:, 1:], heading)
+        position[:, 2] += self._depth
+        velocity = np.diff(np.vstack([self._position, position]), axis=0) / self._step
+        spin = turning(self._quaternion, quaternion) / self._step
+        self._position, self._quaternion = position[-1], quaternion[-1]
+        return Steps(position, quaternion, velocity, spin, unsolved=unsolved)
 
 
-def positive(settings: object, name: str, *, most: float = math.inf, or_zero: bool = False) -> None:
-    """Refuse a setting that is no positive number of at most `most`; `or_zero` allows 0, too."""
-    value = getattr(settings, name)
-    number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-    if not (number and value <= most and (value > 0.0 or (or_zero and value == 0.0))):
-        limit = "" if most == math.inf else f" and at most {most:g}"
-        raise ValueError(f"{name} must be {'at least' if or_zero else 'above'} 0{limit}, got {quoted(value)}")
-
-
-def whole(settings: object, name: str) -> None:
-    """Refuse a setting that is no positive whole number."""
-    value = getattr(settings, name)
-    if type(value) is not int or value < 1:
-        raise ValueError(f"{name} must be a positive whole number, got {quoted(value)}")
-
-
-def one_of(settings: object, name: str, allowed: tuple[Any, ...]) -> None:
-    """Refuse a setting that is none of the values allowed."""
-    value = getattr(settings, name)
-    if value not in allowed:
-        raise ValueError(f"{name} must be one of {', '.join(map(str, allowed))}, got {quoted(value)}")
+def contact_counts(contacts: int) -> SceneCounts:
+    """Return the counts of a step of one body: a normal and two directions of friction for each contact."""
+    return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
 
 
 CONVENTIONS = ("pair", "product")

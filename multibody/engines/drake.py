@@ -23,22 +23,25 @@ from __future__ import annotations
 import contextlib
 import logging
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 
-from rockwobble.models.support import SUPPORTS
-
-from ..kinematics import about_vertical, turning
+from ..kinematics import about_vertical
 from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
 from ..scene import Body, Scene
-from .declared import GUIDE, Declared, body_friction, build, one_of, positive
+from ..settings import EngineSettings, NotNegative, Positive, one_of, positive
+from .declared import Declared, Leapfrog, body_friction, contact_counts
+
+if TYPE_CHECKING:
+    from pydrake.multibody.tree import MultibodyForces
+    from pydrake.systems.framework import Context, Diagram
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DrakeSettings:
+class DrakeSettings(EngineSettings):
     """Settings of Drake: contact in discrete time.
 
     Attributes
@@ -64,30 +67,12 @@ class DrakeSettings:
         (6 m, 0.2) is 8.0e-5 alpha after 4 s of motion, at 1 it is 6.7e-4.
     """
 
-    guide_stiffness: float
-    approximation: str = "lagged"
-    contact_stiffness: float = 1e10
-    dissipation: float = 100.0
-    stiction_tolerance: float = 1e-6
-    friction_damping: float = 1.8
-
-    @classmethod
-    def resolve(cls, given: Mapping[str, Any], time_step: float) -> DrakeSettings:
-        """Return the settings for a time step [s], with those `given` in place of the defaults.
-
-        Raises
-        ------
-        ValueError
-            If a setting is unknown or out of range.
-        """
-        settings = build(cls, "drake", given, {"guide_stiffness": (GUIDE / time_step) ** 2 / 4.0})
-        positive(settings, "guide_stiffness")
-        one_of(settings, "approximation", ("lagged", "similar", "tamsi", "sap"))
-        positive(settings, "contact_stiffness")
-        positive(settings, "dissipation", or_zero=True)
-        positive(settings, "stiction_tolerance")
-        positive(settings, "friction_damping", most=2.0)
-        return settings
+    guide_stiffness: Positive
+    approximation: Annotated[str, one_of("lagged", "similar", "tamsi", "sap")] = "lagged"
+    contact_stiffness: Positive = 1e10
+    dissipation: NotNegative = 100.0
+    stiction_tolerance: Positive = 1e-6
+    friction_damping: Annotated[float, positive(most=2.0)] = 1.8
 
 
 POINTS = 4  # of the rim, which carry a flat base
@@ -112,13 +97,13 @@ class DrakeScene:
     """
 
     plant: Any
-    diagram: Any
-    root: Any
-    context: Any
+    diagram: Diagram
+    root: Context
+    context: Context
     applied: Any
     acceleration: Any
     contact: Any
-    no_forces: Any
+    no_forces: MultibodyForces
     gravity: Array
 
     def solve(self, state: Array, applied: Array) -> tuple[Array, Array]:
@@ -232,22 +217,16 @@ class DrakeEngine(Declared):
         yield _DrakeStepper(scene, DrakeSettings(**settings))
 
 
-class _DrakeStepper:
+class _DrakeStepper(Leapfrog):
     def __init__(self, scene: Scene, settings: DrakeSettings) -> None:
-        self._scene, self._step = scene, scene.time_step
-        # guide_stiffness is in the time of the user; of both halves of the guide, torque for each twist
-        stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
-        self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
+        super().__init__(scene, settings.guide_stiffness, scene.gravity / settings.contact_stiffness)
         self._standing, self._rolling = make_scene(scene, settings, POINTS), make_scene(scene, settings, 0)
         self._last = self._standing  # what took the last step
         self._overshoot = settings.friction_damping - 1.0
         self._left = np.zeros(6)  # what the solver left of the last step, torque and force
         self._warning = ""
-        self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
         self._spun = 0.0  # angle about its axis that has been taken off the cylinder [rad]
         start = scene.start
-        self._depth = scene.gravity / settings.contact_stiffness
-        self._position, self._quaternion = start.position, start.quaternion
         # quaternion and position: floats, since the loop over steps in Python reads each of them
         place = [*start.quaternion.tolist(), *(start.position - [0.0, 0.0, self._depth]).tolist()]
         velocity = np.concatenate([start.angular_velocity, start.velocity])
@@ -260,32 +239,18 @@ class _DrakeStepper:
             self._advance_once(np.zeros(6))
             self._place, self._velocity = place, 1.5 * velocity - 0.5 * self._velocity
 
-    @property
-    def hold_centre(self) -> float:
-        """The new velocity moves the pose, as in leapfrog."""
-        return 0.0
-
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
         rows = np.array([self._caught(*each) for each in acceleration.tolist()])
-        position, heading = rows[:, 4:7], rows[:, 7]
-        quaternion = _spin(rows[:, :4], rows[:, 8])
-        quaternion[:, 1:] = about_vertical(quaternion[:, 1:], heading)
-        position = about_vertical(position, heading)
-        position[:, 2] += self._depth
-        velocity = np.diff(np.vstack([self._position, position]), axis=0) / self._step
-        spin = turning(self._quaternion, quaternion) / self._step
-        self._position, self._quaternion = position[-1], quaternion[-1]
-        return Steps(position, quaternion, velocity, spin)
+        return self._steps_to(rows[:, 4:7], _spin(rows[:, :4], rows[:, 8]), rows[:, 7])
 
     def warnings(self) -> str:
         """Return what Drake raised where it could not go on."""
         return self._warning
 
     def counts(self) -> SceneCounts:
-        """Return the counts of the last step: a normal and two directions of friction for each contact."""
-        contacts = self._last.count_contacts()
-        return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
+        """Return the counts of the last step."""
+        return contact_counts(self._last.count_contacts())
 
     def _caught(self, ax: float, ay: float, az: float) -> list[float]:
         """Take one step, if Drake can: it raises where the state is not finite or nothing converges."""

@@ -10,20 +10,25 @@ from __future__ import annotations
 
 import contextlib
 import importlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from ..kinematics import axis_of
 from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
 from ..scene import Scene, Start
-from .declared import Declared, build, one_of, positive, whole
+from ..settings import Count, EngineSettings, Small, one_of, positive
+from .declared import Declared
+
+if TYPE_CHECKING:
+    from exudyn import MainSystem, SimulationSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ExudynSettings:
+class ExudynSettings(EngineSettings):
     """Settings of Exudyn: its integrator; an ideal rim leaves nothing else to set.
 
     Measured on a release at alpha/2 with a rolling rate of 0.1 rad/s, h = 2 b, b = 1 m: error of the angle of
@@ -48,28 +53,16 @@ class ExudynSettings:
         At most. With three, no step reaches these tolerances.
     """
 
-    integrator: str = "trapezoidal"
-    spectral_radius: float = 1.0
-    relative_tolerance: float = 1e-12
-    absolute_tolerance: float = 1e-13
-    iterations: int = 25
+    integrator: Annotated[str, one_of("trapezoidal", "generalized-alpha")] = "trapezoidal"
+    spectral_radius: Annotated[float, positive(most=1.0, or_zero=True)] = 1.0
+    relative_tolerance: Small = 1e-12
+    absolute_tolerance: Small = 1e-13
+    iterations: Count = 25
 
-    @classmethod
-    def resolve(cls, given: Mapping[str, Any], time_step: float) -> ExudynSettings:
-        """Return the settings, with those `given` in place of the defaults.
-
-        Raises
-        ------
-        ValueError
-            If a setting is unknown or out of range.
-        """
-        settings = build(cls, "exudyn", given, {})
-        one_of(settings, "integrator", ("trapezoidal", "generalized-alpha"))
-        positive(settings, "spectral_radius", most=1.0, or_zero=True)
-        positive(settings, "relative_tolerance", most=1e-3)
-        positive(settings, "absolute_tolerance", most=1e-3)
-        whole(settings, "iterations")
-        return settings
+    @staticmethod
+    def defaults(time_step: float) -> dict[str, float]:
+        """Return none: no default depends on the time step."""
+        return {}
 
 
 _FACTS = EngineFacts(title="Exudyn", step_time=1.2e-5, order=2.0)
@@ -97,7 +90,7 @@ class ExudynEngine(Declared):
 
 
 class _ExudynStepper:
-    def __init__(self, exudyn: Any, scene: Scene, settings: ExudynSettings) -> None:
+    def __init__(self, exudyn: ModuleType, scene: Scene, settings: ExudynSettings) -> None:
         self._exudyn, self._step = exudyn, scene.time_step
         self._start = scene.start
         self._forces: list[list[float]] = []
@@ -181,10 +174,10 @@ class _ExudynStepper:
         # the first row is the start; the first column the time
         return np.hstack([np.asarray(table)[1:, 1:] for table in stored])
 
-    def _build(self, scene: Scene) -> tuple[Any, list[Any]]:
+    def _build(self, scene: Scene) -> tuple[MainSystem, list[int]]:
         """Make ground, cylinder, rim and forces; return the system and its sensors."""
         # its functions are not typed
-        items: Any = importlib.import_module("exudyn.itemInterface")
+        items = importlib.import_module("exudyn.itemInterface")
         body, start = scene.body, scene.start
         system = self._container.AddSystem()
         ground = system.AddObject(items.ObjectGround())
@@ -222,13 +215,13 @@ class _ExudynStepper:
         system.Assemble()
         return system, sensors
 
-    def _excitation(self, system: Any, time: float, load: Any) -> list[float]:
+    def _excitation(self, system: object, time: float, load: object) -> list[float]:
         """Force for each unit of mass: -a."""
         return self._forces[round(time / self._step)]
 
 
-def _simulation_settings(exudyn: Any, settings: ExudynSettings) -> Any:
-    how = exudyn.SimulationSettings()
+def _simulation_settings(exudyn: ModuleType, settings: ExudynSettings) -> SimulationSettings:
+    how: SimulationSettings = exudyn.SimulationSettings()
     how.solution.file.write = False
     integration = how.timeIntegration
     # a step that does not converge ends the run: shorter steps would not be those of the time grid

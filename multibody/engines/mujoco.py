@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from .mujoco_scene import MujocoSettings, compile_scene, set_start, to_world
 
 if TYPE_CHECKING:
     import mujoco  # type: ignore[import-untyped]
+    from mujoco import rollout
 
 _STANDING_BLOCK = 20  # steps between two looks at whether a standing cylinder has uplifted
 # Lean up to which a corner that is turned under it at each step carries a cylinder better than its rim does
@@ -66,12 +68,12 @@ class MujocoEngine(Declared):
     package, settings_type, facts = "mujoco", MujocoSettings, _FACTS
     supports = ("recess", "flat", "ring")
 
-    def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
+    def settings(self, given: Settings, scene: Scene) -> Mapping[str, object]:
         """Return every setting; see `MujocoSettings` and, for the support "ring", `RingSettings`."""
         others, ring = take_ring(given, scene.support, scene.body.tan_alpha)
         if ring is not None:
             check_start(ring, scene)
-        return super().settings(others, scene) | (ring.as_dict() if ring is not None else {})
+        return {**super().settings(others, scene), **({} if ring is None else asdict(ring))}
 
     @contextlib.contextmanager
     def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
@@ -100,7 +102,7 @@ class MujocoEngine(Declared):
 
 class _MujocoStepper:
     def __init__(
-        self, scene: Scene, settings: MujocoSettings, ring: RingSettings | None, runner: Any
+        self, scene: Scene, settings: MujocoSettings, ring: RingSettings | None, runner: rollout.Rollout
     ) -> None:
         import mujoco
 
@@ -237,7 +239,7 @@ class _MujocoStepper:
         self._data = mujoco.MjData(self._model)
 
 
-def _stopped_clock() -> Any:
+def _stopped_clock() -> ctypes._CFunctionType:
     """Return a C function that always says the same time: to read a clock takes a fifth of a step."""
     return ctypes.CFUNCTYPE(ctypes.c_double)(("PyFloat_GetMax", ctypes.pythonapi))
 

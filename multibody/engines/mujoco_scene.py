@@ -7,24 +7,24 @@ which contact carries the load, and for leapfrog half a step back.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import as_file, files
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from ..protocol import Array
 from ..ring import RingSettings, wall_feet, wall_orientations
 from ..scene import Scene, Start
-from .declared import GUIDE, body_friction, build, one_of, positive, whole
+from ..settings import Count, EngineSettings, Positive, one_of, positive
+from .declared import body_friction
 
 if TYPE_CHECKING:
     import mujoco  # type: ignore[import-untyped]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MujocoSettings:
+class MujocoSettings(EngineSettings):
     """Settings of MuJoCo: its integrator and its contact.
 
     Attributes
@@ -76,45 +76,22 @@ class MujocoSettings:
         make a relative RMS of 5.8e-5 under El Centro on (10 m, 0.1). Not in the scene of a release.
     """
 
-    contact_time_constant: float
-    contact_damping_ratio: float = 1.0
-    impedance: float = 0.9999
-    rolling_impedance: float = 0.995
-    friction_damping: float = 1.8
-    guide_stiffness: float
-    integrator: str = "Euler"
-    cone: str = "elliptic"
-    tolerance: float = 1e-12
-    iterations: int = 100
-    standing_corners: int = 48
+    contact_time_constant: Positive
+    contact_damping_ratio: Positive = 1.0
+    impedance: Annotated[float, positive(most=0.9999)] = 0.9999
+    rolling_impedance: Annotated[float, positive(most=0.9999)] = 0.995
+    friction_damping: Annotated[float, positive(most=2.0)] = 1.8
+    guide_stiffness: Positive
+    integrator: Annotated[str, one_of("Euler", "implicitfast", "implicit", "RK4", "discrete")] = "Euler"
+    cone: Annotated[str, one_of("elliptic", "pyramidal")] = "elliptic"
+    tolerance: Annotated[float, positive(most=1e-3, or_zero=True)] = 1e-12
+    iterations: Count = 100
+    standing_corners: Annotated[int, one_of(*range(0, 49, 4))] = 48
 
-    @classmethod
-    def resolve(cls, given: Mapping[str, Any], time_step: float) -> MujocoSettings:
-        """Return the settings for a time step [s], with those `given` in place of the defaults.
-
-        Raises
-        ------
-        ValueError
-            If a setting is unknown or out of range.
-        """
-        settings = build(
-            cls,
-            "mujoco",
-            given,
-            {"contact_time_constant": 2.0 * time_step, "guide_stiffness": (GUIDE / time_step) ** 2 / 4.0},
-        )
-        positive(settings, "contact_time_constant")
-        positive(settings, "contact_damping_ratio")
-        positive(settings, "impedance", most=0.9999)
-        positive(settings, "rolling_impedance", most=0.9999)
-        positive(settings, "friction_damping", most=2.0)
-        positive(settings, "guide_stiffness")
-        one_of(settings, "integrator", ("Euler", "implicitfast", "implicit", "RK4", "discrete"))
-        one_of(settings, "cone", ("elliptic", "pyramidal"))
-        positive(settings, "tolerance", most=1e-3, or_zero=True)
-        one_of(settings, "standing_corners", tuple(range(0, 49, 4)))
-        whole(settings, "iterations")
-        return settings
+    @staticmethod
+    def defaults(time_step: float) -> dict[str, float]:
+        """Return the defaults that depend on the time step [s]."""
+        return EngineSettings.defaults(time_step) | {"contact_time_constant": 2.0 * time_step}
 
 
 _PRISMS = 12  # in the scene file; four corners each
@@ -150,7 +127,7 @@ def compile_scene(
     return spec.compile()
 
 
-def _set_options(spec: Any, scene: Scene, settings: MujocoSettings) -> None:
+def _set_options(spec: mujoco.MjSpec, scene: Scene, settings: MujocoSettings) -> None:
     import mujoco
 
     cones = {"elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC, "pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL}
@@ -171,7 +148,7 @@ def _set_options(spec: Any, scene: Scene, settings: MujocoSettings) -> None:
         option.disableflags |= mujoco.mjtDisableBit.mjDSBL_REFSAFE
 
 
-def _set_body(spec: Any, scene: Scene) -> None:
+def _set_body(spec: mujoco.MjSpec, scene: Scene) -> None:
     shape = scene.body
     radius, half = shape.base_radius, 0.5 * shape.height
     above = half - shape.mass_centre_height  # of the middle of the outline over the mass centre
@@ -183,7 +160,7 @@ def _set_body(spec: Any, scene: Scene) -> None:
         geom.size = [radius, half, 0.0] if geom.name == "cylinder" else [radius / 2**0.5] * 2 + [half]
 
 
-def _add_slab(spec: Any, scene: Scene, standing: bool) -> None:
+def _add_slab(spec: mujoco.MjSpec, scene: Scene, standing: bool) -> None:
     """Put a slab that can only translate on the top; it lies on the first prism, or on the rim."""
     import mujoco
 
@@ -212,7 +189,7 @@ def _add_slab(spec: Any, scene: Scene, standing: bool) -> None:
 
 
 def _set_contact(
-    spec: Any, scene: Scene, settings: MujocoSettings, standing: bool, ring: RingSettings | None
+    spec: mujoco.MjSpec, scene: Scene, settings: MujocoSettings, standing: bool, ring: RingSettings | None
 ) -> None:
     count = settings.standing_corners // 4 if standing else 0
     if count:
@@ -247,7 +224,7 @@ def _set_contact(
         pair.solreffriction = [-1.0, -damping]
 
 
-def _set_walls(spec: Any, ring: RingSettings, base_radius: float) -> None:
+def _set_walls(spec: mujoco.MjSpec, ring: RingSettings, base_radius: float) -> None:
     """Replace the walls of the scene file by those of `ring`, which may be more, fewer or elsewhere.
 
     They are planes, in contact with the cylinder through pairs of their own.
@@ -264,7 +241,7 @@ def _set_walls(spec: Any, ring: RingSettings, base_radius: float) -> None:
         spec.add_pair(wall, geomname1=name, geomname2="cylinder")
 
 
-def _bears(pair: Any) -> bool:
+def _bears(pair: mujoco.MjsPair) -> bool:
     return pair.geomname1 in ("ground", "slab")
 
 

@@ -14,22 +14,22 @@ import functools
 import math
 import os
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from types import ModuleType
+from typing import Annotated
 
 import numpy as np
 
-from rockwobble.models.support import SUPPORTS
-
-from ..kinematics import about_vertical, turning
+from ..kinematics import about_vertical
 from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
 from ..scene import Scene
-from .declared import GUIDE, Declared, body_friction, build, positive, whole
+from ..settings import Count, EngineSettings, Positive, Share, positive
+from .declared import Declared, Leapfrog, body_friction, contact_counts
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PybulletSettings:
+class PybulletSettings(EngineSettings):
     """Settings of Bullet: its contact solver; its step and its cone leave no choice.
 
     Attributes
@@ -54,39 +54,20 @@ class PybulletSettings:
         Rounds the rim, at the reference size [m]. Bullet's own, 0.04, leaves a bias that no step removes.
     """
 
-    guide_stiffness: float
-    friction_damping: float = 1.8
-    solver_residual: float = 1e-16
-    iterations: int = 100
-    contact_slop: float = 0.0
-    contact_erp: float = 0.2
-    collision_margin: float = 0.0
-
-    @classmethod
-    def resolve(cls, given: Mapping[str, Any], time_step: float) -> PybulletSettings:
-        """Return the settings for a time step [s], with those `given` in place of the defaults.
-
-        Raises
-        ------
-        ValueError
-            If a setting is unknown or out of range.
-        """
-        settings = build(cls, "pybullet", given, {"guide_stiffness": (GUIDE / time_step) ** 2 / 4.0})
-        positive(settings, "guide_stiffness")
-        positive(settings, "friction_damping", most=2.0)
-        positive(settings, "solver_residual")
-        positive(settings, "contact_slop", most=0.1, or_zero=True)
-        positive(settings, "contact_erp", most=1.0)
-        positive(settings, "collision_margin", most=0.1, or_zero=True)
-        whole(settings, "iterations")
-        return settings
+    guide_stiffness: Positive
+    friction_damping: Annotated[float, positive(most=2.0)] = 1.8
+    solver_residual: Positive = 1e-16
+    iterations: Count = 100
+    contact_slop: Annotated[float, positive(most=0.1, or_zero=True)] = 0.0
+    contact_erp: Share = 0.2
+    collision_margin: Annotated[float, positive(most=0.1, or_zero=True)] = 0.0
 
 
 _POINT_SIZE = 1e-6  # of b
 _LEAST = 1e-12  # friction of a pair, for a quotient
 
 
-def make_ground(bullet: Any, client: int, scene: Scene, settings: PybulletSettings) -> int:
+def make_ground(bullet: ModuleType, client: int, scene: Scene, settings: PybulletSettings) -> int:
     """Set the parameters of the engine and make the ground; return its number."""
     bullet.setPhysicsEngineParameter(
         fixedTimeStep=scene.time_step,
@@ -112,16 +93,21 @@ def make_ground(bullet: Any, client: int, scene: Scene, settings: PybulletSettin
 
 
 def make_cylinder(
-    bullet: Any, client: int, scene: Scene, settings: PybulletSettings, *, standing: bool
+    bullet: ModuleType, client: int, scene: Scene, settings: PybulletSettings, *, standing: bool
 ) -> int:
-    """Make the cylinder, or the point on its rim from which it rises; return its number."""
+    """Make the cylinder, or the point on its rim from which it rises; return its number.
+
+    Under a slab it rises between two points, the other being the mirror of the first.
+    """
     shape = scene.body
     if standing:
         size = _POINT_SIZE * shape.base_radius
-        outline = bullet.createCollisionShape(
-            bullet.GEOM_SPHERE,
-            radius=size,
-            collisionFramePosition=[shape.base_radius, 0.0, size - shape.mass_centre_height],
+        point = [shape.base_radius, 0.0, size - shape.mass_centre_height]
+        points = [point, [-x for x in point]] if shape.slab_mass_ratio > 0.0 else [point]
+        outline = bullet.createCollisionShapeArray(
+            [bullet.GEOM_SPHERE] * len(points),
+            radii=[size] * len(points),
+            collisionFramePositions=points,
             physicsClientId=client,
         )
     else:
@@ -154,6 +140,30 @@ def make_cylinder(
     return int(body)
 
 
+def make_slab(bullet: ModuleType, client: int, scene: Scene, settings: PybulletSettings) -> int:
+    """Make a slab that can only translate, a plane that looks down; return its number."""
+    plane = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=client)
+    slab = bullet.createMultiBody(
+        scene.body.slab_mass_ratio,
+        plane,
+        basePosition=[0.0, 0.0, 2.0 * float(scene.start.position[2])],
+        baseOrientation=_DOWNWARDS,
+        physicsClientId=client,
+    )
+    bullet.changeDynamics(
+        slab,
+        -1,
+        lateralFriction=body_friction(scene.friction, "product"),
+        restitution=0.0,
+        collisionMargin=settings.collision_margin,
+        localInertiaDiagonal=[0.0, 0.0, 0.0],  # which Bullet takes for infinite
+        linearDamping=0.0,
+        activationState=bullet.ACTIVATION_STATE_DISABLE_SLEEPING,
+        physicsClientId=client,
+    )
+    return int(slab)
+
+
 @contextlib.contextmanager
 def quiet() -> Iterator[None]:
     """Keep what Bullet prints from C, its build time and the like, off both standard streams."""
@@ -178,6 +188,7 @@ _HAS_DIRECTION = 1e-9  # [rad]
 _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
 _POSE = 7  # numbers of a pose: position, and quaternion with the scalar last
 _NO_SPIN = (0.0, 0.0, 0.0)
+_DOWNWARDS = (1.0, 0.0, 0.0, 0.0)  # half a turn about x, with the scalar last
 
 _FACTS = EngineFacts(
     title="PyBullet",
@@ -185,6 +196,7 @@ _FACTS = EngineFacts(
     release_error=1.5e-5,
     uplift_error=5e-6,
     smooth_uplift=True,
+    carries_slab=True,
     rolling_friction=True,
 )
 
@@ -210,26 +222,23 @@ class PybulletEngine(Declared):
                 pybullet.disconnect(client)
 
 
-class _PybulletStepper:
-    def __init__(self, pybullet: Any, client: int, scene: Scene, settings: PybulletSettings) -> None:
-        self._bullet, self._client, self._step = pybullet, client, scene.time_step
+class _PybulletStepper(Leapfrog):
+    def __init__(self, pybullet: ModuleType, client: int, scene: Scene, settings: PybulletSettings) -> None:
+        super().__init__(scene, settings.guide_stiffness)
+        self._bullet, self._client = pybullet, client
         self._gravity = scene.gravity
-        # guide_stiffness is in the time of the user; of both halves of the guide, torque for each twist
-        stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
-        self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
         self._standing = scene.start.standing
         self._ground = make_ground(pybullet, client, scene, settings)
         self._make = functools.partial(make_cylinder, pybullet, client, scene, settings)
         self._body = self._make(standing=self._standing)
+        self._slab = make_slab(pybullet, client, scene, settings) if scene.body.slab_mass_ratio else None
+        self._slab_velocity = 2.0 * scene.start.velocity  # in the axes of the scene [m/s]
         self._lengths = scene.body.base_radius, scene.body.mass_centre_height
         self._iterations, self._unsolved = settings.iterations, False
         self._overshoot = settings.friction_damping - 1.0
-        self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
         self._held = self._standing
         self._friction = scene.friction
         start = scene.start
-        self._position = start.position
-        self._quaternion = start.quaternion
         quaternion = np.roll(start.quaternion, -1)
         velocity, spin = start.velocity, start.angular_velocity
         self._put(start.position, quaternion, velocity, spin)
@@ -238,16 +247,15 @@ class _PybulletStepper:
             pybullet.stepSimulation(client)
             after, spin_after = map(np.array, pybullet.getBaseVelocity(self._body, client))
             velocity, spin = 1.5 * velocity - 0.5 * after, 1.5 * spin - 0.5 * spin_after
+            if self._slab is not None:
+                slab_after = np.array(pybullet.getBaseVelocity(self._slab, client)[0])
+                self._slab_velocity = 1.5 * self._slab_velocity - 0.5 * slab_after
+                place = [0.0, 0.0, 2.0 * float(start.position[2])]
+                pybullet.resetBasePositionAndOrientation(self._slab, place, _DOWNWARDS, client)
             self._put(start.position, quaternion, velocity, spin)
-
-    @property
-    def hold_centre(self) -> float:
-        """Bullet steps as leapfrog does."""
-        return 0.0
 
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
-        before = self._position, self._quaternion
         poses: list[float] = []
         headings: list[float] = []
         while self._standing and len(headings) < len(acceleration):
@@ -265,14 +273,7 @@ class _PybulletStepper:
             poses += self._loop(pulls)
         heading = np.array(headings + [self._heading] * (len(acceleration) - done))
         rows = np.fromiter(poses, dtype=np.float64, count=len(poses)).reshape(-1, _POSE)
-        position = about_vertical(rows[:, :3], heading)
-        quaternion = np.roll(rows[:, 3:], 1, axis=1)
-        quaternion[:, 1:] = about_vertical(quaternion[:, 1:], heading)
-        self._position, self._quaternion = position[-1], quaternion[-1]
-        # the new velocity moves the pose, so poses give the velocities, and the loop is spared a call
-        velocity = np.diff(np.vstack([before[0], position]), axis=0) / self._step
-        spin = turning(before[1], quaternion) / self._step
-        return Steps(position, quaternion, velocity, spin, unsolved=self._unsolved)
+        return self._steps_to(rows[:, :3], np.roll(rows[:, 3:], 1, axis=1), heading, unsolved=self._unsolved)
 
     def _stand(self, acceleration: Array) -> tuple[float, ...]:
         """Take one step of a cylinder that stands, or rises from a point of its rim; return the pose."""
@@ -290,14 +291,18 @@ class _PybulletStepper:
         elif load > _LOADED:
             towards = math.atan2(-acceleration[1], -acceleration[0])
         velocities = bullet.getBaseVelocity(self._body, client)
-        vectors = about_vertical(np.array([place, (x, y, z), *velocities]), self._heading - towards)
+        vectors = np.array([place, (x, y, z), *velocities, self._slab_velocity])
+        vectors = about_vertical(vectors, self._heading - towards)
         self._heading = towards
         if lean > _RISEN:
             self._let_go()
+        self._slab_velocity = vectors[4]
         self._put(vectors[0], np.append(vectors[1], w), vectors[2], vectors[3])
         pull = about_vertical(-acceleration[None] - [0.0, 0.0, self._gravity], -towards)[0]
         bullet.setGravity(*pull.tolist(), client)
         bullet.stepSimulation(client)
+        if self._slab is not None:
+            self._slab_velocity = np.array(bullet.getBaseVelocity(self._slab, client)[0])
         place, turn = bullet.getBasePositionAndOrientation(self._body, client)
         return (*place, *turn)
 
@@ -317,15 +322,12 @@ class _PybulletStepper:
         pose = position.tolist(), quaternion.tolist()
         self._bullet.resetBasePositionAndOrientation(self._body, *pose, self._client)
         self._bullet.resetBaseVelocity(self._body, velocity, spin, physicsClientId=self._client)
-
-    def warnings(self) -> str:
-        """Bullet does not warn."""
-        return ""
+        if self._slab is not None:
+            self._bullet.resetBaseVelocity(self._slab, self._slab_velocity, physicsClientId=self._client)
 
     def counts(self) -> SceneCounts:
-        """Return the counts of the last step: a normal and two directions of friction for each contact."""
-        contacts = len(self._bullet.getContactPoints(self._body, physicsClientId=self._client))
-        return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
+        """Return the counts of the last step."""
+        return contact_counts(len(self._bullet.getContactPoints(self._body, physicsClientId=self._client)))
 
     def _analyse(self, wanted: bool) -> None:
         # of every step it would cost a tenth
@@ -345,7 +347,7 @@ class _PybulletStepper:
         )
         return poses + last
 
-    def _steps(self, gravity: Array) -> tuple[list[float], Any]:
+    def _steps(self, gravity: Array) -> tuple[list[float], Sequence[Mapping[str, float]]]:
         """Return the poses, all in a row, and what the last step reported.
 
         Gravity is apparent, because rigid ground need not move.
@@ -356,10 +358,12 @@ class _PybulletStepper:
         torque, world, stiffness = bullet.applyExternalTorque, bullet.WORLD_FRAME, -2.0 * self._stiffness
         velocities, move = bullet.getBaseVelocity, bullet.resetBaseVelocity
         ground, overshoot, (b, h) = self._ground, self._overshoot, self._lengths
+        slab, (slab_x, slab_y, slab_z) = self._slab, self._slab_velocity.tolist()
         atan2, sqrt = math.atan2, math.sqrt
         # numbers in one list, not tuples in one: those the garbage collector would go through again and again
         poses: list[float] = []
-        report: Any = ()
+        beyond_x = beyond_y = 0.0
+        report: Sequence[Mapping[str, float]] = ()
         _, (x, y, z, w) = pose(body, client)
         for along_x, along_y, along_z in zip(*gravity.T.tolist(), strict=True):
             pull(along_x, along_y, along_z, client)
@@ -376,11 +380,21 @@ class _PybulletStepper:
                 # takes the rim to the velocity of the ground, here beyond zero by the overshoot
                 (vx, vy, _), (wx, wy, wz) = velocities(body, client)
                 out, down = b * az / sine - h, h * az + b * sine
-                slip_x, slip_y = vx - wy * down - wz * out * ay, vy + wz * out * ax + wx * down
+                turn_x, turn_y = wy * down + wz * out * ay, wz * out * ax + wx * down
+                slip_x, slip_y = vx - turn_x, vy + turn_y
                 move(ground, (-overshoot * slip_x, -overshoot * slip_y, 0.0), _NO_SPIN, client)
+                if slab is not None:
+                    # the same on the slab, which keeps what it is moved by for this step alone
+                    beyond_x = overshoot * (slab_x - vx - turn_x)
+                    beyond_y = overshoot * (slab_y - vy + turn_y)
+                    move(slab, (slab_x + beyond_x, slab_y + beyond_y, slab_z), _NO_SPIN, client)
             report = step(client)
+            if slab is not None:
+                (slab_x, slab_y, slab_z), _ = velocities(slab, client)
+                slab_x, slab_y = slab_x - beyond_x, slab_y - beyond_y
             place, turn = pose(body, client)
             x, y, z, w = turn
             poses += place
             poses += turn
+        self._slab_velocity = np.array((slab_x, slab_y, slab_z))
         return poses, report

@@ -16,17 +16,17 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from rockwobble.models.support import SUPPORTS
-
 from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
 from ..scene import Scene
-from .declared import Declared, body_friction, build, positive, whole
+from ..settings import Count, EngineSettings, Positive, Share, Small
+from .declared import Declared, Leapfrog, body_friction, contact_counts
 
 _SLOP = 10.0  # depths of the rim that Rapier does not correct: of what lands, it corrects the rest
 # [rad] lean from which the guide acts in full: its torque shakes a closed base, which friction holds as
@@ -45,7 +45,7 @@ _FACTS = EngineFacts(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RapierSettings:
+class RapierSettings(EngineSettings):
     """Settings of Rapier: soft contact of its substeps.
 
     A base that slides across the axes of its four contacts feels up to 12 % less friction than Coulomb's.
@@ -68,33 +68,18 @@ class RapierSettings:
         iterations the horizontal force on a standing base scatters by 1.7e-3 weights, with one by 3.1e-3.
     """
 
-    guide_stiffness: float
-    contact_frequency: float
-    contact_damping_ratio: float = 10.0
-    depth: float = 1e-6
-    depth_gain: float = 0.3
-    substeps: int = 1
-    iterations: int = 4
+    guide_stiffness: Positive
+    contact_frequency: Positive
+    contact_damping_ratio: Positive = 10.0
+    depth: Small = 1e-6
+    depth_gain: Share = 0.3
+    substeps: Count = 1
+    iterations: Count = 4
 
-    @classmethod
-    def resolve(cls, given: Mapping[str, Any], time_step: float) -> RapierSettings:
-        """Return the settings for a time step [s], with those `given` in place of the defaults.
-
-        Raises
-        ------
-        ValueError
-            If a setting is unknown or out of range.
-        """
-        defaults = {"contact_frequency": 0.1 / time_step, "guide_stiffness": (_GUIDE / time_step) ** 2 / 4.0}
-        settings = build(cls, "rapier", given, defaults)
-        positive(settings, "guide_stiffness")
-        positive(settings, "contact_frequency")
-        positive(settings, "contact_damping_ratio")
-        positive(settings, "depth", most=1e-3)
-        positive(settings, "depth_gain", most=1.0)
-        whole(settings, "substeps")
-        whole(settings, "iterations")
-        return settings
+    @staticmethod
+    def defaults(time_step: float) -> dict[str, float]:
+        """Return the defaults that depend on the time step [s]."""
+        return {"contact_frequency": 0.1 / time_step, "guide_stiffness": (_GUIDE / time_step) ** 2 / 4.0}
 
 
 class RapierEngine(Declared):
@@ -108,13 +93,12 @@ class RapierEngine(Declared):
         yield _RapierStepper(scene, RapierSettings(**settings))
 
 
-class _RapierStepper:
+class _RapierStepper(Leapfrog):
     def __init__(self, scene: Scene, settings: RapierSettings) -> None:
         import rapier3d
 
-        self._rapier, self._scene, self._settings = rapier3d, scene, settings
-        stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
-        self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
+        super().__init__(scene, settings.guide_stiffness, settings.depth)
+        self._rapier, self._settings = rapier3d, settings
         self._world, self._cylinder = _build(rapier3d, scene, settings)
         # position [m] and quaternion, scalar first
         self._pose: tuple[float, float, float, float, float, float, float]
@@ -128,11 +112,6 @@ class _RapierStepper:
             velocity, spin = 1.5 * velocity - 0.5 * after[7:10], 1.5 * spin - 0.5 * after[10:]
             self._put(position, start.quaternion, velocity, spin)
 
-    @property
-    def hold_centre(self) -> float:
-        """Rapier steps as leapfrog does."""
-        return 0.0
-
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
         position, quaternion, velocity, spin = np.split(
@@ -141,15 +120,10 @@ class _RapierStepper:
         position[:, 2] += self._settings.depth
         return Steps(position, quaternion, velocity, spin)
 
-    def warnings(self) -> str:
-        """Rapier does not warn; what it could not compute is not finite."""
-        return ""
-
     def counts(self) -> SceneCounts:
-        """Return the counts of the last step: a normal and two directions of friction for each contact."""
+        """Return the counts of the last step."""
         pairs = self._world.narrow_phase.contact_pairs()
-        contacts = sum(len(manifold.points) for pair in pairs for manifold in pair.manifolds)
-        return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
+        return contact_counts(sum(len(manifold.points) for pair in pairs for manifold in pair.manifolds))
 
     def _loop(self, acceleration: list[list[float]]) -> list[list[float]]:
         """Step; return position, quaternion, velocity and angular velocity after each step."""
@@ -207,7 +181,7 @@ class _RapierStepper:
         body.linvel, body.angvel = tuple(velocity.tolist()), tuple(spin.tolist())
 
 
-def _build(rapier: Any, scene: Scene, settings: RapierSettings) -> tuple[Any, Any]:
+def _build(rapier: ModuleType, scene: Scene, settings: RapierSettings) -> tuple[Any, Any]:
     """Make ground and cylinder, the centre of the base at the origin; return world and cylinder."""
     world, body = rapier.PhysicsWorld(gravity=(0.0, 0.0, -scene.gravity)), scene.body
     how = world.integration_parameters

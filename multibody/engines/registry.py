@@ -19,6 +19,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, cast
 
 from rockwobble.models import Case, WobblingFrame
+from rockwobble.models.support import SUPPORTS
 
 from ..protocol import MEMBERS, Engine, EngineFacts
 
@@ -199,8 +200,8 @@ def _require_able(engine: Engine, name: str, case: Case, support: str) -> None:
             raise ValueError(
                 f"columns must be 1 in {name}, a slab that only translates, got {case.cylinder.columns}"
             )
-        if support == "ring":
-            raise ValueError("support must be recess or flat under a slab, which has no walls, got 'ring'")
+        if SUPPORTS[support].walls:
+            raise ValueError(f"support must have no walls under a slab, got {support!r}")
     if not engine.uplifts and (case.initial is None or case.initial.tilt == 0.0):
         raise ValueError(
             f"{name} cannot uplift a cylinder that stands: give a release with a tilt, got a start at rest"
@@ -226,6 +227,11 @@ def engine_facts(name: str) -> EngineFacts:
 def engine_packages() -> dict[str, str]:
     """Return the package of each of our engines, by the name of the engine."""
     return {name: entry.package for name, entry in _ENGINES.items()}
+
+
+def engine_modules() -> dict[str, str]:
+    """Return the module that each of our engines imports, by the name of the engine."""
+    return {name: entry.module or entry.package for name, entry in _ENGINES.items()}
 
 
 def _is_here(entry: _Entry) -> bool:

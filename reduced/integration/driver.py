@@ -21,7 +21,6 @@ from math import inf
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._compile import borrowed, once
 from ..body import Body
@@ -37,7 +36,7 @@ from .result import (
     Driver,
     IntegrationResult,
     Options,
-    State,
+    Task,
     as_table,
     empty_log,
     has_turned,
@@ -64,33 +63,9 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
     resists, hold = system.resists, system.hold
 
     @once
-    def integrate(
-        body: Body,
-        options: Options,
-        record: NDArray[np.float64],
-        time_step: float,
-        initial: State,
-        times: NDArray[np.float64],
-        later: NDArray[np.float64],
-    ) -> IntegrationResult:
-        """Solve one problem.
-
-        Parameters
-        ----------
-        body : Body
-        options : Options
-        record : ndarray, shape (m, 3)
-            Samples of the ground acceleration [m/s^2]; m = 0 for still ground.
-        time_step : float
-            Their spacing [s].
-        initial : tuple of float
-            State at time zero; zero tilt stands at rest.
-        times : ndarray, shape (n,)
-            Increasing times at which the state is wanted [s]; they do not influence the steps.
-        later : ndarray, shape (m, 2)
-            From each sample on, the largest |a| and the least az of `record` [m/s^2], by which a fall that
-            nothing can stop ends the integration early; m = 0 goes on until the side is down.
-        """
+    def integrate(body: Body, options: Options, task: Task) -> IntegrationResult:
+        """Solve one problem."""
+        record, time_step, initial, times, later = task
         owned = workspace(initial), np.zeros((len(times), len(initial))), np.zeros(len(times), dtype=np.bool_)
         # borrowed until the last use of what they were borrowed from, at the end
         work, wanted = borrowed(owned[0]), (borrowed(times), borrowed(owned[1]), borrowed(owned[2]))

@@ -6,13 +6,14 @@ A step is given by its method (`stepping.Stepper`) and what that keeps of it: ``
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._compile import inlined, jit
 from ..body import Body
+from ..rolling import PIVOTS
 from .record import Vector, ground
 from .result import HALF_PI, MAXIMUM, MINIMUM, State
 from .stepping import Stepper
@@ -47,7 +48,7 @@ class Trial(NamedTuple):
     trials: int  # how often its method tried
     y: State  # at its end
     k: State  # what the method leaves to the next one, with ``path``
-    path: Any
+    path: object
     turn: Turn
     flat: bool  # motion without spin and twist rate: exactly planar
 
@@ -72,7 +73,7 @@ class Events(NamedTuple):
 def make_events(system: System, stepper: Stepper) -> Events:
     """Return the search for events in the steps that `stepper` takes."""
     _, restarted, advance, partial, acceleration = stepper
-    momenta, placed, resists = system.momenta, system.placed, system.resists
+    momenta, placed, resists, let_go = system.momenta, system.placed, system.resists, system.let_go
 
     @inlined
     def is_flat(y: State) -> bool:
@@ -82,7 +83,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
 
     @jit
     def turning_point(
-        body: Body, work: NDArray[np.float64], path: Any, y: State, h: float, rate_at_end: float
+        body: Body, work: NDArray[np.float64], path: object, y: State, h: float, rate_at_end: float
     ) -> tuple[float, float, float]:
         """Return the time of a zero tilt rate in a step of length `h`, and tilt and rolling angle there.
 
@@ -109,7 +110,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
 
     @jit
     def crossing(
-        body: Body, work: NDArray[np.float64], path: Any, y: State, first: float, last: float, level: float
+        body: Body, work: NDArray[np.float64], path: object, y: State, first: float, last: float, level: float
     ) -> tuple[float, State]:
         """Return the time from `first` to `last` at which the tilt reaches `level`, and the state there.
 
@@ -137,7 +138,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
 
     @jit
     def reversal(
-        body: Body, work: NDArray[np.float64], path: Any, y: State, h: float, rate_at_end: float
+        body: Body, work: NDArray[np.float64], path: object, y: State, h: float, rate_at_end: float
     ) -> float:
         """Return a time in a step at which the tilt rate has the sign that it has at neither end; 0 if none.
 
@@ -165,8 +166,28 @@ def make_events(system: System, stepper: Stepper) -> Events:
                 high, rate_high, slope_high = at, rate, slope
         return 0.0
 
+    @jit
+    def release_in(
+        body: Body, work: NDArray[np.float64], path: object, h: float, a: Vector, slope: Vector
+    ) -> float:
+        """Return the time in a step at which a body that only pivots is let go, or 0; by bisection."""
+        low, high = 0.0, 0.5 * h
+        if not let_go(body, partial(body, work, path, high)[0], ground(a, slope, high), slope):
+            low, high = high, h
+            if not let_go(body, partial(body, work, path, high)[0], ground(a, slope, high), slope):
+                return 0.0
+        while high - low > _CLOSE * _CLOSE * h:
+            middle = 0.5 * (low + high)
+            if let_go(body, partial(body, work, path, middle)[0], ground(a, slope, middle), slope):
+                high = middle
+            else:
+                low = middle
+        return high
+
     @inlined
-    def turn_in(body: Body, work: NDArray[np.float64], path: Any, y: State, h: float, y_new: State) -> Turn:
+    def turn_in(
+        body: Body, work: NDArray[np.float64], path: object, y: State, h: float, y_new: State
+    ) -> Turn:
         """Return the turning point of the tilt in a step from `y` to `y_new`."""
         if not y[1] * y_new[1] < 0.0:
             return NONE
@@ -197,6 +218,10 @@ def make_events(system: System, stepper: Stepper) -> Events:
             if at > 0.0:  # two turning points in one step: it ends between them
                 h, (y_new, _) = at, partial(body, work, path, at)
                 k = restarted(body, y_new, ground(a, slope, at), work)
+        if resists and y[-1] == PIVOTS:
+            at = release_in(body, work, path, h, a, slope)
+            if at > 0.0:
+                h, (y_new, _) = at, partial(body, work, path, at)
         flat = is_flat(y) and is_flat(y_new)
         turn = turn_in(body, work, path, y, h, y_new)
         if resists and flat:  # the couple jumps where the tilt turns

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import cos, hypot, pi, sin
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from .._compile import inlined, jit
 from ..body import Body
 from ..equations import energy
+from ..rolling import PIVOTS, rolling_momentum
 from ..trigonometry import sin_cos
 from .events import NONE, REPEATED, Turn, make_events
 from .record import Piece, Vector, ground
@@ -44,7 +45,9 @@ def may_sit_down(
     """Return whether the cylinder comes to rest: f < 0 and too little energy left to matter.
 
     The bound is the energy of a standstill at the tilt `rest_tilt` alpha, less what the ground
-    acceleration takes off the restoring moment.
+    acceleration takes off the restoring moment. With rolling resistance a twist rate may be left over,
+    which near upright stays what it is, as B phi' does: then the bound is the energy with both at that tilt,
+    beyond which the motion cannot rise. The twist is left to the friction of the base that closes.
     """
     limit = rest_tilt * body.alpha
     if theta > 10.0 * limit:  # above the bound, unless az exceeds 9 g
@@ -52,7 +55,12 @@ def may_sit_down(
     share = 1.0 + a[2] / body.g - hypot(a[0], a[1]) * body.cos_alpha / (body.g * body.sin_alpha)
     if share <= 0.0 or excess(body, a) >= 0.0:
         return False
-    return energy(body, theta, omega, L, S) < share * energy(body, limit, 0.0, 0.0, 0.0)
+    standing = energy(body, limit, 0.0, 0.0, 0.0)
+    if body.delta > 0.0 and S != 0.0:
+        L_there = rolling_momentum(body, theta, L, S) - rolling_momentum(body, limit, 0.0, S)
+        highest = energy(body, limit, 0.0, L_there, S) - (1.0 - share) * standing
+        return theta < limit and energy(body, theta, omega, L, S) < highest
+    return energy(body, theta, omega, L, S) < share * standing
 
 
 @jit
@@ -79,7 +87,7 @@ class Sampling(NamedTuple):
     of_step: Callable[..., int]
 
 
-def make_sampling(lifted: Callable[..., State], partial: Callable[..., Any]) -> Sampling:
+def make_sampling(lifted: Callable[..., State], partial: Callable[..., tuple[State, State]]) -> Sampling:
     """Return the sampling of uplifts by `lifted` and of steps that `partial` fills."""
 
     @inlined
@@ -118,7 +126,7 @@ def make_sampling(lifted: Callable[..., State], partial: Callable[..., Any]) -> 
         until: float,
         body: Body,
         work: NDArray[np.float64],
-        path: Any,
+        path: object,
         begin: float,
         y_new: State,
     ) -> int:
@@ -302,8 +310,8 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         """
         elapsed, y, k, h_next, restart, _, peak, sample, step_count, status = run
         a = ground(piece.a, piece.slope, elapsed)
-        if resists and is_still(y):
-            wait = hold(body, y, a, piece.slope)
+        if resists and (is_still(y) or y[-1] == PIVOTS):
+            wait = hold(body, y, a, piece.slope) if is_still(y) else 0.0
             if wait > 0.0:
                 return Step(held(piece, wait, wanted, run), NONE, NONE)
             y, longest = set_off(body, y, a, piece.slope)

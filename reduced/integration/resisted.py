@@ -3,8 +3,9 @@
 Behind the variables of each model (`systems`) stand two more: the energy lost so far, per unit mass, and the
 side, the sign of the tilt rate in planar motion, which stays what it was over a step. The couple jumps where
 such motion turns, so a step ends there and the next one begins with the other side, or none: the body stands
-still on its rim while the couple holds it. With spin the couple turns instead of jumping, within a time that
-may be short: a step is asked to follow that turn, or to be so short that it does not matter.
+still on its rim while the couple holds it. On flat ground it may pivot on its contact meanwhile, a motion
+with one degree of freedom: its side is PIVOTS. With spin the couple turns instead of jumping, within a time
+that may be short: a step is asked to follow that turn, or to be so short that it does not matter.
 """
 
 from __future__ import annotations
@@ -15,8 +16,20 @@ from typing import Any
 
 from .._compile import inlined, jit
 from ..body import Body
-from ..equations import flat_rhs, planar_rhs, recess_motion
-from ..rolling import couple, couple_on, hold_time, push, twist_share
+from ..equations import energy, flat_rhs, planar_rhs, recess_motion
+from ..rolling import (
+    PIVOTS,
+    across_inertia,
+    across_rate,
+    couple,
+    couple_on,
+    hold_time,
+    momenta_of,
+    needed_to_stand,
+    pivoting_rate,
+    push,
+    twist_share,
+)
 from ..trigonometry import sin_cos
 from .record import Vector
 from .result import State
@@ -57,7 +70,7 @@ def _planar_derivative(body: Body, y: State, a: Vector) -> State:
 def _recess_derivative(body: Body, y: State, a: Vector) -> State:
     free, phi_rate, torque, s, c = recess_motion(body, y[0], y[2], y[3], a[0], a[1], a[2])
     if y[1] == 0.0 and phi_rate == 0.0:
-        tilting, turning = couple_on(body, y[0], 0.0, y[2], 0.0, free, a)
+        tilting, turning = couple_on(body, y[0], 0.0, y[2], 0.0, 0.0, free, a, False)
         power = 0.0
     else:
         tilting, turning, power = couple(body, s, c, y[1], -phi_rate, free, a[2], y[5])
@@ -70,11 +83,16 @@ def _flat_derivative(body: Body, y: State, a: Vector) -> State:
         body, y[0], y[1], y[2], y[3], y[4], y[5], a[0], a[1], a[2]
     )
     s, c = sin_cos(y[0])
-    if omega == 0.0 and phi_rate == 0.0 and tau_rate == 0.0:
-        tilting, turning = couple_on(body, y[0], 0.0, y[2], 0.0, free, a)
-        power = 0.0
+    spin = tau_rate - phi_rate
+    if y[9] == PIVOTS:
+        tilting, turning = needed_to_stand(body, y[0], y[2], tau_rate, body.g + a[2], a, True)
+        S_rate += twist_share(body, s, c) * turning
+        return 0.0, 0.0, tau_rate, Lambda_rate - s * turning, tau_rate, S_rate, 0.0, 0.0, 0.0, 0.0
+    if omega == 0.0:
+        tilting, turning = couple_on(body, y[0], omega, y[2], spin, tau_rate, free, a, True)
+        power = -s * spin * turning
     else:
-        tilting, turning, power = couple(body, s, c, omega, tau_rate - phi_rate, free, a[2], y[9])
+        tilting, turning, power = couple(body, s, c, omega, spin, free, a[2], y[9])
     sin_phi, cos_phi = sin_cos(y[2])
     drift = body.b * tau_rate
     return (
@@ -92,23 +110,22 @@ def _flat_derivative(body: Body, y: State, a: Vector) -> State:
 
 
 @inlined
-def _across_rate(body: Body, theta: float, Lambda: float, S: float) -> float:
-    """Return s psi' near upright [rad/s]; further from it the order of its size is enough."""
-    return -(Lambda / theta + S * body.E * body.J / (body.J * body.C - body.E * body.E)) / body.J
+def _across(body: Body, theta: float, Lambda: float, S: float) -> float:
+    """Return s psi' [rad/s]."""
+    return across_rate(body, *sin_cos(theta), Lambda, S)
 
 
-def _make_ratio(momenta: Callable[..., Any], error_ratio: Callable[..., float]) -> Callable[..., float]:
+def _make_ratio(
+    momenta: Callable[[State], tuple[float, float]], error_ratio: Callable[..., float]
+) -> Callable[..., float]:
     """Return the error over what is allowed, of a model with spin, corners of the couple included."""
 
     @jit
     def ratio(body: Body, rtol: float, h: float, y: State, y_new: State, error: State, flat: bool) -> float:
         found = error_ratio(body, rtol, h, y, y_new, error, flat)
-        if flat or not found <= 1.0 or y_new[0] <= 0.0:
+        if flat or not found <= 1.0 or y_new[0] <= 0.0 or y[-1] == PIVOTS:
             return found
-        across, across_new = (
-            _across_rate(body, y[0], *momenta(y)),
-            _across_rate(body, y_new[0], *momenta(y_new)),
-        )
+        across, across_new = _across(body, y[0], *momenta(y)), _across(body, y_new[0], *momenta(y_new))
         # a step much longer than the turn sees a jump, of which its error may miss all but a hundredth
         speeds = (y[1] * y[1] + across * across) * (y_new[1] * y_new[1] + across_new * across_new)
         along = y[1] * y_new[1] + across * across_new
@@ -142,7 +159,7 @@ def _recess_ratio(
     return max(ratio, abs(error[2]) * (1.0 / rtol), abs(error[3]) * per_lever * per_rate)
 
 
-def _make_combine(combine: Callable[..., Any]) -> Callable[..., State]:
+def _make_combine(combine: Callable[..., State]) -> Callable[..., State]:
     """Return y + h sum(weights slopes), with the energy lost, and with the side as it is."""
 
     @jit
@@ -161,27 +178,54 @@ def with_side(y: State, side: float) -> State:
     return (*y[:-1], side)
 
 
-def _make_system(model: System, derivative: Callable[..., State], *, spins: bool, pivots: bool) -> System:
-    """Return a model with the equations `derivative`; `pivots` as for `hold_time`."""
+def _make_system(
+    model: System,
+    derivative: Callable[..., State],
+    place: Callable[..., State],
+    *,
+    spins: bool,
+    pivots: bool,
+) -> System:
+    """Return a model with the equations `derivative`.
+
+    `place` gives a state other rates theta' and s psi'; `pivots` is as for `needed_to_stand`.
+    """
     momenta, placed_before = model.momenta, model.placed
 
     @jit
     def placed(body: Body, y: State, theta: float, omega: float, phi: float, L: float) -> State:
-        # at an impact the tilt rate falls; an uplift begins with the work of the couple on its first tilt
+        # an impact and a rest lose energy; an uplift begins with the work of the couple on its first tilt
         lost = body.delta * body.g * (theta - y[0])
         if theta == 0.0:
-            lost = 0.5 * body.A * (y[1] * y[1] - omega * omega)
+            lost = energy(body, y[0], y[1], *momenta(y)) - 0.5 * body.A * omega * omega
         side = 1.0 if omega > 0.0 else -1.0 if omega < 0.0 else 0.0
         return (*placed_before(body, y, theta, omega, phi, L), y[-2] + lost, side)
+
+    @inlined
+    def moving(body: Body, y: State, omega: float, across: float, side: float) -> State:
+        """Return a state with the rates theta' and s psi' [rad/s], which pivots as it did."""
+        return with_side(place(body, y, omega, across), side)
+
+    @inlined
+    def pushed(body: Body, y: State, a: Vector, slope: Vector) -> Any:
+        s, c = sin_cos(y[0])
+        pivoting = pivoting_rate(body, s, c, *momenta(y)) if pivots else 0.0
+        return push(body, y[0], y[2], pivoting, a, slope, pivots)
+
+    @jit
+    def let_go(body: Body, y: State, a: Vector, slope: Vector) -> bool:
+        excess, growth, _, _ = pushed(body, y, a, slope)
+        return bool(y[-1] == PIVOTS and excess > _BEFORE_SERIES / body.p * abs(growth))
 
     @jit
     def hold(body: Body, y: State, a: Vector, slope: Vector) -> float:
         L, S = momenta(y)
         if y[1] != 0.0 or L != 0.0 or S != 0.0:
-            return 0.0
+            # over still ground nothing changes the rate at which it pivots
+            return inf if y[-1] == PIVOTS and pushed(body, y, a, slope)[0] <= 0.0 else 0.0
         time = hold_time(body, y[0], y[2], a, slope, pivots)
         if spins and not pivots and time < inf:
-            excess, growth, _, turning = push(body, y[0], y[2], a, slope)
+            excess, growth, _, turning = pushed(body, y, a, slope)
             if turning != 0.0 and growth > 0.0:
                 longer = time - excess / growth if time == 0.0 else time
                 longer += _BEFORE_SERIES / body.p
@@ -190,38 +234,61 @@ def _make_system(model: System, derivative: Callable[..., State], *, spins: bool
 
     @jit
     def set_off(body: Body, y: State, a: Vector, slope: Vector) -> tuple[State, float]:
-        excess, growth, tilting, turning = push(body, y[0], y[2], a, slope)
-        longest = _FIRST_STEP / body.p if spins else inf
-        if spins and not pivots and turning != 0.0 and 0.0 < excess < 10.0 * _BEFORE_SERIES / body.p * growth:
+        excess, growth, tilting, turning = pushed(body, y, a, slope)
+        late = _BEFORE_SERIES / body.p * abs(growth)
+        if pivots and excess <= late:
+            return with_side(y, PIVOTS), inf
+        side, longest = 1.0 if tilting > 0.0 else -1.0, _FIRST_STEP / body.p if spins else inf
+        if spins and turning != 0.0 and 0.0 < excess < 10.0 * late and growth > 0.0:
             # the couple lets go: as long as it balances most of the push the body moves along that
-            s, c = sin_cos(y[0])
-            t = s / (1.0 + c)
-            H = body.J + (2.0 * body.E + body.C * t) * t
             since = excess / growth
-            speed = 0.5 * growth * since * since / (body.A * tilting * tilting + H * turning * turning)
-            return placed(body, y, y[0], speed * tilting, y[2], -s * H * speed * turning), longest
-        return with_side(y, 1.0 if tilting > 0.0 else -1.0), longest
+            inertia = (
+                body.A * tilting * tilting + across_inertia(body, *sin_cos(y[0]), pivots) * turning * turning
+            )
+            speed = 0.5 * growth * since * since / inertia
+            return moving(body, y, speed * tilting, speed * turning, side), longest
+        return moving(body, y, 0.0, 0.0, side), longest
 
     @jit
     def stopped(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> State:
-        if spins:
-            L, S = momenta(y)
+        if spins and y[-1] != PIVOTS:
             slow = _STILL * rtol * body.p
             limit = body.A * slow * slow * body.sin_alpha * y[0]
-            # the second of these costs something, and few states pass the first; energies near upright
-            if body.A * y[1] * y[1] < limit and (
-                L * L / (body.J * y[0] * y[0]) + S * S * body.J / (body.J * body.C - body.E * body.E) < limit
-                and hold_time(body, y[0], y[2], a, slope, pivots) > _FIRST_STEP / body.p
-            ):
-                return placed(body, y, y[0], 0.0, y[2], 0.0)
+            # few states pass the first
+            if body.A * y[1] * y[1] < limit:
+                s, c = sin_cos(y[0])
+                across = across_rate(body, s, c, *momenta(y))
+                kinetic = body.A * y[1] * y[1] + across_inertia(body, s, c, pivots) * across * across
+                excess, growth, _, _ = pushed(body, y, a, slope)
+                if kinetic < 2.0 * limit and max(excess, excess + growth * _FIRST_STEP / body.p) < 0.0:
+                    y = moving(body, y, 0.0, 0.0, PIVOTS if pivots else 0.0)
+                    return (*y[:-2], y[-2] + 0.5 * kinetic, y[-1])
         return y
 
-    return System(derivative, momenta, placed, True, hold, set_off, stopped)
+    return System(derivative, momenta, placed, True, hold, set_off, let_go, stopped)
 
 
-RESISTED_PLANAR = _make_system(PLANAR, _planar_derivative, spins=False, pivots=False)
-RESISTED_RECESS = _make_system(RECESS, _recess_derivative, spins=True, pivots=False)
-RESISTED_FLAT = _make_system(FLAT, _flat_derivative, spins=True, pivots=True)
+@jit
+def _planar_moving(body: Body, y: State, omega: float, across: float) -> State:
+    return y[0], omega, y[2], y[3], y[4]
+
+
+@jit
+def _recess_moving(body: Body, y: State, omega: float, across: float) -> State:
+    s, c = sin_cos(y[0])
+    return y[0], omega, y[2], -s * across_inertia(body, s, c, False) * across, y[4], y[5]
+
+
+@jit
+def _flat_moving(body: Body, y: State, omega: float, across: float) -> State:
+    s, c = sin_cos(y[0])
+    Lambda, S = momenta_of(body, s, c, pivoting_rate(body, s, c, y[3], y[5]), across)
+    return y[0], omega, y[2], Lambda, y[4], S, y[6], y[7], y[8], y[9]
+
+
+RESISTED_PLANAR = _make_system(PLANAR, _planar_derivative, _planar_moving, spins=False, pivots=False)
+RESISTED_RECESS = _make_system(RECESS, _recess_derivative, _recess_moving, spins=True, pivots=False)
+RESISTED_FLAT = _make_system(FLAT, _flat_derivative, _flat_moving, spins=True, pivots=True)
 
 STEPPERS = {
     "planar": runge_kutta(RESISTED_PLANAR, _make_combine(planar_combine), planar_ratio),

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import pi
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._compile import jit
+from ..body import Body
 
 State = tuple[float, ...]
 
@@ -28,6 +29,18 @@ class Options(NamedTuple):
     duration: float  # [s]
     step_budget: int
     record_steps: bool
+
+
+class Task(NamedTuple):
+    """Motion to integrate."""
+
+    record: NDArray[np.float64]  # (m, 3) samples of the ground acceleration [m/s^2]; m = 0 for still ground
+    time_step: float  # their spacing [s]
+    initial: State  # at time zero; zero tilt stands at rest
+    times: NDArray[np.float64]  # (n,) increasing, at which states are wanted [s]; they influence no step
+    # (m, 2) from each sample on, the largest |a| and the least az of the record [m/s^2], by which a fall that
+    # nothing can stop ends the integration early; m = 0 goes on until the side is down
+    later: NDArray[np.float64]
 
 
 class IntegrationResult(NamedTuple):
@@ -49,7 +62,7 @@ class IntegrationResult(NamedTuple):
     step_count: int
 
 
-Driver = Callable[..., IntegrationResult]
+Driver = Callable[[Body, Options, Task], IntegrationResult]
 
 
 # Loops instead of slice assignment: that carries shape checks with formatted messages, which double
@@ -107,7 +120,7 @@ def has_turned(log: Log, since: float) -> bool:
 
 
 @jit
-def as_table(rows: Any, count: int, width: int) -> NDArray[np.float64]:
+def as_table(rows: Sequence[State], count: int, width: int) -> NDArray[np.float64]:
     """Return the first `count` tuples of a list as an array (count, width)."""
     table = np.empty((count, width))
     for i in range(count):

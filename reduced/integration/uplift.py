@@ -118,9 +118,9 @@ def started(
     f starts above zero the lag is linear in time from the start and the balance is exact:
     phi' = W/(1 + 2 J F0/(h |a|)).
 
-    Rolling resistance adds delta b theta'' to the inertia of the tilt, N being g + az + b theta'' there,
-    and the couple -delta N theta^2 phi'/theta' across, which holds the contact back behind the force: by
-    kappa W t with kappa/(1 - kappa) = delta N/(3 h |a|), or where f starts above zero by its term in phi'.
+    Rolling resistance adds delta mu b theta'' to the inertia of the tilt, N being g + az + mu b theta''
+    there, and the couple -delta N theta^2 phi'/theta' across, which holds the contact back behind the force:
+    by kappa W t with kappa/(1 - kappa) = delta N/(3 h |a|), or where f starts above zero by its term in phi'.
     """
     ax, ay, az = ground(a, slope, at)
     size = max(hypot(ax, ay), WEAK * body.g)
@@ -129,7 +129,7 @@ def started(
     if abs(cross) * time_step <= in_plane_below(body, ax, ay) * size:
         cross = 0.0
     turning = cross / (size * size)
-    heavier = 1.0 + body.delta * body.b / body.A
+    heavier = 1.0 + body.delta * body.mu * body.b / body.A
     factor = body.p2 * body.cos_alpha / body.g / heavier
     tan_alpha = uplift_slope(body)
     held = body.delta * (body.g + az) / (body.h * size)
@@ -153,7 +153,7 @@ def started(
     now = max(hypot(bx, by), WEAK * body.g)
     W = cross / (now * now)
     if starts_as_step(F0, F1, shortest_time(body, a, slope, at)):
-        pressed = body.delta * (body.g + az + body.b * F0) / (2.0 * body.h * size)
+        pressed = body.delta * (body.g + az + body.mu * body.b * F0) / (2.0 * body.h * size)
         rate = W / (1.0 + 2.0 * body.J * F0 / (body.h * size) + pressed)
         return theta, theta_1, direction - (W - rate) * t, rate
     direction -= behind * W * t

@@ -13,7 +13,7 @@ import rockwobble.compare as rc
 _SAMPLE_COST = 1e-5  # computing time of a sample of a reduced model [s]: good enough to say how long
 _UNIT_COST = 1e-5  # and of one unit of time sqrt(R/g), of which a pass takes some [s]
 _CELL_COST = 1e-5  # of a second of a record in a grid of reduced runs [s]
-_WORTH_A_WORD = 20.0  # [s]
+_LONG = 20.0  # [s]
 _YEAR = 365.25 * 86400.0  # longer than this nobody waits [s]
 # of one sample, in memory while it is written: 24 numbers, as an array, a table, CSV and Parquet, in the
 # process that made it and in the one that writes it; 1200 were measured
@@ -25,9 +25,9 @@ _CASE_BYTES = 3000
 
 
 def time_needed(cases: Sequence[rw.Case], runs: Sequence[rw.Run], *, always: bool = False) -> Iterator[str]:
-    """Yield a line that says how long it may take; none where that is not worth a word."""
+    """Yield a line that says how long it may take; none for what takes seconds."""
     seconds = _all_seconds(cases, runs)
-    if always or seconds > _WORTH_A_WORD:
+    if always or seconds > _LONG:
         yield f"Computing time: {_words(seconds)}{', shared by the cores' if always else ''}"
 
 

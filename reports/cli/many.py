@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Iterable
 from dataclasses import fields
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -24,6 +24,9 @@ from .estimate import require_feasible, require_sweep
 from .problem import BODY, Body, Problem, Record, refuse, refuse_options_of_engines
 from .several import GridOptions, ManyMethods, ManyMotions, cylinders_of
 from .suite_choice import chosen_runs, refuse_problem_options, without_missing
+
+if TYPE_CHECKING:
+    from rockwobble.models.case import TimeStep
 
 Cylinders = Annotated[
     list[str] | None,
@@ -115,7 +118,7 @@ def spectrum(
 
     Writes spectrum.html, the same as spectrum.md with spectrum.svg, and as Parquet the cells (spectrum),
     the lowest intensities found to overturn (lowest), the gaps in the overturning region above them
-    (islands), the shares by size (contrast), and some cells run again to a tighter tolerance (checked).
+    (gaps), the shares by size (contrast), and some cells run again to a tighter tolerance (checked).
 
     Example: rockwobble spectrum --tan-alpha 0.2 --semidiagonal 1:20:50 --intensity 1:9:50
     """
@@ -210,9 +213,9 @@ def ensemble(
                 shaking = [] if isinstance(stated, rw.Case) else [each.motion for each in stated]
             for line in warnings(doubts_of(shaking)):
                 print(line)
-        with user_input(), shown_progress() as tell:
+        with user_input(), shown_progress() as progress:
             found = rw.ensemble(
-                stated, runs=runs, progress=tell, resume=out, source=source, **dataclasses.asdict(copies)
+                stated, runs=runs, progress=progress, resume=out, source=source, **dataclasses.asdict(copies)
             )
         show_and_save(found, out)
 
@@ -239,7 +242,7 @@ def _members(
 
 
 def _runs(
-    engines: list[str] | None, supports: list[str] | None, time_step: Any, suite: rw.Suite | None
+    engines: list[str] | None, supports: list[str] | None, time_step: TimeStep, suite: rw.Suite | None
 ) -> list[rw.Run]:
     """Return the runs of the options, chosen among those of a suite."""
     if engines == [options.NO_ENGINE]:

@@ -177,7 +177,7 @@ def _named(names: list[str] | None) -> list[str] | None:
 
 
 ENGINES = "mujoco, pybullet, dart, drake, exudyn, rapier or another that is installed"
-_SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, by engines that have them)"
+_SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (recess with clearance, by engines)"
 _DEFAULT = "Default: those that serve any case and are no extra"
 Engines = Annotated[list[str] | None, method(f"{ENGINES}; may be repeated. {_DEFAULT}.", callback=_named)]
 EnginesOrAll = Annotated[

@@ -272,9 +272,10 @@ def refuse(context: typer.Context, names: Collection[str], why: str) -> None:
     ValueError
         Naming the first of them.
     """
+    flags = {each.name: each.opts[0] for each in context.command.params}
     for name in given_options(context):
         if name in names:
-            raise ValueError(f"--{name.replace('_', '-')} {why}")
+            raise ValueError(f"{flags[name]} {why}")
 
 
 def refuse_options_of_engines(context: typer.Context, engines: list[str] | None) -> None:

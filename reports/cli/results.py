@@ -61,7 +61,7 @@ def show(store: Store, as_json: Json = False) -> None:
             _print(store, made, files)
         for each in going:
             far = f"{each.done} of {each.total} tasks"
-            print(f"{store}: {each.kind}, not finished: {far}; the same command goes on")
+            print(f"{store}: {each.kind}, not finished: {far}; the same command resumes")
     if any(state != "whole" for files in states for state in files.values()):
         raise typer.Exit(1)
 
@@ -181,8 +181,8 @@ def view(
         if folder is None:
             for line in (*describe(case), *time_needed([case], [run])):
                 print(line)
-            with user_input(), shown_progress() as tell:
-                comparison = rw.compare(case, runs=[run], progress=tell)
+            with user_input(), shown_progress() as progress:
+                comparison = rw.compare(case, runs=[run], progress=progress)
         show_and_save(comparison.of_case(name), out)
     if sys.stdout.isatty() if opened is None else opened:
         import webbrowser

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import rockwobble as rw
 import rockwobble.compare as rc
 import rockwobble.compare.runs as rr
+from rockwobble.compare.studies.plans import GridPlan
 
 from . import options
-from .options import numbers, settings
+from .options import settings
 from .problem import Body, under_slab
 
 DEFAULT_COUNT = 100  # of synthetic motions, where the user does not say
@@ -151,29 +152,23 @@ class ManyMethods:
         return [*chosen, *runs]
 
 
-_grid = options.panel("Grid: each a number, a list 1,2,6 or a range FROM:TO:COUNT")
-_NUMBERS: dict[str, Any] = {"parser": numbers, "metavar": "LIST|FROM:TO:COUNT"}
+_motion = options.panel("Ground motion")
 
 
 @dataclass(frozen=True, kw_only=True)
-class GridOptions:
+class GridOptions(GridPlan):
     """The options that state a grid."""
 
-    semidiagonal: Annotated[Any, _grid("R, in m.", **_NUMBERS)] = "0.5:30:100"
-    tan_alpha: Annotated[Any, _grid("Slenderness b/h.", **_NUMBERS)] = "0.2"
-    scale: Annotated[Any, _grid("Factors on the records.", **_NUMBERS)] = "0.5:6:100"
     record_x: Annotated[
         list[Path] | None,
-        _grid("East-west component, or zero; may be repeated for several records. Default: El Centro 1940."),
+        _motion(
+            "East-west component, or zero; may be repeated for several records. Default: El Centro 1940."
+        ),
     ] = None
-    record_y: Annotated[list[Path] | None, _grid("North-south component of each, or zero.")] = None
-    record_z: Annotated[list[Path] | None, _grid("Vertical component of each, or of none.")] = None
+    record_y: Annotated[list[Path] | None, _motion("North-south component of each, or zero.")] = None
+    record_z: Annotated[list[Path] | None, _motion("Vertical component of each, or of none.")] = None
     units: options.Units = None
     resample: options.Resample = False
-    gravity: options.Gravity = 9.81
-    slab_mass_ratio: options.SlabMassRatio = None
-    plane: options.Plane = None
-    restitution: options.Restitution = None
 
     def grid(self, models: list[str] | None) -> rw.Grid:
         """Return the grid of these axes by some reduced models, the recess model without any.
@@ -183,17 +178,11 @@ class GridOptions:
         ValueError
             If one is out of range, two do not go together, or a record cannot be read.
         """
-        given = {name: getattr(self, name) for name in ("plane", "restitution", "slab_mass_ratio")}
-        if self.gravity != 9.81:  # the default of every case
-            given["gravity"] = self.gravity
-        return rw.Grid(
-            semidiagonals=self.semidiagonal,
-            tan_alphas=self.tan_alpha,
-            scales=self.scale,
-            motions=self._motions(),
-            models=models or ("recess",),
-            **{name: value for name, value in given.items() if value is not None},
-        )
+        import numpy as np
+
+        given = {each.name: getattr(self, each.name) for each in fields(GridPlan)}
+        given |= {name: np.linspace(*of) for name, of in self.DEFAULTS.items() if given[name] is None}
+        return rw.Grid(**given, motions=self._motions(), models=models or ("recess",))
 
     def _motions(self) -> list[rw.GroundMotion]:
         x, y, z = self.record_x or [], self.record_y or [], self.record_z or []

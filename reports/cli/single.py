@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -26,6 +26,9 @@ from .estimate import require_feasible, time_needed
 from .options import settings
 from .problem import Problem, given_options, refuse_options_of_engines, restated
 from .suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
+
+if TYPE_CHECKING:
+    from rockwobble.models.case import TimeStep
 
 _external = options.panel("Trajectory of a shake table or another code")
 
@@ -151,11 +154,11 @@ def compare(
                 complain(reason)
         elif not engine and suite is None:
             _say_what_is_left_out(support or [])
-        with user_input(), shown_progress() as tell:
+        with user_input(), shown_progress() as progress:
             found = rw.compare(
                 rw.Suite(cases, runs),
                 runs=runs,
-                progress=tell,
+                progress=progress,
                 external=trajectories,
                 resume=None if suite is None else out,
                 budget=budget,
@@ -166,7 +169,7 @@ def compare(
 
 
 def _suite(
-    name: str, engines: list[str] | None, supports: list[str] | None, time_step: Any
+    name: str, engines: list[str] | None, supports: list[str] | None, time_step: TimeStep
 ) -> tuple[list[rw.Case], list[rw.Run]]:
     from rockwobble.compare.runs.choice import all_runs
 
@@ -182,7 +185,7 @@ def _suite(
 
 
 def _runs(
-    case: rw.Case, engines: list[str] | None, supports: list[str] | None, time_step: Any, *, alone: bool
+    case: rw.Case, engines: list[str] | None, supports: list[str] | None, time_step: TimeStep, *, alone: bool
 ) -> list[rw.Run]:
     from rockwobble.compare.runs.choice import all_runs
 
@@ -251,9 +254,9 @@ def simulate(
             rr.require_runnable(case, run)
         for line in time_needed([case], [run]):
             print(line, file=sys.stderr)
-        with user_input(), shown_progress() as tell:
+        with user_input(), shown_progress() as progress:
             found = single_run(
-                case, run, answer=restated(context, "advise", also=("support",)), progress=tell
+                case, run, answer=restated(context, "advise", also=("support",)), progress=progress
             )
         if not len(found.trace.time):
             complain(f"{run} left no result: {remarks(found.trace.facts)}")

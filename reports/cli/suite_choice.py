@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -16,6 +16,9 @@ from ..console import complain
 from ..pages.cases import group_of
 from .estimate import time_needed
 from .problem import PROBLEM, refuse
+
+if TYPE_CHECKING:
+    from rockwobble.models.case import TimeStep
 
 
 def refuse_problem_options(context: typer.Context, suite: str) -> None:
@@ -30,7 +33,7 @@ def refuse_problem_options(context: typer.Context, suite: str) -> None:
 
 
 def chosen_runs(
-    suite: rw.Suite, engines: Sequence[str] | None, supports: Sequence[str] | None, time_step: Any
+    suite: rw.Suite, engines: Sequence[str] | None, supports: Sequence[str] | None, time_step: TimeStep
 ) -> list[rw.Run]:
     """Return the runs of a suite, with those of the options in their place.
 

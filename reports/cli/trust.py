@@ -6,7 +6,7 @@ import datetime
 import json
 import sys
 import time
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -18,6 +18,7 @@ import rockwobble.compare.storage as rs
 
 from ..console import FAILED, interruptible, shown_progress, user_input
 from . import options
+from .command import takes_options
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,63 +27,141 @@ if TYPE_CHECKING:
 
 _subject = options.panel("Subject (default: the reduced models, and the engines that are installed)")
 _output = options.panel("Output for programs")
-Engine = Annotated[str | None, _subject("Check one engine, the protocol of an engine included.")]
 _STEP = "Time step of the engine, in s. Default: its own choice."
-TimeStep = Annotated[float | None, _subject(_STEP)]
-Model = Annotated[
-    str | None,
-    _subject(
-        "Check a model: a function of a rockwobble.Case and a support that returns time, tilt, azimuth.",
-        metavar="MODULE:FUNCTION",
-    ),
-]
-Trajectory = Annotated[
-    Path | None,
-    _subject("Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite."),
-]
-Suite = Annotated[
-    str | None,
-    _subject("Compare the engine runs of a suite with the models: a TOML file, or one that ships."),
-]
-Support = Annotated[str | None, _subject("What model or trajectory is of: recess or flat. Default: recess.")]
-Tolerance = Annotated[float | None, _subject("How exact model or trajectory claims to be. Default: 0.001.")]
-Only = Annotated[
-    list[str] | None,
-    typer.Option(
-        metavar="GROUP",
-        help="Run one group of checks; may be repeated: equations, exact, conserved, rest, invariance, "
-        "order, trace, agreement, protocol, baseline. Default: all.",
-    ),
-]
-Json = Annotated[Path | None, _output("Write all results as JSON.")]
-Junit = Annotated[Path | None, _output("Write a JUnit report (XML).")]
-Markdown = Annotated[Path | None, _output("Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.")]
-Update = Annotated[
-    bool,
-    typer.Option(
-        "--update-baseline", help="Show what new baselines would change, and write them if a reason is given."
-    ),
-]
-Reason = Annotated[
-    str | None, typer.Option(help="Why the baselines change; kept in their file. Without it you are asked.")
-]
 
 
+@dataclass(frozen=True, kw_only=True)
+class SubjectOptions:
+    """The options that name what is checked."""
+
+    engine: Annotated[str | None, _subject("Check one engine, the protocol of an engine included.")] = None
+    time_step: Annotated[float | None, _subject(_STEP)] = None
+    model: Annotated[
+        str | None,
+        _subject(
+            "Check a model: a function of a rockwobble.Case and a support that returns time, tilt, azimuth.",
+            metavar="MODULE:FUNCTION",
+        ),
+    ] = None
+    trajectory: Annotated[
+        Path | None,
+        _subject("Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite."),
+    ] = None
+    suite: Annotated[
+        str | None,
+        _subject("Compare the engine runs of a suite with the models: a TOML file, or one that ships."),
+    ] = None
+    support: Annotated[
+        str | None, _subject("What model or trajectory is of: recess or flat. Default: recess.")
+    ] = None
+    tolerance: Annotated[
+        float | None, _subject("How exact model or trajectory claims to be. Default: 0.001.")
+    ] = None
+    workers: options.Workers = None
+
+    def subject(self) -> dict[str, Any]:
+        """Return the arguments of `rockwobble.check` that name the subject.
+
+        Raises
+        ------
+        ValueError
+            If two are given, or an option that another leaves without a meaning.
+        """
+        from rockwobble.compare.check.subject import load_model
+        from rockwobble.multibody.engines.registry import find_engine
+
+        model, trajectory, suite = self.model, self.trajectory, self.suite
+        named = {"--engine": self.engine, "--model": model, "--trajectory": trajectory}
+        named |= {} if trajectory is not None else {"--suite": suite}
+        given = [name for name, value in named.items() if value is not None]
+        if len(given) > 1:
+            raise ValueError(f"one subject may be given, got {' and '.join(given)}")
+        for name, value in (("--support", self.support), ("--tolerance", self.tolerance)):
+            if value is not None and model is None and trajectory is None:
+                raise ValueError(f"{name} belongs to --model or --trajectory, got it without either")
+        if self.time_step is not None and self.engine is None:
+            raise ValueError("--time-step belongs to --engine, got it alone")
+        if self.workers is not None and (suite is None or trajectory is not None):
+            raise ValueError("--workers belongs to the runs of a --suite, got it without one")
+        if self.engine is not None:
+            find_engine(self.engine)  # what is wrong with it is said before anything runs
+        found: dict[str, Any] = {
+            name: getattr(self, name) for name in ("engine", "time_step", "workers", "support", "tolerance")
+        }
+        if model is not None:
+            found["model"] = load_model(model)
+        elif trajectory is not None:
+            cases = rw.read_suite(suite or "quick").cases
+            if len(cases) != 1:
+                raise ValueError(f"--trajectory needs a --suite with one case, got {len(cases)}")
+            found["trajectory"] = rc.read_trajectory(trajectory, cases[0])
+        elif suite is not None:
+            found["suite"] = rw.read_suite(suite)
+        return {name: value for name, value in found.items() if value is not None}
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutputOptions:
+    """The options that name files for programs."""
+
+    json: Annotated[Path | None, _output("Write all results as JSON.")] = None
+    junit: Annotated[Path | None, _output("Write a JUnit report (XML).")] = None
+    markdown: Annotated[Path | None, _output("Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.")] = (
+        None
+    )
+
+    def require_writable(self) -> None:
+        """Refuse, by a ValueError, a file that cannot be written."""
+        from rockwobble.compare.storage.files import require_file
+
+        for path in (self.json, self.junit, self.markdown):
+            if path is not None:
+                require_file("a report", path)
+
+    def write(self, found: Checks, seconds: float) -> None:
+        """Write the files.
+
+        Raises
+        ------
+        ValueError
+            If one cannot be written.
+        """
+        from ..pages.check import as_json, as_junit, check_page
+
+        for path, text_of in ((self.json, as_json), (self.junit, as_junit)):
+            if path is not None:
+                rs.replace_files(path.parent, {path.name: text_of(found, seconds).encode()})
+        if self.markdown is not None:
+            try:  # the summary of a CI job may hold pages of other steps
+                with self.markdown.open("a", encoding="utf-8") as file:
+                    file.write(check_page(found, seconds).markdown())
+            except OSError as error:
+                raise ValueError(f"{self.markdown} cannot be written: {error.strerror or error}") from None
+
+
+@takes_options
 def check(
-    engine: Engine = None,
-    time_step: TimeStep = None,
-    model: Model = None,
-    trajectory: Trajectory = None,
-    suite: Suite = None,
-    support: Support = None,
-    tolerance: Tolerance = None,
-    only: Only = None,
-    workers: options.Workers = None,
-    json: Json = None,
-    junit: Junit = None,
-    markdown: Markdown = None,
-    update_baseline: Update = False,
-    reason: Reason = None,
+    subject: SubjectOptions,
+    output: OutputOptions,
+    only: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="GROUP",
+            help="Run one group of checks; may be repeated: equations, exact, conserved, rest, invariance, "
+            "order, trace, agreement, protocol, baseline. Default: all.",
+        ),
+    ] = None,
+    update_baseline: Annotated[
+        bool,
+        typer.Option(
+            "--update-baseline",
+            help="Show what new baselines would change, and write them if a reason is given.",
+        ),
+    ] = False,
+    reason: Annotated[
+        str | None,
+        typer.Option(help="Why the baselines change; kept in their file. Without it you are asked."),
+    ] = None,
 ) -> None:
     """Check by physics that reduced models and engines are right, and still do what they did.
 
@@ -101,73 +180,23 @@ def check(
     with interruptible():
         begun = time.monotonic()
         with user_input():
-            from rockwobble.compare.storage.files import require_file
+            from ..pages.check import headline
 
             if reason is not None and not update_baseline:
                 raise ValueError("--reason belongs to --update-baseline, got it alone")
-            for path in (json, junit, markdown):
-                if path is not None:
-                    require_file("a report", path)
-            subject = _subject_of(engine, time_step, model, trajectory, suite, support, tolerance, workers)
+            output.require_writable()
+            given = subject.subject()
             if update_baseline:
-                if subject or only:
+                if given or only:
                     raise ValueError("--update-baseline goes with no subject and not with --only")
-
                 update(reason)
                 return
-            found = _run(subject, only)
-            _write(found, time.monotonic() - begun, json, junit, markdown)
+            found = _run(given, only)
+            seconds = time.monotonic() - begun
+            print(headline(found, seconds))
+            output.write(found, seconds)
     if not found.passed:
         raise typer.Exit(FAILED)
-
-
-def _subject_of(
-    engine: str | None,
-    time_step: float | None,
-    model: str | None,
-    trajectory: Path | None,
-    suite: str | None,
-    support: str | None,
-    tolerance: float | None,
-    workers: int | None,
-) -> dict[str, Any]:
-    """Return the options of `rockwobble.check` that name the subject.
-
-    Raises
-    ------
-    ValueError
-        If two are given, or an option that another leaves without a meaning.
-    """
-    from rockwobble.compare.check.subject import load_model
-    from rockwobble.multibody.engines.registry import find_engine
-
-    external = model is not None or trajectory is not None
-    named = {"--engine": engine, "--model": model, "--trajectory": trajectory}
-    named |= {} if trajectory is not None else {"--suite": suite}
-    given = [name for name, value in named.items() if value is not None]
-    if len(given) > 1:
-        raise ValueError(f"one subject may be given, got {' and '.join(given)}")
-    for name, value in (("--support", support), ("--tolerance", tolerance)):
-        if value is not None and not external:
-            raise ValueError(f"{name} belongs to --model or --trajectory, got it without either")
-    if time_step is not None and engine is None:
-        raise ValueError("--time-step belongs to --engine, got it alone")
-    if workers is not None and (suite is None or trajectory is not None):
-        raise ValueError("--workers belongs to the runs of a --suite, got it without one")
-    if engine is not None:
-        find_engine(engine)  # what is wrong with it is said before anything runs
-    found: dict[str, Any] = {"engine": engine, "time_step": time_step, "workers": workers}
-    found |= {"support": support, "tolerance": tolerance}
-    if model is not None:
-        found["model"] = load_model(model)
-    elif trajectory is not None:
-        cases = rw.read_suite(suite or "quick").cases
-        if len(cases) != 1:
-            raise ValueError(f"--trajectory needs a --suite with one case, got {len(cases)}")
-        found["trajectory"] = rc.read_trajectory(trajectory, cases[0])
-    elif suite is not None:
-        found["suite"] = rw.read_suite(suite)
-    return {name: value for name, value in found.items() if value is not None}
 
 
 def _run(subject: dict[str, Any], only: list[str] | None) -> Checks:
@@ -185,24 +214,6 @@ def _run(subject: dict[str, Any], only: list[str] | None) -> Checks:
         found = check(**subject, only=only, progress=progress)
     print_checks(Console(), found)
     return found
-
-
-def _write(
-    found: Checks, seconds: float, json: Path | None, junit: Path | None, markdown: Path | None
-) -> None:
-    from ..pages.check import as_json, as_junit, check_page, headline
-
-    print(headline(found, seconds))
-    if json is not None:
-        rs.replace_files(json.parent, {json.name: as_json(found, seconds).encode()})
-    if junit is not None:
-        rs.replace_files(junit.parent, {junit.name: as_junit(found, seconds).encode()})
-    if markdown is not None:
-        try:  # the summary of a CI job may hold pages of other steps
-            with markdown.open("a", encoding="utf-8") as file:
-                file.write(check_page(found, seconds).markdown())
-        except OSError as error:
-            raise ValueError(f"{markdown} cannot be written: {error.strerror or error}") from None
 
 
 _SHOWN = 20
@@ -289,6 +300,7 @@ def certify(
         from rockwobble.compare.check import reduced_model, run_checks
         from rockwobble.compare.storage.files import require_file
         from rockwobble.models.number_checks import require_one_of
+        from rockwobble.models.support import SUPPORTS
 
         if time_step is not None and engine is None:
             raise ValueError("--time-step belongs to --engine, got it alone")
@@ -296,7 +308,7 @@ def certify(
             require_one_of("--only", group, CLAIMING)
         require_file("--out", out)
         subject = models() if engine is None else engine_subject(engine, time_step)
-        if "recess" not in subject.supports:
+        if not any(SUPPORTS[name].guided for name in subject.supports):
             given = f"{engine} with {', '.join(subject.supports)}"
             raise ValueError(f"--engine must have a recess, got {given}")
         checked = subject if engine else reduced_model()

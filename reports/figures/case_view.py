@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Protocol, cast
 
 import pandas as pd
 
@@ -14,6 +14,49 @@ from rockwobble.compare.metrics.pair import start_of
 from rockwobble.models import Case, Diagnostic, Run, Trace
 
 from .palette import Style, label_styles
+
+
+class SummaryRow(Protocol):
+    """A row of the summary, or of the agreement matrix: what is read here of its columns."""
+
+    case: str
+    run: str
+    engine: str
+    support: str
+    outcome: str
+    diverged: bool
+    divergence: str
+    agreement_time: float
+    left_tolerance: bool
+    tolerance: float
+    tilt_bound: float
+    within_tolerance_until: float
+    predicted_agreement_time: float
+    predicted_until: float
+    predicted_by: str
+    closest_pass: float
+    peak_tilt: float
+    peak_tilt_difference: float
+    reference: str
+    reference_engine: str
+    reference_support: str
+    reference_outcome: str
+    reference_peak_tilt: float
+    reference_uplift_time: float
+    other_uplift_time: float
+    uplift_time_difference: float
+    uplift_time_uncertainty: float
+    uplift_direction_difference: float
+    uplift_direction_uncertainty: float
+    unexplained_share: float
+    differs_in: Sequence[str]
+    not_compared: Sequence[str]
+    likely_mistake: Sequence[str]
+    likely_mistake_in: Sequence[str]
+    finding: bool
+    worth: bool
+
+    def _asdict(self) -> dict[str, object]: ...
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -58,21 +101,21 @@ class CaseView:
         own = str(own_model(self.runs[label].run))
         return own if own in self.references else next(iter(self.references), label)
 
-    def pairs(self) -> Iterator[tuple[Any, Trace, Trace]]:
+    def pairs(self) -> Iterator[tuple[SummaryRow, Trace, Trace]]:
         """Yield the rows of the summary that can be drawn, each with reference and run."""
         traces = self.traces
         for row in rows_of(self.rows):
             if row.run in traces and row.reference in traces:
                 yield row, traces[row.reference], traces[row.run]
 
-    def divergence(self, row: Any) -> float:
+    def divergence(self, row: SummaryRow) -> float:
         """Return the divergence of a run from its reference, in the time of the run [s]; inf if never."""
         return start_of(self.traces[row.reference]) + row.agreement_time if row.diverged else math.inf
 
 
-def rows_of(table: pd.DataFrame) -> Iterator[Any]:
+def rows_of(table: pd.DataFrame) -> Iterator[SummaryRow]:
     """Yield the rows of a table, with a field for each column."""
-    yield from table.itertuples()
+    yield from cast("Iterator[SummaryRow]", table.itertuples())
 
 
 def own_rows(summary: pd.DataFrame) -> pd.DataFrame:

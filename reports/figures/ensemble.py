@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import Any, Literal
+from collections.abc import Collection, Iterator, Sequence
+from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -12,6 +12,7 @@ import pandas as pd
 from rockwobble.compare import Ensemble
 from rockwobble.compare.metrics.statistics import MARGIN
 from rockwobble.compare.studies.ensemble import pairs
+from rockwobble.compare.studies.fragility.study import Row
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles
 from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, ecdf
@@ -26,7 +27,7 @@ _MEDIAN = Style(colour=DARK, dash="none", symbol="diamond")
 _LINE = 0.5  # inch for a pair of methods
 
 
-def main_pairs(found: Ensemble) -> list[dict[str, Any]]:
+def main_pairs(found: Ensemble) -> list[Row]:
     """Return the rows of the contrasts that are asked for first: engines by their own model, then models."""
     rows = found.contrasts.to_dict("records")
     own = dict(zip(found.methods["method"], found.methods["own_model"], strict=True))
@@ -92,7 +93,7 @@ def peak_shares(
         yield Line(x=x[-1:], y=y[-1:], style=mark, size=7.0, clip=False)
 
 
-def _ratios(found: Ensemble, rows: list[dict[str, Any]]) -> Panel:
+def _ratios(found: Ensemble, rows: list[Row]) -> Panel:
     both = [pairs(found.members, row["method"], row["against"]) for row in rows]
     logarithms = [each.log_ratios() for each in both]
     low, high = ratio_span(np.concatenate(logarithms))
@@ -142,9 +143,7 @@ def ratio_axes(
     return x, Axis(label="", unit="", low=-0.6, high=len(names) - 0.4, ticks=lines, reverse=True)
 
 
-def _bar(
-    row: Mapping[str, Any], ends: str, place: int, span: tuple[float, float], name: str, width: float
-) -> Line:
+def _bar(row: Row, ends: str, place: int, span: tuple[float, float], name: str, width: float) -> Line:
     x = np.clip([row[f"ratio_{end}"] for end in ends.split()], *span)
     return Line(x=x, y=np.full(2, place + 0.2), name=name, style=Style(colour=DARK), width=width)
 

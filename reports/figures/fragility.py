@@ -4,27 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from rockwobble.compare import Fragility
 from rockwobble.compare.studies.fragility.intensity import MEASURES
-from rockwobble.compare.studies.fragility.study import main_contrasts
+from rockwobble.compare.studies.fragility.study import Row, main_contrasts
 from rockwobble.compare.studies.fragility.tables import ALL, OVERTURNED
+from rockwobble.models.support import SUPPORTS
 
 from .ensemble import margin_rules, ratio_axes
 from .palette import DARK, GREY, ORDER, Style, mark_styles, pale
 from .picture import Axis, Band, Line, Panel, Picture, Rule
 
 # of a panel: the support, and what it is called
-_SUPPORTS: Mapping[str, str] = {
-    "planar": "Planar analysis",
-    "recess": "Recess",
-    "flat": "Flat ground",
-    "ring": "Recess with clearance",
-}
+_PANELS = {"planar": "Planar analysis"} | {each.name: each.words.capitalize() for each in SUPPORTS.values()}
+_GUIDED = tuple(each.name for each in SUPPORTS.values() if each.guided)
 _COLOURS = (DARK, *ORDER)
 _TICKS = (0.1, 0.2, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0, 50.0)
 _RATIOS = (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0)
@@ -96,13 +92,13 @@ def _ratios(found: Fragility) -> Picture | None:
 
 
 def _curves(found: Fragility, cylinder: str, place: int) -> Picture:
-    methods: Mapping[str, Mapping[str, Any]] = found.facts["methods"]
-    recess = [name for name, own in methods.items() if own["support"] == "recess" and not own["engine"]]
+    methods: Mapping[str, Row] = found.facts["methods"]
+    guided = [name for name, own in methods.items() if own["support"] in _GUIDED and not own["engine"]]
     panels = []
-    for support, title in _SUPPORTS.items():
+    for support, title in _PANELS.items():
         labels = [name for name, own in methods.items() if own["support"] == support]
         if labels:
-            shown = labels if support == "recess" else [*recess, *labels]
+            shown = labels if support in _GUIDED else [*guided, *labels]
             panels.append(_panel(found, cylinder, shown, title))
     measure = MEASURES[str(found.facts["measure"])]
     return Picture(
@@ -171,7 +167,7 @@ def _panel(found: Fragility, cylinder: str, labels: Sequence[str], title: str) -
     )
 
 
-def _grouped(counts: Any) -> Any:
+def _grouped(counts: pd.DataFrame) -> pd.DataFrame:
     """Counts of a cloud by tenths of its runs, each at the mean of its logarithms; of stripes as they are."""
     if len(counts) <= 40:
         return counts

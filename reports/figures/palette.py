@@ -1,4 +1,4 @@
-"""Colours, dashes and symbols: told apart by colour-blind readers and in black and white."""
+"""Colours, dashes and symbols: distinct to colour-blind readers and in black and white."""
 
 from __future__ import annotations
 

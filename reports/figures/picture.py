@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from .heat import Heat, Shades
-from .palette import DARK, Style
+from .palette import DARK, Style, mark_styles
 from .thinning import POINTS
 
 Array = NDArray[np.float64]
 
-MOST_ENTRIES = 8  # of a legend: more cannot be told apart
+MOST_ENTRIES = 8  # of a legend: more cannot be distinguished
 _LINE = Style(colour=DARK, dash="solid")
 
 
@@ -248,6 +249,33 @@ def ecdf(values: Array, *, total: int | None = None, end: float | None = None) -
     counts = np.arange(len(values) + 1, dtype=np.float64)
     counts = counts if end is None else np.append(counts, counts[-1])
     return x, counts / max(len(values) if total is None else total, 1)
+
+
+def group_lines(
+    groups: Mapping[str, pd.DataFrame], x: str, y: str, *, lines: bool = True, filled: str = ""
+) -> list[Line]:
+    """Return a line with marks, or marks alone, of each group of rows by its name, over two of their columns.
+
+    Parameters
+    ----------
+    groups : mapping of str to DataFrame
+    x, y : str
+        Columns.
+    lines : bool, optional
+    filled : str, optional
+        Column of flags: marks without are open.
+    """
+    styles = mark_styles(list(groups), lines=lines)
+    return [
+        Line(
+            x=rows[x].to_numpy(float),
+            y=rows[y].to_numpy(float),
+            name=name,
+            style=styles[name],
+            filled=rows[filled].to_numpy(bool) if filled else True,
+        )
+        for name, rows in groups.items()
+    ]
 
 
 def separated(first: Array, second: Array) -> Array:

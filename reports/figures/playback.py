@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +18,7 @@ _TRAIL = 4.0  # how much of the path of the contact point is seen [s]
 _TRANSLUCENT, _SOLID = 0.35, 1.0
 
 
-def playback(view: CaseView) -> dict[str, Any] | None:
+def playback(view: CaseView) -> dict[str, object] | None:
     """Return the data that `playback.js` plays: the runs of a case and the reduced models beside them.
 
     A pose is stated by tilt, rolling angle, twist and contact point, not by a matrix: so the page can
@@ -55,7 +54,7 @@ def playback(view: CaseView) -> dict[str, Any] | None:
     }
 
 
-def _body(label: str, trace: Trace, colour: str, opacity: float) -> dict[str, Any]:
+def _body(label: str, trace: Trace, colour: str, opacity: float) -> dict[str, object]:
     step = _picture_step(trace.time)
     keep = slice(None, None, step)
     pose = _pose(trace)

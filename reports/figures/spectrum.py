@@ -11,7 +11,7 @@ from rockwobble.compare.studies.spectrum.maps import (
     SPATIAL,
     TITLES,
     TiltMaps,
-    safe_islands,
+    safe_gaps,
 )
 from rockwobble.compare.studies.spectrum.study import OverturningSpectrum
 from rockwobble.models import Run
@@ -22,7 +22,7 @@ from .picture import Axis, Line, Panel, Picture, separated
 
 NAMES = {SPATIAL: "3D", PLANAR_X: "planar x (east-west)", PLANAR_Y: "planar y (north-south)"}
 _HEIGHT = 3.4
-_ASIDE = {SPATIAL: 0.0, PLANAR_X: -0.3, PLANAR_Y: 0.3}  # of the spacing of sizes: islands side by side
+_ASIDE = {SPATIAL: 0.0, PLANAR_X: -0.3, PLANAR_Y: 0.3}  # of the spacing of sizes: gaps side by side
 
 
 def pictures(found: OverturningSpectrum) -> list[Picture]:
@@ -84,12 +84,12 @@ def _map(spectrum: TiltMaps, series: str) -> Heat:
 def _curves(spectrum: TiltMaps) -> list[Line]:
     planes = run_styles([PLANAR_X, PLANAR_Y])
     styles = {SPATIAL: model_style(str(Run(None, spectrum.support))), **planes}
-    islands = safe_islands(spectrum)
+    gaps = safe_gaps(spectrum)
     spacing = float(np.diff(spectrum.semidiagonals).min(initial=np.inf))
     half = 0.5 * float(np.diff(spectrum.intensities).min(initial=np.inf))
     found: list[Line] = []
     for series in SERIES:
-        closed = islands[islands["closed"] & (islands["series"] == series)]
+        closed = gaps[gaps["closed"] & (gaps["series"] == series)]
         place = closed["semidiagonal"].to_numpy(float) + _ASIDE[series] * spacing
         ends = closed["lower"].to_numpy(float) - half, closed["upper"].to_numpy(float) + half
         thin = Style(colour=styles[series].colour)

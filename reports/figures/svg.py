@@ -16,12 +16,14 @@ from matplotlib.colors import Colormap, ListedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.transforms import ScaledTranslation
+from numpy.typing import NDArray
 
 from .heat import NOTHING, Heat, Shades
 from .palette import DARK, DASHES, SYMBOLS
 from .picture import MOST_ENTRIES, Band, Bars, Line, Panel, Picture, Rule, Text
 from .thinning import kept_points
 
+Keywords = dict[str, Any]  # arguments of a function of matplotlib
 # a column of text on a screen is some 830 pixels wide, 96 to the inch [inch]
 WIDTH = 8.6
 # more points than such a column has pixels
@@ -48,14 +50,15 @@ _STYLE: Any = {
     "path.simplify_threshold": 0.3,
 }
 _SMALL = 8
-_RASTER_DPI = 200  # of maps with more cells than are worth a path each
-_VECTOR_CELLS = 2500
+_RASTER_DPI = 200  # of maps, whose cells as paths would take ten times the room
+_EDGED_CELLS = 2500  # with more cells than these, a white edge would hide them
 # more numbers than these would run into each other
 _MOST_WRITTEN = 64
 # of the scale of colours: there white letters are read better
 _DARK = 0.6
-_LONG_NUMBER = re.compile(rb"(?<=[ \"(])(-?\d+\.\d{2})\d+")  # a hundredth of a point is not seen
-_TAG = re.compile(rb"<[^>]*>")  # words keep their digits
+# a tenth of a point is an eighth of a pixel
+_PATH, _LONG_NUMBER = re.compile(rb'(?<= d=")[^"]+'), re.compile(rb"(\.\d)\d+")
+_INDENT = re.compile(rb"\n +")
 _HATCHES = {"": "", "/": "//", "x": "xx", ".": ".."}
 
 
@@ -66,7 +69,11 @@ def svg(picture: Picture, *, titled: bool = False) -> bytes:
         figure(picture, titled=titled).savefig(
             buffer, format="svg", dpi=_RASTER_DPI, metadata={"Date": None, "Creator": "rockwobble"}
         )
-    return _TAG.sub(lambda tag: _LONG_NUMBER.sub(rb"\1", tag[0]), buffer.getvalue())
+    return _INDENT.sub(b"\n", _PATH.sub(_short, buffer.getvalue()))
+
+
+def _short(path: re.Match[bytes]) -> bytes:
+    return b" ".join(_LONG_NUMBER.sub(rb"\1", path[0]).split())
 
 
 def figure(picture: Picture, *, titled: bool = False) -> Figure:
@@ -171,7 +178,7 @@ def _scale(axes: Axes, panel: Panel) -> None:
 def _line(axes: Axes, line: Line) -> None:
     keep = kept_points(line.x, line.y, points=_POINTS)
     style, filled = line.style, np.broadcast_to(line.filled, line.x.shape)
-    drawn: dict[str, Any] = {
+    drawn: Keywords = {
         "color": style.colour,
         "linewidth": line.width,
         "alpha": line.opacity,
@@ -187,7 +194,7 @@ def _line(axes: Axes, line: Line) -> None:
             axes.plot(line.x[chosen], line.y[chosen], linestyle="none", **drawn, **_marked(line, inside))
 
 
-def _marked(line: Line, filled: bool) -> dict[str, Any]:
+def _marked(line: Line, filled: bool) -> Keywords:
     symbol = SYMBOLS[line.style.symbol] if line.style.symbol else None
     inside = line.style.colour if filled and line.filled is not False else "white"
     return {"marker": symbol, "markersize": line.size, "markerfacecolor": inside, "label": line.name}
@@ -221,7 +228,7 @@ def _rule(axes: Axes, rule: Rule) -> None:
     left = rule.side == "left"
     if rule.axis == "x":
         place, at, coordinates = (4 if not left else -4, -4), (rule.at, 1.0), ("data", "axes fraction")
-        where: dict[str, Any] = {"ha": "right" if left else "left", "va": "top"}
+        where: Keywords = {"ha": "right" if left else "left", "va": "top"}
     else:
         place, at, coordinates = (4 if left else -4, 2), (0.0 if left else 1.0, rule.at), _ACROSS
         where = {"ha": "left" if left else "right", "va": "bottom"}
@@ -236,8 +243,8 @@ _BEHIND = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0}
 def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
     edges = heat.edges(log_x=panel.x.log, log_y=panel.y.log)
     place = shades.place(heat.values)
-    few = heat.values.size <= _VECTOR_CELLS
-    drawn: dict[str, Any] = {"rasterized": not few, "edgecolors": "white" if few else "none"}
+    few = heat.values.size <= _EDGED_CELLS
+    drawn: Keywords = {"rasterized": True, "edgecolors": "white" if few else "none"}
     axes.grid(visible=False)
     axes.set_facecolor(NOTHING)
     axes.pcolormesh(*edges, np.ma.masked_invalid(place), cmap=colours(shades), vmin=0.0, vmax=1.0,
@@ -264,7 +271,7 @@ def colours(shades: Shades) -> Colormap:
     return found.resampled(shades.steps) if shades.steps else found
 
 
-def _colour_bar(drawn: Figure, places: Any, shades: Shades) -> None:
+def _colour_bar(drawn: Figure, places: NDArray[np.object_], shades: Shades) -> None:
     scale = ScalarMappable(Normalize(0.0, 1.0), colours(shades))
     bar = drawn.colorbar(scale, ax=places, location="bottom", shrink=0.6, aspect=45, pad=0.02)
     at, words = zip(*shades.ticks(), strict=True)

@@ -24,7 +24,7 @@ ERRORS = {
 _PANELS = {
     ("recess", "methods"): "recess",
     ("flat", "methods"): "flat ground",
-    ("ring", "methods"): "ring, against itself at half its finest step",
+    ("ring", "methods"): "recess with clearance, compared with half its finest step",
     ("recess", "scipy"): "scipy's solvers, recess",
     ("recess", "rest threshold"): "rest threshold, recess",
     ("recess", "integrator"): "integrators, recess",

@@ -20,10 +20,11 @@ from rockwobble.compare.studies.validity.limits import (
 )
 from rockwobble.compare.studies.validity.shaken import FLAT, FREE, PERTURBED, RECESS
 from rockwobble.compare.studies.validity.study import Validity
+from rockwobble.models.support import SUPPORTS
 
 from .heat import Gap, Heat, Shades, contour, names
 from .palette import DARK, GREY, ORDER, PALE, Style, mark_styles
-from .picture import Array, Axis, Line, Panel, Picture, Rule, separated
+from .picture import Array, Axis, Layer, Line, Panel, Picture, Rule, group_lines, separated
 
 _FREE_PANELS = 4
 _FAR = 1e3  # what infinite is drawn as: beyond every scale
@@ -64,7 +65,7 @@ _MAPS = (
     (
         "sensitivity",
         "What sensitivity alone does",
-        "The same of the recess model against itself under a record 1 % stronger: where it is no less, "
+        "The same of the recess model and itself under a record 1 % stronger: where it is no less, "
         "neither model can be asked for the peak of one record.",
         "copy_90",
         Shades(label="factor of nine in ten", unit="-", low=1.0, high=10.0, log=True),
@@ -170,7 +171,7 @@ def _free(name: str, what: str, table: pd.DataFrame) -> Picture:
     return Picture(
         name=name,
         title=f"{what} from tilt maximum to next maximum",
-        caption="Free response, by the reduced models: on flat ground against in an ideal recess.",
+        caption="Free response, by the reduced models: on flat ground over that in an ideal recess.",
         panels=panels,
         columns=2,
         shades=Shades(label="flat over recess", unit="%", low=-reach, high=reach, centre=0.0),
@@ -181,7 +182,7 @@ def _free(name: str, what: str, table: pd.DataFrame) -> Picture:
 METHODS = {
     RECESS: "recess model",
     "recess": "engine, ideal recess",
-    "ring": "engine, ring of walls",
+    "ring": "engine, recess with clearance",
     "flat": "engine, flat ground",
     FLAT: "flat-ground model",
     PERTURBED: "recess model, record 1 % stronger",
@@ -250,7 +251,7 @@ def _records(table: pd.DataFrame) -> Picture:
         panels.append(Panel(x=ratio, y=y_axis, layers=layers, title=title, height=height))
     return Picture(
         name="records",
-        title="Peak tilt over records, against the recess model",
+        title="Peak tilt over records, compared with the recess model",
         caption="Marks: the median over the records of the ratio of the two peaks; bars: nine in ten "
         "records. What overturns by one of the two alone is at an end. Beside them the recess model under a "
         "record 1 % stronger: a scatter no wider is sensitivity, and no error of a method.",
@@ -264,20 +265,12 @@ def _agreement(table: pd.DataFrame) -> Picture:
     predicted = Axis(label="predicted", unit="s", low=0.0, high=1.03 * end)
     measured = Axis(label="measured", unit="s", low=0.0, high=1.03 * end)
     groups = {
-        f"{support}, against the {reference} model": rows
+        f"{support}, {reference} model": rows
         for (support, reference), rows in table.groupby(["support", "reference_support"], sort=False)
     }
-    styles = mark_styles(list(groups), lines=False)
-    layers = [Line(x=np.array([0.0, end]), y=np.array([0.0, end]), name="as predicted", width=0.8)]
-    layers += [
-        Line(
-            x=column(rows, "predicted_agreement_time"),
-            y=column(rows, "agreement_time"),
-            name=name,
-            style=styles[name],
-            filled=rows["diverged"].to_numpy(dtype=bool),
-        )
-        for name, rows in groups.items()
+    layers = [
+        Line(x=np.array([0.0, end]), y=np.array([0.0, end]), name="as predicted", width=0.8),
+        *group_lines(groups, "predicted_agreement_time", "agreement_time", lines=False, filled="diverged"),
     ]
     return Picture(
         name="agreement",
@@ -289,21 +282,10 @@ def _agreement(table: pd.DataFrame) -> Picture:
 
 
 def _verification(table: pd.DataFrame) -> Picture:
-    table = table.assign(apart=np.degrees(models_apart(table)))
-    styles = mark_styles(["recess", "flat"], lines=False)
-    layers = []
-    for support, rows in table.groupby("support", sort=False):
-        off = np.degrees(np.abs(column(rows, "engine_turn") - column(rows, "turn")))
-        name = str(support)
-        layers.append(
-            Line(
-                x=column(rows, "apart"),
-                y=np.maximum(off, _LEAST),
-                name=f"engine, {name}",
-                style=styles[name],
-                filled=rows["resolved"].to_numpy(dtype=bool),
-            )
-        )
+    off = np.degrees((table["engine_turn"] - table["turn"]).abs())
+    table = table.assign(apart=np.degrees(models_apart(table)), off=np.maximum(off, _LEAST))
+    groups = {f"engine, {name}": rows for name, rows in table.groupby("support", sort=False)}
+    layers = group_lines(groups, "apart", "off", lines=False, filled="resolved")
     ends = table["apart"].agg(["min", "max"]).to_numpy(dtype=np.float64)
     layers.append(Line(x=ends, y=ends, name="difference of the models", width=0.8))
     return Picture(
@@ -324,17 +306,14 @@ def _verification(table: pd.DataFrame) -> Picture:
 
 
 def _slip(table: pd.DataFrame) -> Picture:
+    table = table.assign(shown=np.maximum(table["slip"], _LEAST))
     groups = {
         f"tan α = {tan_alpha:g}, needs {rows['needed'].iloc[0] / rows['tan_alpha'].iloc[0]:.2f} tan α": rows
         for tan_alpha, rows in table.sort_values("share").groupby("tan_alpha")
     }
-    styles = mark_styles(list(groups))
-    layers: list[Line | Rule] = [Rule(at=1.0, axis="x", colour=GREY, dash="solid")]
-    layers += [
-        Line(
-            x=column(rows, "share"), y=np.maximum(column(rows, "slip"), _LEAST), name=name, style=styles[name]
-        )
-        for name, rows in groups.items()
+    layers: list[Layer] = [
+        Rule(at=1.0, axis="x", colour=GREY, dash="solid"),
+        *group_lines(groups, "share", "shown"),
     ]
     return Picture(
         name="slip",
@@ -353,7 +332,7 @@ def _slip(table: pd.DataFrame) -> Picture:
 
 def _rings(table: pd.DataFrame) -> Picture:
     # walls of another inclination or friction are in the table, and would be too many lines here
-    plain = table[(table["support"] == "ring") & (table["inclination"] == 0.0)]
+    plain = table[walled(table) & (table["inclination"] == 0.0)]
     default = plain["friction"].mode().iloc[0] if len(plain) else 0.0
     plain = plain[plain["friction"] == default]
     plain = plain.assign(ratio=plain["peak"] / plain["recess_peak"])
@@ -372,8 +351,8 @@ def _rings(table: pd.DataFrame) -> Picture:
     shaken, touched = plain[plain["motion"] != FREE], plain[plain["contact_time"] > 0.0]
     return Picture(
         name="rings",
-        title="A ring against the ideal recess",
-        caption="Rings whose walls lean by α, under El Centro at 1.5 g tan α and in free response; bars: "
+        title="A recess with clearance and the ideal recess",
+        caption="Recesses whose walls lean by α, under El Centro at 1.5 g tan α and in free response; bars: "
         "over the azimuths by which the problem is turned. Energy: where the walls are touched.",
         panels=[
             Panel(
@@ -399,21 +378,17 @@ def _rings(table: pd.DataFrame) -> Picture:
     )
 
 
+def walled(table: pd.DataFrame) -> pd.Series[bool]:
+    """Return which runs are of a support with walls."""
+    return table["support"].map(lambda name: SUPPORTS[name].walls)
+
+
 def _contact(table: pd.DataFrame) -> Picture:
     failed = (table["free_outcome"] == "failed") | (table["outcome"] == "failed")
     known = table[~failed].sort_values("softness")
     known = known.assign(ratio=known["peak"] / known["recess_peak"], lost=np.maximum(known["loss"], 1e-6))
-    names = [f"damping ratio {damping:g}" for damping in sorted(table["damping"].unique())]
-    styles = mark_styles(names, lines=False)
+    groups = {f"damping ratio {damping:g}": rows for damping, rows in known.groupby("damping")}
     softness = Axis(label="contact time constant × p", unit="-", log=True)
-
-    def marks(name: str) -> list[Line]:
-        return [
-            Line(x=column(rows, "softness"), y=column(rows, name), name=f"damping ratio {damping:g}",
-                 style=styles[f"damping ratio {damping:g}"])
-            for damping, rows in known.groupby("damping")
-        ]  # fmt: skip
-
     lost: Array = column(table[failed], "softness")
     crosses = Line(
         x=lost,
@@ -430,9 +405,13 @@ def _contact(table: pd.DataFrame) -> Picture:
             Panel(
                 x=softness,
                 y=Axis(label="peak ratio", unit="-"),
-                layers=[_ONE, *marks("ratio"), crosses],
+                layers=[_ONE, *group_lines(groups, "softness", "ratio", lines=False), crosses],
             ),
-            Panel(x=softness, y=Axis(label="lost in a pass", unit="-", log=True), layers=marks("lost")),
+            Panel(
+                x=softness,
+                y=Axis(label="lost in a pass", unit="-", log=True),
+                layers=group_lines(groups, "softness", "lost", lines=False),
+            ),
         ],
         columns=2,
     )

@@ -9,7 +9,7 @@ from typing import Any
 from rockwobble.compare.comparison.prediction import BEATEN
 from rockwobble.compare.metrics.statistics import FEWEST
 from rockwobble.compare.studies.advice.advice import Advice
-from rockwobble.compare.studies.advice.grades import BROKEN, GRADES, NEAR, SENSITIVE, UNSAFE, Grade
+from rockwobble.compare.studies.advice.grades import BROKEN, GRADES, NEAR, SENSITIVE, UNSAFE
 from rockwobble.compare.studies.advice.members import COPIES, SPIKES
 from rockwobble.compare.studies.advice.scales import planar_shares
 from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL
@@ -24,62 +24,6 @@ from ..figures.advice import pictures
 from .page import Page
 from .table import number
 
-_STANDS: Mapping[Grade, str] = {
-    "satisfied": "it stands",
-    "not tested": "it stands, its margin is not tested",
-    "caution": "it may overturn",
-    "not satisfied": "it is not safe against overturning",
-}
-_USE: Mapping[Grade, str] = {
-    "satisfied": "the {} may be used",
-    "not tested": "whether the {} may be used is not tested",
-    "caution": "use the {} with caution",
-    "not satisfied": "do not rely on the {}",
-}
-_FEW = f"fewer than {FEWEST} runs that differ"
-_BRIEFLY = f"for at most {100 * BROKEN:g} % of the time in motion"
-# topic: the criterion of each of `GRADES`
-CRITERIA: Mapping[str, Mapping[Grade, str]] = {
-    topic: dict(zip(GRADES, criteria, strict=True))
-    for topic, criteria in {
-        "overturning": (
-            f"no run overturns, nor any scale up to {NEAR:g} times this shaking",
-            "no run overturns, but no other scales of this shaking were run",
-            f"at most {100 * UNSAFE:g} % of a group overturn, or a scale below {NEAR:g} does",
-            f"the case as given overturns, or more than {100 * UNSAFE:g} % of a group",
-        ),
-        "friction": (
-            "the friction given suffices in 95 % of all runs",
-            _FEW,
-            f"not given, or too little {_BRIEFLY}",
-            "too little for longer, or below b/h: it slides before it uplifts",
-        ),
-        "contact": (
-            "never lost in 95 % of all runs",
-            _FEW,
-            f"lost {_BRIEFLY}",
-            "lost for longer: the models do not know flight",
-        ),
-        "trace": (
-            "the largest tilt comes before two methods, or the copies, diverge",
-            "the copies are all one run",
-            "the largest tilt comes after methods or copies diverge: trust statistics",
-            "the run failed",
-        ),
-        "intensity": (
-            f"12 % more or less shaking changes the tilt by less than {SENSITIVE:g} times",
-            "no other scales of this shaking were run",
-            f"12 % more or less shaking changes the tilt by {SENSITIVE:g} times, or overturns",
-            "never: the percentiles say it",
-        ),
-        "engine": (
-            "agrees with the model as long as predicted, and to the same end",
-            f"not run, failed, agrees {BEATEN:g} times the prediction, or hardly moves",
-            "comes to another end, or stays at rest where the model moves",
-            "diverges earlier than half of what is predicted",
-        ),
-    }.items()
-}
 _GROUPS = {
     "copies": "copies, {} off",
     "acceleration": "records, same PGA",
@@ -123,14 +67,15 @@ def page_of(found: Advice) -> Page:
         "about": found.manifest,
         "drawn": bool(drawn),
         "engine": DEFAULT_ENGINE,
-        "verdict": _verdict(found),
+        "failed": found.response["outcome"] == "failed",
         "meanings": [CODES[code][1] for code in found.response["diagnostics"]],
-        "criteria": [
-            {"topic": topic, "grade": grade, "criterion": CRITERIA[topic][grade], **CRITERIA[topic]}
-            for topic, grade in grades.items()
-        ],
         "grades": grades,
         "numbers": _numbers(found),
+        "every_grade": GRADES,
+        "limits": {
+            **{"near": NEAR, "unsafe": UNSAFE, "broken": BROKEN, "sensitive": SENSITIVE, "beaten": BEATEN},
+            "fewest": FEWEST,
+        },
         "demanded": list(_demanded(found)),
         "groups": _groups(found),
         "headings": {row["group"]: row["name"] for row in _groups(found)},
@@ -142,15 +87,6 @@ def page_of(found: Advice) -> Page:
         "lost": found.groups["lost_95"].max() if len(found.groups) else math.nan,
     }
     return Page(name="advice", template="advice", values=values, pictures=drawn)
-
-
-def _verdict(found: Advice) -> str:
-    if found.response["outcome"] == "failed":
-        return f"no advice, the {found.facts['model']} failed"
-    if not found.moves:
-        return "the cylinder stays at rest"
-    stands = "it overturns as given" if found.overturned else _STANDS[found.grades["overturning"]]
-    return f"{stands}; {_USE[found.model_grade].format(found.facts['model'])}"
 
 
 def _groups(found: Advice) -> list[dict[str, Any]]:
@@ -281,8 +217,9 @@ def _scales(found: Advice) -> Iterator[Row]:
 def _ratios(found: Advice) -> Iterator[Row]:
     """Rows of the largest tilts of copies by one of two ways over those by the other."""
     facts, vertical = found.facts, found.facts["vertical"]
-    flat = "recess" in support_named(facts["support"]).compared_with[-1:]
-    other = "tilt on flat ground over that here" if flat else "tilt in an ideal recess over that here"
+    holds = support_named(facts["support"])
+    place = "on flat ground" if holds.guided or holds.walls else "in an ideal recess"
+    other = f"tilt {place} over that here"
     shaken = "tilt with vertical shaking over that without"
     if vertical and not vertical["given"]:
         shaken += f" ({vertical['record']} as strong)"

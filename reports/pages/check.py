@@ -88,13 +88,13 @@ def as_junit(found: Checks, seconds: float) -> str:
                 classname=f"rockwobble.{group}",
                 name=_printable(f"{result.subject}, {result.name}"),
             )
-            told = ElementTree.SubElement(case, kind)
+            detail = ElementTree.SubElement(case, kind)
             if kind == "skipped":
-                told.set("message", _printable(f"{result.outcome}: {result.note}"))
+                detail.set("message", _printable(f"{result.outcome}: {result.note}"))
                 continue
-            told.text = _printable(in_words(result))
+            detail.text = _printable(in_words(result))
             if kind == "failure":
-                told.set("message", _printable(_failure(result)))
+                detail.set("message", _printable(_failure(result)))
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 

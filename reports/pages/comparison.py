@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 
 import pandas as pd
 
@@ -16,7 +15,7 @@ from rockwobble.compare.external.verdict import lists_in_words
 from rockwobble.models import Run
 
 from ..figures.budget import all_budgets_picture, budget_picture, parts_picture
-from ..figures.case_view import CaseView, case_views, own_rows, rows_of
+from ..figures.case_view import CaseView, SummaryRow, case_views, own_rows, rows_of
 from ..figures.comparison import (
     azimuth_picture,
     contact_picture,
@@ -187,7 +186,7 @@ def main_rows(view: CaseView) -> list[Row]:
     ]
 
 
-def _until(row: Any, start: float) -> str:
+def _until(row: SummaryRow, start: float) -> str:
     """Return the end of an agreement within 1 % of alpha, in the time of the run; that of the run with +."""
     return f"{row.agreement_time + start:.2f}" if row.diverged else f"{row.agreement_time:.2f}+"
 
@@ -294,7 +293,7 @@ def _with_shares(summary: pd.DataFrame, lengths: Mapping[str, float]) -> pd.Data
     return rows.assign(group=rows["case"].map(group_of), share=known)
 
 
-def matrix_tables(matrix: pd.DataFrame) -> list[dict[str, Any]]:
+def matrix_tables(matrix: pd.DataFrame) -> list[Row]:
     """Return a table for each support: support, rows, and columns as templates have them.
 
     A cell says for one case how long two agree and by how much their tilts differ; for many in how many of
@@ -303,7 +302,7 @@ def matrix_tables(matrix: pd.DataFrame) -> list[dict[str, Any]]:
     return [_matrix(str(support), part) for support, part in matrix.groupby("support", sort=False)]
 
 
-def _matrix(support: str, part: pd.DataFrame) -> dict[str, Any]:
+def _matrix(support: str, part: pd.DataFrame) -> Row:
     labels = list(dict.fromkeys(part["run"]))
     cells = {pair: _cell(rows) for pair, rows in part.groupby(["run", "other"], sort=False)}
     rows: list[Row] = [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from rockwobble.models import Diagnostic
@@ -20,7 +20,7 @@ _UNSETTLED = {
     "unresolved_pass": "a pass is left to chance, so that its error is not known",
     "energy": "contact makes or takes energy, so that its error is not known",
 }
-# why runs at successive steps tell no limit
+# why runs at successive steps have no limit
 _NOT_EXTRAPOLATED = {
     "fails": "a run at a coarser step fails",
     "diverged": "the runs diverge there",
@@ -28,83 +28,48 @@ _NOT_EXTRAPOLATED = {
     "unresolved_pass": "a pass is left to chance there",
     "energy": "contact makes or takes energy",
 }
-_WORDS: Mapping[str, Callable[[Diagnostic], str]] = {
-    "step_budget": lambda fact: (
-        f"the {fact.size:.0f} steps allowed were used up{_at(fact)}: the motion chatters near upright, "
-        "which a larger rest threshold ends"
-    ),
-    "tolerance": lambda fact: f"no step met the tolerance of {fact.bound:g}{_at(fact)}",
-    "slip": lambda fact: f"contact slipped{_from(fact)}",
-    "lift_off": lambda fact: f"the cylinder left the ground{_at(fact)}",
-    "tension": lambda fact: (
-        f"contact is lost{_at(fact)}: a joint holds the rim down"
-        if math.isnan(fact.size)
-        else f"contact is lost{_at(fact)}, for {_s(fact.duration)} in all: the ground would have to pull "
-        f"(normal force {fact.size:.3g} weights)"
-    ),
-    "friction_needed": lambda fact: (
-        f"a joint holds the rim{_at(fact)}, where the friction of the case would let it slip"
-        if math.isnan(fact.size)
-        else f"the rim would slip{_at(fact)}, for {_s(fact.duration)} in all: "
-        + (
-            "no friction suffices"  # where the ground would have to pull
-            if math.isinf(fact.size)
-            else f"it needs a friction of {fact.size:.3g}, where there is {fact.bound:g}"
-        )
-    ),
-    "wall_contact": lambda fact: f"the cylinder touched a wall{_from(fact)}",
-    "energy": lambda fact: (
-        f"contact {'made' if fact.size > 0.0 else 'took'} {abs(fact.size):.1e} of the energy of the "
-        f"motion, which shows{_from(fact)}"
-    ),
-    "undecided": lambda _: (
-        "it ends in motion, which comes to no maximum of its tilt in the time for which it is followed: "
-        "whether it overturns is not decided"
-    ),
-    "solver": lambda fact: (
-        f"the solver had not converged in {fact.size:.0f} of the {fact.bound:.0f} steps looked at"
-    ),
-    "unresolved_pass": lambda fact: (
-        f"{_count(fact.size, 'pass', 'is', 'are')} closer to upright than the {fact.bound:.1e} rad that "
-        f"contact resolves, first{_at(fact)}"
-    ),
-    "settled": lambda fact: (
-        f"the tilt is, until {_s(fact.duration)}, within {fact.size:.1e} alpha of its limit for a "
-        f"vanishing step, by Richardson with order {fact.bound:.2g}"
-    ),
-    "unsettled": lambda fact: (
-        f"the tilt has not settled by halving the step: {_UNSETTLED[fact.detail]}"
-        + (
-            ""
-            if math.isnan(fact.size)
-            else f"; until {_s(fact.duration)} it differs by {fact.size:.1e} alpha from that at twice "
-            "the step"
-        )
-    ),
-    "extrapolated": lambda fact: (
-        f"the motion is, until {_s(fact.duration)}, what runs at three time steps tend to, with order "
-        f"{fact.bound:.0f}: within {fact.size:.1e} alpha, by estimate"
-    ),
-    "not_extrapolated": lambda fact: (
-        f"it is not extrapolated{_from(fact) if fact.time > 0.0 else ''}, but the run at the finest time "
-        f"step: {_NOT_EXTRAPOLATED[fact.detail]}"
-    ),
-    "side": lambda fact: (
-        f"it passed through upright itself, first{_at(fact)}: the ground had moved in one plane, and the "
-        "side of such a pass is undetermined"
-    ),
-    "large_peak": lambda fact: (
-        f"its peak is {fact.size:.3g} g, more than any record has ({fact.bound:g} g): it would be "
-        f"{likely_unit(fact.size)[1]:.2g} g with its numbers in {fact.detail}; give the unit of the file"
-    ),
-    "unlike_components": lambda fact: (
-        f"the peaks of its components differ by a factor of {fact.size:.3g}, {fact.detail} is the larger: "
-        "their units may differ"
-    ),
-    "note": lambda fact: fact.detail,
-    "missed_pass": lambda fact: (
-        f"{_count(fact.size, 'near pass', 'fell', 'fell')} between two samples, first{_at(fact)}"
-    ),
+# with the numbers of `_fields`
+_WORDS: Mapping[str, str] = {
+    "step_budget": "the {size:.0f} steps allowed were used up{at}: the motion chatters near upright, which "
+    "a larger rest threshold ends",
+    "tolerance": "no step met the tolerance of {bound:g}{at}",
+    "slip": "contact slipped{since}",
+    "lift_off": "the cylinder left the ground{at}",
+    "tension": "contact is lost{at}, for {duration} in all: the ground would have to pull (normal force "
+    "{size:.3g} weights)",
+    "friction_needed": "the rim would slip{at}, for {duration} in all: it needs a friction of {size:.3g}, "
+    "where there is {bound:g}",
+    "wall_contact": "the cylinder touched a wall{since}",
+    "energy": "contact {made} {amount:.1e} of the energy of the motion, which shows{since}",
+    "undecided": "it ends in motion, which comes to no maximum of its tilt in the time for which it is "
+    "followed: whether it overturns is not decided",
+    "solver": "the solver had not converged in {size:.0f} of the {bound:.0f} steps looked at",
+    "unresolved_pass": "{passes_are} closer to upright than the {bound:.1e} rad that contact resolves, "
+    "first{at}",
+    "settled": "the tilt is, until {duration}, within {size:.1e} alpha of its limit for a vanishing step, "
+    "by Richardson with order {bound:.2g}",
+    "unsettled": "the tilt has not settled by halving the step: {why}; until {duration} it differs by "
+    "{size:.1e} alpha from that at twice the step",
+    "extrapolated": "the motion is, until {duration}, what runs at three time steps tend to, with order "
+    "{bound:.0f}: within {size:.1e} alpha, by estimate",
+    "not_extrapolated": "it is not extrapolated{later}, but the run at the finest time step: {why}",
+    "side": "it passed through upright itself, first{at}: the ground had moved in one plane, and the side "
+    "of such a pass is undetermined",
+    "large_peak": "its peak is {size:.3g} g, more than any record has ({bound:g} g): it would be "
+    "{other_unit:.2g} g with its numbers in {detail}; give the unit of the file",
+    "unlike_components": "the peaks of its components differ by a factor of {size:.3g}, {detail} is the "
+    "larger: their units may differ",
+    "note": "{detail}",
+    "missed_pass": "{passes_fell} between two samples, first{at}",
+}
+# the same where the size is not known, or infinite: no friction suffices where the ground would have to pull
+_UNKNOWN: Mapping[str, str] = {
+    "tension": "contact is lost{at}: a joint holds the rim down",
+    "friction_needed": "a joint holds the rim{at}, where the friction of the case would let it slip",
+    "unsettled": "the tilt has not settled by halving the step: {why}",
+}
+_INFINITE: Mapping[str, str] = {
+    "friction_needed": "the rim would slip{at}, for {duration} in all: no friction suffices",
 }
 # what each is called where many runs are counted
 _MANY: Mapping[str, str] = {
@@ -125,9 +90,35 @@ _MANY: Mapping[str, str] = {
 
 def sentence(fact: Diagnostic) -> str:
     """Return a diagnostic in words, without capital and full stop."""
-    if fact.code in _WORDS:
-        return _WORDS[fact.code](fact)
-    return f"{fact.meaning}{_at(fact)}" + (f": {fact.detail}" if fact.detail else "")
+    special = _UNKNOWN if math.isnan(fact.size) else _INFINITE if math.isinf(fact.size) else {}
+    words = special.get(fact.code) or _WORDS.get(fact.code)
+    if words is None:
+        words = "{meaning}{at}" + (": {detail}" if fact.detail else "")
+    return words.format_map(_fields(fact))
+
+
+def _fields(fact: Diagnostic) -> dict[str, str | float]:
+    """Return what the words of a diagnostic may name."""
+    known = not math.isnan(fact.time)
+    time = _s(fact.time)
+    since = f" from {time} on" if known else ""
+    reasons = _UNSETTLED if fact.code == "unsettled" else _NOT_EXTRAPOLATED
+    return {
+        "meaning": fact.meaning,
+        "size": fact.size,
+        "amount": abs(fact.size),
+        "made": "made" if fact.size > 0.0 else "took",
+        "bound": fact.bound,
+        "duration": _s(fact.duration),
+        "detail": fact.detail,
+        "why": reasons.get(fact.detail, ""),
+        "at": f" at {time}" if known else "",
+        "since": since,
+        "later": since if fact.time > 0.0 else "",
+        "passes_are": _count(fact.size, "pass", "is", "are"),
+        "passes_fell": _count(fact.size, "near pass", "fell", "fell"),
+        "other_unit": likely_unit(fact.size)[1] if fact.code == "large_peak" else math.nan,
+    }
 
 
 def remarks(facts: Iterable[Diagnostic]) -> str:
@@ -153,14 +144,6 @@ def counted(codes: Iterable[Iterable[str]]) -> list[str]:
     """Return how many runs have which diagnostic, from the codes of each run; failures left out."""
     found = Counter(code for of_run in codes for code in set(of_run))
     return [f"{found[code]} {words}" for code, words in _MANY.items() if found[code]]
-
-
-def _at(fact: Diagnostic) -> str:
-    return "" if math.isnan(fact.time) else f" at {_s(fact.time)}"
-
-
-def _from(fact: Diagnostic) -> str:
-    return "" if math.isnan(fact.time) else f" from {_s(fact.time)} on"
 
 
 def _s(time: float) -> str:

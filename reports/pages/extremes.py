@@ -25,7 +25,7 @@ _REFERENCES = {
     "energy": "energy kept",
     "tight": "tolerance of 1e-12",
     "model": "model of its support",
-    "half_step": "same ring, half the step",
+    "half_step": "the same at half the step",
 }
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import pandas as pd
 
@@ -21,7 +20,7 @@ from rockwobble.models import AGREEMENT, Run
 from rockwobble.models.diagnostic import parted
 from rockwobble.models.support import FLAT, RECESS, SUPPORTS
 
-from ..figures.case_view import CaseView, own_rows, rows_of
+from ..figures.case_view import CaseView, SummaryRow, own_rows, rows_of
 from .diagnostics import counted, failure, remarks
 from .sentences import lines, sentence, the
 
@@ -39,7 +38,7 @@ CAUSES: Mapping[str, str] = {
 }
 
 
-def cause_of(view: CaseView, row: Any) -> str:
+def cause_of(view: CaseView, row: SummaryRow) -> str:
     """Return the cause of a row of a case."""
     if "failed" in (row.outcome, row.reference_outcome):
         return "failed"
@@ -47,7 +46,7 @@ def cause_of(view: CaseView, row: Any) -> str:
     return cause(row, view.case.length, touched=touched, models_differ=_models_differ(view, row))
 
 
-def cause(row: Any, length: float, *, touched: bool = False, models_differ: bool = True) -> str:
+def cause(row: SummaryRow, length: float, *, touched: bool = False, models_differ: bool = True) -> str:
     """Return why a run diverges from its reference: one of `CAUSES`.
 
     Parameters
@@ -85,12 +84,12 @@ def cause(row: Any, length: float, *, touched: bool = False, models_differ: bool
     return "near passes" if math.isfinite(row.closest_pass) else "method"
 
 
-def explains_divergence(row: Any) -> bool:
+def explains_divergence(row: SummaryRow) -> bool:
     """Whether a likely mistake is a reason for the tilts to diverge: a turn of the axes is none."""
     return any(mistake.changes_tilt for mistake in mistakes_of(row))
 
 
-def _models_differ(view: CaseView, row: Any) -> bool:
+def _models_differ(view: CaseView, row: SummaryRow) -> bool:
     """Whether half of what ends an agreement lies between the models of recess and flat ground by then."""
     recess, flat = (view.traces.get(str(Run(None, support.name))) for support in (RECESS, FLAT))
     if not row.left_tolerance or row.reference not in view.traces or recess is None or flat is None:
@@ -99,7 +98,7 @@ def _models_differ(view: CaseView, row: Any) -> bool:
     return bool((abs(pair.tilt_difference) > 0.5 * row.tolerance).any())
 
 
-def within(row: Any) -> str:
+def within(row: SummaryRow) -> str:
     """Return what agreement of the tilts means for a run."""
     noise = row.tilt_bound - AGREEMENT if row.support == EXTERNAL else 0.0
     return sentence(WORDS, "within", row.tolerance, noise, AGREEMENT)
@@ -110,7 +109,7 @@ def notes(view: CaseView) -> str:
     rows = list(rows_of(view.rows))
     sound = [row for row in rows if "failed" not in (row.outcome, row.reference_outcome)]
     runs = dict.fromkeys(row.run for row in sound)
-    causes: dict[str, list[Any]] = {}
+    causes: dict[str, list[SummaryRow]] = {}
     for row in sound:
         if row.left_tolerance:
             causes.setdefault(cause_of(view, row), []).append(row)
@@ -132,7 +131,7 @@ def notes(view: CaseView) -> str:
     return " ".join(filter(None, parts))
 
 
-def _mistakes(row: Any) -> dict[str, Any]:
+def _mistakes(row: SummaryRow) -> dict[str, object]:
     """Return the likely mistakes of an external trajectory in words, and whether they explain it."""
     words = [mistake.words for mistake in mistakes_of(row)]
     return {"row": row, "mistakes": words, "explained": explains_divergence(row)}

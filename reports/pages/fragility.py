@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from rockwobble.compare import Fragility
 from rockwobble.compare.metrics.statistics import FEWEST
 from rockwobble.compare.studies.fragility.fit import ALWAYS, FITTED, NEVER, TOO_FEW
 from rockwobble.compare.studies.fragility.intensity import MEASURES
-from rockwobble.compare.studies.fragility.study import FEWEST_LEVELS, main_contrasts
+from rockwobble.compare.studies.fragility.study import FEWEST_LEVELS, Row, main_contrasts
 from rockwobble.compare.studies.fragility.tables import ALL, OVERTURNED
+from rockwobble.models.support import SUPPORTS
 
 from ..figures.fragility import pictures
 from .page import Page
 
+_WALLED = tuple(each.name for each in SUPPORTS.values() if each.walls)
 # below this probability the counts do not follow a lognormal curve
 _POOR = 0.05
 
@@ -61,10 +62,10 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "states": _states(found),
         "state_columns": [["method", "method", "words"]]
         + [[limit, limit.replace("_", " "), ".3g"] for limit in found.facts["limits"]],
-        "ring": any(each["support"] == "ring" for each in found.facts["methods"].values()),
+        "walls": any(each["support"] in _WALLED for each in found.facts["methods"].values()),
         "failed": [row for row in fallen if row["failed"]],
         "efficiency": efficiency,
-        "islands": found.islands.to_dict("records"),
+        "gaps": found.gaps.to_dict("records"),
     }
 
 
@@ -100,13 +101,13 @@ def _counts(found: Fragility) -> dict[str, object]:
     }
 
 
-def _by_cylinder(rows: list[dict[str, Any]], cylinders: list[str]) -> list[dict[str, Any]]:
+def _by_cylinder(rows: list[Row], cylinders: list[str]) -> list[Row]:
     return [row for cylinder in cylinders for row in rows if row["cylinder"] == cylinder]
 
 
-def _states(found: Fragility) -> list[dict[str, Any]]:
+def _states(found: Fragility) -> list[Row]:
     """One row for each cylinder and method: the median of each limit, or what bounds it."""
-    rows: dict[tuple[str, str], dict[str, Any]] = {}
+    rows: dict[tuple[str, str], Row] = {}
     ends = found.counts.groupby("cylinder")["intensity"].agg(["min", "max"])
     for row in found.fits.to_dict("records"):
         key = str(row["cylinder"]), str(row["method"])

@@ -17,6 +17,7 @@ from rockwobble.compare.studies.spectrum.study import (
     OverturningSpectrum,
     unconservative_from,
 )
+from rockwobble.models.support import support_named
 
 from ..figures.spectrum import pictures
 from .page import Page
@@ -34,16 +35,17 @@ def spectrum_values(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> d
     bands, every = contrast.iloc[:-1], contrast.iloc[-1]
     return {
         "spectrum": spectrum,
+        "holds": support_named(spectrum.support),
         "cell_rows": contrast.assign(
             band=[f"{row.smallest:.3g} to {row.largest:.3g}" for row in contrast.itertuples()]
         )
         .replace(math.inf, math.nan)
         .to_dict("records"),
         "every": every,
-        "wrong": bands[bands["missed"] > bands["overcalled"]].to_dict("records"),
+        "wrong": bands[bands["unconservative"] > bands["conservative"]].to_dict("records"),
         "overturns": any(np.isfinite(lowest).any() for lowest in spectrum.lowest.values()),
         "unconservative_from": unconservative_from(spectrum),
-        "islands": _islands(tables["islands"]),
+        "gaps": _gaps(tables["gaps"]),
         "failed": int(spectrum.failed().sum()),
         "search": _search(spectrum, tables["lowest"]),
         "checked": {
@@ -57,8 +59,8 @@ def spectrum_values(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> d
     }
 
 
-def _islands(islands: pd.DataFrame) -> dict[str, object] | None:
-    closed = islands[islands["closed"] & (islands["series"] == SPATIAL)]
+def _gaps(gaps: pd.DataFrame) -> dict[str, object] | None:
+    closed = gaps[gaps["closed"] & (gaps["series"] == SPATIAL)]
     if not len(closed):
         return None
     widest = closed.iloc[int((closed["upper"] - closed["lower"]).argmax())]

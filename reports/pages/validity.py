@@ -12,8 +12,9 @@ from rockwobble.compare.studies.validity.limits import cells, contrasts, damping
 from rockwobble.compare.studies.validity.plan import LARGEST_PEAK
 from rockwobble.compare.studies.validity.shaken import FREE
 from rockwobble.compare.studies.validity.study import Validity
+from rockwobble.models.support import SUPPORTS
 
-from ..figures.validity import METHODS, pictures
+from ..figures.validity import METHODS, pictures, walled
 from .page import Page
 
 _NEEDS = {
@@ -52,7 +53,7 @@ def page_of(found: Validity) -> Page:
 
 
 def _contrasts(table: pd.DataFrame) -> list[dict[str, object]]:
-    """The rows of paired ratios with their point in words; a ring against itself is told in the text."""
+    """The rows of paired ratios with their point in words, but for half the step."""
     rows = []
     for row in table.to_dict("records"):
         if row["method"] not in METHODS:
@@ -98,7 +99,7 @@ def _needs(table: pd.DataFrame) -> dict[str, object]:
 
 
 def _rings(table: pd.DataFrame) -> list[dict[str, object]]:
-    """Results of each ring over its slendernesses and turns, the worst named by its number."""
+    """Results of each support with its walls, over slendernesses and azimuths."""
     rows: list[dict[str, object]] = []
     walls = ["support", "clearance", "inclination", "friction"]
     for key, own in table.groupby(walls, sort=False, dropna=False):
@@ -108,7 +109,7 @@ def _rings(table: pd.DataFrame) -> list[dict[str, object]]:
         ratio = shaken["peak"] / shaken["recess_peak"]
         rows.append(
             {
-                "support": support,
+                "support": SUPPORTS[str(support)].words,
                 "clearance": clearance,
                 "inclination": "α" if inclination == 0.0 else inclination,
                 "friction": friction,
@@ -124,8 +125,8 @@ def _rings(table: pd.DataFrame) -> list[dict[str, object]]:
 
 
 def _worst(table: pd.DataFrame) -> dict[str, object]:
-    """The ring whose peak is farthest from that of the recess model."""
-    shaken = table[(table["support"] == "ring") & (table["motion"] != FREE) & (table["outcome"] != "failed")]
+    """The recess with clearance whose peak is farthest from that of the recess model."""
+    shaken = table[walled(table) & (table["motion"] != FREE) & (table["outcome"] != "failed")]
     ratio = (shaken["peak"] / shaken["recess_peak"]).to_numpy(dtype=float)
     with np.errstate(divide="ignore"):
         worst = shaken.iloc[int(np.argmax(np.maximum(ratio, 1.0 / ratio)))]

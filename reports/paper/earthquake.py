@@ -166,7 +166,7 @@ def _median(values: Array) -> float:
 
 
 def statements(data: Shaken) -> list[Statement]:
-    """Hold what the paper says of the figure against the response and its neighbours."""
+    """Compare the paper's statements on the figure with the response and its neighbours."""
     strong, weak, trace = data.strong, data.weak, data.trace
     both = {f"{name}_{key}": value for name, part in (("strong", strong), ("weak", weak))
             for key, value in asdict(part).items()}  # fmt: skip

@@ -66,13 +66,13 @@ def _frequency(cylinder: Cylinder) -> float:
 
 
 def _disc_period(radius: float, tilt: Array) -> Array:
-    """Period of steady wobble of a disc without thickness, held against rolling out [s]."""
+    """Period of steady wobble of a disc without thickness, kept from rolling out [s]."""
     square = 4.0 * _GRAVITY * np.cos(tilt) / (radius * np.sin(tilt) * (6.0 - 5.0 * np.cos(tilt)))
     return np.asarray(2.0 * np.pi / np.sqrt(square))
 
 
 def period_statements(table: pd.DataFrame) -> list[Statement]:
-    """Hold what the paper says of the figure against the curves."""
+    """Compare the paper's statements on the figure with the curves."""
     tilt, housner = curve(table, "housner")
     off = _largest(curve(table, "wobble", DISC)[1] / curve(table, "disc")[1], tilt <= _DISC_REACH)
     disc = {"off": off, "reach": _DISC_REACH}
@@ -157,7 +157,7 @@ def to_frame(modes: Mapping[str, Trace]) -> pd.DataFrame:
 
 
 def mode_statements(modes: Mapping[str, Trace]) -> list[Statement]:
-    """Hold what the paper says of the figure against the responses."""
+    """Compare the paper's statements on the figure with the responses."""
     return [_turn(modes[SPIN]), _force(modes), _steady(modes[STEADY]), _place(modes)]
 
 

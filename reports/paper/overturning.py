@@ -51,20 +51,23 @@ def lowest_on_axes(spectrum: TiltMaps, *, own: bool) -> Mapping[str, Array]:
 
 
 def statements(spectrum: TiltMaps) -> list[Statement]:
-    """Hold what the paper says of the figure against the spectrum, on both pairs of axes."""
+    """Compare the paper's statements on the figure with the spectrum, on both pairs of axes."""
     large = spectrum.semidiagonals >= LARGE
     contrast = planar_contrast(spectrum)
     every, upper = contrast.iloc[-1], contrast.iloc[-2]
     cells = {"from": unconservative_from(spectrum)}
-    cells |= {name: float(every[name]) for name in ("missed", "overcalled")}
-    cells |= {f"upper_{name}": float(upper[name]) for name in ("smallest", "largest", "missed", "overcalled")}
+    cells |= {name: float(every[name]) for name in ("unconservative", "conservative")}
+    cells |= {
+        f"upper_{name}": float(upper[name])
+        for name in ("smallest", "largest", "unconservative", "conservative")
+    }
     found = []
     for axes, own in (("own", True), ("equal", False)):
         lowest = lowest_on_axes(spectrum, own=own)
         top, whole = _lower(lowest, large), _lower(lowest, np.full(len(large), True))
         beside = {} if own else cells
         of_large = verdict_of(top["share"] > 0.5, top["share"] > _EVERY)
-        parts = [whole["share"] > 0.5, *([] if own else [bool(every.missed > every.overcalled)])]
+        parts = [whole["share"] > 0.5, *([] if own else [bool(every.unconservative > every.conservative)])]
         found += [
             (f"large_{axes}", {**top, "large": LARGE, **beside}, of_large),
             (f"general_{axes}", {**whole, **beside}, verdict_of(*parts)),

@@ -49,7 +49,7 @@ class Paper(Results, kind=KIND):
         What the figures show.
     statements : DataFrame
         Numbers of each statement and its verdict, see `to_frame`.
-    spectrum, record, lowest, islands, contrast, checked : DataFrame
+    spectrum, record, lowest, gaps, contrast, checked : DataFrame
         Figure 6, see `OverturningSpectrum`.
     """
 

@@ -37,7 +37,7 @@ class Kind:
     name : str
     motions, levels : int
     dispersion : float
-    island : float
+    between_levels : float
         Probability that a run above the capacity of its motion stands, and that one below it falls: more of
         the dispersion is then within the motions.
     """
@@ -46,7 +46,7 @@ class Kind:
     motions: int = 22
     levels: int = 20
     dispersion: float = 0.6
-    island: float = 0.0
+    between_levels: float = 0.0
 
     def draw(self, random: np.random.Generator) -> tuple[Sample, Sample]:
         """Return the motions by two methods of the same capacity but for a scatter of a fifth."""
@@ -58,21 +58,21 @@ class Kind:
 
     def _sample(self, x: Array, capacity: Array, random: np.random.Generator) -> Sample:
         # within a motion, what a level needs scatters from level to level
-        within = self.island * random.standard_normal((self.motions, self.levels))
+        within = self.between_levels * random.standard_normal((self.motions, self.levels))
         y = x >= capacity[:, None] + within
         return Sample(x=np.tile(x, (self.motions, 1)), y=y.astype(np.float64))
 
     @property
     def whole(self) -> float:
         """True dispersion of either method."""
-        return math.sqrt(self.dispersion**2 + 0.2**2 + self.island**2)
+        return math.sqrt(self.dispersion**2 + 0.2**2 + self.between_levels**2)
 
 
 KINDS = (
     *(Kind(name="22 motions", levels=levels) for levels in (8, 12, 20)),
     Kind(name="22 motions, little dispersion", dispersion=0.35),
-    Kind(name="22 motions, with islands", island=0.3),
-    Kind(name="22 motions, with islands", island=0.3, levels=8),
+    Kind(name="22 motions, with scatter between levels", between_levels=0.3),
+    Kind(name="22 motions, with scatter between levels", between_levels=0.3, levels=8),
     *(Kind(name=f"{motions} motions", motions=motions) for motions in (11, 44, 100)),
 )
 

@@ -3,7 +3,8 @@
 One run: El Centro on R = 6 m, tan(alpha) = 0.2 until ten seconds after uplift. Each solver gets the
 loosest tolerance with which its own error at the end is below 1e-7 alpha; then all are timed in turn,
 round after round, so that a change of the machine's speed meets them alike, and the ratio is taken
-inside each round. ``python tests/benchmarks speed`` prints the table.
+inside each round. ``python tests/benchmarks speed`` prints the table, and ``--frame`` the time of a step with
+a frame over that with a cylinder: both run in turn, and the ratio is taken inside each round.
 """
 
 from __future__ import annotations
@@ -19,10 +20,12 @@ from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.compare.studies.tradeoff.methods import SOLVERS, TOLERANCE_SCALE, SolverName, start_of
-from rockwobble.models import Case, Cylinder, el_centro_1940
+from rockwobble.models import Case, Cylinder, WobblingFrame, el_centro_1940
+from rockwobble.reduced.problem import make_problem
+from rockwobble.reduced.simulation import make_ready
 from rockwobble.reduced.solution import Solution
 
-from .console import options_of
+from .console import options_of, show
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -217,6 +220,33 @@ def measure(
     )
 
 
+def frame_ratios(rounds: int = 200) -> pd.DataFrame:
+    """Return the time a step of each kernel with a frame over that with a cylinder, and its quartiles."""
+    import pandas as pd
+
+    pier, rows = Cylinder(semidiagonal=6.0, tan_alpha=0.2), []
+    motion = el_centro_1940().scaled(2.0)
+    for model, options in reduced.MODELS.items():
+        problems = []
+        for body in (pier, WobblingFrame(pier, 1.0)):
+            given = {"support": "recess", "plane": None, "restitution": 1.0, "rest_tilt": 1e-8} | dict(
+                options
+            )
+            problems.append(make_problem(Case(body, motion, duration=20.0), rtol=1e-8, **given))
+            make_ready(problems[-1].kernel)
+        steps = [problem.solve(np.empty(0))[0].step_count for problem in problems]
+        ratios = []
+        for turn in range(rounds):
+            times = {}
+            for place in (0, 1) if turn % 2 else (1, 0):
+                begin = time.perf_counter()
+                problems[place].solve(np.empty(0))
+                times[place] = (time.perf_counter() - begin) / steps[place]
+            ratios.append(times[1] / times[0])
+        rows.append((model, *steps, *np.percentile(ratios, [50, 25, 75])))
+    return pd.DataFrame(rows, columns=["model", "steps", "steps_frame", "ratio", "low", "high"])
+
+
 def _seconds(solver: Solver, rtol: float) -> float:
     begin = time.perf_counter()
     solver.solve(rtol)
@@ -227,9 +257,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table."""
     import sys
 
-    options_of("speed", "How much faster the reduced kernel is than others at equal error.").parse_args(
-        arguments
-    )
+    parser = options_of("speed", "How much faster the reduced kernel is than others at equal error.")
+    parser.add_argument("--frame", action="store_true", help="a frame beside a cylinder")
+    if parser.parse_args(arguments).frame:
+        forms = {"model": "", "steps": "d", "steps_frame": "d", "ratio": ".3f", "low": ".3f", "high": ".3f"}
+        show(frame_ratios(), "Time a step with a frame over that with a cylinder, with quartiles", forms)
+        return 0
     table = measure(say=lambda line: print(line, file=sys.stderr))
     seconds = _AFTER_UPLIFT
     print(f"El Centro, R = 6 m, tan alpha = 0.2, {seconds:g} s from uplift, error below {TARGET:g} alpha\n")

@@ -45,9 +45,9 @@ class Cost:
 def overhead_grid(runs: int) -> Grid:
     """Return a grid of about so many runs, in rows of 100 scales."""
     return Grid(
-        semidiagonals=np.linspace(0.5, 30.0, max(1, runs // _SCALES)),
+        semidiagonals=np.linspace(0.5, 30.0, max(1, runs // _SCALES)).tolist(),
         tan_alphas=[_TAN_ALPHA],
-        scales=np.linspace(0.5, 6.0, _SCALES),
+        scales=np.linspace(0.5, 6.0, _SCALES).tolist(),
         motions=[el_centro_1940()],
     )
 

@@ -35,7 +35,7 @@ def make_trace(cylinder: Cylinder) -> Callable[..., Trace]:
         table = pd.DataFrame(list(passes), columns=["time", "minimum_tilt"], dtype=float)
         table = table.assign(angle_of_turn=np.pi, resolved=~table["time"].isin(list(unresolved)))
         values: dict[str, Any] = {
-            "case": Case(cylinder, duration=float(time[-1]), name="made up"),
+            "case": Case(cylinder, duration=float(time[-1]), name="synthetic"),
             "run": Run("mujoco", "recess"),
             "version": "1",
             "tilt_rate": np.full_like(time, np.nan),

@@ -233,7 +233,7 @@ def test_planar_shares_count_records_that_move():
     rows = [("a", 0.2, 0.1, 0.1), ("b", fall, 0.3, 0.0), ("c", 0.1, fall, 0.0), ("d", 0.0, 0.0, 0.0)]
     table = pd.DataFrame(rows, columns=["member", "3d", "planar_x", "planar_y"]).assign(scale=1.0)
     (found,) = planar_shares(table)
-    assert (found["moving"], found["larger"], found["missed"]) == (3, 2, 1)
+    assert (found["moving"], found["larger"], found["unconservative"]) == (3, 2, 1)
     assert found["larger_share"] == 2 / 3
     assert found["larger_low"] < 2 / 3 < found["larger_high"]
     real = planar_runs([Case(PIER, SHORT)])

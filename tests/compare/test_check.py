@@ -33,7 +33,7 @@ from rockwobble.compare.check import (
     subject,
     trajectories,
 )
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, WobblingFrame
 from rockwobble.models.trace_source import Known
 from rockwobble.reduced.body import body_of
 
@@ -99,6 +99,13 @@ def larger(case: Case, options: Options) -> Case:
     return dataclasses.replace(case, cylinder=dataclasses.replace(case.cylinder, semidiagonal=size))
 
 
+def lighter_slab(case: Case, options: Options) -> Case:
+    body = case.cylinder
+    if isinstance(body, WobblingFrame):
+        body = WobblingFrame(body.cylinder, 0.999 * body.slab_mass_ratio, body.columns)
+    return dataclasses.replace(case, cylinder=body)
+
+
 def option(name: str, value: Callable[[Any], Any]) -> Callable[[Subject], Subject]:
     def other(case: Case, options: Options) -> Case:
         if name in options:
@@ -116,6 +123,10 @@ def vertical_reversed(motion: GroundMotion) -> GroundMotion:
 def held_after_its_end(motion: GroundMotion) -> GroundMotion:
     last = np.tile(motion.acceleration[-1:], (round(20.0 / motion.time_step) + 1, 1))
     return GroundMotion(np.vstack([motion.acceleration, last]), motion.time_step)
+
+
+def less_resistance(case: Case, options: Options) -> Case:
+    return dataclasses.replace(case, rolling_resistance=(1.0 - 1e-6) * case.rolling_resistance)
 
 
 def half_a_sample_late(motion: GroundMotion) -> GroundMotion:
@@ -159,13 +170,17 @@ def test_the_reduced_models_hold(right: Subject, group: str) -> None:
         (lagrange.residual, "recess", heavy),
         (lagrange.residual, "recess", field("contact_force", lambda force: force * [1.0, 1.0, 1.0 + 1e-8])),
         (lagrange.residual, "recess", field("tilt_rate", lambda rate: (1.0 + 1e-8) * rate)),
+        (lagrange.residual, "recess", asked(lighter_slab)),
         (laws.free_response, "recess", asked(larger)),
+        (laws.free_response, "recess", asked(lighter_slab)),
         (laws.steady_wobble, "flat", heavy),
         (laws.vanishing_spin, "recess", answered(lambda found: dataclasses.replace(
             found, passes=found.passes.assign(angle_of_turn=1.00001 * found.passes["angle_of_turn"])))),
         (laws.planar_rocking, "planar", heavy),
         (lagrange.free_motion, "recess", field("energy", lambda e: e * (1.0 + 1e-7 * np.arange(len(e))))),
         (lagrange.free_motion, "recess", field("rolling_rate", lambda rate: 1.0001 * rate)),
+        (lagrange.rolling_loss, "recess", asked(less_resistance)),
+        (lagrange.rolling_loss, "recess", field("energy_lost", lambda lost: (1.0 + 1e-6) * lost)),
         (lagrange.work_of_the_ground, "flat", moved(vertical_reversed)),
         (lagrange.work_of_the_ground, "recess", moved(held_after_its_end)),
         (lagrange.work_of_a_record, "flat", moved(half_a_sample_late)),
@@ -443,10 +458,13 @@ def state_of(*values: float) -> State:
     return State(*(vector(value)[0] for value in values))
 
 
-def test_kinetic_energy_is_that_of_vectors() -> None:
+@pytest.mark.parametrize("ratio", [0.0, 1.5])
+def test_kinetic_energy_is_that_of_vectors(ratio: float) -> None:
     theta, phi, theta_rate, phi_rate = 0.3, 1.1, 0.7, -0.9
-    expected = kinetic_energy(body_of(CYLINDER, 9.81), state_of(theta, theta_rate, phi, phi_rate, -phi_rate))
-    found = lagrange.kinetic(SHAPE, *one(theta, phi, theta_rate, phi_rate))[0]
+    state = state_of(theta, theta_rate, phi, phi_rate, -phi_rate)
+    expected = kinetic_energy(body_of(CYLINDER, 9.81), state, ratio) / (1.0 + 2.0 * ratio)
+    shape = lagrange.shape_of(WobblingFrame(CYLINDER, ratio))
+    found = lagrange.kinetic(shape, *one(theta, phi, theta_rate, phi_rate))[0]
     assert found == pytest.approx(float(expected), rel=ROUNDING)
 
 

@@ -51,7 +51,7 @@ CONTRACT = [
 @pytest.fixture
 def case(cylinder):
     ground = GroundMotion(np.zeros((2, 2)), 10.0, "still")
-    return Case(cylinder, ground, initial=InitialState(tilt=0.3 * cylinder.alpha), name="made up")
+    return Case(cylinder, ground, initial=InitialState(tilt=0.3 * cylinder.alpha), name="synthetic")
 
 
 @pytest.fixture
@@ -92,7 +92,7 @@ def test_columns_are_those_of_the_contract_in_its_order(made_up, case):
 def test_numbers_of_a_row(made_up, case, cylinder):
     made_up()
     row = compare(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1).summary.iloc[0]
-    assert (row.case, row.engine, row.support) == ("made up", "mujoco", "recess")
+    assert (row.case, row.engine, row.support) == ("synthetic", "mujoco", "recess")
     assert (row.reference_engine, row.reference_support) == ("reduced", "recess")
     assert row.time_step == 1e-3
     assert row.peak_tilt == pytest.approx(0.305, rel=ROUNDING)
@@ -117,7 +117,7 @@ def test_flat_ground_gets_a_row_for_each_model(made_up, case):
         ["flat", "flat"],
     ]
     labels = ("recess model", "flat-ground model", "mujoco recess", "mujoco flat")
-    assert set(found.traces) == {("made up", label) for label in labels}
+    assert set(found.traces) == {("synthetic", label) for label in labels}
     assert found.summary.diverged.tolist() == [False, False, False]
 
 
@@ -180,8 +180,8 @@ def test_a_suite_is_cases_times_runs(made_up, case, cylinder, monkeypatch):
     suite = Suite([case, other], [Run("mujoco", "recess"), Run("pybullet", "recess")])
     summary = compare(suite, workers=1).summary
     assert summary[["case", "engine"]].to_numpy().tolist() == [
-        ["made up", "mujoco"],
-        ["made up", "pybullet"],
+        ["synthetic", "mujoco"],
+        ["synthetic", "pybullet"],
         ["second", "mujoco"],
         ["second", "pybullet"],
     ]
@@ -192,10 +192,10 @@ def test_progress_is_told_of_every_run(made_up, case):
     told = []
     compare(case, runs=[Run("mujoco", "recess")], workers=1, progress=told.append)
     assert [(p.label, p.state, p.done, p.total) for p in told] == [
-        ("made up, recess model", "started", 0, 2),
-        ("made up, recess model", "finished", 1, 2),
-        ("made up, mujoco recess", "started", 1, 2),
-        ("made up, mujoco recess", "finished", 2, 2),
+        ("synthetic, recess model", "started", 0, 2),
+        ("synthetic, recess model", "finished", 1, 2),
+        ("synthetic, mujoco recess", "started", 1, 2),
+        ("synthetic, mujoco recess", "finished", 2, 2),
     ]
 
 

@@ -30,7 +30,7 @@ def _agree(run: multibody.Trajectory, model: Trace, alpha: float, start: float) 
     difference = found - expected
     size = np.linalg.norm(expected, axis=1)
     assert (np.abs(difference[:, 2]) < FORCE * expected[:, 2]).all()
-    # the horizontal force passes through zero, so it is held against all of the force
+    # the horizontal force passes through zero, so it is compared with all of the force
     assert (np.hypot(difference[:, 0], difference[:, 1]) < FORCE * size).all()
 
 

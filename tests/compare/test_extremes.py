@@ -96,7 +96,7 @@ def test_an_error_in_the_middle_of_a_run_is_no_refusal(monkeypatch: pytest.Monke
         judge(at("size", "R = 0.001 m"), RECESS)
 
 
-def test_a_ring_is_held_against_itself_at_half_the_step(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_ring_is_compared_with_itself_at_half_the_step(monkeypatch: pytest.MonkeyPatch) -> None:
     steps = []
 
     def counted(case: Case, run: Run, *, sample_step: float) -> Trace:

@@ -1,4 +1,4 @@
-"""A fragility of the reduced models: the same motions for all, limits, islands, contrasts, resuming."""
+"""A fragility of the reduced models: the same motions for all, limits, gaps, contrasts, resuming."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rockwobble.compare import Fragility, IncompleteError, fragility
 from rockwobble.compare.runs import execution
 from rockwobble.compare.studies.fragility import runs as running
 from rockwobble.compare.studies.fragility.study import fragility_of
-from rockwobble.compare.studies.fragility.tables import exceeded, incremental, islands, require_limits
+from rockwobble.compare.studies.fragility.tables import below_gaps, exceeded, incremental, require_limits
 from rockwobble.models import Case, Cylinder, Run, WobblingFrame, synthetic_motions
 
 COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
@@ -118,9 +118,9 @@ def test_what_a_run_exceeds():
     assert require_limits(["overturned", "uplift"]) == ("uplift", "overturned")
 
 
-def test_islands_and_what_stopping_early_makes_of_them():
+def test_gaps_and_what_stopping_early_makes_of_them():
     y = np.array([[0, 1, 0, 1], [0, 0, 1, 1], [1, NAN, 0, 0], [0, NAN, 1, NAN], [1, 0, 1, 0]], dtype=float)
-    found = islands(y)
+    found = below_gaps(y)
     assert found.astype(int).tolist() == [[0, 1, 0, 0], [0] * 4, [1, 0, 0, 0], [0] * 4, [1, 0, 1, 0]]
     stopped = incremental(y)
     expected = [[0, 1, 1, 1], [0, 0, 1, 1], [1, 1, 1, 1], [0, NAN, 1, 1], [1, 1, 1, 1]]
@@ -128,12 +128,10 @@ def test_islands_and_what_stopping_early_makes_of_them():
 
 
 def test_stopping_early_makes_the_median_smaller(found):
-    some = found.islands[found.islands["islands"] > 0]
+    some = found.gaps[found.gaps["runs_below_gaps"] > 0]
     assert len(some) >= 3
     assert (some["bias"] < 1.0).all()
-    np.testing.assert_allclose(
-        found.islands["bias"], found.islands["median_incremental"] / found.islands["median"]
-    )
+    np.testing.assert_allclose(found.gaps["bias"], found.gaps["median_incremental"] / found.gaps["median"])
 
 
 def test_a_curve_that_all_or_none_exceed_ends_with_the_levels(found):
@@ -236,7 +234,7 @@ def test_of_too_few_motions_or_levels_there_are_counts_and_no_curve(
     assert overturned["runs"].to_list() == [motions * levels] * 2
     assert (overturned["exceeded"].sum() == made.counts.query("limit == 'overturned'")["k"].sum()) > 0
     fitted = made.fits[["median", "median_low", "median_high", "dispersion"]].notna().to_numpy().any()
-    stated = [fitted, *(len(getattr(made, name)) > 0 for name in ("curves", "contrasts", "islands"))]
+    stated = [fitted, *(len(getattr(made, name)) > 0 for name in ("curves", "contrasts", "gaps"))]
     assert stated == [not few] * 4
 
 

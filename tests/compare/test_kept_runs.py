@@ -1,4 +1,4 @@
-"""A comparison that was ended goes on where it stopped."""
+"""A comparison that was ended resumes."""
 
 from __future__ import annotations
 

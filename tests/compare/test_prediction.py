@@ -22,7 +22,7 @@ TIME = np.arange(1001) * 0.01
 
 @pytest.fixture
 def case(cylinder):
-    return Case(cylinder, initial=InitialState(0.3 * cylinder.alpha), duration=10.0, name="made up")
+    return Case(cylinder, initial=InitialState(0.3 * cylinder.alpha), duration=10.0, name="synthetic")
 
 
 @pytest.fixture
@@ -54,7 +54,7 @@ def predicted(case, cylinder, make_trace):
 
 def test_a_prediction_under_shaking_counts_from_uplift(cylinder, make_trace):
     motion = GroundMotion(np.ones((1001, 2)), 0.01)
-    case = Case(cylinder, motion, name="made up")
+    case = Case(cylinder, motion, name="synthetic")
     after = np.maximum(TIME - 2.0, 0.0)
     level = np.where(TIME < 2.0, 0.0, 0.3 * cylinder.alpha)
 

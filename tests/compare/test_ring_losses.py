@@ -15,7 +15,7 @@ SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
 ENGINE = 1e-4
 
 
-def test_a_run_is_held_against_the_models_and_its_losses_are_its_own() -> None:
+def test_a_run_is_compared_with_the_models_and_its_losses_are_its_own() -> None:
     case = Case(SQUAT, initial=InitialState(SQUAT.alpha / 2, rolling_rate=0.5), duration=1.2, friction=3.0)
     # the release would start inside of such walls
     assert not has_room(case, Run("mujoco", "ring", ring_inclination=0.1))

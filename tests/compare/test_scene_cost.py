@@ -13,9 +13,9 @@ ENGINES = multibody.available_engines()
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_every_scene_is_counted(engine: str) -> None:
-    told: list[Progress] = []
-    table = scene_costs([engine], rounds=2, steps=20, stage=Stages(told.append, [1.0, 1.0]).stage)
-    assert [each.label for each in told[::2]] == ["scenes, round 1 of 2", "scenes, round 2 of 2"]
+    events: list[Progress] = []
+    table = scene_costs([engine], rounds=2, steps=20, stage=Stages(events.append, [1.0, 1.0]).stage)
+    assert [each.label for each in events[::2]] == ["scenes, round 1 of 2", "scenes, round 2 of 2"]
     assert set(table["engine"]) == {engine}
     assert (table["degrees_of_freedom"] == 6).all()
     assert (table["microseconds"] > 0.0).all()

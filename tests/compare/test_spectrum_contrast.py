@@ -13,7 +13,7 @@ from rockwobble.compare.studies.spectrum.maps import (
     PLANAR_Y,
     SPATIAL,
     TiltMaps,
-    safe_islands,
+    safe_gaps,
 )
 from rockwobble.compare.studies.spectrum.search import lowest_on_grid
 from rockwobble.compare.studies.spectrum.study import (
@@ -54,9 +54,9 @@ def made_up(space: list[str], x: list[str], y: list[str]) -> TiltMaps:
     )
 
 
-def test_islands_are_what_stands_above_the_lowest_overturning_intensity():
+def test_gaps_are_what_stands_above_the_lowest_overturning_intensity():
     spectrum = made_up(["ooXoOX", "XooXX?", "oooooo", "oXo?oX", "oXoooo"], ["......"] * 5, ["......"] * 5)
-    table = safe_islands(spectrum)
+    table = safe_gaps(spectrum)
     assert set(table["series"]) == {SPATIAL}
     assert table[["semidiagonal", "lower", "upper", "closed"]].to_numpy().tolist() == [
         [1.0, 4.0, 5.0, True],
@@ -70,7 +70,7 @@ def test_islands_are_what_stands_above_the_lowest_overturning_intensity():
 def test_an_island_begins_above_a_window_that_the_grid_does_not_see():
     spectrum = made_up(["oooXo"], ["....."], ["....."])
     seen = dataclasses.replace(spectrum, lowest={**spectrum.lowest, SPATIAL: np.array([1.5])})
-    assert safe_islands(seen)[["lower", "upper", "closed"]].to_numpy().tolist() == [
+    assert safe_gaps(seen)[["lower", "upper", "closed"]].to_numpy().tolist() == [
         [2.0, 3.0, True],
         [5.0, 5.0, False],
     ]
@@ -90,12 +90,12 @@ def test_shares_count_cells_and_leave_out_failed_ones(monkeypatch):
     assert (second["smallest"], second["largest"]) == (2.0, 3.0)
     assert first["overturned"] == 3 / 4
     assert first["planar_overturned"] == 2 / 4
-    assert first["missed"] == 1 / 4
-    assert first["overcalled"] == 0.0
+    assert first["unconservative"] == 1 / 4
+    assert first["conservative"] == 0.0
     # the failed cell would have been missed as well
-    assert second["missed"] == 0.0
-    assert second["overcalled"] == pytest.approx(1 / 7)
-    assert every["missed"] == pytest.approx(1 / 11)
+    assert second["unconservative"] == 0.0
+    assert second["conservative"] == pytest.approx(1 / 7)
+    assert every["unconservative"] == pytest.approx(1 / 11)
     assert every["larger_tilt"] == pytest.approx(2 / 11)
     assert (every["smallest"], every["largest"]) == (1.0, 3.0)
 

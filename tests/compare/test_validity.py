@@ -23,12 +23,11 @@ from rockwobble.compare.studies.validity.limits import (
     cells,
     contrasts,
     damping,
-    first_failing,
     friction,
+    limit_of,
     limits_of,
     needs,
     reached,
-    up_to,
     vertical,
 )
 from rockwobble.compare.studies.validity.plan import (
@@ -40,7 +39,7 @@ from rockwobble.compare.studies.validity.plan import (
     source_of,
 )
 from rockwobble.compare.studies.validity.shaken import FREE, HALVED, RECESS
-from rockwobble.compare.studies.validity.study import PARTS, measure_all, part_named
+from rockwobble.compare.studies.validity.study import PARTS, measure_all
 from rockwobble.models import Cylinder, Run
 from rockwobble.reduced import body, problem
 from rockwobble.reduced.body import Body
@@ -49,7 +48,7 @@ from rockwobble.reduced.exact import _checks
 Tables = Mapping[str, pd.DataFrame]
 # of the transverse inertia: far above every error of an engine, and no other body
 HEAVIER = 1.1
-FAST = [part_named(name) for name in ("free_response", "peaks")]
+FAST = {name: PARTS[name] for name in ("free_response", "peaks")}
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +81,7 @@ def heavier(tables: Tables, tmp_path_factory: pytest.TempPathFactory) -> Tables:
 
 
 def test_every_part_measures_and_every_limit_has_numbers(tables: Tables) -> None:
-    assert set(tables) == {part.name for part in PARTS}
+    assert set(tables) == set(PARTS)
     assert all(len(table) for table in tables.values())
     ring = tables["rings"].query("support == 'ring'")
     assert set(ring[ring["peak"] > 0.0]["motion"]) == {FREE, EL_CENTRO}
@@ -115,16 +114,14 @@ def test_every_limit_rests_on_the_reduced_model_and_the_engine_does_not(
 
 def test_no_record_is_stronger_than_earthquakes_are() -> None:
     for extent in (QUICK, FULL):
-        asked = [
-            inputs["tan_alpha"] * max(inputs["intensities"]) for inputs in part_named("peaks").tasks(extent)
-        ]
+        asked = [inputs["tan_alpha"] * max(inputs["intensities"]) for inputs in PARTS["peaks"].tasks(extent)]
         assert max(asked) <= LARGEST_PEAK
         points = (*extent.record_points, *extent.trace_points)
         assert max(tan_alpha * intensity for tan_alpha, _, intensity in points) <= LARGEST_PEAK
 
 
 def test_quick_is_a_part_of_the_full_report_in_every_respect() -> None:
-    for part in PARTS:
+    for part in PARTS.values():
         quick, full = list(part.tasks(QUICK)), list(part.tasks(FULL))
         assert 0 < len(quick) <= len(full)
         assert sum(part.cost(**task) for task in quick) < sum(part.cost(**task) for task in full)
@@ -151,7 +148,7 @@ def test_over_records_agreement_is_said_where_the_interval_shows_it(
     members = {**tables, "records": pd.DataFrame(rows)}
     found = contrasts(members).set_index(["method", "against"])
     assert found.loc[("recess", RECESS), "verdict"] == verdict
-    # a ring is another system, and is held against itself for how far it has converged
+    # a ring is another system, and is compared with itself for how far it has converged
     assert found.loc[("ring", RECESS), "ratio"] == pytest.approx(2.0)
     assert found.loc[(HALVED, "ring"), "ratio"] == pytest.approx(0.5)
     numbers = limits_of(members)["records"]
@@ -246,7 +243,7 @@ def test_soft_contact_is_told_by_its_damping_and_failures_are_counted(tables: Ta
     assert (numbers["held_up_to"], numbers["left_from"], numbers["failed"]) == (0.002, 0.0098, 1.0)
 
 
-def test_an_ended_run_goes_on_where_it_was_and_finds_the_same(
+def test_an_ended_run_resumes_and_finds_the_same(
     tables: Tables, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(study, "PARTS", FAST)
@@ -257,24 +254,24 @@ def test_an_ended_run_goes_on_where_it_was_and_finds_the_same(
 
     with pytest.raises(KeyboardInterrupt):
         measure_all(TINY, tmp_path / "ended", workers=1, progress=stop)
-    told: list[Progress] = []
-    found = measure_all(TINY, tmp_path / "ended", workers=1, progress=told.append)
-    assert told[0].found == 3
-    told.clear()
-    again = measure_all(TINY, tmp_path / "ended", workers=1, progress=told.append)
-    assert not told  # nothing ran
-    for part in FAST:
-        csv = tables[part.name].to_csv()
-        assert csv == found[part.name].to_csv() == again[part.name].to_csv()
+    events: list[Progress] = []
+    found = measure_all(TINY, tmp_path / "ended", workers=1, progress=events.append)
+    assert events[0].found == 3
+    events.clear()
+    again = measure_all(TINY, tmp_path / "ended", workers=1, progress=events.append)
+    assert not events  # nothing ran
+    for name in FAST:
+        csv = tables[name].to_csv()
+        assert csv == found[name].to_csv() == again[name].to_csv()
 
 
 def test_measures_of_limits() -> None:
     points = np.array([0.1, 0.1, 0.2, 0.2, 0.3])
     holds = np.array([True, True, True, False, True])
-    assert up_to(points, holds) == 0.1  # needs every row of a point
-    assert first_failing(points, holds) == 0.2
-    assert math.isnan(up_to(points, np.zeros(5, bool)))
-    assert math.isnan(first_failing(points, np.ones(5, bool)))
+    assert limit_of(points, holds) == (0.1, 0.2)  # a point needs every row
+    np.testing.assert_equal(limit_of(points, np.zeros(5, bool)), (math.nan, 0.1))
+    np.testing.assert_equal(limit_of(points, np.ones(5, bool)), (0.3, math.nan))
+    np.testing.assert_equal(limit_of(points[:0], holds[:0]), (math.nan, math.nan))
     # what is infinite counts, what is not known does not
     assert reached(np.array([1.0, 2.0, math.inf, math.nan]), 0.6) == 2.0
     assert reached(np.array([1.0, 2.0, math.inf]), 0.9) == math.inf
@@ -284,6 +281,6 @@ def test_a_report_shows_itself_by_figure(tmp_path_factory: pytest.TempPathFactor
     found = tiny_validity(tmp_path_factory.getbasetemp())
     shows_itself(found, "motions ", "peaks 24 rows")
     # as where the records are not installed
-    made_up = replace(found, facts={**found.facts, "records": source_of(["synthetic 1"])})
-    shows_itself(made_up, "motions synthetic records", "peaks 24 rows")
+    synthetic = replace(found, facts={**found.facts, "records": source_of(["synthetic 1"])})
+    shows_itself(synthetic, "motions synthetic records", "peaks 24 rows")
     assert found.plot("slip").axes

@@ -151,7 +151,7 @@ def test_import_loads_no_engine() -> None:
     [
         (
             {"engine": "chrono"},
-            "engine must be one of mujoco, pybullet, dart, drake, exudyn, rapier, got 'chrono'",
+            f"engine must be one of {', '.join(multibody.engine_names())}, got 'chrono'",
         ),
         ({"support": "glued"}, "support must be one of recess, flat, ring in mujoco, got 'glued'"),
         (
@@ -176,7 +176,7 @@ def test_import_loads_no_engine() -> None:
         ({"engine": "pybullet", "impedance": 0.9}, "'impedance' is not a setting of pybullet; allowed are "),
         (
             {"engine": "pybullet", "contact_slop": -1.0},
-            "contact_slop must be at least 0 and at most 0.1, got -1",
+            "contact_slop must be from 0 to 0.1, got -1",
         ),
     ],
 )

@@ -138,7 +138,7 @@ def test_a_step_that_does_not_converge_ends_the_run_in_silence(
         ({"support": "recess"}, "support must be flat in exudyn, got 'recess'"),
         ({"impedance": 0.9}, "'impedance' is not a setting of exudyn; allowed are integrator, "),
         ({"integrator": "RK44"}, "integrator must be one of trapezoidal, generalized-alpha, got 'RK44'"),
-        ({"spectral_radius": 1.1}, "spectral_radius must be at least 0 and at most 1, got 1.1"),
+        ({"spectral_radius": 1.1}, "spectral_radius must be from 0 to 1, got 1.1"),
         ({"relative_tolerance": 0.0}, "relative_tolerance must be above 0 and at most 0.001, got 0"),
         ({"iterations": 0}, "iterations must be a positive whole number, got 0"),
     ],

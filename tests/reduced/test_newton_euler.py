@@ -18,6 +18,7 @@ from rockwobble.reduced.body import Body, body_of
 from rockwobble.reduced.equations import energy, flat_rhs, planar_rhs, recess_rhs
 from rockwobble.reduced.forces import contact_force, derived_quantities, top_force
 from rockwobble.reduced.integration.resisted import RESISTED_FLAT, RESISTED_PLANAR, RESISTED_RECESS
+from rockwobble.reduced.rolling import across_inertia, needed_to_stand, pivot
 
 AGREEMENT = 1e-12  # relative to the terms of each sum; measured 4e-14, and 4e-16 without twist
 DIGITS = 40
@@ -62,7 +63,7 @@ class Sample(NamedTuple):
     ground: tuple[float, float, float]
 
 
-def sample(seed: int, *, twisting: bool, framed: bool = True) -> Sample:
+def sample(seed: int, *, twisting: bool) -> Sample:
     random = np.random.default_rng(seed)
     size, gravity = 10.0 ** random.uniform(-2.0, 2.0), random.uniform(1.0, 30.0)
     inertias = {}
@@ -80,7 +81,7 @@ def sample(seed: int, *, twisting: bool, framed: bool = True) -> Sample:
     phi_rate = random.uniform(-2.0, 2.0) * rate * min(1.0, 0.1 / theta) / min(1.0, 10.0 * theta)
     tau_rate = random.uniform(-1.0, 1.0) * rate if twisting else 0.0
     with mp.workdps(DIGITS):
-        share = 10.0 ** random.uniform(-2.0, 2.0) if framed and seed % 2 else 0.0
+        share = 10.0 ** random.uniform(-2.0, 2.0) if seed % 2 else 0.0
         Lambda, S = momenta(column, share, mp.mpf(theta), mp.mpf(phi_rate), mp.mpf(tau_rate))
     ax, ay, az = random.uniform(-1.0, 1.0, 3) * gravity
     return Sample(
@@ -124,6 +125,17 @@ def momenta_rates(given: Sample, state: State, motion: Motion) -> tuple[Any, Any
 def carried(given: Sample) -> Any:
     """Return the mass that the base carries, over that of the column."""
     return 1 + given.slab.share
+
+
+def resisted(given: Sample, share: float) -> Sample:
+    """Return it with a length of rolling resistance over the base radius, at both ends in a frame."""
+    delta = share * given.body.b
+    return given._replace(body=given.body._replace(delta=delta), column=given.column._replace(delta=delta))
+
+
+def pressed(motion: Motion) -> Any:
+    """Return the normal force on both ends of a column, over its mass."""
+    return motion.force[2] + motion.top[2]
 
 
 def polar(force: Vector, phi: float) -> Vector:
@@ -218,20 +230,20 @@ def test_rolling(seed: int) -> None:
 @pytest.mark.parametrize("recess", [True, False])
 @pytest.mark.parametrize("seed", range(140, 156))
 def test_rolling_resistance(seed: int, recess: bool) -> None:
-    free = sample(seed, twisting=not recess, framed=False)
+    free = sample(seed, twisting=not recess)
     # a length that matters, and contact in most of the samples
-    given = free._replace(body=free.body._replace(delta=(0.01 + 0.5 * (seed % 2)) * free.body.b))
+    given = resisted(free, 0.01 + 0.5 * (seed // 2 % 2))
     body, ground, started = given.body, given.ground, (given.theta, given.omega, given.phi, given.Lambda)
     with mp.workdps(DIGITS):
         state = state_of(given)
-        motion = newton_euler(body, state, vector(*ground), recess=recess)
-        if motion.force[2] <= 0:  # without contact there is no couple
-            motion = newton_euler(free.body, state, vector(*ground), recess=recess)
-            assert motion.force[2] <= 0
+        motion = newton_euler(given.column, state, vector(*ground), recess, given.slab)
+        if pressed(motion) <= 0:  # without contact there is no couple
+            motion = newton_euler(free.column, state, vector(*ground), recess, given.slab)
+            assert pressed(motion) <= 0
         Lambda_rate, S_rate = momenta_rates(given, state, motion)
         scale = scales_of(given, state)
         rolling = mp.sqrt(state.theta_rate**2 + (mp.sin(state.theta) * state.psi_rate) ** 2)
-        power = body.delta * max(motion.force[2], 0) * rolling
+        power = body.delta * max(pressed(motion), 0) * rolling / (1 + 2 * given.slab.share)
         per_power = body.delta * scale.force * rolling
         if recess:
             found = RESISTED_RECESS.derivative(body, (*started, 0.0, 0.0), ground)
@@ -246,24 +258,44 @@ def test_rolling_resistance(seed: int, recess: bool) -> None:
                 (scale.theta, scale.Lambda, scale.moment, per_power),
             )
         found = contact_force(body, *started, given.S, *ground, not recess)
-        expected = (*polar(motion.force, given.phi), motion.moment)
+        expected = (part / carried(given) for part in (*polar(motion.force, given.phi), motion.moment))
         assert_close(found, expected, (scale.force, scale.force, scale.force, scale.moment))
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @pytest.mark.parametrize("seed", range(210, 215))
 def test_rolling_resistance_in_a_plane(seed: int, side: float) -> None:
-    given = sample(seed, twisting=False, framed=False)._replace(Lambda=0.0)
-    body = given.body._replace(delta=0.2 * given.body.b)
+    given = resisted(sample(seed, twisting=False)._replace(Lambda=0.0), 0.2)
+    body = given.body
     omega, ground = 0.5 * side * abs(given.omega), (0.3 * given.ground[0], 0.0, 0.3 * given.ground[2])
     with mp.workdps(DIGITS):
         state = State(mp.mpf(given.theta), mp.mpf(omega), mp.mpf(0), mp.mpf(0), mp.mpf(0))
-        motion = newton_euler(body, state, vector(*ground), recess=True)
-        assert motion.force[2] > 0
+        motion = newton_euler(given.column, state, vector(*ground), True, given.slab)
+        assert pressed(motion) > 0
         found = RESISTED_PLANAR.derivative(body, (given.theta, omega, 0.0, 0.0, side), ground)
-        power = body.delta * motion.force[2] * abs(state.theta_rate)
+        power = body.delta * pressed(motion) * abs(state.theta_rate) / (1 + 2 * given.slab.share)
         scale = scales_of(given, state)
         assert_close((found[1], found[3]), (motion.theta, power), (scale.theta, power))
+
+
+@pytest.mark.parametrize("seed", range(170, 178))
+def test_what_holds_a_body_that_pivots(seed: int) -> None:
+    """Without the couple it tilts and rolls away as the couple would have to hold it."""
+    given = sample(seed, twisting=True)
+    body, s, c = given.body, np.sin(given.theta), np.cos(given.theta)
+    rate = float(np.sqrt(body.g / body.h))
+    with mp.workdps(DIGITS):
+        state = State(mp.mpf(given.theta), mp.mpf(0), mp.mpf(given.phi), mp.mpf(rate), mp.mpf(0))
+        kinetic = kinetic_energy(given.column, state, given.slab.share) / (1 + 2 * given.slab.share)
+        motion = newton_euler(given.column, state, vector(*given.ground), False, given.slab)
+        inertia = pivot(body, s, c)[0]
+        assert_close((inertia,), (2 * kinetic / state.phi_rate**2,), (body.A,))
+        vertical = body.g + given.ground[2]
+        found = needed_to_stand(body, given.theta, given.phi, rate, vertical, given.ground, True)
+        across = -across_inertia(body, s, c, True) * mp.sin(state.theta) * motion.psi
+        size = body.A * scales_of(given, state).theta + rate**2 * body.A
+        # the inertia of what rolls and pivots is a quotient of what may nearly cancel
+        assert_close(found, (-body.A * motion.theta, across), (size, 1e3 * size))
 
 
 @pytest.mark.parametrize("seed", range(200, 210))

@@ -12,7 +12,8 @@ from scipy.integrate import quad
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, WobblingFrame, el_centro_1940
 from rockwobble.reduced.body import Body, body_of
-from rockwobble.reduced.rolling import impact_ratio
+from rockwobble.reduced.equations import flat_rhs
+from rockwobble.reduced.rolling import impact_ratio, momenta_of, needed_to_stand, twist_share
 
 G = 9.81
 BODIES = {
@@ -20,6 +21,7 @@ BODIES = {
     "slender": Cylinder(semidiagonal=6.0, tan_alpha=0.1),
     "squat": Cylinder(semidiagonal=0.5, tan_alpha=1.5),
     "inertias": Cylinder(semidiagonal=2.0, tan_alpha=0.4, transverse_inertia=1.2, axial_inertia=0.3),
+    "frame": WobblingFrame(Cylinder(semidiagonal=3.0, tan_alpha=0.3), 2.0),
 }
 SMALL = 1e-6  # delta over b, at which a loss is of first order to 1e-5
 
@@ -30,8 +32,11 @@ def released(cylinder: Cylinder, length: float, spin: float = 0.0, duration: flo
 
 
 def lost_by_load(body: Body, tilt: float) -> float:
-    """Return the integral of N over the tilt from rest at `tilt` to upright, of the motion without loss."""
-    b, h = body.b, body.h
+    """Return the integral of N over the tilt from rest at `tilt` to upright, of the motion without loss.
+
+    N is that on both ends of a column, whose mass centre has mu times the inertia of the load.
+    """
+    b, h, mu = body.b, body.h, body.mu
 
     def rate_squared(theta: float) -> float:
         fall = math.sin(0.5 * (tilt - theta)) * 2.0
@@ -41,7 +46,7 @@ def lost_by_load(body: Body, tilt: float) -> float:
     def normal(theta: float) -> float:
         s, c = math.sin(theta), math.cos(theta)
         acceleration = -body.g * (b * c - h * s) / body.A
-        return body.g + (b * c - h * s) * acceleration - (b * s + h * c) * rate_squared(theta)
+        return body.g + mu * ((b * c - h * s) * acceleration - (b * s + h * c) * rate_squared(theta))
 
     return float(quad(normal, 0.0, tilt, epsrel=1e-12)[0])
 
@@ -58,7 +63,7 @@ def test_the_loss_of_a_swing_from_rest(cylinder: Cylinder) -> None:
     body = body_of(cylinder, G)
     b, tilt = body.b, 0.5 * cylinder.alpha
     potential = G * (b * math.sin(tilt) - 2.0 * body.h * math.sin(0.5 * tilt) ** 2)
-    load, at_pass = 2.0 * b * lost_by_load(body, tilt) / potential, 4.0 * b * b / body.A
+    load, at_pass = 2.0 * b * lost_by_load(body, tilt) / potential, 4.0 * body.mu * b * b / body.A
     if cylinder is BODIES["h = 2b"]:
         assert (round(load, 3), round(at_pass, 3)) == (2.262, 0.608)
     case = released(cylinder, SMALL * b, duration=10.0 / body.p)
@@ -94,12 +99,13 @@ def test_an_impact_loses_what_delta_of_b_does_to_first_order() -> None:
     assert slope == pytest.approx(4.0, abs=0.2)  # both lose 2 b^2/A, and differ by its square
 
 
+@pytest.mark.parametrize("kind", ["h = 2b", "frame"])
 @pytest.mark.parametrize("restitution", [1.0, 0.9])
-def test_what_the_couple_takes_of_an_impact(restitution: float) -> None:
-    body = body_of(BODIES["h = 2b"], G, 0.02)
+def test_what_the_couple_takes_of_an_impact(restitution: float, kind: str) -> None:
+    body = body_of(BODIES[kind], G, 0.02)
     before = 0.7
     after = impact_ratio(body, restitution) * before
-    impulse = body.b * (before + after)
+    impulse = body.mu * body.b * (before + after)
     assert body.A * (restitution * before - after) == pytest.approx(
         body.delta * impulse, rel=1e-14
     )  # rounding
@@ -124,8 +130,9 @@ def test_the_energy_of_a_run_is_accounted_for(model: str, restitution: float | s
         options |= {"restitution": restitution}
     motion = el_centro_1940().scaled(2.0)
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    for length in (0.0, 0.01 * cylinder.base_radius):
-        case = Case(cylinder, motion, duration=12.0, rolling_resistance=length)
+    small = 0.01 * cylinder.base_radius
+    for body, length in ((cylinder, 0.0), (cylinder, small), (WobblingFrame(cylinder, 2.0), small)):
+        case = Case(body, motion, duration=12.0, rolling_resistance=length)
         trace = reduced.simulate(case, sample_step=1e-3, rtol=1e-9, **options)
         work = work_of_ground(trace, motion, options.get("plane"))
         assert trace.energy_lost[-1] > (0.02 if length else -1.0) * trace.energy.max()
@@ -176,9 +183,10 @@ def ramp(of_threshold: Callable[[float], float], cylinder: Cylinder, duration: f
     return GroundMotion(np.column_stack([along, np.zeros_like(along)]), 0.01)
 
 
+@pytest.mark.parametrize("kind", ["h = 2b", "frame"])
 @pytest.mark.parametrize("plane", [None, 0.0])
-def test_the_couple_delays_uplift(plane: float | None) -> None:
-    cylinder, share = BODIES["h = 2b"], 0.03
+def test_the_couple_delays_uplift(plane: float | None, kind: str) -> None:
+    cylinder, share = BODIES[kind], 0.03
     motion = ramp(lambda t: 2.0 * t, cylinder, 1.0)
     case = Case(cylinder, motion, rolling_resistance=share * cylinder.base_radius)
     trace = reduced.simulate(case, plane=plane)
@@ -186,7 +194,7 @@ def test_the_couple_delays_uplift(plane: float | None) -> None:
     begin = trace.time > trace.uplift_time
     time = trace.time[begin][:5] - trace.uplift_time
     body = body_of(cylinder, G, case.rolling_resistance)
-    jerk = body.h * 2.0 * G * cylinder.tan_alpha / (body.A + body.delta * body.b)
+    jerk = body.h * 2.0 * G * cylinder.tan_alpha / (body.A + body.delta * body.mu * body.b)
     # of the next term, (p t)^2/20
     assert trace.tilt[begin][:5] == pytest.approx(jerk * time**3 / 6.0, rel=2e-3)
 
@@ -239,6 +247,89 @@ def test_motion_in_space_comes_to_a_standstill_too() -> None:
     assert trace.energy + trace.energy_lost == pytest.approx(trace.energy[0], rel=1e-9)  # rtol
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_the_couple_that_holds_leaves_what_pivots(seed: int) -> None:
+    """It keeps theta' = psi' = 0 by the equations of flat ground, and the moment of the ground is D'' a_t."""
+    random = np.random.default_rng(seed)
+    cylinder = list(BODIES.values())[seed % len(BODIES)]
+    body = body_of(cylinder, G, 0.02 * cylinder.base_radius)
+    tilt, phi, rate = random.uniform(0.05, 1.3), random.uniform(0.0, 6.0), random.normal()
+    a = tuple(random.normal(size=3))
+    s, c = math.sin(tilt), math.cos(tilt)
+    Lambda, S = momenta_of(body, s, c, rate, 0.0)
+    _, free, phi_rate, Lambda_rate, twist_rate, S_rate = flat_rhs(body, tilt, 0.0, phi, Lambda, 0.0, S, *a)
+    assert (phi_rate, twist_rate) == pytest.approx((rate, rate), rel=1e-12)  # rounding, as below
+    tilting, turning = needed_to_stand(body, tilt, phi, rate, G + a[2], a, True)
+    assert free + tilting / body.A == pytest.approx(0.0, abs=1e-12 * (abs(free) + G / body.h))
+    Lambda_rate -= s * turning
+    S_rate += twist_share(body, s, c) * turning
+    assert Lambda_rate * S == pytest.approx(S_rate * Lambda, rel=1e-9, abs=1e-12 * abs(S * Lambda))
+    inertia = body.I1 * s * s + body.I2 * c * c + (body.b * c - body.h * s) ** 2
+    across = a[1] * math.cos(phi) - a[0] * math.sin(phi)
+    assert S_rate / S * rate * inertia == pytest.approx((body.b * c - body.h * s) * across, rel=1e-9)
+
+
+def test_a_cylinder_pivots_on_a_rim_that_the_couple_holds() -> None:
+    """Steadily over still ground; shaken across by D'' a_t/I_v, until the couple gives way."""
+    cylinder = BODIES["h = 2b"]
+    length, duration = 0.05 * cylinder.base_radius, 3.0
+    tilt = cylinder.alpha - 0.5 * math.asin(length / cylinder.semidiagonal)
+    time = np.arange(0.0, duration, 0.01)
+    push = 0.004 * G * np.sin(2.0 * math.pi * time) * (time < 1.0) * np.array([[0.0], [1.0]])
+    motion = GroundMotion(push.T, 0.01)
+    case = Case(cylinder, motion, initial=InitialState(tilt), duration=duration, rolling_resistance=length)
+    trace = reduced.simulate(case, support="flat", rtol=1e-9)
+    assert (trace.outcome, trace.rests) == ("stands", False)
+    assert (trace.tilt == tilt).all()
+    assert np.allclose(trace.twist, trace.rolling_angle, atol=1e-12)  # rounding
+    body = body_of(cylinder, G)
+    s, c = math.sin(tilt), math.cos(tilt)
+    beside = body.b * c - body.h * s
+    inertia = body.I1 * s * s + body.I2 * c * c + beside * beside
+    turned = trace.rolling_angle
+    across = np.interp(trace.time, time, push[1]) * np.cos(turned)
+    rate = np.concatenate([[0.0], np.cumsum(0.5 * (across[1:] + across[:-1]) * np.diff(trace.time))])
+    # the trapezia of the samples are exact but for the turn of the contact in one
+    assert trace.rolling_rate == pytest.approx(beside / inertia * rate, abs=1e-9)
+    assert abs(turned[-1]) > 1e-4
+    assert not trace.energy_lost.any()
+    stronger = Case(
+        cylinder,
+        motion.scaled(20.0),
+        initial=InitialState(tilt),
+        duration=duration,
+        rolling_resistance=length,
+    )
+    exact = reduced.simulate(stronger, support="flat", rtol=1e-12).tilt
+    assert np.ptp(exact) > 0.1 * cylinder.alpha
+    for rtol in (1e-7, 1e-8, 1e-9):
+        error = np.abs(reduced.simulate(stronger, support="flat", rtol=rtol).tilt - exact).max()
+        # what leaves the balance magnifies the error of its first steps
+        assert error / cylinder.alpha < 4.0 * math.exp(body.p * duration) * rtol
+
+
+@pytest.mark.parametrize(
+    ("size", "slenderness", "share", "release"),
+    [
+        (6.19, 0.104, 0.0573, (0.818, 0.0198, 0.0281)),  # pivots in the end
+        (1.4, 2.29, 0.0788, (0.232, 0.302, -1.09)),  # twists as its tilt vanishes
+    ],
+)
+def test_releases_on_flat_ground_come_to_an_end(
+    size: float, slenderness: float, share: float, release: tuple[float, float, float]
+) -> None:
+    cylinder = Cylinder(semidiagonal=size, tan_alpha=slenderness)
+    rate = math.sqrt(G / size)
+    tilt, tilt_rate, spin = release
+    start = InitialState(tilt * cylinder.alpha, tilt_rate=tilt_rate * rate, rolling_rate=spin * rate)
+    length = share * cylinder.base_radius
+    case = Case(cylinder, initial=start, duration=20.0 / rate, rolling_resistance=length)
+    trace = reduced.simulate(case, support="flat")
+    assert trace.outcome == "stands"
+    assert not trace.tilt_rate[-1]
+    assert trace.energy + trace.energy_lost == pytest.approx(trace.energy[0], rel=1e-6)  # 1e2 rtol
+
+
 def test_a_mirror_image_and_another_size_move_alike() -> None:
     cylinder, motion = Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940().scaled(2.0)
     case = Case(cylinder, motion, duration=8.0, rolling_resistance=0.012)
@@ -276,9 +367,3 @@ def test_grids_hold_the_peaks_of_runs(model: str) -> None:
 def test_a_length_is_of_a_contact_within_the_base(length: float) -> None:
     with pytest.raises(ValueError, match="rolling_resistance must be"):
         Case(BODIES["h = 2b"], duration=1.0, rolling_resistance=length)
-
-
-def test_a_frame_has_no_rolling_resistance() -> None:
-    frame = WobblingFrame(BODIES["h = 2b"], 0.5)
-    with pytest.raises(ValueError, match="rolling_resistance must be 0 for a frame"):
-        Case(frame, duration=1.0, rolling_resistance=0.01)

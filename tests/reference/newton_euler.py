@@ -109,9 +109,13 @@ def newton_euler(body: Body, state: State, ground: Vector, recess: bool, slab: S
             add(last, at + 6 + k, -unit)
             add(last + 3, at + 6 + k, -np.cross(top, unit) if slab.places else 0 * unit)
         add(at + 3, at + 9, e_z + axis)
-        # rolling resistance: delta times the upward force, against the horizontal part of the spin
+        # rolling resistance: delta times the upward force, against the horizontal part of the spin; the slab
+        # presses on the top, and the top takes it along
         if body.delta:
-            add(at + 3, at + 5, -body.delta * rolling / mp.sqrt(rolling @ rolling))
+            couple = body.delta * rolling / mp.sqrt(rolling @ rolling)
+            add(at + 3, at + 5, -couple)
+            add(at + 3, at + 8, couple)
+            add(last + 3, at + 8, -couple if slab.places else 0 * couple)
         for i in range(3):
             right[at + i] = (ground + body.g * e_z + known_acceleration)[i]
             right[at + 3 + i] = known_moment[i]

@@ -18,7 +18,7 @@ from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Trace
 from rockwobble.models.trace import lost_trace
-from rockwobble.multibody import available_engines
+from rockwobble.multibody import available_engines, engine_names
 from rockwobble.multibody.engines.registry import engine_packages, standard_engines
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages import page
@@ -100,7 +100,7 @@ BAD = {
     ),
     "unknown engine": (
         ["--engine", "bullet"],
-        "engine must be one of mujoco, pybullet, dart, drake, exudyn, rapier, got 'bullet'",
+        f"engine must be one of {', '.join(engine_names())}, got 'bullet'",
     ),
     "no uplift": (
         ["--engine", "exudyn", "--support", "flat"],

@@ -19,7 +19,7 @@ from rockwobble.compare.studies.spectrum.maps import (
     SPATIAL,
     TiltMaps,
     record_frame,
-    safe_islands,
+    safe_gaps,
     tilt_maps,
 )
 from rockwobble.compare.studies.spectrum.study import KIND, OverturningSpectrum, planar_contrast
@@ -36,7 +36,7 @@ SAME_RUN = 1e-6
 SVG_LIMIT = 500_000  # bytes; the smallest page that a slow line still loads at once
 SMALL = ["--semidiagonal", "0.5:20:4", "--intensity", "1:9:8"]
 PAGES = {"spectrum.md", "spectrum.html", "spectrum.svg"}
-TABLES = {"spectrum", "record", "lowest", "islands", "contrast", "checked"}
+TABLES = {"spectrum", "record", "lowest", "gaps", "contrast", "checked"}
 
 
 def call(*arguments: str) -> int:
@@ -129,7 +129,7 @@ def spectrum() -> TiltMaps:
 def said(found: TiltMaps, checked: pd.DataFrame | None = None, **columns: object) -> str:
     """Return the words of the page of a spectrum; `columns` stand in the table of the lowest."""
     lowest = found.lowest_frame().assign(**({"confirmed": True} | columns))
-    tables = {"lowest": lowest, "islands": safe_islands(found), "contrast": planar_contrast(found)}
+    tables = {"lowest": lowest, "gaps": safe_gaps(found), "contrast": planar_contrast(found)}
     tables["checked"] = pd.DataFrame({"agrees": [True], "sensitive": [False]}) if checked is None else checked
     tables |= {"spectrum": found.to_frame(), "record": record_frame(found.motion)}
     console = Console(file=io.StringIO(), width=100_000)
@@ -140,13 +140,13 @@ def said(found: TiltMaps, checked: pd.DataFrame | None = None, **columns: object
 def test_the_headline_counts_what_is_missed(spectrum):
     falls = {name: spectrum.overturned(name) for name in SERIES}
     planar = falls["planar_x"] | falls["planar_y"]
-    missed = 100.0 * (falls[SPATIAL] & ~planar).mean()
-    overcalled = 100.0 * (planar & ~falls[SPATIAL]).mean()
-    assert 1.0 < missed < 10.0
-    assert 1.0 < overcalled < 10.0
+    unconservative = 100.0 * (falls[SPATIAL] & ~planar).mean()
+    conservative = 100.0 * (planar & ~falls[SPATIAL]).mean()
+    assert 1.0 < unconservative < 10.0
+    assert 1.0 < conservative < 10.0
     words = said(spectrum)
     assert f"overturns in {100.0 * falls[SPATIAL].mean():.0f} % of 144 cells" in words
-    assert f"unconservative in {missed:.1f} %, conservative in {overcalled:.1f} %" in words
+    assert f"unconservative in {unconservative:.1f} %, conservative in {conservative:.1f} %" in words
 
 
 def test_failed_cells_are_counted_and_left_out(spectrum):
@@ -190,7 +190,7 @@ def with_safe(found: TiltMaps, cells: list[tuple[int, int]]) -> TiltMaps:
         ([(2, 5), (2, 6), (4, 8)], "2 at 2 of 12 sizes, the widest from 6.00 to 7.00"),
     ],
 )
-def test_islands_are_counted_and_spanned_as_one_says_it(spectrum, cells, words):
+def test_gaps_are_counted_and_spanned_as_one_says_it(spectrum, cells, words):
     assert words in said(with_safe(spectrum, cells))
 
 

@@ -61,9 +61,9 @@ class Kills:
 def trial_grid(sizes: int) -> Grid:
     """Return a grid of 80 runs for each size, small enough to be swept many times."""
     return Grid(
-        semidiagonals=np.linspace(0.5, 30.0, sizes),
+        semidiagonals=np.linspace(0.5, 30.0, sizes).tolist(),
         tan_alphas=[0.1, 0.2],
-        scales=np.linspace(0.5, 6.0, 40),
+        scales=np.linspace(0.5, 6.0, 40).tolist(),
         motions=[el_centro_1940()],
     )
 

@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 import pandas as pd
@@ -53,6 +53,25 @@ from .trust import BAND_STEP, Trust, Verification, band_of, predicted, spread_fr
 
 KIND = "advice"
 _VERTICAL_COUNT = 20  # pairs of copies with and without the vertical component
+
+
+class Response(TypedDict):
+    """Facts of the run of the reduced model as given: times in s, tilts in alpha, demands as in `demands_of`.
+
+    diagnostics are their codes; end is that of the run or of the fall, tolerance that of an agreement.
+    """
+
+    outcome: str
+    diagnostics: list[str]
+    uplift_time: float
+    peak_tilt: float
+    peak_time: float
+    end: float
+    in_one_plane: bool
+    largest_normal_force: float
+    slip: float
+    lost: float
+    tolerance: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -121,9 +140,9 @@ class Advice(Results, kind=KIND):
         return cylinder_of(self.facts["cylinder"])
 
     @property
-    def response(self) -> Mapping[str, Any]:
+    def response(self) -> Response:
         """Facts of the run of the reduced model as given."""
-        found: Mapping[str, Any] = self.facts["response"]
+        found: Response = self.facts["response"]
         return found
 
     @property
@@ -140,12 +159,12 @@ class Advice(Results, kind=KIND):
     @property
     def moves(self) -> bool:
         """Whether the cylinder ever tilts."""
-        return math.isfinite(self.response["uplift_time"]) and self.response["outcome"] != "failed"
+        return _moves(self.response["outcome"], self.response["uplift_time"])
 
     @property
     def overturned(self) -> bool:
         """Whether it overturns as given."""
-        return bool(self.response["outcome"] == "overturned")
+        return self.response["outcome"] == "overturned"
 
     @property
     def copies_differ(self) -> bool:
@@ -155,7 +174,7 @@ class Advice(Results, kind=KIND):
     @property
     def peak(self) -> float:
         """Largest tilt of the case as given [alpha]."""
-        return float(self.response["peak_tilt"])
+        return self.response["peak_tilt"]
 
     def top(self, tilt: float) -> float:
         """Return the displacement of the top at a tilt [alpha], infinite where it overturns [m]."""
@@ -164,8 +183,7 @@ class Advice(Results, kind=KIND):
     @property
     def lowest_factor(self) -> float:
         """Lowest scale of the ground motion found to overturn; NaN where none is."""
-        factors = self.lowest["factor"].to_numpy(float)[self.lowest["series"] == SPATIAL]
-        return float(factors[0]) if len(factors) else math.nan
+        return float(self.lowest["factor"][self.lowest["series"] == SPATIAL].max())
 
     @property
     def beside(self) -> tuple[float, float]:
@@ -189,7 +207,7 @@ class Advice(Results, kind=KIND):
         shaken, friction = facts["motion"] is not None, facts["friction"]
         worst = self.groups.max(numeric_only=True)
         spread = not math.isnan(worst["lost_95"])
-        lacking = {name: worst[f"{name}_95"] if spread else response[name] for name in ("slip", "lost")}
+        slip, lost = (worst["slip_95"], worst["lost_95"]) if spread else (response["slip"], response["lost"])
         slides = friction is not None and friction < self.cylinder.tan_alpha and response["uplift_time"] > 0.0
         found: dict[str, Grade] = {
             "overturning": grade_overturning(
@@ -199,12 +217,12 @@ class Advice(Results, kind=KIND):
                 tested=len(self.lowest) > 0 or (not shaken and self.copies_differ),
             ),
             "friction": grade_share(
-                0.0 if friction is None else lacking["slip"],
+                0.0 if friction is None else slip,
                 asked=friction is not None,
                 tested=spread,
                 slides=slides,
             ),
-            "contact": grade_share(lacking["lost"], tested=spread),
+            "contact": grade_share(lost, tested=spread),
             "trace": grade_trace(self.trust.kind, tested=self.copies_differ),
         }
         if shaken and not self.overturned:
@@ -280,25 +298,25 @@ def advise(
         if trace.time[-1] > case.length:
             case = _to_the_fall(case, float(trace.time[-1]))
             trace = simulate_run(case, model)
-    failed = trace.outcome == "failed"
-    moves = math.isfinite(trace.uplift_time) and not failed
+    moves = _moves(trace.outcome, trace.uplift_time)
     copies: list[Trace] = []
     others: list[Trace] = []
-    drawn: dict[str, Any] = {"perturbation": plan.perturbation, "seed": plan.seed}
     with stage(f"{plan.copies} perturbed copies"):
         if moves:  # in this process: other ones take longer to begin than hundreds of reduced runs
-            cases = perturbed_copies(case, plan.copies, **drawn)
+            cases = perturbed_copies(case, plan.copies, perturbation=plan.perturbation, seed=plan.seed)
             copies = [simulate_run(each, model) for each in cases]
             others = [simulate_run(each, other, sample_step=BAND_STEP) for each in cases]
         rows = [*member_rows(COPIES, copies), *member_rows(OTHER, others)]
     with stage("other records as strong, and planar analysis"):
-        records, source = ({}, "") if failed else other_records(case)
+        records, source = ({}, "") if trace.outcome == "failed" else other_records(case)
         for name, cases in records.items():
             rows += member_rows(name, (simulate_run(each, model) for each in cases))
         planar = planar_runs(records[VELOCITY], model.support) if records else pd.DataFrame()
     with stage("other scales of the ground motion"):
         scales, lowest = scan_scales(case, model.support)
-        vertical = vertical_effect(case, model, **drawn) if records else None
+        vertical = None
+        if records:
+            vertical = vertical_effect(case, model, perturbation=plan.perturbation, seed=plan.seed)
     prediction, verification, engine = predicted(case, trace, run), None, None
     if run is not None:
         with stage(str(run)):
@@ -337,17 +355,23 @@ def advise(
         "vertical": vertical,
         "records": source,
         "doubts": doubts_of([case.motion]),
-        **drawn,
+        "perturbation": plan.perturbation,
+        "seed": plan.seed,
         "inputs": inputs,
     }
     return advice_of(tables, facts)
 
 
-def advice_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, Any]) -> Advice:
+def advice_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, object]) -> Advice:
     """Return the advice of its runs, with the tables that are concluded from them."""
-    groups = group_table(tables["members"])
-    demands = demand_table(groups, cylinder_of(facts["cylinder"]), facts["gravity"], facts["support"])
-    return Advice(tables={**tables, "groups": groups, "demands": demands}, facts=facts)
+    found = Advice(tables=tables, facts=facts)
+    groups = group_table(found.members)
+    demands = demand_table(groups, found.cylinder, found.facts["gravity"], found.facts["support"])
+    return dataclasses.replace(found, tables={**tables, "groups": groups, "demands": demands})
+
+
+def _moves(outcome: str, uplift_time: float) -> bool:
+    return math.isfinite(uplift_time) and outcome != "failed"
 
 
 def _differ(groups: pd.DataFrame) -> bool:
@@ -356,12 +380,11 @@ def _differ(groups: pd.DataFrame) -> bool:
 
 
 def _samples(trace: Trace | None, alpha: float) -> pd.DataFrame:
-    if trace is None:
-        return pd.DataFrame({"time": np.empty(0), "tilt": np.empty(0)})
-    return pd.DataFrame({"time": trace.time, "tilt": trace.tilt / alpha})
+    time, tilt = np.empty((2, 0)) if trace is None else (trace.time, trace.tilt / alpha)
+    return pd.DataFrame({"time": time, "tilt": tilt})
 
 
-def _problem(case: Case) -> dict[str, Any]:
+def _problem(case: Case) -> dict[str, object]:
     """Facts of a case, without the samples of its motion."""
     motion, cylinder = case.motion, case.cylinder
     shaking = motion and {
@@ -383,9 +406,8 @@ def _problem(case: Case) -> dict[str, Any]:
     }
 
 
-def _response(trace: Trace) -> dict[str, Any]:
-    """Facts of the run as given; tilts in alpha."""
-    moves = math.isfinite(trace.uplift_time) and trace.outcome != "failed"
+def _response(trace: Trace) -> Response:
+    moves = _moves(trace.outcome, trace.uplift_time)
     assumed = trace.assumptions_until(fall_of(trace)) if moves else None
     own = demands_of(trace)
     return {
@@ -395,7 +417,7 @@ def _response(trace: Trace) -> dict[str, Any]:
         "peak_tilt": trace.peak_tilt / trace.case.cylinder.alpha,
         "peak_time": trace.peak_time,
         "end": float(trace.time[-1]),
-        "in_one_plane": moves and not np.any(trace.rolling_rate),
+        "in_one_plane": moves and not trace.rolling_rate.any(),
         "largest_normal_force": assumed.largest_normal_force if assumed else math.nan,
         "slip": own["slip"],
         "lost": own["lost"],
@@ -419,30 +441,25 @@ def vertical_effect(case: Case, model: Run, *, perturbation: float, seed: int) -
     if not motion.has_vertical:
         record = el_centro_1940(vertical=True)
         record = record.scaled(motion.peak / record.peak)
-    shaken = dataclasses.replace(case, motion=record, duration=case.duration if motion.has_vertical else None)
-    cases = perturbed_copies(shaken, _VERTICAL_COUNT, perturbation=perturbation, seed=seed)
-    flat = [dataclasses.replace(each, motion=_horizontal(each.motion)) for each in cases]
-    found = _contrast(
-        *([simulate_run(each, model, sample_step=1.0) for each in part] for part in (cases, flat))
-    )
+    duration = case.duration if motion.has_vertical else None
+    runs = []
+    for each in (record, GroundMotion(record.acceleration[:, :2], record.time_step, record.name)):
+        shaken = dataclasses.replace(case, motion=each, duration=duration)
+        copies = perturbed_copies(shaken, _VERTICAL_COUNT, perturbation=perturbation, seed=seed)
+        runs.append([simulate_run(copy, model, sample_step=1.0) for copy in copies])
+    found = _contrast(*runs)
     if found is None or not found.compared:
         return None
     return {"given": motion.has_vertical, "record": record.name, **ratios_of(found)}
 
 
-def _horizontal(motion: GroundMotion | None) -> GroundMotion:
-    assert motion is not None
-    return GroundMotion(motion.acceleration[:, :2], motion.time_step, motion.name)
-
-
 def _contrast(traces: Sequence[Trace], against: Sequence[Trace]) -> Contrast | None:
-    peaks, others = (np.array([trace.peak_tilt for trace in part]) for part in (traces, against))
-    fell, fell_there = (
-        np.array([trace.outcome == "overturned" for trace in part]) for part in (traces, against)
-    )
-    if np.count_nonzero(np.isfinite(peaks) & np.isfinite(others)) < 2:
+    both = (traces, against)
+    peaks = [np.array([trace.peak_tilt for trace in part]) for part in both]
+    fell = [np.array([trace.outcome == "overturned" for trace in part]) for part in both]
+    if np.count_nonzero(np.isfinite(peaks).all(axis=0)) < 2:
         return None
-    return contrast(peaks, others, fell, fell_there)
+    return contrast(*peaks, *fell)
 
 
 def _to_the_fall(case: Case, end: float) -> Case:

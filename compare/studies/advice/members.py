@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 import pandas as pd
@@ -24,7 +24,7 @@ from rockwobble.models.support import support_named
 from rockwobble.multibody.ring import rim_overhang
 
 from ...metrics.statistics import Contrast, Interval, quantile_interval, share_interval, stated
-from ..fragility.intensity import largest_resultant, velocity
+from ..fragility import intensity
 
 Array = NDArray[np.float64]
 
@@ -34,8 +34,10 @@ _SEED = 1  # of synthetic ground motions where the records are not installed
 # what is not exceeded in 99 % of the moving time leaves out the spikes of the nearest passes
 SPIKES = 0.01
 _QUANTILES = {"05": 0.05, "50": 0.5, "95": 0.95}
-_BASE, _TOP = ("friction", "shear", "force"), ("top_friction", "top_shear", "top_force")
-# demands of a run, of which there are percentiles over the members; those at the top only in a frame
+# demands of a run at its base and, in a frame, at the top, with their units
+_BASE = {"friction": "-", "shear": "weights", "force": "weights"}
+_TOP = {f"top_{name}": unit for name, unit in _BASE.items()}
+# those of which there are percentiles over the members
 DEMANDS = (*_BASE, *_TOP, "moment", "slip", "lost")
 
 
@@ -60,20 +62,20 @@ def demands_of(trace: Trace) -> dict[str, float]:
         a force of one weight, where nothing moves.
     """
     moving = (trace.tilt > 0.0) & (trace.time <= fall_of(trace))
-    ends = {_BASE: (trace.contact_force, trace.friction_needed)}
+    ends = [(_BASE, trace.contact_force, trace.friction_needed)]
     if trace.case.cylinder.slab_mass_ratio > 0.0:
-        ends[_TOP] = (trace.top_contact_force, trace.top_friction_needed)
+        ends.append((_TOP, trace.top_contact_force, trace.top_friction_needed))
     found: dict[str, float] = {}
     if not moving.any():
-        for names in ends:
+        for names, *_ in ends:
             found |= dict(zip(names, (0.0, 0.0, 1.0), strict=True))
         return found | {"moment": 0.0, "slip": 0.0, "lost": 0.0}
     lengths = np.diff(trace.time, append=trace.time[-1])[moving]
-    lost, slips = np.zeros(len(lengths), dtype=bool), np.zeros(len(lengths), dtype=bool)
-    for names, (force, friction) in ends.items():
+    lost, slips = np.zeros((2, len(lengths)), dtype=bool)
+    for names, force, friction in ends:
         x, y, normal = force[moving].T
         values = (friction[moving], np.hypot(x, y), normal)
-        found |= {name: _usual(each) for name, each in zip(names, values, strict=True)}
+        found |= dict(zip(names, map(_usual, values), strict=True))
         lost |= normal <= 0.0
         slips |= friction[moving] > trace.case.friction
     found["moment"] = _usual(np.abs(trace.restraining_moment[moving]) / trace.case.cylinder.base_radius)
@@ -107,7 +109,7 @@ def top_displacement(cylinder: Cylinder, tilt: ArrayLike) -> Array:
 
 def peak_velocity(motion: GroundMotion) -> float:
     """Return the peak horizontal resultant of the ground velocity [m/s], of the record without its mean."""
-    return largest_resultant(velocity(motion, centred=True))
+    return intensity.largest_resultant(intensity.velocity(motion, centred=True))
 
 
 def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
@@ -119,20 +121,15 @@ def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
     motion = case.motion
     if motion is None or motion.peak == 0.0 or case.is_release:
         return {}, ""
-    source = "synthetic" if p695.missing_packages() else "p695"
-    motions = (
-        synthetic_motions(p695.PAIRS, peak=motion.peak, seed=_SEED)
-        if source == "synthetic"
-        else far_field_motions(peak=motion.peak)
-    )
-    own = peak_velocity(motion)
-    scaled = {
-        ACCELERATION: motions,
-        VELOCITY: [each.scaled(own / peak_velocity(each)) for each in motions],
-    }
+    if p695.missing_packages():
+        source, motions = "synthetic", synthetic_motions(p695.PAIRS, peak=motion.peak, seed=_SEED)
+    else:
+        source, motions = "p695", far_field_motions(peak=motion.peak)
+    velocity = peak_velocity(motion)
+    as_fast = [each.scaled(velocity / peak_velocity(each)) for each in motions]
     return {
         name: [dataclasses.replace(case, motion=each, duration=None, name=each.name) for each in found]
-        for name, found in scaled.items()
+        for name, found in ((ACCELERATION, motions), (VELOCITY, as_fast))
     }, source
 
 
@@ -183,33 +180,28 @@ def group_table(members: pd.DataFrame) -> pd.DataFrame:
     of `DEMANDS` the percentiles _05, _50 and _95. NaN where too few runs differ, see `stated`.
     """
     rows = []
-    demands = [name for name in DEMANDS if name in members.columns]
+    numbers = ["peak_tilt", *(name for name in DEMANDS if name in members.columns)]
     for group, runs in members[members["group"] != OTHER].groupby("group", sort=False):
         known = runs[runs["outcome"] != "failed"]
+        fell = known["outcome"] == "overturned"
         # of records that differ none move alike, but many not at all
-        motion = known[["peak_tilt", *demands]]
-        single = len(known) > 1 and known["peak_tilt"].min() > 0.0 and motion.nunique().max() == 1
-        failed, counted = len(runs) - len(known), int((known["outcome"] == "overturned").sum())
+        single = len(known) > 1 and known["peak_tilt"].min() > 0.0 and known[numbers].nunique().max() == 1
         chance = Interval(value=math.nan, low=math.nan, high=math.nan)
         if not single:
-            chance = share_interval(counted, len(known))
-        known = known[:1] if single else known
-        fell = known["outcome"] == "overturned"
-        numbers: Mapping[str, Array] = {
-            "peak_tilt": known["peak_tilt"].mask(fell, math.inf).to_numpy(float),
-            **{name: known[name].to_numpy(float) for name in demands},
-        }
+            chance = share_interval(int(fell.sum()), len(known))
+        values = known[numbers].assign(peak_tilt=known["peak_tilt"].mask(fell, math.inf))
+        values = values[:1] if single else values
         rows.append(
             {
                 "group": group,
                 "runs": len(runs),
-                "failed": failed,
-                "overturned": counted,
+                "failed": len(runs) - len(known),
+                "overturned": int(fell.sum()),
                 "single": single,
                 **chance.columns("chance"),
                 **{
-                    f"{name}_{label}": quantile_interval(values, share).value
-                    for name, values in numbers.items()
+                    f"{name}_{label}": quantile_interval(values[name].to_numpy(float), share).value
+                    for name in numbers
                     for label, share in _QUANTILES.items()
                 },
             }
@@ -228,19 +220,10 @@ def demand_table(groups: pd.DataFrame, cylinder: Cylinder, gravity: float, suppo
     it, over the lever arm b; wall_height, at which the rim stands out farthest and the force acts; and
     clearance, by which a vertical wall of this height must stand back.
     """
-    rows: list[tuple[str, float, str]] = []
-    if len(groups):
-        worst = groups.max(numeric_only=True)
-        units = ("-", "weights", "weights")
-        rows += [
-            (name, float(worst.get(f"{name}_95", math.nan)), unit)
-            for names in (_BASE, _TOP)
-            for name, unit in zip(names, units, strict=True)
-        ]
-        standing = groups[np.isfinite(groups["peak_tilt_95"])]
-        facts = support_named(support)
-        if facts.guided or facts.walls:
-            rows += _recess(standing, cylinder)
+    worst, facts = groups.max(numeric_only=True), support_named(support)
+    rows = [(name, float(worst.get(f"{name}_95", math.nan)), unit) for name, unit in (_BASE | _TOP).items()]
+    if len(groups) and (facts.guided or facts.walls):
+        rows += _recess(groups[np.isfinite(groups["peak_tilt_95"])], cylinder)
     table = pd.DataFrame(rows, columns=["demand", "value", "unit"])
     arms = {"weights": gravity, "weights × b": gravity * cylinder.base_radius}
     table["per_tonne"] = table["value"] * table["unit"].map(arms).astype(float)
@@ -248,9 +231,9 @@ def demand_table(groups: pd.DataFrame, cylinder: Cylinder, gravity: float, suppo
 
 
 def _recess(standing: pd.DataFrame, cylinder: Cylinder) -> list[tuple[str, float, str]]:
-    if not len(standing):
-        return []
     tilt, b = float(standing["peak_tilt_95"].max()), cylinder.base_radius
+    if math.isnan(tilt):
+        return []
     theta = tilt * cylinder.alpha
     moment = (1.0 + math.cos(theta)) * float(standing["moment_95"].max())
     overhang, height = (b * part for part in rim_overhang(theta))

@@ -6,7 +6,6 @@ import dataclasses
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -87,8 +86,8 @@ def planar_runs(cases: Sequence[Case], support: str = "recess") -> pd.DataFrame:
 def planar_shares(runs: pd.DataFrame) -> list[dict[str, float]]:
     """Return for each scale how often 3D tilts more than both planes, and overturns where neither does.
 
-    Keys: scale; moving, records that uplift in any; larger and missed, counts of these, with the shares
-    larger_share, missed_share and the ends of their intervals (_low, _high).
+    Keys: scale; moving, records that uplift in any; larger and unconservative, counts of these, with
+    the shares NAME_share and the ends of their intervals, NAME_low and NAME_high.
     """
     rows = []
     for scale, group in runs.groupby("scale"):
@@ -97,18 +96,17 @@ def planar_shares(runs: pd.DataFrame) -> list[dict[str, float]]:
         counts = np.isfinite(space) & np.isfinite(planar) & ((space > 0.0) | (planar > 0.0))
         found = {
             "larger": (space > LARGER * planar)[counts],
-            "missed": (overturned(space) & ~overturned(planar))[counts],
+            "unconservative": (overturned(space) & ~overturned(planar))[counts],
         }
         row: dict[str, float] = {"scale": float(str(scale)), "moving": int(counts.sum())}
         for name, which in found.items():
             share = share_interval(int(which.sum()), len(which))
-            ends = {"share": share.value, "low": share.low, "high": share.high}
-            row |= {name: int(which.sum()), **{f"{name}_{end}": value for end, value in ends.items()}}
+            row |= share.columns(name) | {name: int(which.sum()), f"{name}_share": share.value}
         rows.append(row)
     return rows
 
 
-def _in_threads(run: Callable[..., float], *arguments: Sequence[Any] | Array) -> Array:
+def _in_threads(run: Callable[..., float], *arguments: Sequence[object] | Array) -> Array:
     run(*(each[0] for each in arguments))  # compiles, where that is due, once and not in each thread
     return np.array(list(in_threads(run, *arguments)))
 

@@ -135,22 +135,18 @@ def predicted(case: Case, trace: Trace, run: Run | None) -> Prediction:
 def verified(case: Case, run: Run, model: Run) -> tuple[Verification, Prediction, Trace]:
     """Run the engine; what it resolved makes the prediction sharper."""
     found = compare(case, runs=[run], reference=model)
-    row = found.summary.iloc[0]
+    (row,) = found.summary.to_dict("records")
     trace = found.traces[case.name, row["run"]]
     verification = Verification(
-        label=str(row["run"]),
-        version=str(row["engine_version"]),
-        time_step=float(row["time_step"]),
-        outcome=str(row["outcome"]),
-        diagnostics=str(row["diagnostics"]),
-        peak_tilt=float(row["peak_tilt"]),
+        label=row["run"],
+        version=row["engine_version"],
         moves=math.isfinite(trace.uplift_time),
-        agreed_until=float(row["within_tolerance_until"]),
-        diverged=bool(row["left_tolerance"]),
-        divergence=str(row["divergence"]),
+        agreed_until=row["within_tolerance_until"],
+        diverged=row["left_tolerance"],
+        **{name: row[name] for name in ("time_step", "outcome", "diagnostics", "peak_tilt", "divergence")},
     )
-    until, reason = float(row["predicted_until"]), str(row["predicted_by"])
+    until, reason = row["predicted_until"], row["predicted_by"]
     if not math.isfinite(until):  # a run that was lost left none
         return verification, Prediction(length=case.length, reason=""), trace
-    start = float(row["reference_uplift_time"]) if reason else 0.0
+    start = row["reference_uplift_time"] if reason else 0.0
     return verification, Prediction(length=until - start, reason=reason), trace

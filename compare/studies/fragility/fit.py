@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +33,7 @@ TOO_FEW = "too few"  # motions or levels: whatever the curve, it is not stated
 _ITERATIONS, _HALVINGS = 60, 30
 _TOLERANCE = 1e-11  # of a step of Newton's method, in standard deviations of the logarithm of the intensity
 _LEVEL = 1e-9  # slope, in the same, of a share that is the same at all intensities
-_GROUPS = 10  # of a cloud, to hold shares against the curve
+_GROUPS = 10  # of a cloud, to compare shares with the curve
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -142,7 +142,7 @@ def _between(
 
 
 def goodness(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> dict[str, float]:
-    """Hold the shares against a curve that was fitted to them; many intensities are put into groups.
+    """Compare the shares with a curve that was fitted to them; many intensities are put into groups.
 
     Returns
     -------
@@ -263,7 +263,7 @@ def resamples(motions: int, count: int, seed: int) -> Array:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Sample:
-    """The runs of one cylinder by one method, held against one limit.
+    """The runs of one cylinder by one method, and whether they exceed one limit.
 
     Attributes
     ----------
@@ -296,13 +296,8 @@ class Sample:
             return fit_curves(*self.counts(weights))
         size = max(1, _MOST_NUMBERS // self.y.size)
         parts = [fit_curves(*self.counts(weights[i : i + size])) for i in range(0, len(weights), size)]
-        return Curves(
-            centre=np.concatenate([part.centre for part in parts]),
-            low=np.concatenate([part.low for part in parts]),
-            high=np.concatenate([part.high for part in parts]),
-            dispersion=np.concatenate([part.dispersion for part in parts]),
-            kinds=np.concatenate([part.kinds for part in parts]),
-        )
+        names = [each.name for each in fields(Curves)]
+        return Curves(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
 
 
 def expanded_shares(motions: int) -> tuple[float, float]:

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -16,7 +15,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.multibody.scene import default_step
 
-from ...metrics.pair import outcome_of, overturned
+from ...metrics.pair import outcome_of, outcome_of_peak
 from ...runs.choice import require_runnable, run_labels
 from ...runs.execution import all_makers, engine_time, makers_of, run_tables, simulate_run
 from ...runs.progress import ProgressCallback
@@ -25,6 +24,7 @@ from ..plans import FragilityPlan
 from .intensity import intensity, measures_of
 from .tables import CONTACT_LOST
 
+Row = dict[str, float | str]  # of a run
 # The worse plane is no run of its own: of both planes, for each motion, the one that tilts more.
 WORSE_PLANE = "worse-plane"
 _PLANES = {"planar-x": 0.0, "planar-y": 0.5 * math.pi}
@@ -104,8 +104,8 @@ def _method(given: str | Run, restitution: float | str, labels: Iterable[str]) -
     if given == WORSE_PLANE:
         return Method(label=MODELS[given], run=None, of=tuple(MODELS[plane] for plane in _PLANES))
     if given in _PLANES:
-        loss: dict[str, Any] = {} if restitution == 1.0 else {"restitution": restitution}
-        return Method(label=MODELS[given], run=Run(None, "recess", plane=_PLANES[given], **loss))
+        loss = {} if restitution == 1.0 else {"restitution": restitution}
+        return Method(label=MODELS[given], run=Run(None, "recess", None, plane=_PLANES[given], **loss))
     return Method(label=MODELS[given], run=Run(None, given))
 
 
@@ -153,7 +153,7 @@ class Task:
         Of the cylinder and of the method.
     run : Run
     shakings : tuple of Shaking
-    gravity, friction : float
+    gravity, friction, rolling_resistance : float
     contact : bool
         Whether it is asked if a reduced model keeps its contact: that takes its forces.
     """
@@ -165,11 +165,12 @@ class Task:
     shakings: tuple[Shaking, ...]
     gravity: float
     friction: float
+    rolling_resistance: float
     contact: bool
 
     @property
     def title(self) -> str:
-        """Description of the task, for whoever waits."""
+        """Description of the task, for the progress callback."""
         more = f" and {len(self.shakings) - 1} more" if len(self.shakings) > 1 else ""
         first = self.shakings[0]
         scale = f" × {first.scales[0]:.3g}" if len(first.scales) == 1 else ""
@@ -190,6 +191,8 @@ class Task:
     def key(self) -> str:
         """Return the hash of all that the results depend on; names are no part of it."""
         own = {"contact": self.contact, "rtol": _RTOL} if self.run.engine is None else {}
+        if self.rolling_resistance:
+            own["rolling_resistance"] = self.rolling_resistance
         return fingerprint(
             {
                 "cylinder": self.cylinder,
@@ -209,13 +212,13 @@ class Task:
         homogeneous = (own.height, own.transverse_inertia, own.axial_inertia) == (None, None, None)
         return self.run.engine is None and homogeneous and not self.contact
 
-    def rows(self) -> list[dict[str, Any]]:
+    def rows(self) -> list[Row]:
         """Return a row for each motion and factor, in their order."""
         if self._of_peaks:
             return [row for shaking in self.shakings for row in self._peaks(shaking)]
         return [self._row(s.motion, scale) for s in self.shakings for scale in s.scales]
 
-    def _peaks(self, shaking: Shaking) -> list[dict[str, Any]]:
+    def _peaks(self, shaking: Shaking) -> list[Row]:
         from rockwobble import reduced
 
         peaks = reduced.peak_tilts(
@@ -226,20 +229,27 @@ class Task:
             workers=1,  # the processes share the cores already
             gravity=self.gravity,
             slab_mass_ratio=self.cylinder.slab_mass_ratio,
+            rolling_resistance=self.rolling_resistance,
             support=self.run.support,
             **{"rtol": _RTOL, **self.run.settings},
         )[0]
         return [
             {
                 "peak_tilt": float(peak) / self.cylinder.alpha,
-                "outcome": "failed" if math.isnan(peak) else "overturned" if overturned(peak) else "stands",
+                "outcome": outcome_of_peak(float(peak)),
                 "contact_lost": math.nan,
             }
             for peak in peaks
         ]
 
-    def _row(self, motion: GroundMotion, scale: float) -> dict[str, Any]:
-        case = Case(self.cylinder, motion.scaled(scale), gravity=self.gravity, friction=self.friction)
+    def _row(self, motion: GroundMotion, scale: float) -> Row:
+        case = Case(
+            self.cylinder,
+            motion.scaled(scale),
+            gravity=self.gravity,
+            friction=self.friction,
+            rolling_resistance=self.rolling_resistance,
+        )
         run = self.run
         if run.engine is None:
             run = Run(None, run.support, **{"rtol": _RTOL, **run.settings})
@@ -311,7 +321,13 @@ class RunPlan:
         for cylinder in self.cylinders.values():
             for motion in self.motions:
                 self._intensity(motion, cylinder)
-            case = Case(cylinder, self.motions[0], gravity=asked.gravity, friction=asked.friction)
+            case = Case(
+                cylinder,
+                self.motions[0],
+                gravity=asked.gravity,
+                friction=asked.friction,
+                rolling_resistance=asked.rolling_resistance,
+            )
             for method in self.methods:
                 if method.run is not None:
                     require_runnable(case, self._stepped(method.run, cylinder))
@@ -366,6 +382,7 @@ class RunPlan:
                         shakings=(shaking,),
                         gravity=self.options.gravity,
                         friction=self.options.friction,
+                        rolling_resistance=self.options.rolling_resistance,
                         contact=CONTACT_LOST in (self.options.limits or ()),
                     )
                     for shaking in (shakings if run.engine is None else single)
@@ -465,19 +482,18 @@ def run_plan(
 def worse(runs: pd.DataFrame, method: Method) -> pd.DataFrame:
     """Return the rows of a method that is the worse of others: the larger tilt, overturned where one is."""
     parts = [runs[runs["method"] == label].set_index(KEYS) for label in method.of]
-    first = parts[0]
-    others = [part.loc[first.index] for part in parts]
-    peaks = np.column_stack([part["peak_tilt"].to_numpy(float) for part in others])
-    outcomes = np.column_stack([part["outcome"].to_numpy(str) for part in others])
-    lost = np.column_stack([part["contact_lost"].to_numpy(float) for part in others])
-    failed = (outcomes == "failed").any(axis=1)
-    fell = (outcomes == "overturned").any(axis=1)
-    made = first.reset_index()
-    made["method"] = method.label
-    made["peak_tilt"] = peaks.max(axis=1)  # NaN where one failed
-    made["outcome"] = np.where(failed, "failed", np.where(fell, "overturned", outcomes[:, 0]))
-    made["contact_lost"] = lost.max(axis=1)
-    return made
+    of = {name: pd.concat([part[name] for part in parts], axis=1) for name in parts[0]}
+    ends = [(of["outcome"] == name).any(axis=1) for name in ("failed", "overturned")]
+    return (
+        parts[0]
+        .assign(
+            method=method.label,
+            peak_tilt=of["peak_tilt"].max(axis=1, skipna=False),  # NaN where one failed
+            outcome=np.select(ends, ["failed", "overturned"], parts[0]["outcome"]),
+            contact_lost=of["contact_lost"].max(axis=1, skipna=False),
+        )
+        .reset_index()
+    )
 
 
 def _labelled(task: Task, table: pd.DataFrame, plan: RunPlan) -> pd.DataFrame:

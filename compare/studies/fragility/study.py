@@ -33,7 +33,7 @@ from .tables import (
     curves_of,
     efficiency_table,
     fit_table,
-    island_table,
+    gap_table,
     require_limits,
 )
 
@@ -70,7 +70,7 @@ class Fragility(Results, kind=KIND):
         holds the interval of the ratio), verdict for the margin of the facts.
     efficiency : DataFrame
         Dispersion of the first method by each measure, and over that of the best.
-    islands : DataFrame
+    gaps : DataFrame
         Gaps in the overturning region: motions that overturn a cylinder which stands under the same motion
         made stronger, and bias of the median of an analysis that stops at the first overturning.
 
@@ -134,7 +134,7 @@ def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Mapping[str, A
         "curves": curve_table(blocks, fitted, drawn),
         "contrasts": contrast_table(blocks, fitted, drawn, weights, float(facts["margin"])),
         "efficiency": efficiency_table(blocks, blocks.methods[0], weights),
-        "islands": island_table(blocks, weights),
+        "gaps": gap_table(blocks, weights),
     }
     levels = points.groupby("cylinder")[blocks.measure].nunique()
     if len(blocks.motions) < FEWEST or levels.min() < FEWEST_LEVELS:
@@ -148,7 +148,7 @@ def _counts_alone(tables: Mapping[str, pd.DataFrame]) -> dict[str, pd.DataFrame]
     fitted = fits.columns.difference([*_COUNTED, "kind", "extrapolated"])
     fits[fitted] = float("nan")
     return {"fits": fits} | {
-        name: tables[name].iloc[:0] for name in ("curves", "contrasts", "efficiency", "islands")
+        name: tables[name].iloc[:0] for name in ("curves", "contrasts", "efficiency", "gaps")
     }
 
 
@@ -177,18 +177,16 @@ def main_contrasts(found: Fragility) -> dict[str, list[Row]]:
 def _question(methods: Mapping[str, Mapping[str, Any]], method: str, against: str) -> tuple[str, bool]:
     """Return the question that a pair answers, and whether the pair is the other way round; "" for none."""
     one, other = methods[method], methods[against]
-    engines = one["engine"], other["engine"]
-    if engines == (None, None) and "planar" in (one["support"], other["support"]):
-        recess = [each["support"] == "recess" for each in (one, other)]
-        return ("planar", recess[0]) if any(recess) else ("", False)
+    engines, supports = ([each[name] for each in (one, other)] for name in ("engine", "support"))
     if engines[0] == engines[1]:
-        recess = [each["support"] == "recess" for each in (one, other)]
-        return ("support", recess[0]) if recess[0] != recess[1] else ("", False)
+        recess = [support == "recess" for support in supports]
+        question = "planar" if engines[0] is None and "planar" in supports else "support"
+        return (question, recess[0]) if recess[0] != recess[1] else ("", False)
     if None in engines:
         turned = engines[0] is None
         model, engine = (method, other) if turned else (against, one)
         return ("engine", turned) if engine["own_model"] == model else ("", False)
-    return ("engine", False) if one["support"] == other["support"] else ("", False)
+    return ("engine", False) if supports[0] == supports[1] else ("", False)
 
 
 def _inverted(row: Row) -> Row:
@@ -241,7 +239,8 @@ def fragility(
         Name of the set of motions.
     **options
         Of `FragilityPlan`: measure, one of `MEASURES`; levels (stripes) or scales (a cloud); limits, of
-        `LIMITS`; period [s], margin, resamples, seed, restitution, step_factor, friction, gravity [m/s^2].
+        `LIMITS`; period [s], margin, resamples, seed, restitution, step_factor, friction, gravity
+        [m/s^2], rolling_resistance [m].
 
     Returns
     -------
@@ -275,7 +274,7 @@ def fragility(
     return fragility_of(runs, plan.points, facts)
 
 
-def _facts(plan: RunPlan) -> dict[str, Any]:
+def _facts(plan: RunPlan) -> dict[str, object]:
     asked = plan.options
     named = ("measure", "period", "margin", "resamples", "seed", "gravity", "friction", "step_factor")
     return {
@@ -290,11 +289,12 @@ def _facts(plan: RunPlan) -> dict[str, Any]:
         "scales": list(plan.scales) if asked.levels is None else None,
         "limits": list(DEFAULT_LIMITS if asked.limits is None else require_limits(asked.limits)),
         **{name: getattr(asked, name) for name in named},
+        **({"rolling_resistance": asked.rolling_resistance} if asked.rolling_resistance else {}),
         "inputs": fingerprint([(task.name, task.label, task.key()) for task in plan.tasks()]),
     }
 
 
-def _described(method: Method, methods: Sequence[Method]) -> dict[str, Any]:
+def _described(method: Method, methods: Sequence[Method]) -> dict[str, object]:
     return {
         "support": method.support,
         "engine": method.run.engine if method.run is not None else None,

@@ -12,7 +12,6 @@ import itertools
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -269,7 +268,7 @@ def contrast_table(
     Of the same motions: a run that failed by one method leaves out that of the other, and both curves are of
     the same resamples. Rows of the cylinder "all" are geometric means of the ratios over the cylinders.
     """
-    rows: list[dict[str, Any]] = []
+    rows: list[dict[str, float | str]] = []
     pairs = itertools.combinations(blocks.methods, 2)
     for limit, (against, method) in itertools.product(blocks.limits, pairs):
         about = {"limit": limit, "method": method, "against": against}
@@ -307,7 +306,7 @@ def _differences(pair: Sequence[Curves]) -> Array:
         )
 
 
-def contrast_row(found: Array, drawn: Array, motions: int, margin: float) -> dict[str, Any]:
+def contrast_row(found: Array, drawn: Array, motions: int, margin: float) -> dict[str, float | str]:
     """Return the contrast of two curves.
 
     Parameters
@@ -340,12 +339,12 @@ def curves_of(blocks: Blocks, weights: Array | None = None) -> dict[Key, Curves]
     return {key: blocks.sample(*key).curves(weights) for key in blocks.known_keys()}
 
 
-def island_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
-    """Return, for each cylinder and method, how many motions have islands and what stopping early does.
+def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
+    """Return, for each cylinder and method, how many motions have gaps and what stopping early does.
 
-    The columns: motions, with_islands (of these), runs, islands (runs that overturn while a stronger one
-    stands), median of all levels and median_incremental, and bias, the second over the first, with the
-    interval of the same resamples.
+    The columns: motions, motions_with_gaps (of these), runs, runs_below_gaps (those that overturn while a
+    stronger one stands), median of all levels and median_incremental, and bias, the second over the first,
+    with the interval of the same resamples.
     """
     rows = []
     motions = len(blocks.motions)
@@ -362,15 +361,15 @@ def island_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
             # of the same counts the same curve, wherever it lies
             same = (stopped.counts(weights)[2] == sample.counts(weights)[2]).all(axis=1)
             low, high = (np.where(same, 0.0, end) for end in (low, high))
-        found = islands(sample.y)
+        found = below_gaps(sample.y)
         rows.append(
             {
                 "cylinder": cylinder,
                 "method": method,
                 "motions": motions,
-                "with_islands": int(found.any(axis=1).sum()),
+                "motions_with_gaps": int(found.any(axis=1).sum()),
                 "runs": int((~np.isnan(sample.y)).sum()),
-                "islands": int(found.sum()),
+                "runs_below_gaps": int(found.sum()),
                 "median": float(np.exp(whole.centre[0])),
                 "median_incremental": float(np.exp(early.centre[0])),
                 **interval(value, low, motions, above=high).exponential().columns("bias"),
@@ -379,7 +378,7 @@ def island_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def islands(y: Array) -> NDArray[np.bool_]:
+def below_gaps(y: Array) -> NDArray[np.bool_]:
     """Return where a run (R, S) overturns while the same motion, stronger, leaves the cylinder standing.
 
     Parameters

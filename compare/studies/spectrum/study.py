@@ -31,7 +31,7 @@ from .maps import (
     TiltMaps,
     maps_of,
     record_frame,
-    safe_islands,
+    safe_gaps,
     series_options,
     tilt_maps,
 )
@@ -48,8 +48,8 @@ CONTRAST_COLUMNS: dict[str, str] = {
     "cells": "cells of the band, those with a failed run left out",
     "overturned": "share of cells in which the 3D model overturns",
     "planar_overturned": "share in which at least one planar run overturns",
-    "missed": "share in which the 3D model overturns and neither planar run does",
-    "overcalled": "share in which at least one planar run overturns and the 3D model does not",
+    "unconservative": "share in which the 3D model overturns and neither planar run does",
+    "conservative": "share in which at least one planar run overturns and the 3D model does not",
     "larger_tilt": "share in which the 3D model tilts more than both planar runs",
     "lower_edge": "share of sizes whose lowest found to overturn is lower in 3D than in both planes",
     "higher_edge": "share of sizes whose lowest found to overturn is higher in 3D than in a plane",
@@ -126,8 +126,8 @@ def _row(spectrum: TiltMaps, group: NDArray[np.intp]) -> dict[str, object]:
         "cells": int(known.sum()),
         "overturned": _share(space),
         "planar_overturned": _share(planar),
-        "missed": _share(space & ~planar),
-        "overcalled": _share(planar & ~space),
+        "unconservative": _share(space & ~planar),
+        "conservative": _share(planar & ~space),
         "larger_tilt": _share(tilt > np.maximum(tilt_x, tilt_y)),
         "lower_edge": _share(difference < 0.0),
         "higher_edge": _share(difference > 0.0),
@@ -235,6 +235,7 @@ def _single(spectrum: TiltMaps, series: str, i: int, scale: float) -> float:
             ),
             spectrum.motion.scaled(scale),
             gravity=spectrum.gravity,
+            rolling_resistance=spectrum.rolling_resistance,
         ),
         rtol=CHECK_RTOL,
         rest_tilt=spectrum.rest_tilt,
@@ -254,7 +255,7 @@ def tables_of(spectrum: TiltMaps) -> dict[str, pd.DataFrame]:
         "spectrum": spectrum.to_frame(),
         "record": record_frame(spectrum.motion),
         "lowest": confirm_lowest(spectrum),
-        "islands": safe_islands(spectrum),
+        "gaps": safe_gaps(spectrum),
         "contrast": planar_contrast(spectrum),
         "checked": check_cells(spectrum),
     }
@@ -271,8 +272,8 @@ class OverturningSpectrum(Results, kind=KIND):
     ----------
     spectrum, lowest : DataFrame
         Cells, and the lowest intensities found to overturn: see `TiltMaps.to_frame` and `confirm_lowest`.
-    islands : DataFrame
-        Gaps in the overturning region, see `safe_islands`.
+    gaps : DataFrame
+        Gaps in the overturning region, see `safe_gaps`.
     contrast : DataFrame
         Planar analysis beside three dimensions by bands of sizes, the columns of `CONTRAST_COLUMNS`.
     checked : DataFrame
@@ -300,8 +301,8 @@ class OverturningSpectrum(Results, kind=KIND):
         return {
             "cells": int(every["cells"]),
             "share that overturns in 3D": float(every["overturned"]),
-            "share that overturns in 3D and in neither plane": float(every["missed"]),
-            "share that overturns in a plane and not in 3D": float(every["overcalled"]),
+            "share that overturns in 3D and in neither plane": float(every["unconservative"]),
+            "share that overturns in a plane and not in 3D": float(every["conservative"]),
         }
 
     def _said(self) -> dict[str, str]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from math import cos, sin
@@ -23,6 +23,7 @@ from scipy.integrate import solve_ivp
 from rockwobble import reduced
 from rockwobble.models import Case, GroundMotion, Run, Trace
 from rockwobble.models.diagnostic import joined
+from rockwobble.models.support import SUPPORTS
 from rockwobble.multibody.engines.registry import engine_facts, find_engine, own_engines
 from rockwobble.reduced.solution import Solution
 
@@ -38,16 +39,16 @@ TOLERANCE_SCALE = np.array([1e-3, 1e-3, 1.0, 1e-3])
 _SWING = 10.0  # of sqrt(R/g): for which a swing is followed past the end
 _AFTER_UPLIFT = 2e-3  # [s]
 _INSTANT = 1e-9  # of motion, for the momentum of a release [s]
-# of the recess model as it comes: every computing time is told as a multiple of its own
+# the recess model as it comes: every computing time is a multiple of its own
+BASE = Run(None, "recess")
+BASE_LINE = str(BASE)
 BASE_TOLERANCE = 1e-8
-BASE_LINE = "recess model"
 REST_PANEL = "rest threshold"
 _TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11)
-# what a held contact time constant is: that of the default settings at a step of 1e-3 s [s]
-_HELD = 2e-3
+# what a fixed contact time constant is: that of the default settings at a step of 1e-3 s [s]
+_FIXED = 2e-3
 _CHEAP = 5e-5  # [s] of a step: of such an engine the finest steps are worth their time
 _DOUBLE = 2.0**-53  # rounding of double precision
-_SUPPORTS = ("recess", "flat", "ring")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -58,20 +59,23 @@ class MethodResult:
     said: str = ""
 
 
+Solve = Callable[[Case], MethodResult]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Method:
     """One point of one line.
 
     Attributes
     ----------
-    line : str
-        What is the same at all its points.
-    family : str
-        "reduced", "scipy" or the name of an engine.
     support : {"recess", "flat", "ring"}
         Whose answer is the reference.
     panel : {"methods", "rest threshold", "scipy", "integrator", "contact"}
         What the line is compared with: all kinds of methods, or the variants of one.
+    family : str
+        "reduced", "scipy" or the name of an engine.
+    line : str
+        What is the same at all its points.
     knob : {"tolerance", "time step"}
     value : float
         Of the knob; the smaller the more accurate.
@@ -79,13 +83,13 @@ class Method:
         (case) -> MethodResult. This is what is timed.
     """
 
-    line: str
-    family: str
     support: str
     panel: str
+    family: str
+    line: str
     knob: str
     value: float
-    solve: Callable[[Case], MethodResult]
+    solve: Solve
 
     @property
     def base(self) -> bool:
@@ -98,23 +102,32 @@ def methods_for(problem: Problem, *, quick: bool = False) -> list[Method]:
     return [*_reduced(problem, quick), *_scipy(problem, quick), *_engines(problem, quick)]
 
 
+def _line(
+    line: str,
+    family: str,
+    solved: Mapping[float, Solve],
+    *,
+    panel: str = "methods",
+    support: str = BASE.support,
+    knob: str = "tolerance",
+) -> Iterator[Method]:
+    """Yield the points of a line, of which `solved` has the solution by the value of its knob."""
+    for value, solve in solved.items():
+        yield Method(
+            support=support, panel=panel, family=family, line=line, knob=knob, value=value, solve=solve
+        )
+
+
 def _reduced(problem: Problem, quick: bool) -> Iterator[Method]:
     tolerances = sorted({*(_TOLERANCES[1::2] if quick else _TOLERANCES), BASE_TOLERANCE}, reverse=True)
-    lines = [("methods", Run(None, "recess")), ("methods", Run(None, "flat"))]
-    if problem.name != "turn":  # on still ground nothing comes to rest
-        lines += [(REST_PANEL, Run(None, "recess", rest_tilt=at)) for at in (FINE_REST_TILT, 1e-5, 0.1)]
-    for panel, run in lines:
-        rest_tilt = run.settings.get("rest_tilt", reduced.REST_TILT)
-        for rtol in tolerances:
-            yield Method(
-                line=str(run) if panel == "methods" else rest_line(rest_tilt),
-                family="reduced",
-                support=run.support,
-                panel=panel,
-                knob="tolerance",
-                value=rtol,
-                solve=partial(_by_model, problem, run.support, rtol, rest_tilt),
-            )
+    for run in (BASE, Run(None, "flat")):
+        solve = partial(_by_model, problem, run.support, reduced.REST_TILT)
+        solved = {rtol: partial(solve, rtol) for rtol in tolerances}
+        yield from _line(str(run), "reduced", solved, support=run.support)
+    # on still ground nothing comes to rest
+    for rest_tilt in () if problem.name == "turn" else (FINE_REST_TILT, 1e-5, 0.1):
+        solved = {rtol: partial(_by_model, problem, BASE.support, rest_tilt, rtol) for rtol in tolerances}
+        yield from _line(rest_line(rest_tilt), "reduced", solved, panel=REST_PANEL)
 
 
 def rest_line(rest_tilt: float) -> str:
@@ -122,7 +135,7 @@ def rest_line(rest_tilt: float) -> str:
     return f"rest threshold {rest_tilt:g}"
 
 
-def _by_model(problem: Problem, support: str, rtol: float, rest_tilt: float, case: Case) -> MethodResult:
+def _by_model(problem: Problem, support: str, rest_tilt: float, rtol: float, case: Case) -> MethodResult:
     # not by a `Run`, which has forces computed that nobody asks for here
     trace = reduced.simulate(
         case, support=support, rtol=rtol, rest_tilt=rest_tilt, sample_step=problem.sample_step
@@ -140,23 +153,8 @@ def _scipy(problem: Problem, quick: bool) -> Iterator[Method]:
     for language, compiled in languages.items():
         rates = {case.name: start_of(case, compiled=compiled) for case in problem.cases}
         for name in SOLVERS:
-            for rtol in tolerances:
-                yield Method(
-                    line=f"{name}, {language}",
-                    family="scipy",
-                    support="recess",
-                    panel="scipy",
-                    knob="tolerance",
-                    value=rtol,
-                    solve=partial(_by_scipy, problem, name, rates, rtol),
-                )
-
-
-def _by_scipy(
-    problem: Problem, name: SolverName, rates: Mapping[str, Rates], rtol: float, case: Case
-) -> MethodResult:
-    quantity = solve(problem, case, name, rates[case.name], rtol)
-    return MethodResult(quantity=quantity, said="" if quantity.size else "gave up, or jumped over upright")
+            solved = {rtol: partial(_by_scipy, problem, name, rates, rtol) for rtol in tolerances}
+            yield from _line(f"{name}, {language}", "scipy", solved, panel="scipy")
 
 
 def _engines(problem: Problem, quick: bool) -> Iterator[Method]:
@@ -165,10 +163,12 @@ def _engines(problem: Problem, quick: bool) -> Iterator[Method]:
         # in single precision a step below the default gains nothing: a line of its own would say only that
         if known.facts.rounding > _DOUBLE or (problem.name != "turn" and not known.uplifts):
             continue
-        for support in (each for each in _SUPPORTS if each in known.supports and each in problem.references):
-            all_steps = known.facts.step_time < _CHEAP and support != "ring"
-            steps = problem.steps if all_steps else problem.few_steps
-            yield from _line(problem, f"{engine} {support}", "methods", engine, support, steps, {})
+        for support in SUPPORTS.values():
+            if support.name in known.supports and support.name in problem.references:
+                all_steps = known.facts.step_time < _CHEAP and not support.walls
+                steps = problem.steps if all_steps else problem.few_steps
+                runs = {step: Run(engine, support.name, step) for step in steps}
+                yield from _engine_line(problem, f"{engine} {support.name}", "methods", runs)
         if problem.name != "peaks" and known.facts.contact_time:
             yield from _variants(problem, engine, quick)
 
@@ -179,37 +179,23 @@ def _variants(problem: Problem, engine: str, quick: bool) -> Iterator[Method]:
     for given in facts.alternatives.values():
         name = given.get("integrator")
         if name == "RK4" or (name and not quick):
-            yield from _line(problem, name, "integrator", engine, "recess", steps, given)
-    held = {facts.contact_time: _HELD}
-    yield from _line(problem, f"contact time {_HELD:g} s", "contact", engine, "recess", steps, held)
+            runs = {step: Run(engine, BASE.support, step, **given) for step in steps}
+            yield from _engine_line(problem, str(name), "integrator", runs)
+    times = {f"contact time {_FIXED:g} s": dict.fromkeys(steps, _FIXED)}
     for count in (20.0,) if quick else (4.0, 20.0):
-        line = f"contact time {count:g} steps"
-        yield from _line(problem, line, "contact", engine, "recess", steps, {}, count)
+        times[f"contact time {count:g} steps"] = {step: count * step for step in steps}
+    for line, contact in times.items():
+        runs = {
+            step: Run(engine, BASE.support, step, **{facts.contact_time: time})
+            for step, time in contact.items()
+        }
+        yield from _engine_line(problem, line, "contact", runs)
 
 
-def _line(
-    problem: Problem,
-    line: str,
-    panel: str,
-    engine: str,
-    support: str,
-    steps: Sequence[float],
-    settings: Mapping[str, object],
-    contact_steps: float = math.nan,
-) -> Iterator[Method]:
-    for step in steps:
-        contact = (
-            {engine_facts(engine).contact_time: contact_steps * step} if math.isfinite(contact_steps) else {}
-        )
-        yield Method(
-            line=line,
-            family=engine,
-            support=support,
-            panel=panel,
-            knob="time step",
-            value=step,
-            solve=partial(_by_engine, problem, Run(engine, support, step, **settings, **contact)),
-        )
+def _engine_line(problem: Problem, line: str, panel: str, runs: Mapping[float, Run]) -> Iterator[Method]:
+    run = next(iter(runs.values()))
+    solved = {step: partial(_by_engine, problem, each) for step, each in runs.items()}
+    yield from _line(line, str(run.engine), solved, panel=panel, support=run.support, knob="time step")
 
 
 def _by_engine(problem: Problem, run: Run, case: Case) -> MethodResult:
@@ -257,7 +243,7 @@ def start_of(case: Case, *, compiled: bool) -> Rates:
 def rates_of(case: Case, *, compiled: bool) -> RatesFunction:
     """Return the equations of a case, (t, y) -> y', as plain Python or compiled."""
     motion = case.motion or GroundMotion(np.zeros((2, 2)), case.length)
-    # still ground for the swing that goes on at the end, and a sample more for the last stage of a solver
+    # still ground for the swing at the end, and a sample more for the last stage of a solver
     beyond = math.ceil(_SWING / (motion.time_step * math.sqrt(9.81 / case.cylinder.semidiagonal))) + 2
     padded = np.vstack([motion.acceleration[:, :2], np.zeros((beyond, 2))])
     # numbers of Python are quicker than those of an array, where nothing compiles
@@ -301,9 +287,17 @@ def _departure(case: Case) -> float:
     return max(float(run.time[last + 1]), run.uplift_time + _AFTER_UPLIFT)
 
 
+def _by_scipy(
+    problem: Problem, name: SolverName, rates: Mapping[str, Rates], rtol: float, case: Case
+) -> MethodResult:
+    quantity = solve(problem, case, name, rates[case.name], rtol)
+    return MethodResult(quantity=quantity, said="" if quantity.size else "gave up, or jumped over upright")
+
+
 def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: float) -> Array:
     """Return the answer to a problem by one of `SOLVERS`; nothing where it gave up or jumped over upright."""
-    step, reference = problem.sample_step, problem.references["recess"].quantities[0]
+    integrate = partial(solve_ivp, rates.function, method=name, rtol=rtol, atol=rtol * TOLERANCE_SCALE)
+    step, reference = problem.sample_step, problem.references[BASE.support].quantities[0]
     times = step * np.arange(math.ceil(rates.start / step), math.floor(rates.end / step) + 2)
     times = times[: int(np.searchsorted(times, rates.end + 1e-9))]
     sampled = problem.name == "shaken"
@@ -316,15 +310,11 @@ def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: fl
 
     turns_back.direction, overturns.terminal = -1.0, True  # type: ignore[attr-defined]
     with np.errstate(all="ignore"):
-        run = solve_ivp(
-            rates.function,
+        run = integrate(
             (rates.start, rates.end),
             rates.state,
-            name,
             t_eval=np.minimum(times, rates.end) if sampled else None,
             events=None if sampled else (turns_back, overturns),
-            rtol=rtol,
-            atol=rtol * TOLERANCE_SCALE,
         )
     if not run.success or not np.isfinite(run.y).all() or run.y[0].min() < 0.0:
         return np.empty(0)
@@ -335,17 +325,8 @@ def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: fl
     if problem.name == "turn":  # the release is a maximum itself
         return np.asarray(np.degrees(np.abs(maxima[instants > 0.1][:1, 2] - rates.state[2])))
     peak = max(float(run.y[0].max()), float(maxima[:, 0].max(initial=0.0)))
-    if run.status == 0:  # it moves, and swings on to its next maximum
+    if run.status == 0:  # it moves, and swings to its next maximum
         turns_back.terminal = True  # type: ignore[attr-defined]
         span = rates.end, rates.end + _SWING / math.sqrt(9.81 / case.cylinder.semidiagonal)
-        swing = solve_ivp(
-            rates.function,
-            span,
-            run.y[:, -1],
-            name,
-            events=turns_back,
-            rtol=rtol,
-            atol=rtol * TOLERANCE_SCALE,
-        )
-        peak = max(peak, float(swing.y[0].max()))
+        peak = max(peak, float(integrate(span, run.y[:, -1], events=turns_back).y[0].max()))
     return np.array([min(peak / case.cylinder.alpha, 1.0)])

@@ -1,4 +1,4 @@
-"""The problems on which methods are held against each other, and what an error is in each.
+"""The problems on which methods are compared, and what an error is in each.
 
 One cylinder in all of them, R = 6 m and tan(alpha) = 0.2, so that computing times may be compared:
 
@@ -7,8 +7,8 @@ One cylinder in all of them, R = 6 m and tan(alpha) = 0.2, so that computing tim
   passes away from upright: as recorded they come so close that the trace is a matter of chance;
 * peaks: many synthetic ground motions; distance of the distributions of peak tilt.
 
-A method is held against the answer for its own support: that of a reduced model, or of a ring of walls, which
-no reduced model knows, the same engine at half of the finest step of its line.
+The reference of a method is the answer for its own support: that of a reduced model or, between walls, which
+no reduced model has, that of the same engine at half of the finest step of its line.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from rockwobble.models import (
     synthetic_motions,
     with_motions,
 )
+from rockwobble.models.support import SUPPORTS, Support
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 
 from ...runs.execution import simulate_run
@@ -38,7 +39,7 @@ from ...runs.execution import simulate_run
 Array = NDArray[np.float64]
 
 # of the tight solutions, and a rest rule a hundred times finer than the default: without any a cylinder
-# that just uplifts chatters at upright without end, and there is no solution to hold a method against
+# that just uplifts chatters at upright without end, and there is no solution to compare with
 TIGHT = 1e-12
 FINE_REST_TILT = 1e-10
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -120,18 +121,9 @@ def turn(*, quick: bool = False) -> Problem:
     """Return the problem of the angle of turn, whose answer in a recess is exact, by quadrature."""
     release = InitialState(0.5 * PIER.alpha, rolling_rate=0.1)
     exact = math.degrees(reduced.angle_of_turn(PIER, release))
-    return _answered(
-        Problem(
-            name="turn",
-            cases=[Case(PIER, initial=release, duration=_TURN_LENGTH, name="release at alpha/2")],
-            sample_step=_TURN_LENGTH,
-            steps=_STEPS[:3] if quick else _STEPS,
-            few_steps=_STEPS[:2] if quick else _STEPS[:5],
-            quantity=_angle_of_turn,
-            distance=_largest,
-            references={"recess": Reference(quantities=[np.array([exact])], doubt=0.0, source="exact")},
-        )
-    )
+    case = Case(PIER, initial=release, duration=_TURN_LENGTH, name="release at alpha/2")
+    references = {"recess": Reference(quantities=[np.array([exact])], doubt=0.0, source="exact")}
+    return _single("turn", case, _TURN_LENGTH, _angle_of_turn, references, quick=quick)
 
 
 def shaken(*, quick: bool = False) -> Problem:
@@ -139,16 +131,30 @@ def shaken(*, quick: bool = False) -> Problem:
     motion = el_centro_1940().scaled(_FACTOR)
     uplift = reduced.simulate(Case(PIER, motion), rtol=TIGHT).uplift_time
     end = _SAMPLE * round((uplift + _AFTER_UPLIFT) / _SAMPLE)
+    case = Case(PIER, motion, duration=end, name=f"{_FACTOR:g} × El Centro")
+    return _single("shaken", case, _SAMPLE, _whole_tilt, {}, quick=quick)
+
+
+def _single(
+    name: str,
+    case: Case,
+    sample_step: float,
+    quantity: Callable[[Trace], Array],
+    references: Mapping[str, Reference],
+    *,
+    quick: bool,
+) -> Problem:
+    """Return the problem of one case, with what is known of its answers."""
     return _answered(
         Problem(
-            name="shaken",
-            cases=[Case(PIER, motion, duration=end, name=f"{_FACTOR:g} × El Centro")],
-            sample_step=_SAMPLE,
+            name=name,
+            cases=[case],
+            sample_step=sample_step,
             steps=_STEPS[:3] if quick else _STEPS,
             few_steps=_STEPS[:2] if quick else _STEPS[:5],
-            quantity=_whole_tilt,
+            quantity=quantity,
             distance=_largest,
-            references={},
+            references=references,
         )
     )
 
@@ -185,21 +191,23 @@ def sampling_distance(problem: Problem, support: str) -> float:
 
 def _answered(problem: Problem) -> Problem:
     """Fill in the answers that have to be computed, and how far they have converged."""
-    pairs = {
-        support: [Run(None, support, rtol=rtol, rest_tilt=FINE_REST_TILT) for rtol in (TIGHT, 10.0 * TIGHT)]
-        for support in ("recess", "flat")
-    }
-    for engine in own_engines():
-        if "ring" in find_engine(engine).supports:
-            finest = min(problem.few_steps)
-            pairs["ring"] = [Run(engine, "ring", step) for step in (0.5 * finest, finest)]
     found = dict(problem.references)
-    for support, runs in pairs.items():
-        if support not in found:
+    for name, support in SUPPORTS.items():
+        runs = _reference_runs(support, min(problem.few_steps))
+        if name not in found and runs:
             best, other = ([_answer(problem, case, run) for case in problem.cases] for run in runs)
-            source = "half_step" if support == "ring" else "tight"
-            found[support] = Reference(quantities=best, doubt=problem.distance(other, best), source=source)
+            source = "tight" if support.modelled else "half_step"
+            found[name] = Reference(quantities=best, doubt=problem.distance(other, best), source=source)
     return replace(problem, references=found)
+
+
+def _reference_runs(support: Support, finest: float) -> list[Run]:
+    """The run whose answer is the reference of a support, and one less tight; none where none can be made."""
+    if support.modelled:
+        tolerances = (TIGHT, 10.0 * TIGHT)
+        return [Run(None, support.name, rtol=rtol, rest_tilt=FINE_REST_TILT) for rtol in tolerances]
+    engines = [engine for engine in own_engines() if support.name in find_engine(engine).supports]
+    return [Run(engine, support.name, step) for engine in engines[-1:] for step in (0.5 * finest, finest)]
 
 
 def _answer(problem: Problem, case: Case, run: Run) -> Array:

@@ -17,13 +17,15 @@ from ...storage.manifest import Number
 from ...storage.results import Results
 from ..plans import TradeoffPlan
 from ..scene_cost import scene_costs
-from .methods import BASE_LINE, REST_PANEL, Method, MethodResult, methods_for, rest_line
+from .methods import BASE, BASE_LINE, REST_PANEL, Method, MethodResult, methods_for, rest_line
 from .problem import FINE_REST_TILT, Problem, problems, sampling_distance
 
 # a run shorter than this is repeated, so that a tick of the clock does not show [s]
 _SHORT = 2e-3
 _REPEATS = 5
 ROUNDS = 3  # of a single case; an ensemble has as many as members
+# attributes of a method that its row has
+_NAMES = ("support", "panel", "family", "line", "knob", "value")
 # in the unit of each problem: errors that are asked for
 TARGETS = {"turn": (0.1, 0.01, 1e-3), "shaken": (1e-2, 1e-3, 1e-4), "peaks": (0.05, 1e-2, 1e-3)}
 # an error that falls with a lower power of the step than this has stopped falling; engines are of first order
@@ -121,12 +123,7 @@ def _points(problem: Problem, methods: list[Method], stage: Stage) -> pd.DataFra
     return pd.DataFrame(
         {
             "problem": problem.name,
-            "support": method.support,
-            "panel": method.panel,
-            "family": method.family,
-            "line": method.line,
-            "knob": method.knob,
-            "value": method.value,
+            **{name: getattr(method, name) for name in _NAMES},
             "ratio": middle[place],
             "ratio_low": low[place],
             "ratio_high": high[place],
@@ -166,14 +163,13 @@ def _load() -> float:
 
 
 def reaches(line: pd.DataFrame, target: float) -> pd.DataFrame:
-    """Return the points of a line below an error that hold it at the next finer value of the knob, too.
+    """Return the points of a line below an error that are so at the next finer value of the knob, too.
 
     An error that happens to be small at one value does not count, but at the finest, which none follows.
     """
     ordered = line.sort_values("value", ascending=False)
     good = (ordered["error"] <= target).to_numpy()
-    held = np.append(good[1:], good[-1:]) if len(good) else good
-    return ordered[good & held]
+    return ordered[good & np.append(good[1:], good[-1:])]
 
 
 def costs(points: pd.DataFrame) -> pd.DataFrame:
@@ -187,14 +183,11 @@ def costs(points: pd.DataFrame) -> pd.DataFrame:
     rows = []
     for (problem, _), chosen in points.groupby(["problem", "support"], sort=False):
         for target in TARGETS[str(problem)]:
-            for _, members in chosen.groupby("family", sort=False):
-                held = pd.concat([reaches(line, target) for _, line in members.groupby("line", sort=False)])
-                rows.append(held.nsmallest(1, "ratio").assign(target=target))
-    found = pd.concat(rows, ignore_index=True)
-    keys = {name: pd.factorize(found[name])[0] for name in ("problem", "support")}
-    return found.assign(**{f"_{name}": codes for name, codes in keys.items()}).sort_values(
-        ["_problem", "_support", "target", "ratio"], ascending=[True, True, False, True], ignore_index=True
-    )[[*points.columns, "target"]]
+            lines = chosen.groupby(["family", "line"], sort=False)
+            good = pd.concat([reaches(line, target) for _, line in lines])
+            cheapest = good.sort_values("ratio", kind="stable").drop_duplicates("family")
+            rows.append(cheapest.assign(target=target))
+    return pd.concat(rows, ignore_index=True)
 
 
 def plateaus(points: pd.DataFrame) -> pd.DataFrame:
@@ -237,9 +230,9 @@ def plateaus(points: pd.DataFrame) -> pd.DataFrame:
 def rest_tilt_price(points: pd.DataFrame) -> pd.DataFrame:
     """Return the savings and the cost of the rest rule: problem, line, value, speed_up, error, error_without.
 
-    Each line is held against the one with next to no rule at the same tolerance.
+    Each line is compared with the one with next to no rule at the same tolerance.
     """
-    reduced = points[(points["family"] == "reduced") & (points["support"] == "recess")]
+    reduced = points[(points["family"] == "reduced") & (points["support"] == BASE.support)]
     none = reduced["line"] == rest_line(FINE_REST_TILT)
     kept = (reduced["line"] == BASE_LINE) | (reduced["panel"] == REST_PANEL)
     columns = ["problem", "line", "value", "ratio", "error"]
@@ -256,6 +249,6 @@ def engine_factors(points: pd.DataFrame) -> tuple[float, float]:
     In computing times of the recess model at its default tolerance, as everywhere.
     """
     found = costs(points)
-    engines = ~found["family"].isin(("reduced", "scipy")) & (found["support"] == "recess")
+    engines = ~found["family"].isin(("reduced", "scipy")) & (found["support"] == BASE.support)
     ratios = found.loc[engines, "ratio"]
     return float(ratios.min()), float(ratios.max())

@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Assumptions, Case, Run, Trace
+from rockwobble.models import Run, Trace
 from rockwobble.multibody import DEFAULT_ENGINE
 
 from ...metrics.pair import make_pair, tilt_rms
 from ...runs.choice import SUPPORTS, own_model
 from ...runs.execution import simulate_run
-from .plan import Extent, Inputs, Part, Row, release_case
+from .plan import RELEASE, Part, Row, grid, named, needs_of, release_case
 
 _RTOL = 1e-10
 _CYCLES = 10.0  # over which the flat-ground model may gather tilt
 _MAXIMUM = 1.0  # in the fourth column of `Trace.extrema`
-
-
-def _free_response_tasks(extent: Extent) -> Iterable[Inputs]:
-    for tan_alpha in extent.tan_alphas:
-        yield {"tan_alpha": tan_alpha, "releases": extent.releases, "spins": extent.spins}
 
 
 def measure_free_response(tan_alpha: float, releases: Sequence[float], spins: Sequence[float]) -> list[Row]:
@@ -30,8 +25,8 @@ def measure_free_response(tan_alpha: float, releases: Sequence[float], spins: Se
 
     The columns: tan_alpha, release, spin; period [s] and turn [rad] from tilt maximum to next maximum, exact
     (recess) and integrated (flat_period, flat_turn; NaN where it overturns first), flat_peak, the
-    largest tilt of the flat-ground model in ten periods over the release; needs of the recess model in one
-    period: friction, least_normal [weights], moment, the restraining moment over weight and base radius.
+    largest tilt of the flat-ground model in ten periods over the release; `needs_of` the recess model in one
+    period.
     """
     return [_row(tan_alpha, release, spin) for release in releases for spin in spins]
 
@@ -42,7 +37,6 @@ def _row(tan_alpha: float, release: float, spin: float) -> Row:
     exact = reduced.free_response(case.cylinder, case.initial)
     flat = reduced.simulate(replace(case, duration=_CYCLES * exact.period), support="flat", rtol=_RTOL)
     period, turn = next_maximum(flat)
-    needs = needs_of(case)
     return {
         "release": release,
         "spin": spin,
@@ -51,9 +45,7 @@ def _row(tan_alpha: float, release: float, spin: float) -> Row:
         "turn": exact.angle_of_turn,
         "flat_turn": turn,
         "flat_peak": flat.peak_tilt / case.initial.tilt,
-        "friction": needs.largest_friction_needed,
-        "least_normal": needs.least_normal_force,
-        "moment": needs.largest_restraining_moment / case.cylinder.base_radius,
+        **needs_of(reduced.simulate(case, rtol=_RTOL)),
     }
 
 
@@ -65,30 +57,19 @@ def next_maximum(trace: Trace) -> tuple[float, float]:
     return float(maxima[1, 0] - maxima[0, 0]), float(maxima[1, 2] - maxima[0, 2])
 
 
-def needs_of(case: Case) -> Assumptions:
-    """Return the needs of the recess model of ground and recess in a case."""
-    needs = reduced.simulate(case, rtol=_RTOL).assumptions
-    assert needs is not None
-    return needs
-
-
 FREE_RESPONSE = Part(
     name="free_response",
     title="free response, recess against flat ground",
-    tasks=_free_response_tasks,
+    tasks=lambda extent: grid(tan_alpha=extent.tan_alphas, releases=[extent.releases], spins=[extent.spins]),
     measure=measure_free_response,
     keys=("tan_alpha",),
     cost=lambda releases, spins, **_: 0.02 * len(releases) * len(spins),
+    engine="",
 )
 
 
 _VERIFIED_PERIODS = 2.2  # the second maximum, and a little more, so that it is seen to be one
 _FRICTION = 10.0  # whatever the motion needs: friction is another limit
-
-
-def _verification_tasks(extent: Extent) -> Iterable[Inputs]:
-    for tan_alpha, release, spin in extent.engine_points:
-        yield {"tan_alpha": tan_alpha, "release": release, "spin": spin}
 
 
 def measure_verification(tan_alpha: float, release: float, spin: float) -> list[Row]:
@@ -102,18 +83,19 @@ def measure_verification(tan_alpha: float, release: float, spin: float) -> list[
     rows: list[Row] = []
     for support in SUPPORTS:
         trial = Run(DEFAULT_ENGINE, support)
-        own = simulate_run(case, Run(None, own_model(trial).support, rtol=1e-10))
+        own = simulate_run(case, Run(None, own_model(trial).support, rtol=_RTOL))
         run = simulate_run(case, trial)
-        passes, own_passes = run.passes, own.passes
+        none = {"time": math.nan, "angle_of_turn": math.nan, "resolved": False}
+        first, own_first = (next(iter(each.passes.to_dict("records")), none) for each in (run, own))
         rows.append(
             {
                 "support": support,
                 "turn": next_maximum(own)[1],
-                "engine_turn": float(passes["angle_of_turn"].iloc[0]) if len(passes) else math.nan,
-                "half_period": float(own_passes["time"].iloc[0]) if len(own_passes) else math.nan,
-                "engine_half_period": float(passes["time"].iloc[0]) if len(passes) else math.nan,
+                "engine_turn": first["angle_of_turn"],
+                "half_period": own_first["time"],
+                "engine_half_period": first["time"],
                 "tilt_rms": tilt_rms(make_pair(case.cylinder, own, run)),
-                "resolved": bool(passes["resolved"].iloc[0]) if len(passes) else False,
+                "resolved": first["resolved"],
                 "outcome": run.outcome,
             }
         )
@@ -123,20 +105,14 @@ def measure_verification(tan_alpha: float, release: float, spin: float) -> list[
 VERIFICATION = Part(
     name="verification",
     title="free response in the engine",
-    tasks=_verification_tasks,
+    tasks=lambda extent: named(RELEASE, extent.engine_points),
     measure=measure_verification,
-    keys=("tan_alpha", "release", "spin"),
+    keys=RELEASE,
     cost=lambda **_: 1.5,
-    engine=DEFAULT_ENGINE,
 )
 
 
 _SLIP_PERIODS = 1.1  # one pass: the friction of the next is the same
-
-
-def _slip_tasks(extent: Extent) -> Iterable[Inputs]:
-    for tan_alpha, release, spin in extent.slip_points:
-        yield {"tan_alpha": tan_alpha, "release": release, "spin": spin, "shares": extent.slip_shares}
 
 
 def measure_slip(tan_alpha: float, release: float, spin: float, shares: Sequence[float]) -> list[Row]:
@@ -146,11 +122,11 @@ def measure_slip(tan_alpha: float, release: float, spin: float, shares: Sequence
     period [b], tilt_rms against the recess model over alpha, outcome. No row where the model loses contact:
     no friction is enough.
     """
-    needed = needs_of(release_case(tan_alpha, release, spin)).largest_friction_needed
+    needed = needs_of(reduced.simulate(release_case(tan_alpha, release, spin), rtol=_RTOL))["friction"]
     if not math.isfinite(needed):
         return []
     case = release_case(tan_alpha, release, spin, _SLIP_PERIODS)
-    recess = reduced.simulate(case, rtol=1e-10)
+    recess = reduced.simulate(case, rtol=_RTOL)
     rows: list[Row] = []
     for share in shares:
         run = multibody.simulate(replace(case, friction=share * needed))
@@ -170,9 +146,8 @@ def measure_slip(tan_alpha: float, release: float, spin: float, shares: Sequence
 SLIP = Part(
     name="slip",
     title="the friction at which the engine slips",
-    tasks=_slip_tasks,
+    tasks=lambda extent: named(RELEASE, extent.slip_points, shares=extent.slip_shares),
     measure=measure_slip,
-    keys=("tan_alpha", "release", "spin"),
+    keys=RELEASE,
     cost=lambda shares, **_: 0.5 * len(shares),
-    engine=multibody.DEFAULT_ENGINE,
 )

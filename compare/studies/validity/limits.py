@@ -9,55 +9,22 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockwobble.models.support import SUPPORTS
+
 from ...comparison.prediction import IN_TIME
 from ...metrics.statistics import MARGIN, log_ratios, quantile_interval
 from ..ensemble import contrast_row, pairs
-from .plan import EL_CENTRO
+from .plan import EL_CENTRO, RELEASE
+from .plan import POINT as POINT_NAMES
 from .shaken import FLAT, FREE, HALVED, PERTURBED, RECESS
 
 Tables = Mapping[str, "pd.DataFrame"]
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 Numbers = dict[str, float]
 
-
-def column(table: pd.DataFrame, name: str) -> Array:
-    """Return a column as numbers."""
-    return table[name].to_numpy(dtype=np.float64)
-
-
-def largest(values: Array) -> float:
-    """Return the largest finite value; NaN where there is none."""
-    finite = values[np.isfinite(values)]
-    return float(finite.max()) if len(finite) else math.nan
-
-
-def reached(values: Array, share: float) -> float:
-    """Return a value that a share of all does not exceed, infinite ones included; NaN of nothing."""
-    known = values[~np.isnan(values)]
-    return float(np.quantile(known, share, method="inverted_cdf")) if len(known) else math.nan
-
-
-def up_to(points: Array, holds: NDArray[np.bool_]) -> float:
-    """Return the largest point up to which every point holds; NaN where already the first does not.
-
-    Several rows may share a point; a point holds where all of its rows do.
-    """
-    found = math.nan
-    for point in np.unique(points):
-        if not holds[points == point].all():
-            break
-        found = float(point)
-    return found
-
-
-def first_failing(points: Array, holds: NDArray[np.bool_]) -> float:
-    """Return the smallest point with a row that does not hold; NaN where all do."""
-    failing = points[~holds]
-    return float(failing.min()) if len(failing) else math.nan
-
-
-POINT = ["tan_alpha", "semidiagonal", "intensity"]
-# what is held against what, and its name in the numbers; the last says how far a ring has converged
+POINT = list(POINT_NAMES)
+# two methods that are compared, and the name of their ratio; the last says how far a ring has converged
 _NAMES = {
     ("recess", RECESS): "recess",
     ("ring", RECESS): "ring",
@@ -69,6 +36,54 @@ _NAMES = {
 CONTRASTS = tuple(_NAMES)
 _SHARE = 0.9
 FEWEST = 10  # of fewer motions nine in ten is none short of all
+# [b] in one period: less is the creep of a contact that never lets go
+SLIPPED = 1e-3
+# [weight times base radius]: a tenth of what would tip the cylinder about its rim
+SLIGHT = 0.1
+ALIKE = 0.01  # of period, angle of turn or peak: below what a test on a shake table would see
+SMALL = 0.05  # of the peak tilt: less cannot be told from chance
+# an engine confirms a model if it is nearer to it than this share of the difference of the models
+_CONFIRMS = 0.5
+# and contradicts it where turn or period is off by more than this; the step of an engine errs by less
+_CONTRADICTS = 1e-3
+
+
+def column(table: pd.DataFrame, name: str) -> Array:
+    """Return a column as numbers."""
+    return table[name].to_numpy(dtype=np.float64)
+
+
+def quotient(table: pd.DataFrame, name: str = "peak", by: str = "recess_peak") -> Array:
+    """Return a column over another."""
+    return column(table, name) / column(table, by)
+
+
+def largest(values: Array) -> float:
+    """Return the largest finite value; NaN where there is none."""
+    finite = values[np.isfinite(values)]
+    return float(finite.max()) if len(finite) else math.nan
+
+
+def least(values: Array) -> float:
+    """Return the least finite value; NaN where there is none."""
+    return -largest(-values)
+
+
+def reached(values: Array, share: float) -> float:
+    """Return a value that a share of all does not exceed, infinite ones included; NaN of nothing."""
+    known = values[~np.isnan(values)]
+    return float(np.quantile(known, share, method="inverted_cdf")) if len(known) else math.nan
+
+
+def limit_of(points: Array, holds: Flags) -> tuple[float, float]:
+    """Return the largest point up to which every point holds, and the least that does not.
+
+    Several rows may share a point, which holds where all of its rows do. NaN where already the first does
+    not hold, and where all do.
+    """
+    every = pd.Series(holds).groupby(points).all()
+    held, failing = every.index[every.cummin()], every.index[~every]
+    return float(held.max()), float(failing.min())
 
 
 def contrasts(tables: Tables) -> pd.DataFrame:
@@ -96,7 +111,7 @@ def ratios(runs: pd.DataFrame, method: str, against: str) -> Array:
     return np.exp(pairs(runs, method, against, member="motion", peak="peak").log_ratios())
 
 
-def peak_ratios(tables: Tables) -> Numbers:
+def records(tables: Tables) -> Numbers:
     """Return the range over the points of the contrasts of each method.
 
     NAME_least and NAME_largest, of the median ratio to the recess model; NAME_05_least to NAME_95_largest, of
@@ -111,16 +126,12 @@ def peak_ratios(tables: Tables) -> Numbers:
     }
     for (method, against), name in _NAMES.items():
         own = table[(table["method"] == method) & (table["against"] == against)]
-        numbers |= {
-            **{
-                f"{name}{share}_{end}": float(getattr(own[f"ratio{share}"], call)())
-                for share in ("", "_05", "_95")
-                for end, call in (("least", "min"), ("largest", "max"))
-            },
-            f"{name}_within": float((own["verdict"] == "within").sum()),
-            f"{name}_beyond": float((own["verdict"] == "beyond").sum()),
-        }
-    touched = runs[(runs["method"] == "ring") & (runs["contact_time"] > 0.0)]
+        for share in ("", "_05", "_95"):
+            numbers[f"{name}{share}_least"] = float(own[f"ratio{share}"].min())
+            numbers[f"{name}{share}_largest"] = float(own[f"ratio{share}"].max())
+        for verdict in ("within", "beyond"):
+            numbers[f"{name}_{verdict}"] = float((own["verdict"] == verdict).sum())
+    touched = runs[(runs["method"] != HALVED) & (runs["contact_time"] > 0.0)]
     return numbers | {
         "touched": float(len(touched)),
         "ring_loss_worst": largest(column(touched, "loss")),
@@ -145,37 +156,52 @@ def cells(tables: Tables) -> pd.DataFrame:
     rows = []
     table = tables["peaks"]
     for point, members in table[table["motion"] != EL_CENTRO].groupby(POINT, sort=False):
-        tan_alpha = float(str(point[0]))
-        recess = column(members, "recess")
-        fell = _fell(recess, tan_alpha)
         row = dict(zip(POINT, point, strict=True)) | {
             "members": len(members),
-            "rocked": int((recess > 0.0).sum()),
-            "overturned": float(fell.mean()),
+            "rocked": int((members["recess"] > 0.0).sum()),
+            "overturned": float(_fell(members, "recess").mean()),
         }
         for name in ("flat", "copy"):
-            other = column(members, name)
-            logarithms = log_ratios(other, recess, _fell(other, tan_alpha), fell)
+            logarithms = _changes(members, name)
             logarithms = logarithms[~np.isnan(logarithms)]
-            median = quantile_interval(logarithms, 0.5)
+            median = quantile_interval(logarithms, 0.5).exponential()
             row |= {
-                f"{name}_ratio": math.exp(median.value),
-                f"{name}_low": math.exp(median.low),
-                f"{name}_high": math.exp(median.high),
+                f"{name}_ratio": median.value,
+                f"{name}_low": median.low,
+                f"{name}_high": median.high,
                 f"{name}_90": math.exp(reached(np.abs(logarithms), _SHARE)),
-                f"{name}_overturned": float(_fell(other, tan_alpha).mean()),
+                f"{name}_overturned": float(_fell(members, name).mean()),
             }
         normal = column(members, "least_normal")
         known = normal[~np.isnan(normal)]
         row |= {
             "standing": len(known),
-            "friction_90": _nine_in_ten(column(members, "friction")) / tan_alpha,
+            "friction_90": _nine_in_ten(column(members, "friction")) / members["tan_alpha"].iloc[0],
             "normal_10": -_nine_in_ten(-normal),
             "moment_90": _nine_in_ten(column(members, "moment")),
             "lost": float((known <= 0.0).mean()) if len(known) else math.nan,
         }
         rows.append(row)
     return pd.DataFrame(rows)
+
+
+def _nine_in_ten(values: Array) -> float:
+    """Return what nine in ten of the known values do not exceed; NaN of too few."""
+    enough = np.count_nonzero(~np.isnan(values)) >= FEWEST
+    return reached(values, _SHARE) if enough else math.nan
+
+
+def _fell(table: pd.DataFrame, name: str) -> Flags:
+    """Whether the peaks of a column, over alpha, are those of overturned runs, which end at pi/2."""
+    tilts = column(table, name) * np.arctan(column(table, "tan_alpha"))
+    return np.asarray(tilts >= 0.5 * math.pi * (1.0 - 1e-9))
+
+
+def _changes(table: pd.DataFrame, name: str) -> Array:
+    """Return the logarithms of the peaks of a column over those of the recess model, see `log_ratios`."""
+    return log_ratios(
+        column(table, name), column(table, "recess"), _fell(table, name), _fell(table, "recess")
+    )
 
 
 def single_peaks(tables: Tables) -> Numbers:
@@ -197,40 +223,20 @@ def vertical(tables: Tables) -> Numbers:
     """
     table = tables["peaks"]
     table = table[table["vertical"].notna()]
-    tan_alpha, recess = column(table, "tan_alpha"), column(table, "recess")
-    fell = _fell(recess, tan_alpha)
+    fell = _fell(table, "recess")
     numbers: Numbers = {"cells": float(len(table)), "fell": float(fell.sum())}
     for name in ("vertical", "copy"):
-        other = column(table, name)
-        theirs = _fell(other, tan_alpha)
-        logarithms = log_ratios(other, recess, theirs, fell)
+        theirs, logarithms = _fell(table, name), _changes(table, name)
         # of those that overturn by one alone the ratio is infinite or zero, by both there is none
         numbers |= {
             f"{name}_compared": float((~np.isnan(logarithms)).sum()),
             f"{name}_apart": float((np.abs(logarithms) > math.log1p(MARGIN)).sum()),
-            f"{name}_least": math.exp(-largest(-logarithms)),
+            f"{name}_least": math.exp(least(logarithms)),
             f"{name}_largest": math.exp(largest(logarithms)),
             f"{name}_fell": float(theirs.sum()),
             f"{name}_other": float((theirs != fell).sum()),
         }
     return numbers
-
-
-def _nine_in_ten(values: Array) -> float:
-    """Return what nine in ten of the known values do not exceed; NaN of too few."""
-    enough = np.count_nonzero(~np.isnan(values)) >= FEWEST
-    return reached(values, _SHARE) if enough else math.nan
-
-
-def _fell(peaks: Array, tan_alpha: Array | float) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Whether peaks over alpha are those of overturned runs, which end at pi/2."""
-    return np.asarray(peaks * np.arctan(tan_alpha) >= 0.5 * math.pi * (1.0 - 1e-9))
-
-
-# [b] in one period: less is the creep of a contact that never lets go
-SLIPPED = 1e-3
-# [weight times base radius]: a tenth of what would tip the cylinder about its rim
-SLIGHT = 0.1
 
 
 def needs(tables: Tables) -> pd.DataFrame:
@@ -258,17 +264,16 @@ def needs(tables: Tables) -> pd.DataFrame:
 
 def friction(tables: Tables) -> Numbers:
     """Return the friction needed over tan(alpha), and where the engine slips with less than needed."""
-    free, slip = tables["free_response"], tables["slip"]
-    moving = tables["peaks"][tables["peaks"]["friction"].notna()]
+    slip = tables["slip"]
     share, slipped = column(slip, "share"), column(slip, "slip") > SLIPPED
     slips_at, sticks = largest(share[slipped]), share[~slipped]
     sticks = sticks[~(sticks <= slips_at)]  # what slips at one release does not hold at all
     nearest = slip[share == slips_at]
     return {
-        "free_response": largest(column(free, "friction") / column(free, "tan_alpha")),
-        "shaken": largest(column(moving, "friction") / column(moving, "tan_alpha")),
+        "free_response": largest(quotient(tables["free_response"], "friction", "tan_alpha")),
+        "shaken": largest(quotient(tables["peaks"], "friction", "tan_alpha")),
         "slips_at": slips_at,
-        "holds_from": float(sticks.min()) if len(sticks) else math.nan,
+        "holds_from": least(sticks),
         "tilt_error": largest(column(nearest, "tilt_rms")),
         "slip": largest(column(nearest, "slip")),
     }
@@ -276,86 +281,76 @@ def friction(tables: Tables) -> Numbers:
 
 def contact(tables: Tables) -> Numbers:
     """Return the least normal force [weights], and from which slenderness and intensity contact is lost."""
-    moving = tables["peaks"][tables["peaks"]["least_normal"].notna()]
+    free, moving = tables["free_response"], tables["peaks"].dropna(subset="least_normal")
     tan_alpha, normal = column(moving, "tan_alpha"), column(moving, "least_normal")
-    in_free = column(tables["free_response"], "least_normal")
+    in_free = column(free, "least_normal")
     lost = moving[normal <= 0.0]
-    held = up_to(tan_alpha, normal > 0.0)
-    within = normal[tan_alpha <= held]
+    held, lost_from = limit_of(tan_alpha, normal > 0.0)
     return {
         "held_up_to": held,
-        "lost_from": first_failing(tan_alpha, normal > 0.0),
-        "lost_intensity": float(lost["intensity"].min()) if len(lost) else math.nan,
-        "least_held": float(within.min()) if len(within) else math.nan,
+        "lost_from": lost_from,
+        "lost_intensity": float(lost["intensity"].min()),
+        "least_held": float(moving["least_normal"][tan_alpha <= held].min()),
         "least": float(np.concatenate([normal, in_free]).min()),
         "lost": float(len(lost)),
         "runs": float(len(moving)),
         "free_least": float(in_free.min()),
-        "free_lost_from": first_failing(column(tables["free_response"], "tan_alpha"), in_free > 0.0),
+        "free_lost_from": limit_of(column(free, "tan_alpha"), in_free > 0.0)[1],
     }
 
 
 def restraining_moment(tables: Tables) -> Numbers:
     """Return the restraining moment over weight and base radius."""
-    moving = tables["peaks"][tables["peaks"]["moment"].notna()]
-    tan_alpha, needed = column(moving, "tan_alpha"), column(moving, "moment")
+    moving = tables["peaks"].dropna(subset="moment")
+    needed = column(moving, "moment")
+    slight, heavy = limit_of(column(moving, "tan_alpha"), needed <= SLIGHT)
     return {
         "free_response": largest(column(tables["free_response"], "moment")),
         "shaken": largest(needed),
-        "slight_up_to": up_to(tan_alpha, needed <= SLIGHT),
-        "heavy_from": first_failing(tan_alpha, needed <= SLIGHT),
+        "slight_up_to": slight,
+        "heavy_from": heavy,
     }
 
 
-ALIKE = 0.01  # of period, angle of turn or peak: below what a test on a shake table would see
-SMALL = 0.05  # of the peak tilt: less cannot be told from chance
-# an engine confirms a model if it is nearer to it than this share of the difference of the models
-_CONFIRMS = 0.5
-# and contradicts it where turn or period is off by more than this; the step of an engine errs by less
-_CONTRADICTS = 1e-3
-
-
-def free_passes(tables: Tables) -> Numbers:
+def free_response(tables: Tables) -> Numbers:
     """Return the difference of recess and flat ground in a pass, and the releases that an engine decides."""
     table = tables["free_response"]
-    tan_alpha, turn, flat = (column(table, name) for name in ("tan_alpha", "turn", "flat_turn"))
-    turns = np.abs(flat / turn - 1.0)
-    periods = np.abs(column(table, "flat_period") / column(table, "period") - 1.0)
-    holds = (turns <= ALIKE) & (periods <= ALIKE)
-    worst = table.iloc[int(np.nanargmax(np.abs(flat - turn)))]
-    confirmed, contradicted, points = _decided(tables["verification"])
+    off = np.abs(column(table, "flat_turn") - column(table, "turn"))
+    turns = np.abs(quotient(table, "flat_turn", "turn") - 1.0)
+    periods = np.abs(quotient(table, "flat_period", "period") - 1.0)
+    alike, apart = limit_of(column(table, "tan_alpha"), (turns <= ALIKE) & (periods <= ALIKE))
+    worst = table.iloc[int(np.nanargmax(off))]
     return {
-        "alike_up_to": up_to(tan_alpha, holds),
-        "apart_from": first_failing(tan_alpha, holds),
+        "alike_up_to": alike,
+        "apart_from": apart,
         "turn_largest": largest(turns),
-        "turn_largest_deg": math.degrees(largest(np.abs(flat - turn))),
-        **{f"worst_{name}": float(worst[name]) for name in ("tan_alpha", "release", "spin")},
+        "turn_largest_deg": math.degrees(largest(off)),
+        **{f"worst_{name}": float(worst[name]) for name in RELEASE},
         "period_largest": largest(periods),
         "peak_gain": max(largest(column(table, "flat_peak")) - 1.0, 0.0),
-        "confirmed": confirmed,
-        "contradicted": contradicted,
-        "points": points,
+        **_decided(tables["verification"]),
     }
 
 
-def _decided(table: pd.DataFrame) -> tuple[float, float, float]:
+def _decided(table: pd.DataFrame) -> Numbers:
     """Count the runs that confirm their model, those that contradict it, and all whose pass is resolved."""
-    resolved = table[table["resolved"].astype(bool)]
+    resolved = table.assign(apart=models_apart(table))[table["resolved"].astype(bool)]
     error = np.abs(column(resolved, "engine_turn") - column(resolved, "turn"))
-    limits = models_apart(table)[table["resolved"].to_numpy(bool)]
     turn_off = error / np.abs(column(resolved, "turn"))
-    period_off = np.abs(column(resolved, "engine_half_period") / column(resolved, "half_period") - 1.0)
+    period_off = np.abs(quotient(resolved, "engine_half_period", "half_period") - 1.0)
     contradicts = ~((turn_off <= _CONTRADICTS) & (period_off <= _CONTRADICTS))
-    confirms = ~contradicts & (error < _CONFIRMS * limits)
-    return float(confirms.sum()), float(contradicts.sum()), float(len(resolved))
+    confirms = ~contradicts & (error < _CONFIRMS * column(resolved, "apart"))
+    return {
+        "confirmed": float(confirms.sum()),
+        "contradicted": float(contradicts.sum()),
+        "points": float(len(resolved)),
+    }
 
 
 def models_apart(table: pd.DataFrame) -> Array:
     """Return how far the turns of the recess and of the flat model are apart in the release of each row."""
-    keys = ["tan_alpha", "release", "spin"]
-    models = table.pivot_table("turn", keys, "support", dropna=False)
-    apart = (models["recess"] - models["flat"]).abs()
-    return apart.reindex(table.set_index(keys).index).to_numpy(dtype=np.float64)
+    turns = table.groupby(list(RELEASE))["turn"]
+    return turns.transform(lambda each: np.ptp(each.to_numpy())).to_numpy(dtype=np.float64)
 
 
 def traces(tables: Tables) -> Numbers:
@@ -365,110 +360,100 @@ def traces(tables: Tables) -> Numbers:
     """
     table = tables["following"]
     numbers: Numbers = {"duration": largest(column(table, "duration")), "comparisons": float(len(table))}
-    for name, support, reference in (
-        ("recess", "recess", "recess"),
-        ("flat", "flat", "recess"),
-        ("own", "flat", "flat"),
-    ):
+    compared = {"recess": ("recess", "recess"), "flat": ("flat", "recess"), "own": ("flat", "flat")}
+    for name, (support, reference) in compared.items():
         own = table[(table["support"] == support) & (table["reference_support"] == reference)]
-        peaks = column(own, "peak_tilt") / column(own, "reference_peak_tilt")
+        off = np.abs(quotient(own, "peak_tilt", "reference_peak_tilt") - 1.0)
         numbers |= {
-            name: -largest(-column(own, "agreement_time")),
+            name: least(column(own, "agreement_time")),
             f"{name}_longest": largest(column(own, "agreement_time")),
             f"{name}_runs": float(len(own)),
             f"{name}_whole": float((~own["diverged"].to_numpy(dtype=bool)).sum()),
-            f"{name}_peak_alike": float((np.abs(peaks - 1.0) <= ALIKE).sum()),
-            f"{name}_peak_worst": largest(np.abs(peaks - 1.0)),
+            f"{name}_peak_alike": float((off <= ALIKE).sum()),
+            f"{name}_peak_worst": largest(off),
         }
-    agreed, predicted = column(table, "agreement_time"), column(table, "predicted_agreement_time")
-    early = table["diverged"].to_numpy(dtype=bool) & (agreed * IN_TIME < predicted)
-    return numbers | {"early": float(early.sum())}
+    early = column(table, "agreement_time") * IN_TIME < column(table, "predicted_agreement_time")
+    return numbers | {"early": float((table["diverged"].to_numpy(dtype=bool) & early).sum())}
 
 
 def rings(tables: Tables) -> Numbers:
     """Return the effects of a ring: peaks as ratios, place [b], twist [rad], energy where it is touched."""
     table = tables["rings"]
-    ring, shaken = table["support"] == "ring", table["motion"] != FREE
-    touched = table[ring & (table["contact_time"] > 0.0)]
+    ring = table[table["support"].map({name: support.walls for name, support in SUPPORTS.items()})]
+    touched, shaken = ring[ring["contact_time"] > 0.0], ring[ring["motion"] != FREE]
+    by_support = dict(list(table[table["motion"] != FREE].groupby("support")))
     numbers: Numbers = {
         "touched": float(len(touched)),
-        "runs": float(ring.sum()),
+        "runs": float(len(ring)),
         "failed": float((table["outcome"] == "failed").sum()),
         "loss_worst": largest(column(touched, "loss")),
-        "rolled": largest(column(table[ring & shaken], "rolled_out")),
-        "flat_rolled": largest(column(table[(table["support"] == "flat") & shaken], "rolled_out")),
-        "twist": largest(np.abs(column(table[ring & shaken], "twist"))),
+        "rolled": largest(column(shaken, "rolled_out")),
+        "flat_rolled": largest(column(by_support["flat"], "rolled_out")),
+        "twist": largest(np.abs(column(shaken, "twist"))),
     }
     for support in ("recess", "ring", "flat"):
-        own = table[(table["support"] == support) & shaken]
-        ratio = column(own, "peak") / column(own, "recess_peak")
-        numbers |= {
-            f"{support}_least": -largest(-ratio),
-            f"{support}_largest": largest(ratio),
-        }
-    own = table[ring & shaken]
-    halved = np.abs(column(own, "halved_peak") / column(own, "peak") - 1.0)
-    best = own.groupby("clearance")["at_end"].max()
+        ratio = quotient(by_support[support])
+        numbers |= {f"{support}_least": least(ratio), f"{support}_largest": largest(ratio)}
+    halved = np.abs(quotient(shaken, "halved_peak", "peak") - 1.0)
+    best = shaken.groupby("clearance")["at_end"].max()
     return numbers | {
         "halved_alike": float((halved <= SMALL).sum()),
         "halved_known": float(np.isfinite(halved).sum()),
         "halved_worst": largest(halved),
         "tightest": float(str(best.idxmin())) if len(best) else math.nan,
-        "tightest_at_end": float(best.min()) if len(best) else math.nan,
+        "tightest_at_end": float(best.min()),
     }
+
+
+def _soft_contacts(tables: Tables) -> pd.DataFrame:
+    """The runs with a contact of their own: failed; ratio of the peaks and loss, NaN where one failed."""
+    table = tables["contact"]
+    failed = (table[["free_outcome", "outcome"]] == "failed").any(axis="columns")
+    known = table.assign(ratio=quotient(table))[["ratio", "loss"]].mask(failed)
+    return table.assign(failed=failed, **known)
 
 
 def soft_contact(tables: Tables) -> Numbers:
     """Return up to which softness, its time constant times p, contact leaves the peak as it is."""
-    table = tables["contact"]
-    failed = (table["free_outcome"] == "failed") | (table["outcome"] == "failed")
-    known = table[~failed]
+    table = _soft_contacts(tables)
+    known = table[~table["failed"]]
     # one contact is one point, though its softness differs by slenderness in the third digit
     softness, constant = column(known, "softness"), column(known, "time_constant")
-    off = np.abs(column(known, "peak") / column(known, "recess_peak") - 1.0)
-    held, left = up_to(constant, off <= SMALL), first_failing(constant, off <= SMALL)
+    off = np.abs(column(known, "ratio") - 1.0)
+    held, left = limit_of(constant, off <= SMALL)
     within = constant <= held  # none where it is NaN
     return {
-        "held_up_to": -largest(-softness[constant == held]),
-        "left_from": -largest(-softness[constant == left]),
+        "held_up_to": least(softness[constant == held]),
+        "left_from": least(softness[constant == left]),
         "held_peak": largest(off[within]),
         "held_loss": max(largest(column(known, "loss")[within]), 0.0),
-        "failed": float(failed.sum()),
+        "failed": float(table["failed"].sum()),
         "points": float(len(table)),
     }
 
 
 def damping(tables: Tables) -> pd.DataFrame:
     """Return the least and largest ratio of the peak, and the largest loss, by the damping of contact."""
-    rows = []
-    for ratio, own in tables["contact"].groupby("damping"):
-        failed = (own["free_outcome"] == "failed") | (own["outcome"] == "failed")
-        known = own[~failed]
-        peaks = column(known, "peak") / column(known, "recess_peak")
-        rows.append(
-            {
-                "damping": ratio,
-                "points": len(own),
-                "failed": int(failed.sum()),
-                "least": -largest(-peaks),
-                "largest": largest(peaks),
-                "loss": largest(column(known, "loss")),
-            }
+    return (
+        _soft_contacts(tables)
+        .groupby("damping", as_index=False)
+        .agg(
+            points=("failed", "size"),
+            failed=("failed", "sum"),
+            least=("ratio", "min"),
+            largest=("ratio", "max"),
+            loss=("loss", "max"),
         )
-    return pd.DataFrame(rows)
+    )
 
 
+# every limit, by the name of its function
 LIMITS: Mapping[str, Callable[[Tables], Numbers]] = {
-    "records": peak_ratios,
-    "single_peaks": single_peaks,
-    "traces": traces,
-    "free_response": free_passes,
-    "friction": friction,
-    "contact": contact,
-    "restraining_moment": restraining_moment,
-    "rings": rings,
-    "soft_contact": soft_contact,
-    "vertical": vertical,
+    limit.__name__: limit
+    for limit in (
+        *(records, single_peaks, traces, free_response, friction, contact),
+        *(restraining_moment, rings, soft_contact, vertical),
+    )
 }
 
 

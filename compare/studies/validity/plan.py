@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+import itertools
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -12,15 +14,30 @@ from rockwobble.models import (
     Cylinder,
     GroundMotion,
     InitialState,
+    Trace,
     el_centro_1940,
     p695_far_field,
     synthetic_motions,
 )
 from rockwobble.models.records.p695 import missing_packages
+from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.multibody.ring import RingSettings
 
 Inputs = Mapping[str, object]  # arguments of `Part.measure` by name: numbers, text and tuples of them
 Row = dict[str, float | str | bool]
+# names of the numbers of a point
+RELEASE = ("tan_alpha", "release", "spin")
+POINT = ("tan_alpha", "semidiagonal", "intensity")
+
+
+def named(names: Sequence[str], points: Iterable[tuple[float, ...]], **more: object) -> list[Inputs]:
+    """Return the inputs of tasks at points whose numbers have these names; `more` is the same in all."""
+    return [dict(zip(names, point, strict=True)) | more for point in points]
+
+
+def grid(**axes: Iterable[object]) -> list[Inputs]:
+    """Return the inputs of tasks at all combinations of values, the last name the fastest."""
+    return [dict(zip(axes, point, strict=True)) for point in itertools.product(*axes.values())]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,7 +58,7 @@ class Part:
         Inputs that are the first columns of every row.
     cost : callable
         Rough computing time of a task [s], of the same inputs.
-    engine : str
+    engine : str, optional
         The engine that it runs; empty where it runs the reduced models alone.
     """
 
@@ -51,7 +68,7 @@ class Part:
     measure: Callable[..., list[Row]]
     keys: tuple[str, ...]
     cost: Callable[..., float]
-    engine: str = ""
+    engine: str = DEFAULT_ENGINE
 
 
 _RING = RingSettings(ring_inclination=0.0)
@@ -174,12 +191,7 @@ FULL = Extent(
         for tan_alpha in (0.1, 0.2, 0.4, 0.7, 1.0)
         for release, spin in ((0.3, 0.5), (0.5, 0.1), (0.7, 0.25), (0.5, 0.01))
     ),
-    record_points=tuple(
-        (tan_alpha, size, intensity)
-        for tan_alpha in (0.1, 0.2, 0.4)
-        for size in (6.0, 16.0)
-        for intensity in (2.0, 3.5)
-    ),
+    record_points=tuple(itertools.product((0.1, 0.2, 0.4), (6.0, 16.0), (2.0, 3.5))),
     record_step=2e-4,
     slip_points=tuple((tan_alpha, 0.5, 0.25) for tan_alpha in (0.1, 0.2, 0.4, 0.7, 1.0)),
     slip_shares=(0.4, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95, 0.99, 1.01, 1.05, 1.2),
@@ -277,3 +289,25 @@ def shaken_case(
     label = f"{name}, tan α {tan_alpha:g}, R {semidiagonal:g} m, {intensity:g} g tan α"
     case = Case(cylinder, motion, duration=length, friction=AMPLE, name=label)
     return replace(case, motion=motion.rotated(turn)) if turn else case
+
+
+def needs_of(trace: Trace) -> dict[str, float]:
+    """Return the needs of the recess model of ground and recess in a run.
+
+    friction, least_normal [weights], moment, the restraining moment over weight and base radius; NaN where it
+    does not move or overturns.
+    """
+    needs = trace.assumptions
+    if needs is None or trace.outcome != "stands" or not trace.peak_tilt > 0.0:
+        return dict.fromkeys(("friction", "least_normal", "moment"), math.nan)
+    return {
+        "friction": needs.largest_friction_needed,
+        "least_normal": needs.least_normal_force,
+        "moment": needs.largest_restraining_moment / trace.case.cylinder.base_radius,
+    }
+
+
+def loss_of(trace: Trace) -> float:
+    """Return the energy that contact took over the largest that was reached; NaN where nothing moved."""
+    largest = float(trace.energy.max())
+    return -float(trace.energy_error[-1]) / largest if largest > 0.0 else math.nan

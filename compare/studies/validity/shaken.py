@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterable, Sequence
 
@@ -9,6 +10,8 @@ import numpy as np
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
+from rockwobble.models.support import SUPPORTS as ALL_SUPPORTS
+from rockwobble.models.support import support_named
 from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.multibody.ring import clearance_needed, take_ring
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP
@@ -22,12 +25,17 @@ from .plan import (
     AMPLE,
     EL_CENTRO,
     LARGEST_PEAK,
+    POINT,
     REFERENCE_SIZE,
     Extent,
     Inputs,
     Part,
     Row,
+    grid,
+    loss_of,
     motion_named,
+    named,
+    needs_of,
     record_names,
     release_case,
     shaken_case,
@@ -43,13 +51,13 @@ def _peaks_tasks(extent: Extent) -> Iterable[Inputs]:
     # El Centro besides, which has a vertical component
     for motion in [*record_names(extent.members), EL_CENTRO]:
         for tan_alpha in extent.shaken_tan_alphas:
-            for size in extent.sizes:
-                yield {
-                    "motion": motion,
-                    "tan_alpha": tan_alpha,
-                    "semidiagonal": size,
-                    "intensities": tuple(i for i in extent.intensities if i * tan_alpha <= LARGEST_PEAK),
-                }
+            intensities = tuple(each for each in extent.intensities if each * tan_alpha <= LARGEST_PEAK)
+            yield from grid(
+                motion=[motion],
+                tan_alpha=[tan_alpha],
+                semidiagonal=extent.sizes,
+                intensities=[intensities],
+            )
 
 
 def measure_peaks(
@@ -59,39 +67,30 @@ def measure_peaks(
 
     The columns: motion, tan_alpha, semidiagonal [m], intensity; peak tilt over alpha, pi/2 over alpha if
     overturned, of the recess model, of its perturbed copy under a record stronger by 1 %, of the flat-ground
-    model, and of the recess model with the vertical component (NaN where the record has none). Needs of the
-    recess model: friction, least_normal [weights], moment, the restraining moment over weight and base
-    radius; NaN where it does not move or overturns.
+    model, and of the recess model with the vertical component (NaN where the record has none); `needs_of` the
+    recess model.
     """
     return [_row(motion, tan_alpha, semidiagonal, intensity) for intensity in intensities]
 
 
 def _row(motion: str, tan_alpha: float, size: float, intensity: float) -> Row:
     case = shaken_case(motion, tan_alpha, size, intensity)
-    recess = _run(case)
     stronger = shaken_case(motion, tan_alpha, size, intensity * (1.0 + COPY))
-    found = {"recess": recess, "copy": _run(stronger), "flat": _run(case, "flat")}
-    if motion_named(motion).acceleration.shape[1] == 3:
-        found["vertical"] = _run(shaken_case(motion, tan_alpha, size, intensity, vertical=True))
-    row: Row = {
+    recess = reduced.simulate(case, rtol=_RTOL)
+    found = {
+        "recess": recess,
+        "copy": reduced.simulate(stronger, rtol=_RTOL),
+        "flat": reduced.simulate(case, support="flat", rtol=_RTOL),
+    }
+    if motion_named(motion).has_vertical:
+        with_vertical = shaken_case(motion, tan_alpha, size, intensity, vertical=True)
+        found["vertical"] = reduced.simulate(with_vertical, rtol=_RTOL)
+    return {
         "intensity": intensity,
         "vertical": math.nan,
         **{name: trace.peak_tilt / case.cylinder.alpha for name, trace in found.items()},
-        "friction": math.nan,
-        "least_normal": math.nan,
-        "moment": math.nan,
+        **needs_of(recess),
     }
-    if recess.peak_tilt > 0.0 and recess.outcome == "stands":
-        needs = recess.assumptions
-        assert needs is not None
-        row["friction"] = needs.largest_friction_needed
-        row["least_normal"] = needs.least_normal_force
-        row["moment"] = needs.largest_restraining_moment / case.cylinder.base_radius
-    return row
-
-
-def _run(case: Case, support: str = "recess") -> Trace:
-    return reduced.simulate(case, support=support, rtol=_RTOL)
 
 
 PEAKS = Part(
@@ -101,23 +100,12 @@ PEAKS = Part(
     measure=measure_peaks,
     keys=("motion", "tan_alpha", "semidiagonal"),
     cost=lambda intensities, **_: 0.03 * len(intensities),
+    engine="",
 )
 
 
 RECESS, FLAT, PERTURBED = "recess model", "flat-ground model", "perturbed copy"
 HALVED = "ring, half the step"
-
-
-def _records_tasks(extent: Extent) -> Iterable[Inputs]:
-    for tan_alpha, size, intensity in extent.record_points:
-        for motion in record_names(extent.members):
-            yield {
-                "motion": motion,
-                "tan_alpha": tan_alpha,
-                "semidiagonal": size,
-                "intensity": intensity,
-                "time_step": extent.record_step,
-            }
 
 
 def measure_records(
@@ -126,32 +114,29 @@ def measure_records(
     """Return a row for each method.
 
     The columns: motion, tan_alpha, semidiagonal [m], intensity, method, peak over alpha, outcome;
-    contact_time with walls [s] and loss, energy that contact took over the largest that was reached. The
-    methods: the two reduced models, the perturbed copy of the recess model under a record stronger by 1 %,
-    the engine in a recess, on flat ground and in a ring, and this at half its step.
+    contact_time with walls [s] and loss, see `loss_of`. The methods: the two reduced models, the perturbed
+    copy of the recess model under a record stronger by 1 %, the engine in a recess, on flat ground and in a
+    ring, and this at half its step.
     """
     case = shaken_case(motion, tan_alpha, semidiagonal, intensity)
     stronger = shaken_case(motion, tan_alpha, semidiagonal, intensity * (1.0 + COPY))
-    plan = {
+    runs = {
         RECESS: (case, Run(None, "recess")),
         FLAT: (case, Run(None, "flat")),
         PERTURBED: (stronger, Run(None, "recess")),
-        **{
-            support: (case, Run(DEFAULT_ENGINE, support, time_step)) for support in ("recess", "flat", "ring")
-        },
+        **{support: (case, Run(DEFAULT_ENGINE, support, time_step)) for support in ALL_SUPPORTS},
         HALVED: (case, Run(DEFAULT_ENGINE, "ring", 0.5 * time_step)),
     }
     rows: list[Row] = []
-    for method, (problem, run) in plan.items():
+    for method, (problem, run) in runs.items():
         trace = simulate_run(problem, run)
-        largest = float(trace.energy.max())
         rows.append(
             {
                 "method": method,
                 "peak": trace.peak_tilt / case.cylinder.alpha,
                 "outcome": trace.outcome,
                 "contact_time": float(trace.wall_contact[-1]),
-                "loss": -float(trace.energy_error[-1]) / largest if largest > 0.0 else 0.0,
+                "loss": loss_of(trace),
             }
         )
     return rows
@@ -160,11 +145,14 @@ def measure_records(
 RECORDS = Part(
     name="records",
     title="peak tilt over records in the engine",
-    tasks=_records_tasks,
+    tasks=lambda extent: [
+        {"motion": motion, **point}
+        for point in named(POINT, extent.record_points, time_step=extent.record_step)
+        for motion in record_names(extent.members)
+    ],
     measure=measure_records,
-    keys=("motion", "tan_alpha", "semidiagonal", "intensity"),
+    keys=("motion", *POINT),
     cost=lambda time_step, **_: 16.0 * 2e-4 / time_step,
-    engine=DEFAULT_ENGINE,
 )
 
 
@@ -173,18 +161,6 @@ _COLUMNS = (
     *("tilt_rms", "tilt_rms_relative", "agreement_time", "predicted_agreement_time", "diverged"),
     *("agreed_passes", "residual_displacement", "residual_twist"),
 )
-
-
-def _following_tasks(extent: Extent) -> Iterable[Inputs]:
-    for tan_alpha, size, intensity in extent.trace_points:
-        for support in SUPPORTS:
-            yield {
-                "tan_alpha": tan_alpha,
-                "semidiagonal": size,
-                "intensity": intensity,
-                "support": support,
-                "duration": extent.trace_length,
-            }
 
 
 def measure_following(
@@ -202,23 +178,19 @@ def measure_following(
 FOLLOWING = Part(
     name="following",
     title="traces under El Centro in the engine",
-    tasks=_following_tasks,
+    tasks=lambda extent: [
+        {**point, "support": support}
+        for point in named(POINT, extent.trace_points, duration=extent.trace_length)
+        for support in SUPPORTS
+    ],
     measure=measure_following,
-    keys=("tan_alpha", "semidiagonal", "intensity", "duration"),
+    keys=(*POINT, "duration"),
     cost=lambda duration, **_: 0.04 * duration,
-    engine=DEFAULT_ENGINE,
 )
 
 
 _RELEASE, _SPIN, _PASSES = 0.5, 0.1, 4
 _INTENSITY, _LENGTH = 2.0, 10.0
-
-
-def _contact_tasks(extent: Extent) -> Iterable[Inputs]:
-    for tan_alpha in extent.contact_tan_alphas:
-        for time_constant in extent.time_constants:
-            for damping in extent.dampings:
-                yield {"tan_alpha": tan_alpha, "time_constant": time_constant, "damping": damping}
 
 
 def measure_contact(tan_alpha: float, time_constant: float, damping: float) -> list[Row]:
@@ -231,7 +203,7 @@ def measure_contact(tan_alpha: float, time_constant: float, damping: float) -> l
     run = Run(DEFAULT_ENGINE, "recess", contact_time_constant=time_constant, contact_damping_ratio=damping)
     free = simulate_run(release_case(tan_alpha, _RELEASE, _SPIN, _PASSES), run)
     case = shaken_case(EL_CENTRO, tan_alpha, REFERENCE_SIZE, _INTENSITY, duration=_LENGTH)
-    shaken, recess = simulate_run(case, run), reduced.simulate(case)
+    shaken = simulate_run(case, run)
     lost = -float(free.energy_error[-1]) / float(free.energy[0])
     return [
         {
@@ -239,7 +211,7 @@ def measure_contact(tan_alpha: float, time_constant: float, damping: float) -> l
             "loss": lost / max(len(free.passes), 1),
             "passes": len(free.passes),
             "peak": shaken.peak_tilt / case.cylinder.alpha,
-            "recess_peak": recess.peak_tilt / case.cylinder.alpha,
+            "recess_peak": reduced.simulate(case).peak_tilt / case.cylinder.alpha,
             "free_outcome": free.outcome,
             "outcome": shaken.outcome,
         }
@@ -249,35 +221,38 @@ def measure_contact(tan_alpha: float, time_constant: float, damping: float) -> l
 CONTACT = Part(
     name="contact",
     title="contact that gives, in the engine",
-    tasks=_contact_tasks,
+    tasks=lambda extent: grid(
+        tan_alpha=extent.contact_tan_alphas, time_constant=extent.time_constants, damping=extent.dampings
+    ),
     measure=measure_contact,
     keys=("tan_alpha", "time_constant", "damping"),
     cost=lambda **_: 1.0,
-    engine=DEFAULT_ENGINE,
 )
 
 
 # strong rocking without a fall
 INTENSITY = 1.5
 FREE, SHAKEN = "free response", EL_CENTRO
+_WALLS = ("clearance", "inclination", "friction")
 
 
 def _rings_tasks(extent: Extent) -> Iterable[Inputs]:
-    walls = [
-        {"clearance": ring.clearance, "inclination": ring.inclination, "friction": ring.friction}
-        for ring in extent.rings
+    none = dict.fromkeys(_WALLS, math.nan)
+    supports: list[Inputs] = [
+        {"support": support.name, **walls}
+        for support in ALL_SUPPORTS.values()
+        for walls in (map(dataclasses.asdict, extent.rings) if support.walls else [none])
     ]
-    none = {"clearance": math.nan, "inclination": math.nan, "friction": math.nan}
-    for tan_alpha in extent.ring_tan_alphas:
-        for turn in extent.ring_turns:
-            problem = {"tan_alpha": tan_alpha, "turn": turn, "length": extent.ring_length}
-            yield {**problem, "support": "recess", **none}
-            yield {**problem, "support": "flat", **none}
-            for ring in walls:
-                yield {**problem, "support": "ring", **ring}
+    for problem in grid(
+        tan_alpha=extent.ring_tan_alphas, turn=extent.ring_turns, length=[extent.ring_length]
+    ):
+        for support in supports:
+            for motion in (FREE, SHAKEN):
+                yield {"motion": motion, **problem, **support}
 
 
 def measure_rings(
+    motion: str,
     tan_alpha: float,
     turn: float,
     length: float,
@@ -286,42 +261,31 @@ def measure_rings(
     inclination: float,
     friction: float,
 ) -> list[Row]:
-    """Return a row for free response and one for El Centro, where the walls leave room for the release.
+    """Return a row for free response or El Centro; none where the walls leave no room for the release.
 
     The columns: motion, tan_alpha, turn [rad], support, clearance [b], inclination [rad] (0 for alpha) and
     friction of the walls, those of `losses`; recess_peak, and halved_peak, that of the same ring at half the
     step [alpha].
     """
     walls: dict[str, float] = {}
-    if support == "ring":
+    if support_named(support).walls:
         walls = {"ring_clearance": clearance, "ring_friction": friction}
         walls |= {"ring_inclination": inclination} if inclination > 0.0 else {}
-    release = release_of(tan_alpha, turn, length)
-    shaken = shaken_case(EL_CENTRO, tan_alpha, REFERENCE_SIZE, INTENSITY, duration=length, turn=turn)
-    rows: list[Row] = []
-    for motion, case in ((FREE, release), (SHAKEN, shaken)):
-        run = Run(DEFAULT_ENGINE, support, REFERENCE_TIME_STEP, **walls)
-        if not has_room(case, run):
-            continue
-        halved = math.nan
-        if support == "ring":
-            finer = Run(DEFAULT_ENGINE, support, 0.5 * REFERENCE_TIME_STEP, **walls)
-            halved = simulate_run(case, finer).peak_tilt / case.cylinder.alpha
-        rows.append(
-            {
-                "motion": motion,
-                "tan_alpha": tan_alpha,
-                "turn": turn,
-                "support": support,
-                "clearance": clearance,
-                "inclination": inclination,
-                "friction": friction,
-                **losses(simulate_run(case, run)),
-                "recess_peak": reduced.simulate(case).peak_tilt / case.cylinder.alpha,
-                "halved_peak": halved,
-            }
-        )
-    return rows
+    if motion == FREE:
+        case = release_of(tan_alpha, turn, length)
+    else:
+        case = shaken_case(motion, tan_alpha, REFERENCE_SIZE, INTENSITY, duration=length, turn=turn)
+    run, finer = (Run(DEFAULT_ENGINE, support, part * REFERENCE_TIME_STEP, **walls) for part in (1.0, 0.5))
+    if not has_room(case, run):
+        return []
+    alpha = case.cylinder.alpha
+    return [
+        {
+            **losses(simulate_run(case, run)),
+            "recess_peak": reduced.simulate(case).peak_tilt / alpha,
+            "halved_peak": simulate_run(case, finer).peak_tilt / alpha if walls else math.nan,
+        }
+    ]
 
 
 def release_of(tan_alpha: float, turn: float, length: float) -> Case:
@@ -342,18 +306,17 @@ def has_room(case: Case, run: Run) -> bool:
 def losses(trace: Trace) -> Row:
     """Return the losses of a run in a recess of any kind.
 
-    outcome; first_contact with a wall (inf where there is none) and contact_time [s]; passes; loss of energy
-    over the largest reached; rolled_out and at_end, distance from O of the place on which the cylinder would
-    come down, largest and last [b]; residual displacement of the base [b]; twist at the end [rad]; peak
-    [alpha].
+    outcome; first_contact with a wall (inf where there is none) and contact_time [s]; passes; loss of energy,
+    see `loss_of`; rolled_out and at_end, distance from O of the place on which the cylinder would come down,
+    largest and last [b]; residual displacement of the base [b]; twist at the end [rad]; peak [alpha].
     """
-    largest, out = float(trace.energy.max()), _rolled_out(trace)
+    out = _rolled_out(trace)
     return {
         "outcome": trace.outcome,
         "first_contact": trace.first("wall_contact"),
         "contact_time": float(trace.wall_contact[-1]),
         "passes": len(trace.passes),
-        "loss": -float(trace.energy_error[-1]) / largest if largest > 0.0 else math.nan,
+        "loss": loss_of(trace),
         "rolled_out": float(out.max(initial=0.0)),
         "at_end": float(out[-1]) if len(out) else 0.0,
         "residual": trace.residual_displacement / trace.case.cylinder.base_radius,
@@ -376,10 +339,9 @@ def _rolled_out(trace: Trace) -> FloatArray:
 
 RINGS = Part(
     name="rings",
-    title="a ring of walls in the engine",
+    title="a recess with clearance in the engine",
     tasks=_rings_tasks,
     measure=measure_rings,
-    keys=(),
-    cost=lambda support, length, **_: (0.8 if support == "ring" else 0.25) * length,
-    engine=DEFAULT_ENGINE,
+    keys=("motion", "tan_alpha", "turn", "support", *_WALLS),
+    cost=lambda support, length, **_: (0.4 if support_named(support).walls else 0.125) * length,
 )

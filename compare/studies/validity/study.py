@@ -32,23 +32,9 @@ from .plan import (
 )
 from .shaken import CONTACT, FOLLOWING, PEAKS, RECORDS, RINGS
 
-PARTS: tuple[Part, ...] = (
-    FREE_RESPONSE,
-    VERIFICATION,
-    PEAKS,
-    SLIP,
-    RINGS,
-    CONTACT,
-    FOLLOWING,
-    RECORDS,
-)
-
-
-def part_named(name: str) -> Part:
-    """Return a part by its name."""
-    return next(part for part in PARTS if part.name == name)
-
-
+PARTS: Mapping[str, Part] = {
+    part.name: part for part in (FREE_RESPONSE, VERIFICATION, PEAKS, SLIP, RINGS, CONTACT, FOLLOWING, RECORDS)
+}
 KIND = "validity"
 Task = tuple[str, Inputs]  # name of a part, and what is measured
 _PLACES = {"recess": "in an ideal recess", "ring": "in a recess with clearance", "flat": "on flat ground"}
@@ -128,29 +114,28 @@ def measure_all(
     IncompleteError
         If a process ended in a task; what was finished is kept.
     """
-    tasks: list[Task] = [(part.name, dict(inputs)) for part in PARTS for inputs in part.tasks(extent)]
+    tasks: list[Task] = [(name, inputs) for name, part in PARTS.items() for inputs in part.tasks(extent)]
     with run_tables(
         measure_task,
         tasks,
         kind=KIND,
         key=task_name,
-        label=lambda task: part_named(task[0]).title,
+        label=lambda task: PARTS[task[0]].title,
         folder=folder,
-        cost=lambda task: part_named(task[0]).cost(**task[1]),
+        cost=lambda task: PARTS[task[0]].cost(**task[1]),
         workers=workers,
         progress=progress,
     ) as found:
-        made = list(zip(tasks, found, strict=True))
-        return {
-            part.name: pd.concat([table for (name, _), table in made if name == part.name], ignore_index=True)
-            for part in PARTS
-        }
+        made: dict[str, list[pd.DataFrame]] = {name: [] for name in PARTS}
+        for (name, _), table in zip(tasks, found, strict=True):
+            made[name].append(table)
+        return {name: pd.concat(own, ignore_index=True) for name, own in made.items()}
 
 
 def measure_task(task: Task) -> pd.DataFrame:
     """Return the rows of one task."""
     name, inputs = task
-    part = part_named(name)
+    part = PARTS[name]
     point = {key: inputs[key] for key in part.keys}
     return pd.DataFrame([point | row for row in part.measure(**inputs)])
 
@@ -170,7 +155,7 @@ def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent) -> Validity:
 
 def task_name(task: Task) -> str:
     """Return the hash of all that the result of a task depends on."""
-    part = part_named(task[0])
+    part = PARTS[task[0]]
     return fingerprint({"part": part.name, "inputs": task[1], "made with": _makers(part)})
 
 

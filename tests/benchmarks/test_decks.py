@@ -1,0 +1,85 @@
+"""What the guide says of decks is in the published tables, which say what the equations ask for."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from benchmarks.decks import PIER, PUBLISHED, deck, equivalent, main
+from rockwobble import reduced
+
+GUIDE = Path(__file__).parents[2] / "docs" / "guide" / "frames.md"
+SECTION = re.compile(r"## Does a deck help or harm\?.*?(?=\n## )", re.DOTALL)
+METHODS = {"in three dimensions": "recess model", "in the worse of two planes": "worse plane"}
+
+
+@pytest.fixture(scope="module")
+def medians() -> pd.DataFrame:
+    return pd.read_csv(PUBLISHED / "medians-300.csv")
+
+
+def said() -> str:
+    found = SECTION.search(GUIDE.read_text(encoding="utf-8"))
+    assert found
+    return found.group()
+
+
+@pytest.mark.parametrize("title", METHODS)
+@pytest.mark.parametrize("ratio", [1.0, 4.0])
+def test_each_number_of_the_guide_is_that_of_the_table(
+    medians: pd.DataFrame, title: str, ratio: float
+) -> None:
+    row = medians.set_index(["method", "slab_mass_ratio"]).loc[METHODS[title], ratio]
+    numbers = [
+        "{:.2f} ({:.2f} to {:.2f})".format(*(row[f"{name}{end}"] for end in ("", "_low", "_high")))
+        for name in ("median", "over_alone", "over_equivalent", "over_3d")
+    ]
+    if METHODS[title] == "recess model":
+        numbers[-1] = ""
+    line = f"| γ = {ratio:g}, {title} | {' | '.join(numbers)} |".replace("  ", " ")
+    assert line in said()
+
+
+def test_a_deck_helps_by_what_the_guide_says(medians: pd.DataFrame) -> None:
+    few = pd.read_csv(PUBLISHED / "medians-p695.csv")
+    for table in (medians, few):
+        rows = table[table["method"] == "recess model"].set_index("slab_mass_ratio")
+        for ratio in (1.0, 4.0):
+            numbers = [rows.loc[ratio, f"over_alone{end}"] for end in ("", "_low", "_high")]
+            assert "{:.2f} ({:.2f} to {:.2f})".format(*numbers) in said().replace("\n", " ")
+    # and the larger cylinder is as good
+    rows = medians[medians["slab_mass_ratio"] > 0.0]
+    assert ((rows["over_equivalent_low"] <= 1.0) & (rows["over_equivalent_high"] >= 1.0)).all()
+
+
+def test_what_a_deck_asks_for_is_what_the_guide_says() -> None:
+    rows = pd.read_csv(PUBLISHED / "needs-300.csv").set_index("slab_mass_ratio")
+    words = said().replace("\n", " ")
+    assert "a friction of {:.2f}, {:.2f} and {:.2f} at the base".format(*rows["friction_base"]) in words
+    assert "of {:.2f} and {:.2f} at the top".format(*rows["friction_top"].iloc[1:]) in words
+    assert "moment of {:.3f}, {:.3f} and {:.3f} b".format(*rows["moment"]) in words
+
+
+@pytest.mark.parametrize("motions", ["p695", "300"])
+def test_in_one_plane_a_deck_is_a_larger_cylinder(motions: str) -> None:
+    table = pd.read_csv(PUBLISHED / f"medians-{motions}.csv")
+    planar = table[table["method"].str.startswith("planar") & (table["slab_mass_ratio"] > 0.0)]
+    # the levels that rounding decides; synthetic motions have none
+    assert planar["over_equivalent"].to_numpy() == pytest.approx(1.0, abs=0.02)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 4.0])
+def test_the_equivalent_cylinder_rocks_as_the_frame_does(ratio: float) -> None:
+    tilt = 0.4 * PIER.alpha
+    periods = [reduced.rocking_period(body, tilt) for body in (deck(ratio), equivalent(ratio))]
+    assert periods[0] == pytest.approx(periods[1], rel=1e-12)  # rounding
+
+
+def test_the_tables_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 0
+    printed = capsys.readouterr().out
+    assert "medians-300" in printed
+    assert "needs-300" in printed
