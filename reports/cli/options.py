@@ -141,8 +141,8 @@ def _in_one_turn(plane: float | None) -> float | None:
     raise typer.BadParameter(f"must be from -6.2832 to 6.2832 rad (90 deg is 1.5708), got {plane:g}")
 
 
-body, ground, method, reduced, work = map(
-    panel, ("Cylinder", "Ground motion", "Method", "Reduced model", "Work")
+body, ground, method, reduced, work, output = map(
+    panel, ("Cylinder", "Ground motion", "Method", "Reduced model", "Work", "Output")
 )
 
 TAN_ALPHA = body("Slenderness b/h, radius over half the height.")
@@ -239,4 +239,4 @@ Scheduler = Annotated[
         "and on each machine dask worker tcp://10.0.0.1:8786. Needs the extra distributed."
     ),
 ]
-Out = Annotated[Path, typer.Option(help="Folder for the results.")]
+Out = Annotated[Path, output("Folder for the results.")]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
 import html
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -99,13 +100,9 @@ def _layer(layer: Layer, panel: Panel, picture: Picture) -> dict[str, object]:
             **{key: packed(getattr(layer, key)) for key in ("places", "start", "end")},
         }
     if isinstance(layer, Rule):
-        keys: tuple[str, ...] = ("name", "at", "axis", "text", "until", "colour", "dash", "side")
-        return {"kind": "rule", **{key: getattr(layer, key) for key in keys}}
+        return {"kind": "rule", **dataclasses.asdict(layer)}
     if isinstance(layer, Text):
-        return {
-            "kind": "text",
-            **{key: getattr(layer, key) for key in ("x", "y", "text", "colour", "anchor")},
-        }
+        return {"kind": "text", **dataclasses.asdict(layer)}
     assert picture.shades is not None
     return _heat(layer, panel, picture.shades)
 
