@@ -43,7 +43,7 @@ EXTRAPOLATED = "extrapolated"
 FINEST = 1.75e-4  # [s] at the reference size: all three together cost one run at the default step
 _RUNS = 3
 _FIRST_OR_SECOND = 1.5  # order between the two
-_LATE = ("rolling_rate", "energy", "energy_error")
+_LATE = ("rolling_rate", "energy", "energy_error", "energy_lost")
 _OF_NO_ACCOUNT = 1e-6  # of alpha: where runs are that close, their orders mix, and it makes no difference
 _ONE_TURN = math.pi  # [rad] two rolling angles further apart went past upright on different sides
 

@@ -184,6 +184,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         "contact_force": forces,
         "energy": table["energy"] * scale.energy,
         "energy_error": table["energy_error"] * scale.energy,
+        "energy_lost": _energy_lost(table["energy_error"], scene) * scale.energy,
         "slip": table["slip"] * scale.length,
         "wall_contact": table["wall_contact"] * scale.time,
         "wall_impulse": table["wall_impulse"] * scale.length / scale.time,
@@ -211,6 +212,14 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         residual_displacement=float(np.hypot(table["base_x"][-1], table["base_y"][-1])) * scale.length,
         **method,
     )
+
+
+def _energy_lost(error: Array, scene: Scene) -> Array:
+    """Return what the start and the ground supplied and the energy lacks; unknown without a couple of loss.
+
+    All that contact took is in it, of which the couple's part is not known alone.
+    """
+    return -error if scene.rolling_resistance > 0.0 else np.full(len(error), math.nan)
 
 
 def _extrema(recorder: Recorder, scene: Scene, scale: Scale) -> Array:

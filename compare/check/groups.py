@@ -121,6 +121,7 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
     ),
     "conserved": (
         Check(measure=lagrange.free_motion, knows=("energy",)),
+        Check(measure=lagrange.rolling_loss, supports=("recess",), options=("rolling_resistance",)),
         Check(measure=lagrange.work_of_the_ground, knows=("energy", "centre_of_mass")),
         Check(measure=lagrange.work_of_a_record, supports=MODELS, knows=("energy",), options=("rtol",)),
     ),

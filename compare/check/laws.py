@@ -19,13 +19,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from rockwobble.models import Case, GroundMotion, InitialState
+from rockwobble.models.cylinder import PIER
 
 from . import lagrange
 from .lagrange import Shape, kinetic, potential, shape_of
 from .measurement import (
     FRAME_RELEASE,
     GRAVITY,
-    PIER,
     RELEASE,
     SHOCK,
     SHOCK_TIMES,

@@ -57,7 +57,8 @@ class Subject(Brief):
     knows : frozenset of str
         Fields of a trace that it fills.
     options : frozenset of str
-        Further options of `source`; "stepper" says that it is an engine of the protocol.
+        Further options of `source`; "stepper" says that it is an engine of the protocol, "rolling_resistance"
+        that it takes that of a case.
     tolerance : float
         Relative accuracy that it claims: of alpha, of a time or of an energy.
     repeatability : float
@@ -138,7 +139,7 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
         source=_remembered(source),
         supports=("recess", "flat", "planar"),
         knows=FIELDS,
-        options=frozenset({"rtol", "rest_tilt", "restitution", "plane"}),
+        options=frozenset({"rtol", "rest_tilt", "restitution", "plane", "rolling_resistance"}),
         tolerance=MODEL_TOLERANCE,
         repeatability=MODEL_TOLERANCE,
         steps=(1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10),
@@ -182,7 +183,7 @@ def engine(
         source=_remembered(source),
         supports=found.supports,
         knows=FIELDS.union(_ENGINE_FIELDS),
-        options=frozenset({"stepper"}),
+        options=frozenset({"stepper", *(["rolling_resistance"] if facts.rolling_friction else [])}),
         tolerance=tolerance,
         repeatability=ENGINE_REPEATABILITY,
         rounding=facts.rounding,

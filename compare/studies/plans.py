@@ -8,6 +8,10 @@ from typing import ClassVar
 
 from ..runs.plan import Plan, option
 
+_ROLLING = (
+    "Length of the couple against the rolling of the rim, in m, below every base radius; 0 loses nothing."
+)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Copies(Plan):
@@ -98,6 +102,7 @@ class FragilityPlan(Plan):
         above=0.0,
     )
     friction: float = option(1.0, "Coefficient of friction of cylinder and ground.", above=0.0)
+    rolling_resistance: float = option(0.0, _ROLLING, least=0.0)
     gravity: float = option(9.81, "g, in m/s2.", above=0.0)
 
     def __post_init__(self) -> None:
@@ -148,6 +153,7 @@ class SpectrumPlan(Plan):
         0.0, "Mass of a rigid slab over that of the cylinders that carry it.", group="Cylinder", least=0.0
     )
     gravity: float = option(9.81, "g, in m/s2.", group="Ground motion", above=0.0)
+    rolling_resistance: float = option(0.0, _ROLLING, group="Ground motion", least=0.0)
     support: str = option(
         "recess", "Support of the model in three dimensions: recess or flat.", choices=("recess", "flat")
     )
@@ -206,7 +212,12 @@ class ExtremesPlan(Plan):
 class GridPlan(Plan):
     """Grid of reduced runs from rest: its axes, and what all runs have in common."""
 
-    DEFAULTS: ClassVar = {"semidiagonals": (0.5, 30.0, 100), "scales": (0.5, 6.0, 100)}  # [m], [-]
+    # [m], [-], [-]: from, to and count
+    DEFAULTS: ClassVar = {
+        "semidiagonals": (0.5, 30.0, 100),
+        "tan_alphas": (0.2, 0.2, 1),
+        "scales": (0.5, 6.0, 100),
+    }
 
     semidiagonals: Sequence[float] | None = option(
         None,
@@ -215,8 +226,12 @@ class GridPlan(Plan):
         form="numbers",
         flag="--semidiagonal",
     )
-    tan_alphas: Sequence[float] = option(
-        (0.2,), "Slenderness b/h: a list or a range.", group="Grid", form="numbers", flag="--tan-alpha"
+    tan_alphas: Sequence[float] | None = option(
+        None,
+        "Slenderness b/h: a list or a range. Default: 0.2.",
+        group="Grid",
+        form="numbers",
+        flag="--tan-alpha",
     )
     scales: Sequence[float] | None = option(
         None,

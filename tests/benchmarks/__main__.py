@@ -24,6 +24,7 @@ SCRIPTS = (
     "false_alarms",
     "fragility_coverage",
     "frames",
+    "loss_effects",
     "measured_rods",
     "named_mistakes",
     "needs_coverage",

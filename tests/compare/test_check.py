@@ -125,6 +125,10 @@ def held_after_its_end(motion: GroundMotion) -> GroundMotion:
     return GroundMotion(np.vstack([motion.acceleration, last]), motion.time_step)
 
 
+def less_resistance(case: Case, options: Options) -> Case:
+    return dataclasses.replace(case, rolling_resistance=(1.0 - 1e-6) * case.rolling_resistance)
+
+
 def half_a_sample_late(motion: GroundMotion) -> GroundMotion:
     a = motion.acceleration
     return GroundMotion(np.vstack([a[:1], 0.5 * (a[1:] + a[:-1])]), motion.time_step)
@@ -182,6 +186,8 @@ def test_the_reduced_models_hold(right: Subject, group: str) -> None:
         (lagrange.free_motion, "recess", field("energy", lambda e: e * (1.0 + 1e-7 * np.arange(len(e))))),
         (lagrange.free_motion, "recess", lossy),
         (lagrange.free_motion, "recess", field("rolling_rate", lambda rate: 1.0001 * rate)),
+        (lagrange.rolling_loss, "recess", asked(less_resistance)),
+        (lagrange.rolling_loss, "recess", field("energy_lost", lambda lost: (1.0 + 1e-6) * lost)),
         (lagrange.work_of_the_ground, "flat", moved(vertical_reversed)),
         (lagrange.work_of_the_ground, "recess", moved(held_after_its_end)),
         (lagrange.work_of_a_record, "flat", moved(half_a_sample_late)),

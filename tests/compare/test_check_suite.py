@@ -13,10 +13,11 @@ from benchmarks.false_alarms import case_of, larger, records
 
 from rockwobble import reduced
 from rockwobble.compare.check import Result, external_model, suite
-from rockwobble.compare.check.measurement import PIER, released
+from rockwobble.compare.check.measurement import released
 from rockwobble.compare.check.suite import SuiteRuns, check_suite
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Case, Cylinder, Run, Trace, el_centro_1940
+from rockwobble.models.cylinder import PIER
 from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import standard_engines
 

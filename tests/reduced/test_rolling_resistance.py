@@ -12,7 +12,8 @@ from scipy.integrate import quad
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, WobblingFrame, el_centro_1940
 from rockwobble.reduced.body import Body, body_of
-from rockwobble.reduced.rolling import impact_ratio
+from rockwobble.reduced.equations import flat_rhs
+from rockwobble.reduced.rolling import impact_ratio, momenta_of, needed_to_stand, twist_share
 
 G = 9.81
 BODIES = {
@@ -244,6 +245,89 @@ def test_motion_in_space_comes_to_a_standstill_too() -> None:
     assert trace.tilt_rate[-1] == 0.0 == trace.rolling_rate[-1]
     assert trace.step_count < 500
     assert trace.energy + trace.energy_lost == pytest.approx(trace.energy[0], rel=1e-9)  # rtol
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_couple_that_holds_leaves_what_pivots(seed: int) -> None:
+    """It keeps theta' = psi' = 0 by the equations of flat ground, and the moment of the ground is D'' a_t."""
+    random = np.random.default_rng(seed)
+    cylinder = list(BODIES.values())[seed % len(BODIES)]
+    body = body_of(cylinder, G, 0.02 * cylinder.base_radius)
+    tilt, phi, rate = random.uniform(0.05, 1.3), random.uniform(0.0, 6.0), random.normal()
+    a = tuple(random.normal(size=3))
+    s, c = math.sin(tilt), math.cos(tilt)
+    Lambda, S = momenta_of(body, s, c, rate, 0.0)
+    _, free, phi_rate, Lambda_rate, twist_rate, S_rate = flat_rhs(body, tilt, 0.0, phi, Lambda, 0.0, S, *a)
+    assert (phi_rate, twist_rate) == pytest.approx((rate, rate), rel=1e-12)  # rounding, as below
+    tilting, turning = needed_to_stand(body, tilt, phi, rate, G + a[2], a, True)
+    assert free + tilting / body.A == pytest.approx(0.0, abs=1e-12 * (abs(free) + G / body.h))
+    Lambda_rate -= s * turning
+    S_rate += twist_share(body, s, c) * turning
+    assert Lambda_rate * S == pytest.approx(S_rate * Lambda, rel=1e-9, abs=1e-12 * abs(S * Lambda))
+    inertia = body.I1 * s * s + body.I2 * c * c + (body.b * c - body.h * s) ** 2
+    across = a[1] * math.cos(phi) - a[0] * math.sin(phi)
+    assert S_rate / S * rate * inertia == pytest.approx((body.b * c - body.h * s) * across, rel=1e-9)
+
+
+def test_a_cylinder_pivots_on_a_rim_that_the_couple_holds() -> None:
+    """Steadily over still ground; shaken across by D'' a_t/I_v, until the couple gives way."""
+    cylinder = BODIES["h = 2b"]
+    length, duration = 0.05 * cylinder.base_radius, 3.0
+    tilt = cylinder.alpha - 0.5 * math.asin(length / cylinder.semidiagonal)
+    time = np.arange(0.0, duration, 0.01)
+    push = 0.004 * G * np.sin(2.0 * math.pi * time) * (time < 1.0) * np.array([[0.0], [1.0]])
+    motion = GroundMotion(push.T, 0.01)
+    case = Case(cylinder, motion, initial=InitialState(tilt), duration=duration, rolling_resistance=length)
+    trace = reduced.simulate(case, support="flat", rtol=1e-9)
+    assert (trace.outcome, trace.rests) == ("stands", False)
+    assert (trace.tilt == tilt).all()
+    assert np.allclose(trace.twist, trace.rolling_angle, atol=1e-12)  # rounding
+    body = body_of(cylinder, G)
+    s, c = math.sin(tilt), math.cos(tilt)
+    beside = body.b * c - body.h * s
+    inertia = body.I1 * s * s + body.I2 * c * c + beside * beside
+    turned = trace.rolling_angle
+    across = np.interp(trace.time, time, push[1]) * np.cos(turned)
+    rate = np.concatenate([[0.0], np.cumsum(0.5 * (across[1:] + across[:-1]) * np.diff(trace.time))])
+    # the trapezia of the samples are exact but for the turn of the contact in one
+    assert trace.rolling_rate == pytest.approx(beside / inertia * rate, abs=1e-9)
+    assert abs(turned[-1]) > 1e-4
+    assert not trace.energy_lost.any()
+    stronger = Case(
+        cylinder,
+        motion.scaled(20.0),
+        initial=InitialState(tilt),
+        duration=duration,
+        rolling_resistance=length,
+    )
+    exact = reduced.simulate(stronger, support="flat", rtol=1e-12).tilt
+    assert np.ptp(exact) > 0.1 * cylinder.alpha
+    for rtol in (1e-7, 1e-8, 1e-9):
+        error = np.abs(reduced.simulate(stronger, support="flat", rtol=rtol).tilt - exact).max()
+        # what leaves the balance magnifies the error of its first steps
+        assert error / cylinder.alpha < 4.0 * math.exp(body.p * duration) * rtol
+
+
+@pytest.mark.parametrize(
+    ("size", "slenderness", "share", "release"),
+    [
+        (6.19, 0.104, 0.0573, (0.818, 0.0198, 0.0281)),  # pivots in the end
+        (1.4, 2.29, 0.0788, (0.232, 0.302, -1.09)),  # twists as its tilt vanishes
+    ],
+)
+def test_releases_on_flat_ground_come_to_an_end(
+    size: float, slenderness: float, share: float, release: tuple[float, float, float]
+) -> None:
+    cylinder = Cylinder(semidiagonal=size, tan_alpha=slenderness)
+    rate = math.sqrt(G / size)
+    tilt, tilt_rate, spin = release
+    start = InitialState(tilt * cylinder.alpha, tilt_rate=tilt_rate * rate, rolling_rate=spin * rate)
+    length = share * cylinder.base_radius
+    case = Case(cylinder, initial=start, duration=20.0 / rate, rolling_resistance=length)
+    trace = reduced.simulate(case, support="flat")
+    assert trace.outcome == "stands"
+    assert not trace.tilt_rate[-1]
+    assert trace.energy + trace.energy_lost == pytest.approx(trace.energy[0], rel=1e-6)  # 1e2 rtol
 
 
 def test_a_mirror_image_and_another_size_move_alike() -> None:

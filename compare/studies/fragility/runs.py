@@ -153,7 +153,7 @@ class Task:
         Of the cylinder and of the method.
     run : Run
     shakings : tuple of Shaking
-    gravity, friction : float
+    gravity, friction, rolling_resistance : float
     contact : bool
         Whether it is asked if a reduced model keeps its contact: that takes its forces.
     """
@@ -165,6 +165,7 @@ class Task:
     shakings: tuple[Shaking, ...]
     gravity: float
     friction: float
+    rolling_resistance: float
     contact: bool
 
     @property
@@ -190,6 +191,8 @@ class Task:
     def key(self) -> str:
         """Return the hash of all that the results depend on; names are no part of it."""
         own = {"contact": self.contact, "rtol": _RTOL} if self.run.engine is None else {}
+        if self.rolling_resistance:
+            own["rolling_resistance"] = self.rolling_resistance
         return fingerprint(
             {
                 "cylinder": self.cylinder,
@@ -226,6 +229,7 @@ class Task:
             workers=1,  # the processes share the cores already
             gravity=self.gravity,
             slab_mass_ratio=self.cylinder.slab_mass_ratio,
+            rolling_resistance=self.rolling_resistance,
             support=self.run.support,
             **{"rtol": _RTOL, **self.run.settings},
         )[0]
@@ -239,7 +243,13 @@ class Task:
         ]
 
     def _row(self, motion: GroundMotion, scale: float) -> Row:
-        case = Case(self.cylinder, motion.scaled(scale), gravity=self.gravity, friction=self.friction)
+        case = Case(
+            self.cylinder,
+            motion.scaled(scale),
+            gravity=self.gravity,
+            friction=self.friction,
+            rolling_resistance=self.rolling_resistance,
+        )
         run = self.run
         if run.engine is None:
             run = Run(None, run.support, **{"rtol": _RTOL, **run.settings})
@@ -311,7 +321,13 @@ class RunPlan:
         for cylinder in self.cylinders.values():
             for motion in self.motions:
                 self._intensity(motion, cylinder)
-            case = Case(cylinder, self.motions[0], gravity=asked.gravity, friction=asked.friction)
+            case = Case(
+                cylinder,
+                self.motions[0],
+                gravity=asked.gravity,
+                friction=asked.friction,
+                rolling_resistance=asked.rolling_resistance,
+            )
             for method in self.methods:
                 if method.run is not None:
                     require_runnable(case, self._stepped(method.run, cylinder))
@@ -366,6 +382,7 @@ class RunPlan:
                         shakings=(shaking,),
                         gravity=self.options.gravity,
                         friction=self.options.friction,
+                        rolling_resistance=self.options.rolling_resistance,
                         contact=CONTACT_LOST in (self.options.limits or ()),
                     )
                     for shaking in (shakings if run.engine is None else single)

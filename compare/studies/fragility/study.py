@@ -239,7 +239,8 @@ def fragility(
         Name of the set of motions.
     **options
         Of `FragilityPlan`: measure, one of `MEASURES`; levels (stripes) or scales (a cloud); limits, of
-        `LIMITS`; period [s], margin, resamples, seed, restitution, step_factor, friction, gravity [m/s^2].
+        `LIMITS`; period [s], margin, resamples, seed, restitution, step_factor, friction, gravity
+        [m/s^2], rolling_resistance [m].
 
     Returns
     -------
@@ -288,6 +289,7 @@ def _facts(plan: RunPlan) -> dict[str, object]:
         "scales": list(plan.scales) if asked.levels is None else None,
         "limits": list(DEFAULT_LIMITS if asked.limits is None else require_limits(asked.limits)),
         **{name: getattr(asked, name) for name in named},
+        **({"rolling_resistance": asked.rolling_resistance} if asked.rolling_resistance else {}),
         "inputs": fingerprint([(task.name, task.label, task.key()) for task in plan.tasks()]),
     }
 

@@ -77,6 +77,8 @@ def uplift_factor(
 ) -> float:
     """Return the factor on a ground motion at which a cylinder at rest uplifts [-]; inf if none does.
 
+    Without rolling resistance, which holds it longer.
+
     Exact: f of equation (25) is convex between samples, and so is largest at one of them.
 
     Parameters
@@ -112,6 +114,7 @@ _FACTS = (
     "search_step",
     "probes",
     "slab_mass_ratio",
+    "rolling_resistance",
 )
 
 
@@ -154,6 +157,8 @@ class TiltMaps:
         Intensities drawn at random below each of `lowest`, none of which overturns.
     slab_mass_ratio : float
         Mass of a slab over that of the cylinders that carry it [-]; 0 without one.
+    rolling_resistance : float
+        [m]
     """
 
     tan_alpha: float
@@ -170,6 +175,7 @@ class TiltMaps:
     search_step: float
     probes: int = 0
     slab_mass_ratio: float = 0.0
+    rolling_resistance: float = 0.0
 
     @property
     def alpha(self) -> float:
@@ -341,7 +347,7 @@ def tilt_maps(
         Called with a `Progress` at the start and the end of each series.
     **options
         Of `SpectrumPlan`: semidiagonals [m], intensities [g tan alpha], support, search_step, probes,
-        gravity, slab_mass_ratio.
+        gravity, slab_mass_ratio, rolling_resistance [m].
 
     Returns
     -------
@@ -388,6 +394,7 @@ def tilt_maps(
             rest_tilt=rest_tilt,
             gravity=gravity,
             slab_mass_ratio=asked.slab_mass_ratio,
+            rolling_resistance=asked.rolling_resistance,
             **series_options(name, asked.support),
         )
         search = partial(
@@ -409,6 +416,7 @@ def tilt_maps(
         support=asked.support,
         rest_tilt=rest_tilt,
         slab_mass_ratio=asked.slab_mass_ratio,
+        rolling_resistance=asked.rolling_resistance,
         semidiagonals=sizes,
         intensities=levels,
         peak_tilt=peaks,

@@ -235,6 +235,7 @@ def _single(spectrum: TiltMaps, series: str, i: int, scale: float) -> float:
             ),
             spectrum.motion.scaled(scale),
             gravity=spectrum.gravity,
+            rolling_resistance=spectrum.rolling_resistance,
         ),
         rtol=CHECK_RTOL,
         rest_tilt=spectrum.rest_tilt,
