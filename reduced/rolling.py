@@ -23,7 +23,7 @@ neither tilts nor rolls pivots there at the rate Omega = phi' = tau', and with t
 vertical by D'' and above the ground by D' Euler's equations of this rotation are
 
     I_v Omega' = D'' a_t,  M_theta = (g + az) D'' + D' a_r - P Omega^2,  M_psi = -(D' + P D''/I_v) a_t,
-    I_v = I1 s^2 + I2 c^2 + D''^2,   P = (I1 - I2) s c - D' D''.
+    I_v = I1 s^2 + I2 c^2 + mu D''^2,   P = (I1 - I2) s c - mu D' D''.
 
 ========= ======== ============================================================
 symbol    unit     meaning
@@ -114,8 +114,8 @@ def twist_share(body: Body, s: float, c: float) -> float:
 def pivot(body: Body, s: float, c: float) -> tuple[float, float]:
     """Return I_v and P [m^2]."""
     beside, above = body.b * c - body.h * s, body.b * s + body.h * c
-    difference = (body.I1 - body.I2) * s * c
-    return body.I1 * s * s + body.I2 * c * c + beside * beside, difference - beside * above
+    difference, moved = (body.I1 - body.I2) * s * c, body.mu * beside
+    return body.I1 * s * s + body.I2 * c * c + moved * beside, difference - moved * above
 
 
 @inlined
@@ -291,8 +291,7 @@ def impact_ratio(body: Body, restitution: float) -> float:
 
     The vertical impulse on the base, and on the top of a column, is n = mu b (omega + omega') per unit mass,
     and the couple takes delta n of the moment of momentum: A omega' = r A omega - delta n, r being the ratio
-    without it. To first
-    order r of Housner is the ratio of delta = b without impact.
+    without it. To first order r of Housner is the ratio of delta = b without impact.
 
     Parameters
     ----------
