@@ -31,7 +31,7 @@ class Bounds(Brief):
     agreement_time : float, optional
         At least [s], unless the traces agree to the end of the run.
     reference : {"own", "recess", "flat"}
-        Reduced model that each run is held against; "own": that of its support.
+        Reduced model that each run is compared with; "own": that of its support.
 
     Raises
     ------

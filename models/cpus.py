@@ -16,12 +16,12 @@ _QUOTA = Path("/sys/fs/cgroup/cpu.max")  # of a container: microseconds of compu
 
 def usable_cpus() -> int:
     """Return the number of processors that this process may use: in a container or a job not all."""
-    ours = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    allowed = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     try:
         quota, period = _QUOTA.read_text().split()
-        return max(1, min(ours, math.ceil(int(quota) / int(period))))
+        return max(1, min(allowed, math.ceil(int(quota) / int(period))))
     except (OSError, ValueError):  # no container, or one without a limit
-        return ours
+        return allowed
 
 
 def in_threads(

@@ -227,6 +227,10 @@ class WobblingFrame(Cylinder):
         return Cylinder(**{field.name: getattr(self, field.name) for field in fields(Cylinder)})
 
 
+# the pier on which engines and studies are measured; others scale from it (Froude)
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+
+
 def cylinder_of(values: Mapping[str, Any], make: Callable[..., Cylinder] = Cylinder) -> Cylinder:
     """Return what `make` gives for the values of a cylinder, in a frame where they hold those of a slab."""
     slab = {name: values[name] for name in ("slab_mass_ratio", "columns") if name in values}

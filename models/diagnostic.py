@@ -98,7 +98,7 @@ class Diagnostic(Brief):
         For how long altogether [s], NaN where that is not known; of "settled", "unsettled" and
         "extrapolated" until when.
     size, bound : float
-        How large it is, and the limit that it is held against; units in `CODES`. NaN where there is none. The
+        How large it is, and the limit it is compared with; units in `CODES`. NaN where there is none. The
         bound of "settled" and "extrapolated" is the order of convergence, that of "unresolved_pass" the tilt
         that is resolved [rad].
     detail : str
@@ -153,7 +153,7 @@ class Assumptions(Brief):
     largest_restraining_moment : float
         Kappa of the moment kappa (z_world + z_body) of the recess, over the weight [m].
     friction : float
-        The coefficient it was held against.
+        Coefficient of the ground that the demand is compared with.
 
     Examples
     --------
@@ -164,11 +164,11 @@ class Assumptions(Brief):
     (True, 0.221, 0.94)
     """
 
-    breaches: tuple[Diagnostic, ...]
-    least_normal_force: float
-    largest_normal_force: float = field(repr=False)
-    largest_friction_needed: float
-    largest_restraining_moment: float
+    breaches: tuple[Diagnostic, ...] = ()
+    least_normal_force: float = 1.0
+    largest_normal_force: float = field(default=1.0, repr=False)
+    largest_friction_needed: float = 0.0
+    largest_restraining_moment: float = 0.0
     friction: float
 
     @property

@@ -51,7 +51,7 @@ def require_one_of(name: str, value: object, allowed: Iterable[str]) -> None:
 
 
 def quoted(value: object) -> str:
-    """Return a bad value as it is told: itself, or what it is where that would be longer than a line."""
+    """Return a bad value for a message: itself, or its kind where that would be longer than a line."""
     text = repr(value)
     return text if len(text) <= _MOST and "\n" not in text else brief(value)
 

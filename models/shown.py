@@ -36,8 +36,8 @@ class Brief:
     def __repr__(self) -> str:
         fields = dataclasses.fields(self)  # type: ignore[arg-type]  # its subclasses are dataclasses
         given = ((field, getattr(self, field.name)) for field in fields if field.repr)
-        told = (f"{field.name}={brief(value)}" for field, value in given if not _is_default(field, value))
-        return line(type(self).__name__, told)
+        facts = (f"{field.name}={brief(value)}" for field, value in given if not _is_default(field, value))
+        return line(type(self).__name__, facts)
 
 
 def _is_default(field: dataclasses.Field[object], value: object) -> bool:

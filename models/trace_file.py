@@ -48,7 +48,7 @@ COLUMNS = {
     "energy_lost": ("m2/s2", "energy that rolling resistance and impacts took so far, per unit mass"),
     "energy_error": ("m2/s2", "energy that neither the start nor the excitation supplied"),
     "slip": ("m", "distance slipped so far"),
-    "wall_contact": ("s", "time at the walls of a ring so far"),
+    "wall_contact": ("s", "time at walls so far"),
     "wall_impulse": ("m/s", "size of the force of those walls, summed over time so far, per unit mass"),
 }
 PASS_COLUMNS = {

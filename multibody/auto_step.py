@@ -75,8 +75,15 @@ def closeness(coarse: Trace, fine: Trace, alpha: float) -> Closeness:
 
 
 def unknown_from(trace: Trace) -> tuple[float, str]:
-    """Return from when on no estimate of the error of a trace is known [s], and the code that says so."""
-    return min(((trace.first(code), code) for code in UNKNOWN), default=(math.inf, ""))
+    """Return from when on no estimate of the error of a trace is known [s], and the code that says so.
+
+    A base that comes down to less than contact resolves lands, with every step alike, where the motion may
+    go on: after the last maximum before that the runs agree, and all may be wrong.
+    """
+    time, tilt, _, kind = trace.extrema.T
+    low = np.flatnonzero((kind < 0.0) & (tilt < trace.contact_resolution))[:1]
+    landing = time[max(int(low[0]) - 1, 0)] if len(low) else math.inf
+    return min((float(landing), "unresolved_pass"), *((trace.first(code), code) for code in UNKNOWN))
 
 
 def common_count(traces: Sequence[Trace]) -> int:

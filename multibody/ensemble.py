@@ -82,7 +82,7 @@ def simulate_many(
         raise ValueError(f"workers must be a positive whole number, got {workers!r}")
     together: _Together | None = getattr(find_engine(engine), "together", None)
 
-    def run(case: Case, told: Progress) -> Trace:
+    def run(case: Case, report: Progress) -> Trace:
         try:
             return simulate(
                 case,
@@ -90,7 +90,7 @@ def simulate_many(
                 support=support,
                 time_step=time_step,
                 sample_step=sample_step,
-                progress=told,
+                progress=report,
                 **settings,
             )
         except ValueError as error:
@@ -120,20 +120,20 @@ class _Tally:
 
 
 def _side_by_side(cases: Sequence[Case], run: _Run, tally: _Tally, count: int) -> list[Trace]:
-    told: queue.SimpleQueue[tuple[int, float | None]] = queue.SimpleQueue()
+    reports: queue.SimpleQueue[tuple[int, float | None]] = queue.SimpleQueue()
     stop = threading.Event()
 
     def tell(index: int, done: float) -> None:
         if stop.is_set():
             raise _StoppedError
-        told.put((index, done))
+        reports.put((index, done))
 
     def one(index: int) -> Trace:
         try:
             tell(index, 0.0)
             return run(cases[index], lambda done: tell(index, done))
         finally:
-            told.put((index, None))
+            reports.put((index, None))
 
     futures: dict[int, Future[Trace]] = {}
     with ThreadPoolExecutor(count) as pool:
@@ -143,7 +143,7 @@ def _side_by_side(cases: Sequence[Case], run: _Run, tally: _Tally, count: int) -
                 futures[index] = pool.submit(one, index)
             left = len(cases)
             while left:
-                index, done = told.get()
+                index, done = reports.get()
                 if done is not None:
                     tally(index, done)
                     continue

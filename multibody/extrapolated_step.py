@@ -11,8 +11,8 @@ short time, and their error is of order 2. The error is what one halving has mov
 pure series it is a third or a seventh of that, but near passes mix the orders.
 
 It means something as far as the runs agree: to the last pass before two of them part by 1 % of alpha, no
-further than a halving moves the extrapolation by less than it moves the run, and not beyond a pass that
-contact does not resolve, or what contact makes or takes of the energy. Beyond that the trace is the finest
+further than a halving moves the extrapolation by less than it moves the run, and not beyond a swing that ends
+below what contact resolves, or what contact makes or takes of the energy. Beyond that the trace is the finest
 run, and a diagnostic says from when on. What contact did (force, slip, walls) is that of the finest run
 throughout: no power series of the step.
 """

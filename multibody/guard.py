@@ -102,7 +102,7 @@ def first_breach(
     return min(breaches, key=lambda breach: breach.index, default=None)
 
 
-DRIFT = 1e-3  # of the largest energy, either way: worth a remark; sound runs stay below 5e-4
+DRIFT = 1e-3  # of the largest energy, either way: above the reporting threshold; sound runs stay below 5e-4
 _BLOCK = 100  # steps for which one largest error is kept: the time of a remark is as fine
 
 
@@ -117,7 +117,7 @@ class EnergyWatch:
         Largest energy below which there is no motion to speak of [m^2/s^2].
     balance : float
         Energy of the balance, where the start is beyond it, else 0 [m^2/s^2]. What falls from there may have
-        less than none, and its errors are still held against that.
+        less than none, and its errors are still compared with that.
     loses : bool
         Whether rolling friction takes energy, so that only a gain is an error.
 
@@ -153,9 +153,9 @@ class EnergyWatch:
         self.largest = max(self.largest, float(energy.max()))
 
     def remark(self, until: float) -> tuple[float, float, float]:
-        """Return the start of an error worth a remark [s], its largest share, and the bound; NaN, 0 if never.
+        """Return the start of an error above the reporting threshold [s], its largest share, and the bound.
 
-        What happens after `until` [s] does not count.
+        NaN and 0 if there is none. What happens after `until` [s] does not count.
         """
         time, error = np.hstack([*self._blocks, np.empty((2, 0))])
         error = error[time <= until]

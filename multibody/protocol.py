@@ -112,7 +112,7 @@ MEMBERS = ("supports", "uplifts", "facts", "version", "settings", "open")  # of 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Wall:
-    """Contact with the walls of a ring at n poses.
+    """Contact with walls at n poses.
 
     Attributes
     ----------

@@ -84,7 +84,7 @@ class Recorder:
         self._depths: list[float] = []
         self._slipped = 0.0
         self.walls = WallWatch(scene.time_step)
-        self.slip_time = math.nan  # when the slip became worth a remark [s]
+        self.slip_time = math.nan  # when the slip was first above the reporting threshold [s]
         self.flight_time = math.nan  # when the rim left the ground [s]
         balance, lean = energy_scale(body, scene.gravity), float(tilt_of(start.quaternion[None])[0])
         self.energy = EnergyWatch(

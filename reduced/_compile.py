@@ -13,14 +13,18 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache, update_wrapper
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any, Generic, ParamSpec, TypeVar, cast
 
 import numba
+import numpy as np
 from numba.core.caching import IndexDataCacheFile
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-F = TypeVar("F", bound=Callable[..., Any])
+F = TypeVar("F", bound=Callable[..., object])
+A = TypeVar("A", bound=NDArray[np.generic])
+P = ParamSpec("P")
+R = TypeVar("R")
 
 # a division by zero gives inf or NaN, which the step control rejects, instead of a Python exception;
 # a multiply-add rounds once (contract), the one licence that keeps mirror and power-of-two scaling exact
@@ -28,14 +32,14 @@ _OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 _RELATIVE_IMPORT = re.compile(r"^from (\.+)([\w.]*) import", re.MULTILINE)
 
 
-class _Part:
+class _Part(Generic[P, R]):
     """A function that is compiled into its callers, and by itself only where Python calls it.
 
     What Python needs to call it takes a fifth of the time to compile all. The callers find it by its
     ``_numba_type_``, and what is to become a part of them by ``targetoptions``, as numba has it.
     """
 
-    def __init__(self, function: Callable[..., Any], **options: Any) -> None:
+    def __init__(self, function: Callable[P, R], **options: Any) -> None:
         update_wrapper(self, function)
         self.py_func = function
         self._alone = numba.njit(**_OPTIONS)(function)
@@ -44,8 +48,8 @@ class _Part:
         self._numba_type_ = numba.types.Dispatcher(self._inner)
         self.targetoptions = options
 
-    def __call__(self, *arguments: Any) -> Any:
-        return self._alone(*arguments)
+    def __call__(self, *arguments: P.args, **named: P.kwargs) -> R:
+        return cast("R", self._alone(*arguments, **named))
 
 
 def jit(function: F) -> F:
@@ -159,14 +163,14 @@ def _borrowed(typing: Any, array: Any) -> Any:
 
 # A view of an array that counts no references, for as long as the array itself is used later. Counting
 # takes a locked instruction each time the array is handed on: a tenth of a step.
-borrowed = cast("Callable[[NDArray[Any]], NDArray[Any]]", intrinsic(_borrowed))
+borrowed = cast("Callable[[A], A]", intrinsic(_borrowed))
 
 
-def in_memory(entry: Callable[..., Any]) -> bool:
+def in_memory(entry: Callable[..., object]) -> bool:
     """Return whether `entry` is loaded, so that a call runs at once."""
     return bool(cast("Any", entry).overloads)
 
 
-def on_disk(entry: Callable[..., Any]) -> bool:
+def on_disk(entry: Callable[..., object]) -> bool:
     """Return whether compiled code of `entry` is kept on disk."""
     return bool(cast("Any", entry)._cache._cache_file._load_index())

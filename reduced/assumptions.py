@@ -32,7 +32,7 @@ class Demands(NamedTuple):
 def review(
     demands_at: Callable[[Array], Demands], steps: Array, jumps: Array, friction: float
 ) -> Assumptions:
-    """Hold the demands of a solution against contact and a coefficient of friction.
+    """Compare the demands of a solution with contact and a coefficient of friction.
 
     Parameters
     ----------
@@ -50,14 +50,7 @@ def review(
     times = np.unique(_divided(edges, parts))
     found = demands_at(times)
     if not found.moving.any():
-        return Assumptions(
-            breaches=(),
-            least_normal_force=1.0,
-            largest_normal_force=1.0,
-            largest_friction_needed=0.0,
-            largest_restraining_moment=0.0,
-            friction=friction,
-        )
+        return Assumptions(friction=friction)
 
     def slips(found: Demands) -> NDArray[np.bool_]:
         # where contact is lost it is that which is said

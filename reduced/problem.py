@@ -74,7 +74,7 @@ class Problem:
     restitution: float
     rolling_resistance: float
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         # what is derived stays behind: compiled code that travels is compiled again where it arrives
         return _restored, ({field.name: getattr(self, field.name) for field in fields(self)},)
 

@@ -114,7 +114,8 @@ def twist_share(body: Body, s: float, c: float) -> float:
 def pivot(body: Body, s: float, c: float) -> tuple[float, float]:
     """Return I_v and P [m^2]."""
     beside, above = body.b * c - body.h * s, body.b * s + body.h * c
-    difference, moved = (body.I1 - body.I2) * s * c, body.mu * beside
+    difference = (body.I1 - body.I2) * s * c
+    moved = body.mu * beside
     return body.I1 * s * s + body.I2 * c * c + moved * beside, difference - moved * above
 
 

@@ -6,7 +6,7 @@ import importlib.metadata
 import math
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any
 
@@ -40,8 +40,8 @@ def simulate(
     Parameters
     ----------
     case : Case
-        Cylinder, ground motion, initial state, length, gravity; its friction is what the friction needed is
-        held against.
+        Cylinder, ground motion, initial state, length, gravity, and the friction with which the friction
+        demand is compared.
     support : {"recess", "flat"}, optional
         "recess": no slip, no roll-out, the paper's two degrees of freedom, (18) and (19); "flat": no slip,
         free to roll out.
@@ -125,7 +125,7 @@ def _trace(
     times: NDArray[np.float64],
     case: Case,
     run: Run,
-    settings: dict[str, Any],
+    settings: Mapping[str, object],
     wall_time: float,
 ) -> Trace:
     reached = result.reached

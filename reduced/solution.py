@@ -36,7 +36,7 @@ class Solution(Brief):
     ----------
     problem : Problem
     friction : float
-        Coefficient that the friction needed is held against.
+        Coefficient with which the friction demand is compared.
     time : ndarray, shape (n,)
         [s]
     states : ndarray, shape (n, 6)

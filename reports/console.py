@@ -289,7 +289,9 @@ def save_with_page(found: Results, out: Path, *, details: bool = False) -> Calla
 
     def show() -> None:
         page.show(details=details)
-        names = ["manifest.json", *(f"{name}.parquet" for name in found.tables), *found.sheets(), *pages]
-        print(f"\nWritten to {out}: {', '.join(dict.fromkeys(names))}")
+        names = dict.fromkeys([*reversed(pages), *found.sheets(), "manifest.json"])
+        tables = [f"{name}.parquet" for name in found.tables]
+        more = f" and {len(tables)} tables as Parquet" if len(tables) > 3 else ", ".join(["", *tables])
+        print(f"\nWritten to {out}: {', '.join(names)}{more}")
 
     return show

@@ -34,6 +34,7 @@ from rockwobble.models import (
     Trace,
     el_centro_1940,
 )
+from rockwobble.models.cylinder import PIER
 from rockwobble.models.members import perturbed
 from rockwobble.models.support import SUPPORTS
 
@@ -60,7 +61,6 @@ _BEYOND = 10.0  # what counts is so many times larger than the difference of the
 _MEMBERS = 16
 _REPEATS = 10.0  # times the tolerance of a subject: how closely a number repeats
 G = 9.81
-_PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 _SLENDER = Cylinder(semidiagonal=1.0, tan_alpha=0.2)
 _SQUAT = Cylinder(semidiagonal=1.0, tan_alpha=1.0)
 _HOLLOW = Cylinder(semidiagonal=4.0, tan_alpha=0.35, transverse_inertia=7.0, axial_inertia=3.0)
@@ -95,9 +95,9 @@ class ShortCase:
 def short_cases() -> tuple[ShortCase, ...]:
     """Return the twelve cases, the simplest first."""
     return (
-        _release("tilting", "restoring moment p^2 sin(alpha - theta)", _PIER, 0.0, 1.0),
-        _release("rolling", "B and B'/2A of (18) and (19)", _PIER, 0.8, 2.0),
-        _release("near-pass", "J, the limit of B near upright", _PIER, 1e-2, 2.0),
+        _release("tilting", "restoring moment p^2 sin(alpha - theta)", PIER, 0.0, 1.0),
+        _release("rolling", "B and B'/2A of (18) and (19)", PIER, 0.8, 2.0),
+        _release("near-pass", "J, the limit of B near upright", PIER, 1e-2, 2.0),
         _release("inertias", "I1 and I2 of (16)", _HOLLOW, 0.7, 2.0),
         _release(
             "flat-ground",
@@ -142,7 +142,7 @@ def _shaken(
     **options: float,
 ) -> ShortCase:
     motion = GroundMotion(np.array(samples), step)
-    case = Case(_PIER, motion, duration=motion.duration if length is None else length)
+    case = Case(PIER, motion, duration=motion.duration if length is None else length)
     claim = "uplift and motion under a ramp of the ground"
     return ShortCase(name=name, claim=claim, term=term, case=case, options=options)
 
@@ -150,8 +150,8 @@ def _shaken(
 def _record(name: str, term: str, strength: float, length: float) -> ShortCase:
     """Return a case under El Centro, so many times as strong as what lifts the pier."""
     record = el_centro_1940()
-    motion = record.scaled(strength * G * _PIER.tan_alpha / record.peak)
-    case = Case(_PIER, motion, duration=length)
+    motion = record.scaled(strength * G * PIER.tan_alpha / record.peak)
+    case = Case(PIER, motion, duration=length)
     return ShortCase(name=name, claim="response to shaking", term=term, case=case)
 
 

@@ -24,6 +24,7 @@ from pathlib import Path
 import numpy as np
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, el_centro_1940
+from rockwobble.models.cylinder import PIER
 
 from ..external.motion import exceeds
 from ..metrics.pair import agreement_time, energy_loss, make_pair, rms
@@ -31,7 +32,6 @@ from .measurement import (
     FRAME_RELEASE,
     GRAVITY,
     NO_BASELINE,
-    PIER,
     RELEASE,
     SQUAT,
     THRESHOLD,

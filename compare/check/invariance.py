@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
+from rockwobble.models.cylinder import PIER
 from rockwobble.multibody.engines.registry import find_engine
 from rockwobble.multibody.protocol import Engine, Settings
 from rockwobble.multibody.scene import (
@@ -34,7 +35,6 @@ from rockwobble.multibody.scene import (
 from ..runs.execution import simulate_run
 from .measurement import (
     GRAVITY,
-    PIER,
     RELEASE,
     SHOCK,
     SHOCK_TIMES,

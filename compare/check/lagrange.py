@@ -37,10 +37,11 @@ from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, WobblingFrame, el_centro_1940
+from rockwobble.models.cylinder import PIER
 from rockwobble.models.support import SUPPORTS
 
 from ..metrics.pair import energy_loss
-from .measurement import GRAVITY, PIER, RELEASE, Result, at_most, largest, released, worst_of
+from .measurement import GRAVITY, RELEASE, Result, at_most, largest, released, worst_of
 from .subject import Subject
 
 Array = NDArray[Any]  # of float, or of complex within a complex step
@@ -218,7 +219,7 @@ def _matrix(rows: list[list[Array]]) -> Array:
 
 # a slender pier, a drum as wide as high, a squat body with mass and inertias of its own, and a frame
 CYLINDERS = {
-    "R = 6 m, tan alpha = 0.2": Cylinder(semidiagonal=6.0, tan_alpha=0.2),
+    "R = 6 m, tan alpha = 0.2": PIER,
     "R = 2.5 m, tan alpha = 1": Cylinder(semidiagonal=2.5, tan_alpha=1.0),
     "own inertias, tan alpha = 0.5": Cylinder(
         semidiagonal=4.0, tan_alpha=0.5, height=5.0, transverse_inertia=3.1, axial_inertia=2.3

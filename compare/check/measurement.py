@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Trace, WobblingFrame
+from rockwobble.models.cylinder import PIER
 from rockwobble.models.shown import Brief
 from rockwobble.models.support import SUPPORTS
 from rockwobble.models.trace_source import Known
@@ -111,7 +112,6 @@ def not_run(name: str, note: str) -> Result:
 
 GRAVITY = 9.81  # [m/s^2], the default of a case
 WALLED = tuple(each.name for each in SUPPORTS.values() if each.walls)
-PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
 FRAME = WobblingFrame(Cylinder(semidiagonal=3.0, tan_alpha=0.2), 1.0, columns=1)
 THRESHOLD = GRAVITY * PIER.tan_alpha  # ground acceleration of its uplift [m/s^2]

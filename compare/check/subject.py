@@ -63,6 +63,8 @@ class Subject(Brief):
         Relative accuracy that it claims: of alpha, of a time or of an energy.
     repeatability : float
         Difference of the same motion stated in another way, over alpha.
+    rounding : float
+        Relative rounding error of the arithmetic of an engine.
     steps : tuple of float
         Accuracy parameters (tolerance or time step) of the check of the order, the coarsest first.
     order : float
@@ -88,6 +90,7 @@ class Subject(Brief):
     options: frozenset[str] = frozenset()
     tolerance: float
     repeatability: float
+    rounding: float = 0.0
     steps: tuple[float, ...] = ()
     order: float = 1.0
     at_step: Callable[[float], Subject] | None = None
@@ -183,6 +186,7 @@ def engine(
         options=frozenset({"stepper", *(["rolling_resistance"] if facts.rolling_friction else [])}),
         tolerance=tolerance,
         repeatability=ENGINE_REPEATABILITY,
+        rounding=facts.rounding,
         steps=tuple(
             times * REFERENCE_TIME_STEP
             for times in (_STEPS if tolerance == ENGINE_TOLERANCE else _COARSE_STEPS)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,7 +19,7 @@ from ..external.verdict import lists_in_words, lists_of_file
 from ..metrics.pair import first_unresolved_pass, start_of
 from ..metrics.statistics import stated
 from ..runs.execution import case_inputs
-from ..storage.manifest import Number, Stored, made_now
+from ..storage.manifest import Number, Stored
 from ..storage.provenance import fingerprint
 from ..storage.results import Results
 from .budget import ErrorBudget
@@ -162,16 +161,9 @@ class Comparison(Results, kind="comparison"):
             **{name: float(value) if math.isfinite(value) else None for name, value in numbers.items()},
         }
 
-    def made_by(self, command: str = "") -> Self:
-        """Return these results with their manifest, in which the facts of all runs have no part."""
-        made = made_now(
-            self.kind,
-            inputs=self.facts["inputs"],
-            command=command,
-            versions=self.versions,
-            headline=self.headline(),
-        )
-        return dataclasses.replace(self, manifest=made)
+    def _about(self) -> Mapping[str, object]:
+        """Return nothing: the facts of all runs have a file of their own."""
+        return {}
 
     def sheets(self) -> Mapping[str, bytes]:
         """Return the facts, and summary and matrix as CSV."""

@@ -40,7 +40,7 @@ from .budget import ErrorBudget
 
 # a prediction is in time if the measured agreement time is within this factor of it, either way
 IN_TIME = 2.0
-# one that is beaten by more than this factor foretold nothing, and a run that beats it proves nothing
+# one that is beaten by more than this factor predicted nothing, and a run that beats it proves nothing
 BEATEN = 10.0
 # of `verdict` and of an agreement without motion: the run has not tested the model
 UNTESTED = ("much later", "too little motion")

@@ -110,7 +110,7 @@ class Mistake:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """What takes a mistake back: of the columns, or of the motion that they tell."""
+    """Correction of a mistake: of the columns, or of the motion that they tell."""
 
     mistake: Mistake
     values: Callable[[Values], Values] = field(default=lambda values: values)

@@ -307,7 +307,7 @@ class Difference:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reference:
-    """What a trajectory is compared with.
+    """A model that trajectories are compared with.
 
     Attributes
     ----------

@@ -125,16 +125,9 @@ def labels_beside_references(runs: Sequence[Run], reference: Run | None) -> tupl
 def run_labels(runs: Sequence[Run]) -> tuple[str, ...]:
     """Return a label for each run: engine and support, and as much more as tells them apart."""
     labels = [str(run) for run in runs]
-    if len(set(labels)) < len(labels):
+    for detail in (_step_words, _setting_words):
         labels = [
-            f"{label} {_step_label(run.time_step)}" if run.time_step and labels.count(label) > 1 else label
-            for label, run in zip(labels, runs, strict=True)
-        ]
-    if len(set(labels)) < len(labels):
-        labels = [
-            " ".join([label, *(f"{key}={value}" for key, value in run.settings.items())])
-            if labels.count(label) > 1
-            else label
+            f"{label} {detail(run)}".rstrip() if labels.count(label) > 1 else label
             for label, run in zip(labels, runs, strict=True)
         ]
     for label in labels:
@@ -143,8 +136,13 @@ def run_labels(runs: Sequence[Run]) -> tuple[str, ...]:
     return tuple(labels)
 
 
-def _step_label(time_step: float | str) -> str:
-    return time_step if isinstance(time_step, str) else f"{time_step:g} s"
+def _step_words(run: Run) -> str:
+    step = run.time_step
+    return step if isinstance(step, str) else f"{step:g} s" if step else ""
+
+
+def _setting_words(run: Run) -> str:
+    return " ".join(f"{key}={value}" for key, value in run.settings.items())
 
 
 SUPPORTS = ("recess", "flat")

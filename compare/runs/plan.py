@@ -13,7 +13,7 @@ _KEY = "option"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Option:
-    """What is to be known of an option besides its name, type and default.
+    """Help, range and form of an option; name, type and default are those of its field.
 
     Attributes
     ----------

@@ -74,29 +74,15 @@ class Manifest(Brief):
     pages: tuple[str, ...] = ()
 
 
-def made_now(
-    kind: str,
-    *,
-    inputs: str = "",
-    command: str = "",
-    seeds: Mapping[str, int] | None = None,
-    headline: Mapping[str, Number] | None = None,
-    about: Mapping[str, object] | None = None,
-    versions: Mapping[str, str] | None = None,
-) -> Manifest:
-    """Return the manifest of what has just been computed here; `write_results` adds the files."""
-    return Manifest(
-        kind=kind,
-        inputs=inputs,
-        command=command,
+def with_provenance(manifest: Manifest) -> Manifest:
+    """Return a manifest with date, commit, processor, code and, where it states none, versions of here."""
+    return dataclasses.replace(
+        manifest,
         date=datetime.now(UTC).date().isoformat(),
         commit=commit(),
         processor=processor(),
-        versions=dict(package_versions() if versions is None else versions),
+        versions=manifest.versions or package_versions(),
         code=code_digests(),
-        seeds=dict(seeds or {}),
-        headline=dict(headline or {}),
-        about=dict(about or {}),
     )
 
 
@@ -145,7 +131,7 @@ def write_results(
     ----------
     folder : str or Path
     manifest : Manifest
-        See `made_now`.
+        See `with_provenance`.
     tables : mapping
         Each becomes NAME.parquet, which says in its metadata what made it.
     files, pages : mapping, optional

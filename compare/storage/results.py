@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
 from rockwobble.models.shown import Shown, brief
 
-from .manifest import Manifest, Number, Stored, made_now, read_results, write_results
+from .manifest import Manifest, Number, Stored, read_results, with_provenance, write_results
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Results(Shown):
-    """What a study has found; a subclass registers its kind by `class Ensemble(Results, kind="ensemble")`.
+    """Results of a study; a subclass registers its kind by `class Ensemble(Results, kind="ensemble")`.
 
     Attributes
     ----------
@@ -64,15 +64,20 @@ class Results(Shown):
     def made_by(self, command: str = "") -> Self:
         """Return these results with the manifest of this machine and version, and of the `command`."""
         facts = self.facts
-        manifest = made_now(
-            self.kind,
+        manifest = Manifest(
+            kind=self.kind,
             inputs=str(facts.get("inputs", "")),
             command=command,
+            versions=facts.get("versions", {}),
             seeds={"seed": int(facts["seed"])} if "seed" in facts else {},
-            headline=self.headline(),
-            about=facts,
+            headline=dict(self.headline()),
+            about=dict(self._about()),
         )
-        return dataclasses.replace(self, manifest=manifest)
+        return dataclasses.replace(self, manifest=with_provenance(manifest))
+
+    def _about(self) -> Mapping[str, object]:
+        """Facts that stand in the manifest."""
+        return self.facts
 
     def save(self, folder: str | Path, *, pages: Mapping[str, bytes] | None = None) -> None:
         """Write tables, facts and manifest to `folder`: whole or not at all; other files there stay.

@@ -54,9 +54,9 @@ class Ensemble(Results, kind=KIND):
         overturned), outcome (see `outcome_of`), diagnostics (their codes), wall_time [s].
     methods : DataFrame
         One row for each method: own_model (of the support of an engine; of a ring, which has none, the recess
-        model), runs, rocked, overturned, failed, failed_members (their names), and of the peak tilts of what
-        did not fail [alpha] the median with its interval (peak_median, _low, _high) and the 16th and 84th
-        percentile (peak_16, peak_84): infinite where they overturn.
+        model), runs, uplifted, overturned, failed, failed_members (their names), and of the peak tilts of
+        what did not fail [alpha] the median with its interval (peak_median, _low, _high) and the 16th and
+        84th percentile (peak_16, peak_84): infinite where they overturn.
     contrasts : DataFrame
         One row for each two methods: the numbers of `Contrast`, intervals in columns _low and _high, its
         verdict, masked (members that failed by one of them), and both probabilities corrected for the number
@@ -299,7 +299,7 @@ def method_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFr
                 "method": method,
                 "own_model": own,
                 "runs": len(runs),
-                "rocked": int((known["peak_tilt"] > 0.0).sum()),
+                "uplifted": int((known["peak_tilt"] > 0.0).sum()),
                 "overturned": int(fallen.sum()),
                 "failed": len(failed),
                 "failed_members": ", ".join(failed["member"]),

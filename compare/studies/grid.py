@@ -101,7 +101,7 @@ class Grid(Brief, GridPlan):
     ----------
     semidiagonals : sequence of float
         Sizes R [m].
-    tan_alphas : sequence of float, optional
+    tan_alphas : sequence of float
         Slendernesses b/h [-].
     scales : sequence of float
         Factors on the motions, not negative [-].
@@ -126,6 +126,7 @@ class Grid(Brief, GridPlan):
     """
 
     semidiagonals: Sequence[float]
+    tan_alphas: Sequence[float]
     scales: Sequence[float]
     motions: Sequence[GroundMotion]
     models: Sequence[str] = ("recess",)

@@ -212,7 +212,12 @@ class ExtremesPlan(Plan):
 class GridPlan(Plan):
     """Grid of reduced runs from rest: its axes, and what all runs have in common."""
 
-    DEFAULTS: ClassVar = {"semidiagonals": (0.5, 30.0, 100), "scales": (0.5, 6.0, 100)}  # [m], [-]
+    # [m], [-], [-]: from, to and count
+    DEFAULTS: ClassVar = {
+        "semidiagonals": (0.5, 30.0, 100),
+        "tan_alphas": (0.2, 0.2, 1),
+        "scales": (0.5, 6.0, 100),
+    }
 
     semidiagonals: Sequence[float] | None = option(
         None,
@@ -221,8 +226,12 @@ class GridPlan(Plan):
         form="numbers",
         flag="--semidiagonal",
     )
-    tan_alphas: Sequence[float] = option(
-        (0.2,), "Slenderness b/h: a list or a range.", group="Grid", form="numbers", flag="--tan-alpha"
+    tan_alphas: Sequence[float] | None = option(
+        None,
+        "Slenderness b/h: a list or a range. Default: 0.2.",
+        group="Grid",
+        form="numbers",
+        flag="--tan-alpha",
     )
     scales: Sequence[float] | None = option(
         None,

@@ -16,7 +16,8 @@ from dataclasses import asdict, dataclass, field
 import numpy as np
 import pandas as pd
 
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, GroundMotion, InitialState
+from rockwobble.models.cylinder import PIER
 from rockwobble.models.support import support_named
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 from rockwobble.multibody.protocol import SceneCounts
@@ -29,8 +30,6 @@ STEPS = 2000  # that are timed, 0.2 s of the cylinder of 6 m
 _WARM_UP = 100  # steps before them: contact settles, the machine fetches the scene
 _WALLS = 8, 32, 128
 _PUSH = 0.1  # [m/s^2] of each component that a scene has; far from uplift
-
-_PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -150,11 +149,11 @@ def scene_costs(
 
 def step_cost(engine: str, variant: Variant, steps: int) -> tuple[float, SceneCounts]:
     """Return the processor time of one step [s], a mean over `steps`, and what the step solved."""
-    initial = None if variant.standing else InitialState(0.5 * _PIER.alpha, rolling_rate=0.5)
+    initial = None if variant.standing else InitialState(0.5 * PIER.alpha, rolling_rate=0.5)
     motion = None
     if variant.components:
         motion = GroundMotion(np.full((2, len(variant.components)), _PUSH), 1.0)
-    case = Case(_PIER, motion, initial=initial, duration=1.0, name="cost")
+    case = Case(PIER, motion, initial=initial, duration=1.0, name="cost")
     push = np.array([_PUSH if name in variant.components else 0.0 for name in "xyz"])
     with open_scene(case, engine, variant.support, variant.settings) as stepper:
         stepper.advance(np.tile(push, (_WARM_UP, 1)))

@@ -149,7 +149,7 @@ _OUTCOMES = ("stands", "overturned", "failed")
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Sweep(Results, kind=KIND):
-    """What became of each run.
+    """Outcome and numbers of each run.
 
     Attributes
     ----------

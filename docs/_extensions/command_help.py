@@ -17,7 +17,7 @@ GENERAL = "Options"
 
 
 class CommandHelp(SphinxDirective):
-    """`rockwobble-command:: NAME` gives what it does, its example, and its options in a table a group."""
+    """`rockwobble-command:: NAME` gives what it does with an example, and its options in a table a group."""
 
     required_arguments = 1
     has_content = False
@@ -31,10 +31,12 @@ class CommandHelp(SphinxDirective):
             raise self.error(f"there is no command {name!r}; there are {', '.join(sorted(commands))}")
         command = commands[name]
         paragraphs = inspect.cleandoc(command.help or "").split("\n\n")
-        found: list[nodes.Node] = [_paragraph(words) for words in paragraphs]
-        example = (command.epilog or "").removeprefix("Example: ")
-        if example:
-            found.append(nodes.literal_block(example, example, language="sh"))
+        found: list[nodes.Node] = [
+            nodes.literal_block(words, words, language="sh")
+            if words.startswith("rockwobble ")
+            else _paragraph(words)
+            for words in map(str.strip, paragraphs)
+        ]
         groups: dict[str, list[Any]] = {}
         for parameter in command.params:
             if not getattr(parameter, "hidden", False) and parameter.name != "help":

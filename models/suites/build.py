@@ -24,6 +24,9 @@ _MOST_CASES = 10_000
 # digits of a value in a name: as few as tell all values of a key apart
 _DIGITS = (3, 4, 6, 9, 12)
 
+# keys that say which record it is, beside its pair
+_OF_A_RECORD = ("record", "vertical", "x", "y", "z", "units", "resample")
+
 _Values = dict[tuple[str, str], float]
 
 
@@ -163,16 +166,7 @@ def build_motion(
     """
     if table.pulse is not None:
         return _pulse(table.pulse, values, uplift)
-    source = (
-        table.record,
-        table.vertical,
-        values.get("pair"),
-        table.x,
-        table.y,
-        table.z,
-        table.units,
-        table.resample,
-    )
+    source = (values.get("pair"), *(getattr(table, key) for key in _OF_A_RECORD))
     if source not in records:
         records[source] = _record(table, values, folder)
     motion = records[source]

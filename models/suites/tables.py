@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from ..bounds import REFERENCES
 from ..case import WAYS_TO_A_STEP, TimeStep
@@ -32,28 +32,30 @@ _RANGE = ("from", "to", "step", "count", "spacing")
 # a step divides its range up to the rounding of decimal fractions
 _ROUNDING = 1e-9
 
-Check = Callable[[float], str]
+Check = Callable[[float], None]
+"""Refuses a value out of range."""
 
 
-def any_number(_: float) -> str:
+def any_number(_: float) -> None:
     """Refuse nothing."""
-    return ""
 
 
-def positive(value: float) -> str:
+def positive(value: float) -> None:
     """Refuse zero and below."""
-    return "" if value > 0.0 else f"must be positive, got {value:g}"
+    if not value > 0.0:
+        raise ValueError(f"must be positive, got {value:g}")
 
 
-def not_negative(value: float) -> str:
+def not_negative(value: float) -> None:
     """Refuse what is below zero."""
-    return "" if value >= 0.0 else f"must not be negative, got {value:g}"
+    if not value >= 0.0:
+        raise ValueError(f"must not be negative, got {value:g}")
 
 
-def whole(value: float) -> str:
+def whole(value: float) -> None:
     """Refuse fractions and what is below one."""
-    fine = value >= 1.0 and value == math.floor(value)
-    return "" if fine else f"must be a positive whole number, got {value:g}"
+    if not (value >= 1.0 and value == math.floor(value)):
+        raise ValueError(f"must be a positive whole number, got {value:g}")
 
 
 def expanded(given: object, check: Check = any_number) -> tuple[float, ...]:
@@ -67,7 +69,7 @@ def expanded(given: object, check: Check = any_number) -> tuple[float, ...]:
     if isinstance(given, dict):
         values = _range(given)
         for value in values:
-            _require(check(value))
+            check(value)
         return values
     if not isinstance(given, list):
         return (_number(given, check),)
@@ -97,13 +99,8 @@ def _number(given: object, check: Check) -> float:
         value = math.inf
     if not math.isfinite(value):
         raise ValueError(f"must be a finite number, got {shown(given)}")
-    _require(check(value))
+    check(value)
     return value
-
-
-def _require(complaint: str) -> None:
-    if complaint:
-        raise ValueError(complaint)
 
 
 def _range(given: Mapping[str, object]) -> tuple[float, ...]:
@@ -174,6 +171,15 @@ Wholes = Annotated[tuple[float, ...], _values(whole)]
 RECORDS = ("el_centro_1940", "p695")
 
 
+def _known(*allowed: str) -> AfterValidator:
+    def check(value: str) -> str:
+        if value not in allowed:
+            raise ValueError(f"must be one of {', '.join(allowed)}, got {shown(value)}")
+        return value
+
+    return AfterValidator(check)
+
+
 class _Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
@@ -229,15 +235,15 @@ class CylinderTable(_Table):
 class MotionTable(_Table):
     """The ground motion: a record that ships, files of a record, or a pulse."""
 
-    record: str | None = None
+    record: Annotated[str, _known(*RECORDS)] | None = None
     vertical: bool | None = None
     pair: Wholes | None = None
     x: str | None = None
     y: str | None = None
     z: str | None = None
-    units: str | None = None
+    units: Annotated[str, _known(*UNITS)] | None = None
     resample: bool | None = None
-    pulse: str | None = None
+    pulse: Annotated[str, _known(*PULSES)] | None = None
     amplitude: Positives | None = None
     period: Positives | None = None
     azimuth_deg: Numbers | None = None
@@ -250,18 +256,13 @@ class MotionTable(_Table):
     def _keys_go_together(self) -> MotionTable:
         kind = "x" if self.given("x", "y") else self.require_one_of("record", "x", "pulse")
         self.refuse_others(kind)
-        if kind == "record":
-            _require_known("record", self.record, RECORDS)
-            if self.record == "p695" and not self.given("pair"):
-                raise KeyedError("pair", "must be given: 1 to 22")
+        if self.record == "p695" and not self.given("pair"):
+            raise KeyedError("pair", "must be given: 1 to 22")
         if kind == "x":
             for name in ("x", "y"):
                 if not self.given(name):
                     raise KeyedError(name, "must be given: a record has two horizontal components")
-            if self.units is not None:
-                _require_known("units", self.units, UNITS)
         if kind == "pulse":
-            _require_known("pulse", self.pulse, PULSES)
             if not self.given("period"):
                 raise KeyedError("period", "must be given with a pulse [s]")
             self.require_one_of("amplitude", "times_uplift")
@@ -375,13 +376,7 @@ class BoundsTable(_Table):
     residual_twist: Positive | None = None
     energy_loss: Positive | None = None
     agreement_time: Positive | None = None
-    reference: str | None = None
-
-    @model_validator(mode="after")
-    def _known_reference(self) -> BoundsTable:
-        if self.reference is not None:
-            _require_known("reference", self.reference, REFERENCES)
-        return self
+    reference: Annotated[str, _known(*REFERENCES)] | None = None
 
 
 class SuiteTable(_Table):
@@ -390,11 +385,6 @@ class SuiteTable(_Table):
     cases: list[CaseTable] = Field(min_length=1)
     runs: list[RunTable] = Field(default_factory=list)
     bounds: BoundsTable | None = None
-
-
-def _require_known(key: str, value: str | None, allowed: tuple[str, ...]) -> None:
-    if value not in allowed:
-        raise KeyedError(key, f"must be one of {', '.join(allowed)}, got {shown(value)}")
 
 
 # by their keys, "" for the whole file

@@ -1,8 +1,8 @@
 """Engines by name; each is imported only when it is asked for.
 
 Engines are declared as entry points of the group `rockwobble.engines`, so that a package of somebody
-else can bring one. Ours are declared there too, and known here besides: a checkout that is not installed
-has no entry points, and one of ours is known by name where its package has no wheel.
+else can bring one. Those of this package are declared there too, and known here besides: a checkout that is
+not installed has no entry points, and an engine is known by name where its package has no wheel.
 """
 
 from __future__ import annotations
@@ -52,7 +52,6 @@ _NONE = _Libraries((), "")
 @dataclass(frozen=True, slots=True)
 class _Entry:
     package: str
-    factory: str  # module:callable, relative to this folder
     remedy: str
     module: str = ""  # to import, where it is not called as the package
     standard: bool = True  # comes with every installation of this package, where it has a wheel
@@ -65,23 +64,20 @@ _GRAPHICS = _Libraries(("libGL.so.1", "libX11.so.6"), "apt install libgl1 libx11
 _WHEEL = sys.version_info < (3, 12) and sys.platform == "linux" and platform.machine() == "x86_64"
 _ENGINES: Mapping[str, _Entry] = MappingProxyType(
     {
-        "mujoco": _Entry("mujoco", ".mujoco:MujocoEngine", "pip install 'mujoco>=4.0,<5'"),
+        "mujoco": _Entry("mujoco", "pip install 'mujoco>=4.0,<5'"),
         "pybullet": _Entry(
             "pybullet",
-            ".pybullet:PybulletEngine",
             "pip install pybullet, which has wheels for Python 3.11 and older on Linux x86-64 only",
             standard=_WHEEL,
         ),
         "dart": _Entry(
             "dartpy",
-            ".dart:DartEngine",
             "pip install 'dartpy>=6.20,<7'",
             standard=not _WHEEL,
             libraries=_GRAPHICS,
         ),
         "drake": _Entry(
             "drake",
-            ".drake:DrakeEngine",
             "pip install 'drake>=1.51'",
             module="pydrake",
             standard=False,
@@ -89,18 +85,17 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
         ),
         "exudyn": _Entry(
             "exudyn",
-            ".exudyn:ExudynEngine",
             "pip install 'exudyn>=1.13.6,<2'",
             standard=False,
             libraries=_GRAPHICS,
         ),
-        "rapier": _Entry("rapier3d", ".rapier:RapierEngine", "pip install 'rapier3d>=0.36'", standard=False),
+        "rapier": _Entry("rapier3d", "pip install 'rapier3d>=0.36'", standard=False),
     }
 )
 
 
 def engine_names() -> tuple[str, ...]:
-    """Return the names of all known engines, installed or not: ours, then those of other packages.
+    """Return the names of all known engines, installed or not: of this package, then of others.
 
     Returns
     -------
@@ -130,7 +125,7 @@ def own_engines() -> tuple[str, ...]:
 
 
 def available_engines() -> tuple[str, ...]:
-    """Return the names of all engines that are installed here: ours, then those of other packages.
+    """Return the names of all engines that are installed here: of this package, then of others.
 
     Returns
     -------
@@ -169,7 +164,7 @@ def find_engine(name: str) -> Engine:
         return _load(name, declared[name])
     if not _is_here(entry):
         raise EngineNotInstalledError(f"engine {name!r} {_lack(entry)}")
-    return _made(entry)
+    return _made(name)
 
 
 def engine_for(case: Case, name: str, support: str) -> Engine:
@@ -183,7 +178,7 @@ def engine_for(case: Case, name: str, support: str) -> Engine:
         Saying what is allowed, and as `find_engine` does.
     """
     entry = _ENGINES.get(name)
-    engine = find_engine(name) if entry is None else _made(entry)
+    engine = find_engine(name) if entry is None else _made(name)
     _require_able(engine, name, case, support)
     return find_engine(name)
 
@@ -221,7 +216,7 @@ def engine_facts(name: str) -> EngineFacts:
         If there is no such engine; BrokenEngineError if it is of another package and does not load.
     """
     entry = _ENGINES.get(name)
-    return find_engine(name).facts if entry is None else _made(entry).facts
+    return find_engine(name).facts if entry is None else _made(name).facts
 
 
 def engine_packages() -> dict[str, str]:
@@ -255,10 +250,10 @@ def _has_library(name: str) -> bool:
         return False
 
 
-def _made(entry: _Entry) -> Engine:
+def _made(name: str) -> Engine:
     # our modules import the package of an engine only where it is used
-    module, factory = entry.factory.split(":")
-    return cast(Engine, getattr(importlib.import_module(module, __package__), factory)())
+    module = importlib.import_module(f".{name}", __package__)
+    return cast(Engine, getattr(module, f"{name.capitalize()}Engine")())
 
 
 def _declared() -> dict[str, list[EntryPoint]]:

@@ -113,10 +113,7 @@ def rocking_period(
     >>> round(rocking_period(pier, 0.5 * pier.alpha), 6)
     4.756815
     """
-    body = body_under(cylinder, gravity)
-    theta = require_tilts(tilt, body.alpha)
-    period = 4.0 * quarter_period(body, theta, body.alpha - theta)
-    return period if np.ndim(tilt) else float(period)
+    return 4.0 * planar_quarter_period(cylinder, tilt, gravity=gravity)
 
 
 def quarter_period(body: Body, theta: NDArray[np.float64], gap: NDArray[np.float64]) -> NDArray[np.float64]:

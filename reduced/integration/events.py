@@ -6,7 +6,7 @@ A step is given by its method (`stepping.Stepper`) and what that keeps of it: ``
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +48,7 @@ class Trial(NamedTuple):
     trials: int  # how often its method tried
     y: State  # at its end
     k: State  # what the method leaves to the next one, with ``path``
-    path: Any
+    path: object
     turn: Turn
     flat: bool  # motion without spin and twist rate: exactly planar
 
@@ -83,7 +83,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
 
     @jit
     def turning_point(
-        body: Body, work: NDArray[np.float64], path: Any, y: State, h: float, rate_at_end: float
+        body: Body, work: NDArray[np.float64], path: object, y: State, h: float, rate_at_end: float
     ) -> tuple[float, float, float]:
         """Return the time of a zero tilt rate in a step of length `h`, and tilt and rolling angle there.
 
@@ -110,7 +110,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
 
     @jit
     def crossing(
-        body: Body, work: NDArray[np.float64], path: Any, y: State, first: float, last: float, level: float
+        body: Body, work: NDArray[np.float64], path: object, y: State, first: float, last: float, level: float
     ) -> tuple[float, State]:
         """Return the time from `first` to `last` at which the tilt reaches `level`, and the state there.
 
@@ -138,7 +138,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
 
     @jit
     def reversal(
-        body: Body, work: NDArray[np.float64], path: Any, y: State, h: float, rate_at_end: float
+        body: Body, work: NDArray[np.float64], path: object, y: State, h: float, rate_at_end: float
     ) -> float:
         """Return a time in a step at which the tilt rate has the sign that it has at neither end; 0 if none.
 
@@ -168,7 +168,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
 
     @jit
     def release_in(
-        body: Body, work: NDArray[np.float64], path: Any, h: float, a: Vector, slope: Vector
+        body: Body, work: NDArray[np.float64], path: object, h: float, a: Vector, slope: Vector
     ) -> float:
         """Return the time in a step at which a body that only pivots is let go, or 0; by bisection."""
         low, high = 0.0, 0.5 * h
@@ -185,7 +185,9 @@ def make_events(system: System, stepper: Stepper) -> Events:
         return high
 
     @inlined
-    def turn_in(body: Body, work: NDArray[np.float64], path: Any, y: State, h: float, y_new: State) -> Turn:
+    def turn_in(
+        body: Body, work: NDArray[np.float64], path: object, y: State, h: float, y_new: State
+    ) -> Turn:
         """Return the turning point of the tilt in a step from `y` to `y_new`."""
         if not y[1] * y_new[1] < 0.0:
             return NONE

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import cos, hypot, pi, sin
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,7 +87,7 @@ class Sampling(NamedTuple):
     of_step: Callable[..., int]
 
 
-def make_sampling(lifted: Callable[..., State], partial: Callable[..., Any]) -> Sampling:
+def make_sampling(lifted: Callable[..., State], partial: Callable[..., tuple[State, State]]) -> Sampling:
     """Return the sampling of uplifts by `lifted` and of steps that `partial` fills."""
 
     @inlined
@@ -126,7 +126,7 @@ def make_sampling(lifted: Callable[..., State], partial: Callable[..., Any]) -> 
         until: float,
         body: Body,
         work: NDArray[np.float64],
-        path: Any,
+        path: object,
         begin: float,
         y_new: State,
     ) -> int:

@@ -115,7 +115,9 @@ def _across(body: Body, theta: float, Lambda: float, S: float) -> float:
     return across_rate(body, *sin_cos(theta), Lambda, S)
 
 
-def _make_ratio(momenta: Callable[..., Any], error_ratio: Callable[..., float]) -> Callable[..., float]:
+def _make_ratio(
+    momenta: Callable[[State], tuple[float, float]], error_ratio: Callable[..., float]
+) -> Callable[..., float]:
     """Return the error over what is allowed, of a model with spin, corners of the couple included."""
 
     @jit
@@ -157,7 +159,7 @@ def _recess_ratio(
     return max(ratio, abs(error[2]) * (1.0 / rtol), abs(error[3]) * per_lever * per_rate)
 
 
-def _make_combine(combine: Callable[..., Any]) -> Callable[..., State]:
+def _make_combine(combine: Callable[..., State]) -> Callable[..., State]:
     """Return y + h sum(weights slopes), with the energy lost, and with the side as it is."""
 
     @jit

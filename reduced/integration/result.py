@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import pi
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -120,7 +120,7 @@ def has_turned(log: Log, since: float) -> bool:
 
 
 @jit
-def as_table(rows: Any, count: int, width: int) -> NDArray[np.float64]:
+def as_table(rows: Sequence[State], count: int, width: int) -> NDArray[np.float64]:
     """Return the first `count` tuples of a list as an array (count, width)."""
     table = np.empty((count, width))
     for i in range(count):

@@ -27,7 +27,7 @@ compiler keeps all stages in registers, which with `sin_cos` made a step 1.8 tim
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,7 +71,9 @@ ERROR = (
 )
 
 
-def make_step(derivative: Callable[..., Any], combine: Callable[..., Any]) -> Callable[..., Any]:
+def make_step(
+    derivative: Callable[[Body, State, Vector], State], combine: Callable[..., State]
+) -> Callable[..., tuple[State, State, State, float]]:
     """Return the compiled step of a system.
 
     ``derivative(body, y, a)`` returns y' under the ground acceleration `a`, and
@@ -110,6 +112,8 @@ _GROWTH, _SHRINK = 5.0, 0.2  # bounds on the change of the step from one to the 
 _SMALL = (_SAFETY / _GROWTH) ** 5  # error ratio below which the step grows by _GROWTH
 _MOST_TRIALS = 200  # each shortens the step: enough to come down from any length to none
 
+_Path = tuple[State, State, Vector, Vector]  # of a Runge-Kutta step: its start, and how the ground moves
+
 
 class Stepper(NamedTuple):
     """The compiled functions of one method: how it steps, and how it fills a step.
@@ -119,13 +123,15 @@ class Stepper(NamedTuple):
     to an array would take longer than a tenth of a step.
     """
 
-    workspace: Callable[..., Any]  # y -> work
-    restarted: Callable[..., Any]  # (body, y, a, work) -> k, where the state or the forcing jumps
+    workspace: Callable[[State], NDArray[np.float64]]  # y -> work
+    restarted: Callable[
+        [Body, State, Vector, NDArray[np.float64]], State
+    ]  # (body, y, a, work) -> k, where the state or the forcing jumps
     # (body, rtol, y, k, work, h, length, a, slope) -> length taken (0 if h does not fit), length proposed
     # for the next step, number of trials, new state, k, path
-    advance: Callable[..., Any]
-    partial: Callable[..., Any]  # (body, work, path, time) -> (y, y') in the last step
-    acceleration: Callable[..., Any]  # (work, path) -> theta'' at the start of the last step
+    advance: Callable[..., tuple[float, float, int, State, State, object]]
+    partial: Callable[..., tuple[State, State]]  # (body, work, path, time) -> (y, y') in the last step
+    acceleration: Callable[..., float]  # (work, path) -> theta'' at the start of the last step
 
 
 @jit
@@ -133,7 +139,7 @@ def _no_workspace(y: State) -> NDArray[np.float64]:
     return np.empty(1)
 
 
-def runge_kutta(system: System, combine: Callable[..., Any], error_ratio: Callable[..., float]) -> Stepper:
+def runge_kutta(system: System, combine: Callable[..., State], error_ratio: Callable[..., float]) -> Stepper:
     """Return the Runge-Kutta steps of one system.
 
     ``combine(y, h, weights, slopes)`` returns y + h sum(weights slopes), and
@@ -143,7 +149,7 @@ def runge_kutta(system: System, combine: Callable[..., Any], error_ratio: Callab
     momenta, derivative = system.momenta, system.derivative
 
     @jit
-    def restarted(body: Body, y: State, a: Vector, work: NDArray[np.float64]) -> Any:
+    def restarted(body: Body, y: State, a: Vector, work: NDArray[np.float64]) -> State:
         return derivative(body, y, a)
 
     @jit
@@ -162,7 +168,7 @@ def runge_kutta(system: System, combine: Callable[..., Any], error_ratio: Callab
         length: float,
         a: Vector,
         slope: Vector,
-    ) -> tuple[float, float, int, State, State, Any]:
+    ) -> tuple[float, float, int, State, State, _Path]:
         """Take one accepted step from `y`, of length `h` at first and `length` at the most.
 
         A step that would pass through theta = 0 with spin is repeated: the centrifugal barrier
@@ -189,14 +195,14 @@ def runge_kutta(system: System, combine: Callable[..., Any], error_ratio: Callab
         return 0.0, proposed, _MOST_TRIALS, y_new, k_new, path
 
     @jit
-    def partial(body: Body, work: NDArray[np.float64], path: Any, time: float) -> tuple[State, State]:
+    def partial(body: Body, work: NDArray[np.float64], path: _Path, time: float) -> tuple[State, State]:
         """Return the state and its derivative: by a step, as accurate as those of the integration."""
         y, k, a, slope = path
         y_new, k_new, _, _ = step(body, y, k, time, a, slope)
         return y_new, k_new
 
     @inlined
-    def acceleration(work: NDArray[np.float64], path: Any) -> float:
+    def acceleration(work: NDArray[np.float64], path: _Path) -> float:
         return float(path[1][1])
 
     return Stepper(_no_workspace, restarted, advance, partial, acceleration)

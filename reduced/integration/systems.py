@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf, sqrt
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -54,14 +54,15 @@ def _as_it_was(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> S
 class System(NamedTuple):
     """The compiled functions of one model."""
 
-    derivative: Callable[..., Any]  # (body, y, a) -> y'
-    momenta: Callable[..., Any]  # y -> (L or Lambda, S)
-    placed: Callable[..., Any]  # (body, y, theta, omega, phi, L) -> y with these, and without twist rate
+    derivative: Callable[[Body, State, Vector], State]  # (body, y, a) -> y'
+    momenta: Callable[[State], tuple[float, float]]  # y -> (L or Lambda, S)
+    placed: Callable[..., State]  # (body, y, theta, omega, phi, L) -> y with these, and without twist rate
     resists: bool = False  # against rolling; then the last four are asked (`resisted`)
     hold: Callable[..., float] = _never  # (body, y, a, slope) -> for how long it stands still, tilted [s]
-    set_off: Callable[..., Any] = _as_it_is  # (body, y, a, slope) -> y that begins to move, its first step
+    # (body, y, a, slope) -> y that begins to move, its first step
+    set_off: Callable[..., tuple[State, float]] = _as_it_is
     let_go: Callable[..., bool] = _in_motion  # (body, y, a, slope) -> does what only pivots begin to move
-    stopped: Callable[..., Any] = _as_it_was  # (body, rtol, y, a, slope) -> y, still where it is held
+    stopped: Callable[..., State] = _as_it_was  # (body, rtol, y, a, slope) -> y, still where it is held
 
 
 @inlined

@@ -27,7 +27,7 @@ cosine at the end of the step, which the next one may take over.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, cast
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,7 +59,7 @@ def workspace(y: State) -> NDArray[np.float64]:
 
 
 @jit
-def state_at(c: NDArray[np.float64], order: int, x: float) -> Any:
+def state_at(c: NDArray[np.float64], order: int, x: float) -> State:
     """Return the state at the time x in units of the series."""
     tilt, rate = c[TILT + order], c[RATE + order]
     angle, momentum = c[ANGLE + order], c[MOMENTUM + order]
@@ -72,7 +72,7 @@ def state_at(c: NDArray[np.float64], order: int, x: float) -> Any:
 
 
 @jit
-def partial(body: Body, c: NDArray[np.float64], path: Path, time: float) -> Any:
+def partial(body: Body, c: NDArray[np.float64], path: Path, time: float) -> tuple[State, State]:
     """Return the state at `time` [s] after the start of a step and its derivative: of the same series."""
     unit, order = path
     x = time / unit
@@ -157,7 +157,7 @@ class Last(NamedTuple):
 @inlined
 def expand(
     body: Body, rtol: float, y: State, h: float, a: Vector, slope: Vector, c: NDArray[np.float64]
-) -> tuple[int, float, float, Any]:
+) -> tuple[int, float, float, State]:
     """Write the series from the state `y` to the workspace `c`, with `h` [s] as the unit of time.
 
     Returns the order, the size of its term and of the one before it in tolerances at the time h,
@@ -361,7 +361,7 @@ def advance(
     length: float,
     a: Vector,
     slope: Vector,
-) -> tuple[float, float, int, Any, Any, Path]:
+) -> tuple[float, float, int, State, State, Path]:
     """Take one step from `y`, of about length `h` and `length` at the most; see `stepping.Stepper`.
 
     The series is never repeated: where its highest order does not reach, the step is as long as it

@@ -77,6 +77,9 @@ def _annotation(kind: Any, stated: Option) -> Any:
     return Annotated[kind, typer.Option(*names, **more)]
 
 
+_Parameter = Any  # click's, which typer brings in some versions and imports in others
+
+
 class StrictCommand(TyperCommand):
     """A command whose options take no empty text and come once, and whose refusals say what was given.
 
@@ -106,20 +109,20 @@ class StrictCommand(TyperCommand):
             raise
 
 
-def _refuse_empty(ctx: Any, given: dict[str, Any], order: list[Any]) -> None:
+def _refuse_empty(ctx: typer.Context, given: Mapping[str, object], order: Sequence[_Parameter]) -> None:
     for option in order:
-        texts = given.get(option.name)
+        texts = given.get(str(option.name))
         for text in texts if isinstance(texts, list | tuple) else [texts]:
             if isinstance(text, str) and not text.strip():
                 ctx.fail(f"{_name(option)} must not be empty, got {text!r}")
 
 
-def _refuse_twice(ctx: Any, order: list[Any]) -> None:
+def _refuse_twice(ctx: typer.Context, order: Sequence[_Parameter]) -> None:
     for place, option in enumerate(order):
         if option in order[:place] and not (option.multiple or option.is_eager):
             ctx.fail(f"{_name(option)} is given twice")
 
 
-def _name(option: Any) -> str:
+def _name(option: _Parameter) -> str:
     """Name of an option or argument, as help says it."""
-    return str(option.opts[-1] if option.param_type_name == "option" else option.name.upper())
+    return str(option.opts[-1]) if option.param_type_name == "option" else str(option.name).upper()

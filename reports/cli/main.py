@@ -35,13 +35,16 @@ def _command(name: str) -> TyperCommand:
     function = getattr(importlib.import_module(f".{module}", __package__), name)
     words, _, example = (inspect.getdoc(function) or "").partition("\n\nExample: ")
     alone = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
-    register = alone.command(
-        cls=StrictCommand, help=words, epilog=f"Example: {example}", rich_help_panel=group
-    )
-    register(function)
+    alone.command(cls=StrictCommand, help=_help(words, example), rich_help_panel=group)(function)
     made = get_command(alone)
     assert isinstance(made, TyperCommand)
     return made
+
+
+def _help(text: str, *examples: str) -> str:
+    """Return a docstring with examples behind its first paragraph, for a terminal of any width."""
+    first, *others = (" ".join(part.split()) for part in text.split("\n\n"))
+    return "\n\n".join([first, "\n".join(f"  {example}" for example in examples), *others])
 
 
 class _Commands(Mapping[str, TyperCommand]):
@@ -65,7 +68,12 @@ class _Group(TyperGroup):
 app = typer.Typer(
     cls=_Group,
     name="rockwobble",
-    help="How far can a two-degree-of-freedom model of a rocking and wobbling cylinder be trusted?",
+    help=_help(
+        "How far can a two-degree-of-freedom model of a rocking and wobbling cylinder be trusted?",
+        "rockwobble advise --record-x EW.AT2 --record-y NS.AT2    is it safe, what must its recess carry?",
+        "rockwobble compare --record-x EW.AT2 --record-y NS.AT2   how long do model and engines agree?",
+        "rockwobble fragility --p695                              how probable is overturning?",
+    ),
     context_settings={"help_option_names": ["-h", "--help"]},
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,

@@ -152,7 +152,7 @@ Peak = Annotated[
     float | None,
     typer.Option(
         help="Peak horizontal resultant to which each of many motions is scaled, in g tan alpha. Default: 3.",
-        rich_help_panel="Ground motions",
+        rich_help_panel="Many ground motions",
     ),
 ]
 

@@ -81,7 +81,7 @@ def _number(text: str, allowed: str) -> float:
         raise typer.BadParameter(f"must be {allowed}, got {text!r}") from None
 
 
-def settings(given: Sequence[str] | None) -> dict[str, Any]:
+def settings(given: Sequence[str] | None) -> dict[str, int | float | str]:
     """Return settings from texts of the form name=value: a whole number, a number, or the text itself.
 
     Raises
@@ -94,7 +94,7 @@ def settings(given: Sequence[str] | None) -> dict[str, Any]:
     >>> settings(["ring_facets=64", "ring_clearance=1e-2", "cone=pyramidal"])
     {'ring_facets': 64, 'ring_clearance': 0.01, 'cone': 'pyramidal'}
     """
-    found: dict[str, Any] = {}
+    found: dict[str, int | float | str] = {}
     for text in given or ():
         name, sign, value = (part.strip() for part in text.partition("="))
         if not (name and sign and value):
@@ -141,8 +141,8 @@ def _in_one_turn(plane: float | None) -> float | None:
     raise typer.BadParameter(f"must be from -6.2832 to 6.2832 rad (90 deg is 1.5708), got {plane:g}")
 
 
-body, ground, method, reduced, work = map(
-    panel, ("Cylinder", "Ground motion", "Method", "Reduced model", "Work")
+body, ground, method, reduced, work, output = map(
+    panel, ("Cylinder", "Ground motion", "Method", "Reduced model", "Work", "Output")
 )
 
 TAN_ALPHA = body("Slenderness b/h, radius over half the height.")
@@ -239,4 +239,4 @@ Scheduler = Annotated[
         "and on each machine dask worker tcp://10.0.0.1:8786. Needs the extra distributed."
     ),
 ]
-Out = Annotated[Path, typer.Option(help="Folder for the results.")]
+Out = Annotated[Path, output("Folder for the results.")]

@@ -166,6 +166,9 @@ class Release:
     release_tilt_deg: Annotated[
         float | None, _release("Release at this tilt, in deg; without a record the ground is then still.")
     ] = None
+    release_azimuth_deg: Annotated[
+        float, _release("Direction of the lean at release, in deg, counter-clockwise from x (east).")
+    ] = 0.0
     rolling_rate: Annotated[float, _release("Rolling rate at release, in rad/s.")] = 0.0
     duration: Annotated[
         float | None,
@@ -184,14 +187,23 @@ class Release:
             If an option is out of range, or two do not go together.
         """
         if self.release_tilt_deg is None:
-            if self.rolling_rate:
-                raise ValueError("--rolling-rate needs a release, give --release-tilt-deg [deg] as well")
+            lone = "--rolling-rate" if self.rolling_rate else "--release-azimuth-deg"
+            if self.rolling_rate or self.release_azimuth_deg:
+                raise ValueError(f"{lone} needs a release, give --release-tilt-deg [deg] as well")
             return None
+        if not abs(self.release_azimuth_deg) <= 360.0:
+            raise ValueError(
+                f"--release-azimuth-deg must be from -360 to 360 [deg], got {self.release_azimuth_deg:g}"
+            )
         if not 0.0 <= self.release_tilt_deg < 90.0:
             raise ValueError(
                 f"--release-tilt-deg must be at least 0 and below 90 [deg], got {self.release_tilt_deg:g}"
             )
-        return rw.InitialState(tilt=math.radians(self.release_tilt_deg), rolling_rate=self.rolling_rate)
+        return rw.InitialState(
+            tilt=math.radians(self.release_tilt_deg),
+            rolling_angle=math.radians(self.release_azimuth_deg),
+            rolling_rate=self.rolling_rate,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -260,9 +272,10 @@ def refuse(context: typer.Context, names: Collection[str], why: str) -> None:
     ValueError
         Naming the first of them.
     """
+    flags = {each.name: each.opts[0] for each in context.command.params}
     for name in given_options(context):
         if name in names:
-            raise ValueError(f"--{name.replace('_', '-')} {why}")
+            raise ValueError(f"{flags[name]} {why}")
 
 
 def refuse_options_of_engines(context: typer.Context, engines: list[str] | None) -> None:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 Store = Annotated[
     Path, typer.Argument(help="Folder of results that a command has written.", show_default=False)
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print all there is to know as JSON.")]
+Json = Annotated[bool, options.output("Print all there is to know as JSON.", "--json")]
 
 
 def show(store: Store, as_json: Json = False) -> None:
@@ -96,7 +96,7 @@ def _text(value: object) -> str:
 Folder = Annotated[Path, typer.Argument(help="Folder that a command has written.", show_default=False)]
 Out = Annotated[
     Path | None,
-    typer.Option(help="Where the pages go. Default: into the folder of the results.", show_default=False),
+    options.output("Where the pages go. Default: into the folder of the results.", show_default=False),
 ]
 
 
@@ -136,7 +136,7 @@ CaseName = Annotated[
 Engine = Annotated[str | None, options.method(f"{options.ENGINES}. Default: the first of them.")]
 Open = Annotated[
     bool | None,
-    typer.Option("--open/--no-open", help="Show it in the browser. Default: where there is a terminal."),
+    options.output("Show it in the browser. Default: where there is a terminal.", "--open/--no-open"),
 ]
 
 

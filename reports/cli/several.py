@@ -17,7 +17,7 @@ from .options import settings
 from .problem import Body, under_slab
 
 DEFAULT_COUNT = 100  # of synthetic motions, where the user does not say
-_motions = options.panel("Ground motions")
+_motions = options.panel("Many ground motions")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -243,6 +243,8 @@ def simulate(
 
         with user_input():
             case = problem.case()
+            if plane is not None and problem.release_azimuth_deg:
+                raise ValueError("--plane is the azimuth of the lean, got --release-azimuth-deg beside it")
             if plane is not None and case.initial is not None:  # it leans in the plane that holds it
                 case = replace(case, initial=replace(case.initial, rolling_angle=plane))
             rs.require_writable(out)
@@ -285,7 +287,7 @@ Engine = Annotated[
         "Default: the first of them."
     ),
 ]
-Details = Annotated[bool, typer.Option("--details", help="Print what is folded on the page, too.")]
+Details = Annotated[bool, options.output("Print what is folded on the page, too.", "--details")]
 
 
 @takes_options

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 _subject = options.panel("Subject (default: the reduced models, and the engines that are installed)")
 _output = options.panel("Output for programs")
+Subject = dict[str, Any]  # arguments of `rockwobble.check`
 _STEP = "Time step of the engine, in s. Default: its own choice."
 
 
@@ -59,7 +60,7 @@ class SubjectOptions:
     ] = None
     workers: options.Workers = None
 
-    def subject(self) -> dict[str, Any]:
+    def subject(self) -> Subject:
         """Return the arguments of `rockwobble.check` that name the subject.
 
         Raises
@@ -85,7 +86,7 @@ class SubjectOptions:
             raise ValueError("--workers belongs to the runs of a --suite, got it without one")
         if self.engine is not None:
             find_engine(self.engine)  # what is wrong with it is said before anything runs
-        found: dict[str, Any] = {
+        found: Subject = {
             name: getattr(self, name) for name in ("engine", "time_step", "workers", "support", "tolerance")
         }
         if model is not None:
@@ -199,7 +200,7 @@ def check(
         raise typer.Exit(FAILED)
 
 
-def _run(subject: dict[str, Any], only: list[str] | None) -> Checks:
+def _run(subject: Subject, only: list[str] | None) -> Checks:
     """Run the checks, and print them."""
     from rich.console import Console
 

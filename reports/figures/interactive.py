@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
 import html
 import json
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -48,7 +48,7 @@ def colour_bar(shades: Shades) -> str:
     return f'<div class="shades">{bar}<p>{ticks}</p><p>{html.escape(shades.title)}</p></div>'
 
 
-def chart(panel: Panel, picture: Picture) -> dict[str, Any]:
+def chart(panel: Panel, picture: Picture) -> dict[str, object]:
     """Return a panel as data: plain values, and arrays as base64 of little-endian float32."""
     entries = {name: entry for layer in panel.layers for name, entry in _entries(layer) if name}
     shown = list(entries)[: MOST_ENTRIES - (len(entries) > MOST_ENTRIES)]
@@ -72,7 +72,7 @@ def packed(values: ArrayLike) -> str:
     return base64.b64encode(np.asarray(values, dtype="<f4").tobytes()).decode()
 
 
-def _axis(axis: Axis) -> dict[str, Any]:
+def _axis(axis: Axis) -> dict[str, object]:
     return {
         "title": axis.title,
         "unit": f" {axis.unit}" if axis.unit not in ("", "-") else "",
@@ -84,7 +84,7 @@ def _axis(axis: Axis) -> dict[str, Any]:
     }
 
 
-def _layer(layer: Layer, panel: Panel, picture: Picture) -> dict[str, Any]:
+def _layer(layer: Layer, panel: Panel, picture: Picture) -> dict[str, object]:
     if isinstance(layer, Line):
         return _line(layer, picture.points)
     if isinstance(layer, Band):
@@ -100,18 +100,14 @@ def _layer(layer: Layer, panel: Panel, picture: Picture) -> dict[str, Any]:
             **{key: packed(getattr(layer, key)) for key in ("places", "start", "end")},
         }
     if isinstance(layer, Rule):
-        keys: tuple[str, ...] = ("name", "at", "axis", "text", "until", "colour", "dash", "side")
-        return {"kind": "rule", **{key: getattr(layer, key) for key in keys}}
+        return {"kind": "rule", **dataclasses.asdict(layer)}
     if isinstance(layer, Text):
-        return {
-            "kind": "text",
-            **{key: getattr(layer, key) for key in ("x", "y", "text", "colour", "anchor")},
-        }
+        return {"kind": "text", **dataclasses.asdict(layer)}
     assert picture.shades is not None
     return _heat(layer, panel, picture.shades)
 
 
-def _line(line: Line, points: int) -> dict[str, Any]:
+def _line(line: Line, points: int) -> dict[str, object]:
     keep = kept_points(line.x, line.y, points=POINTS if line.style.dash == "none" else points)
     filled = (
         np.broadcast_to(line.filled, line.x.shape)[keep]
@@ -138,7 +134,7 @@ def _style(style: Style) -> dict[str, str]:
     return {"colour": style.colour, "dash": style.dash, "symbol": style.symbol}
 
 
-def _entries(layer: Layer) -> Iterator[tuple[str, dict[str, Any]]]:
+def _entries(layer: Layer) -> Iterator[tuple[str, Mapping[str, object]]]:
     """Yield the entries of a layer in the legend: a name, and how its mark looks."""
     if isinstance(layer, Line):
         yield layer.name, {**_style(layer.style), "width": layer.width}
@@ -155,7 +151,7 @@ def _entries(layer: Layer) -> Iterator[tuple[str, dict[str, Any]]]:
         yield from ((gap.name, {"colour": gap.colour}) for gap in layer.gaps if gap.cells.any())
 
 
-def _heat(heat: Heat, panel: Panel, shades: Shades) -> dict[str, Any]:
+def _heat(heat: Heat, panel: Panel, shades: Shades) -> dict[str, object]:
     x, y = heat.edges(log_x=panel.x.log, log_y=panel.y.log)
     palette = _palette(shades)
     known = np.isfinite(heat.values)

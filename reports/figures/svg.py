@@ -10,11 +10,13 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Colormap, ListedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
 from .heat import NOTHING, Heat, Shades
@@ -27,6 +29,7 @@ Keywords = dict[str, Any]  # arguments of a function of matplotlib
 WIDTH = 8.6
 # more points than such a column has pixels
 _POINTS = 1600
+_BELOW = -0.48  # of a legend, from its panel [inch]
 _GRID = "#dddddd"
 # no text is smaller than 8 pt at the width at which it is shown
 _STYLE: Any = {
@@ -155,8 +158,12 @@ def _panel(axes: Axes, panel: Panel, picture: Picture) -> None:
         there, back = (lambda y: np.asarray(y) * factor), (lambda y: np.asarray(y) / factor)
         axes.secondary_yaxis("right", functions=(there, back)).set_ylabel(second.title)
     if picture.legend == "panels" and panel.entries():
-        # where it does cover a marker, the marker is on top
-        axes.legend(*_handles([axes]), loc="best", fontsize=_SMALL).set_zorder(1.5)
+        handles, words = _handles([axes])
+        columns = _columns(words, WIDTH / picture.columns)
+        # below the words of its axis, where it covers nothing
+        below = axes.transAxes + ScaledTranslation(0.0, _BELOW, axes.figure.dpi_scale_trans)
+        axes.legend(handles, words, loc="upper left", bbox_to_anchor=(0.0, 0.0), bbox_transform=below,
+                    ncols=columns, fontsize=_SMALL, frameon=False, borderpad=0.0)  # fmt: skip
 
 
 def _scale(axes: Axes, panel: Panel) -> None:
@@ -273,25 +280,27 @@ def _colour_bar(drawn: Figure, places: NDArray[np.object_], shades: Shades) -> N
     bar.set_label(shades.title)
 
 
-def _handles(panels: Sequence[Axes]) -> tuple[list[Any], list[str]]:
+def _handles(panels: Sequence[Axes]) -> tuple[list[Artist], list[str]]:
     """Return what stands in a legend, each name once, at most so many as can be told apart."""
-    found: dict[str, Any] = {}
+    found: dict[str, Artist] = {}
     for axes in panels:
         for handle, name in zip(*axes.get_legend_handles_labels(), strict=True):
             found.setdefault(name, handle)
     rest = len(found) - MOST_ENTRIES
     shown = list(found)[: MOST_ENTRIES - (rest > 0)]
-    words = [textwrap.fill(name, 60) for name in shown]
+    handles, words = [found[name] for name in shown], [textwrap.fill(name, 60) for name in shown]
     if rest > 0:
-        return [found[name] for name in shown] + [Line2D([], [], linestyle="none")], [
-            *words,
-            f"and {rest + 1} more",
-        ]
-    return [found[name] for name in shown], words
+        handles.append(Line2D([], [], linestyle="none"))
+        words.append(f"and {rest + 1} more")
+    return handles, words
 
 
 def _legend(drawn: Figure, panels: Sequence[Axes]) -> None:
     handles, words = _handles(panels)
-    # an entry of n letters takes some n/14 + 0.5 inches
-    columns = max(1, min(4, int(WIDTH / (max(map(len, words)) / 14.0 + 0.5))))
+    columns = _columns(words, WIDTH)
     drawn.legend(handles, words, loc="outside lower center", ncols=columns, frameon=False, labelcolor=DARK)
+
+
+def _columns(words: Sequence[str], width: float) -> int:
+    """Columns of a legend as wide as that [inch]: an entry of n letters takes some n/14 + 0.5."""
+    return max(1, min(4, int(width / (max(map(len, words)) / 14.0 + 0.5))))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator, Mapping
 from typing import Any
 
 from rockwobble.compare.comparison.prediction import BEATEN
@@ -29,13 +29,12 @@ _GROUPS = {
     "acceleration": "records, same PGA",
     "velocity": "records, same PGV",
 }
+# heading of the row: demand at the base, and under the slab
 _DEMANDS = {
-    "friction": "friction",
-    "shear": "shear at the base",
-    "top_friction": "friction under the slab",
-    "top_shear": "shear under the slab",
-    "moment": "moment about the vertical",
-    "wall_force": "its force on a wall",
+    "friction": ("friction", "top_friction"),
+    "shear": ("shear", "top_shear"),
+    "moment about the vertical": ("moment", ""),
+    "force of that moment on a wall": ("wall_force", ""),
 }
 _ENDS = {
     "methods": "reduced model and engine diverge",
@@ -71,14 +70,15 @@ def page_of(found: Advice) -> Page:
         "failed": found.response["outcome"] == "failed",
         "meanings": [CODES[code][1] for code in found.response["diagnostics"]],
         "grades": grades,
+        "numbers": _numbers(found),
         "every_grade": GRADES,
         "limits": {
             **{"near": NEAR, "unsafe": UNSAFE, "broken": BROKEN, "sensitive": SENSITIVE, "beaten": BEATEN},
             "fewest": FEWEST,
         },
-        "runs": list(_runs(found)),
         "demanded": list(_demanded(found)),
         "groups": _groups(found),
+        "headings": {row["group"]: row["name"] for row in _groups(found)},
         "checks": list(_checks(found)),
         "shares": planar_shares(found.planar) if len(found.planar) else [],
         "loss": 1.0 - restitution_from_momentum(found.cylinder),
@@ -95,41 +95,50 @@ def _groups(found: Advice) -> list[dict[str, Any]]:
     return [{str(key): value for key, value in row.items()} for row in named.to_dict("records")]
 
 
-def _runs(found: Advice) -> Iterator[Row]:
-    """Rows of the three numbers: as given, and the median and 95th percentile of each group."""
+def _numbers(found: Advice) -> list[Row]:
+    """Rows of the three numbers: as given, and what 95 % of each group do not exceed."""
     alpha = math.degrees(found.cylinder.alpha)
+    part = "slab" if "columns" in found.facts["cylinder"] else "top"
+    tilt: Row = {"name": "largest tilt, 95 % of runs [°]"}
+    top: Row = {"name": f"{part} displacement, 95 % [m]"}
+    chance: Row = {"name": "overturning probability (95 %)"}
     given = math.inf if found.overturned else found.peak
-    yield {
-        "name": "as given",
-        "tilt_50": alpha * given,
-        "top_50": found.top(given),
-        "overturned": "yes" if found.overturned else "no",
-    }
+    for group, peak in [("given", given), *((row["group"], row["peak_tilt_95"]) for row in _groups(found))]:
+        tilt[group] = "overturns" if math.isinf(peak) else number(alpha * peak)
+        top[group] = "overturns" if math.isinf(peak) else number(found.top(peak))
+    chance["given"] = "overturns" if found.overturned else "stands"
     for row in _groups(found):
-        low, high = (number(100.0 * row[f"chance_{end}"], ".2g") for end in ("low", "high"))
-        chance = f"{number(row['chance'], 'percent')} ({low} to {high} %)"
-        yield {
-            "name": row["name"],
-            **{f"tilt_{share}": alpha * row[f"peak_tilt_{share}"] for share in ("50", "95")},
-            **{f"top_{share}": found.top(row[f"peak_tilt_{share}"]) for share in ("50", "95")},
-            "overturned": f"{row['overturned']} of {row['runs'] - row['failed']}",
-            "chance": "one run" if math.isnan(row["chance"]) else chance,
-        }
+        low, high = (number(row[f"chance_{end}"], "percent").removesuffix(" %") for end in ("low", "high"))
+        share = f"{number(row['chance'], 'percent')} ({low} to {high} %)"
+        chance[row["group"]] = "one run" if math.isnan(row["chance"]) else share
+    return [tilt, top, chance]
 
 
 def _demanded(found: Advice) -> Iterator[Row]:
     """Rows of the design demands, as a designer enters them."""
-    values = dict(zip(found.demands["demand"], found.demands["value"], strict=True))
-    for row in found.demands.to_dict("records"):
-        name, unit, tonne = row["demand"], row["unit"], row["per_tonne"]
-        if name in _DEMANDS:
-            kilo = "" if math.isnan(tonne) else f"{number(tonne)} {'kNm' if name == 'moment' else 'kN'}"
-            value = number(row["value"]) + ("" if unit == "-" else f" {unit}")
-            yield {"name": _DEMANDS[name], "value": value, "per_tonne": kilo}
+    values = {row["demand"]: row for row in found.demands.to_dict("records")}
+    for name, places in _DEMANDS.items():
+        cells = {
+            place: _demand(demand, values[demand])
+            for place, demand in zip(("base", "slab"), places, strict=True)
+            if demand in values
+        }
+        if cells:
+            yield {"name": name, "slab": "", **cells}
     if "clearance" in values:
-        tilt = number(math.degrees(values["tilt"] * found.cylinder.alpha))
-        for name, part in ((f"wall height, tilt {tilt}°", "wall_height"), ("wall clearance", "clearance")):
-            yield {"name": name, "value": f"{number(1e3 * values[part])} mm", "per_tonne": ""}
+        height, clearance = (number(1e3 * values[part]["value"]) for part in ("wall_height", "clearance"))
+        tilt = number(math.degrees(values["tilt"]["value"] * found.cylinder.alpha))
+        yield {
+            "name": f"wall, for a tilt of {tilt}°",
+            "base": f"height {height} mm, clearance {clearance} mm",
+        }
+
+
+def _demand(name: str, row: Mapping[Hashable, Any]) -> str:
+    """A demand in weights, and per tonne that is carried."""
+    value = number(row["value"]) + ("" if row["unit"] == "-" else f" {row['unit']}")
+    unit = "kNm" if name == "moment" else "kN"
+    return value if math.isnan(row["per_tonne"]) else f"{value} = {number(row['per_tonne'])} {unit}/t"
 
 
 def _checks(found: Advice) -> Iterator[Row]:

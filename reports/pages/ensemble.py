@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from rockwobble.compare import Ensemble
 from rockwobble.compare.metrics.statistics import (
-    FEWEST,
     MARGIN,
     POWER,
     SIGNIFICANCE,
@@ -55,6 +54,5 @@ def ensemble_values(found: Ensemble) -> dict[str, object]:
         "power": POWER,
         "significance": SIGNIFICANCE,
         "fewest": least_significant_count(),
-        "fewest_members": FEWEST,
         "unseen": largest_share_unseen(int(contrasts["count"].min())) if rows else 1.0,
     }

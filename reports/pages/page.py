@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import html
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import pairwise
@@ -134,20 +134,16 @@ class Page:
         console = console or Console()
         if not console.is_terminal:
             console.width = max(console.width, _LEAST_WIDTH)
-        folded = after_table = False
-        for part in self._parts("terminal", console.width):
-            if isinstance(part, Fold):
-                folded = bool(part.title) and not details
-            elif folded:
-                continue
-            elif isinstance(part, Table):
-                if after_table:
+        parts = list(_unfolded(self._parts("terminal", console.width), details))
+        for place, part in enumerate(parts):
+            if isinstance(part, Table):
+                if place and isinstance(parts[place - 1], Table):
                     console.print()
                 console.print(part.rich(console.width))
-            elif isinstance(part, str) and not isinstance(part, Safe):
+            else:
                 console.print(Markdown(part), highlight=False)
-                console.print()
-            after_table = isinstance(part, Table)
+                if part is not parts[-1]:
+                    console.print()
 
     def _parts(self, output: Output, width: int = 0) -> list[Part]:
         """Return the rendered template, cut where a picture, a table, a block or a fold stands."""
@@ -160,9 +156,9 @@ class Page:
             return Safe(f"@@{len(things) - 1}@@")
 
         def table(
-            rows: Iterable[Row], columns: Sequence[Sequence[str]], group: str = "", folded: bool = False
+            rows: Iterable[Row], columns: Sequence[Sequence[str]], group: str = "", **look: bool
         ) -> Safe:
-            made = Table(columns=columns_of(columns), rows=list(rows), group=group, folded=folded)
+            made = Table(columns=columns_of(columns), rows=list(rows), group=group, **look)
             if not made.rows:
                 return Safe("")
             keys.update(column.key for column in (made.shown(width) if width else made.columns))
@@ -190,6 +186,16 @@ class Page:
             for index, part in enumerate(cut)
             if index % 2 or part.strip()
         ]
+
+
+def _unfolded(parts: Iterable[Part], details: bool) -> Iterator[str | Table]:
+    """Yield the words and tables of a terminal, those of a fold only with `details`."""
+    folded = False
+    for part in parts:
+        if isinstance(part, Fold):
+            folded = bool(part.title) and not details
+        elif not folded and isinstance(part, str | Table) and not isinstance(part, Safe):
+            yield part
 
 
 def _html(part: Part) -> str:

@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rich.table import Table as RichTable
@@ -96,12 +96,15 @@ class Table:
         Name in a row; empty: none.
     folded : bool
         Whether a page shows each group only when it is opened.
+    compact : bool
+        Whether a terminal has no rule under the headings.
     """
 
     columns: Sequence[Column]
     rows: Sequence[Row]
     group: str = ""
     folded: bool = False
+    compact: bool = False
 
     def groups(self) -> list[tuple[str, list[list[str]]]]:
         """Return the cells of the rows, by group."""
@@ -179,7 +182,10 @@ class Table:
         from rich.table import Table as RichTable
         from rich.text import Text
 
-        table = RichTable(box=box.SIMPLE_HEAD, padding=0, pad_edge=False, show_edge=False)
+        look: dict[str, Any] = (
+            {"box": None, "padding": (0, 1, 0, 0)} if self.compact else {"box": box.SIMPLE_HEAD, "padding": 0}
+        )
+        table = RichTable(**look, pad_edge=False, show_edge=False)
         for column in columns:
             # as a text, because brackets are markup; the unit in a line of its own
             heading = Text(column.heading.replace(" " if stacked else " [", "\n" if stacked else "\n["))

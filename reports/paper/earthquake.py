@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.models import AGREEMENT, Case, Cylinder, GroundMotion, Trace, el_centro_1940
+from rockwobble.models import AGREEMENT, Case, GroundMotion, Trace, el_centro_1940
+from rockwobble.models.cylinder import PIER
 
 from . import Statement, verdict_of
 from .free import RESIDUAL, displacement
 
 Array = NDArray[np.float64]
 
-CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 _GRAVITY = 9.81
 _RTOL = 1e-10
 _SAMPLE_STEP = 5e-4  # [s]; half a turn in a typical pass takes tens of it
@@ -82,7 +82,7 @@ def shaken() -> Shaken:
     motion = el_centro_1940()
     trace, copy = _run(motion), _run(motion.scaled(1.0 + NUDGE))
     count = min(len(trace.tilt), len(copy.tilt))
-    apart = np.abs(trace.tilt[:count] - copy.tilt[:count]) > AGREEMENT * CYLINDER.alpha
+    apart = np.abs(trace.tilt[:count] - copy.tilt[:count]) > AGREEMENT * PIER.alpha
     end = strong_end(motion)
     strong, weak = parts(trace, end)
     others = [(motion.scaled(scale), _run(motion.scaled(scale), _NEIGHBOUR_STEP)) for scale in _NEIGHBOURS]
@@ -99,12 +99,12 @@ def shaken() -> Shaken:
 
 
 def _run(motion: GroundMotion, sample_step: float = _SAMPLE_STEP) -> Trace:
-    return reduced.simulate(Case(CYLINDER, motion), rtol=_RTOL, sample_step=sample_step)
+    return reduced.simulate(Case(PIER, motion), rtol=_RTOL, sample_step=sample_step)
 
 
 def strong_end(motion: GroundMotion) -> float:
     """Return the last time the record by itself could uplift the cylinder, (25) [s]."""
-    over = np.hypot(*motion.acceleration[:, :2].T) >= _GRAVITY * CYLINDER.tan_alpha
+    over = np.hypot(*motion.acceleration[:, :2].T) >= _GRAVITY * PIER.tan_alpha
     return float(np.flatnonzero(over)[-1] * motion.time_step)
 
 
@@ -133,7 +133,7 @@ def parts(trace: Trace, end: float) -> tuple[Part, Part]:
 def abrupt_time() -> float:
     """Return the time below which the middle half of a turn counts as abrupt [s]."""
     # a turn is half of the way round, or a little more
-    steady = 0.25 * float(reduced.wobbling_period(CYLINDER, 0.5 * CYLINDER.alpha))
+    steady = 0.25 * float(reduced.wobbling_period(PIER, 0.5 * PIER.alpha))
     return steady / _ABRUPT
 
 
@@ -184,8 +184,8 @@ def statements(data: Shaken) -> list[Statement]:
     away = displacement(float(trace.passes["minimum_tilt"].min()))
     twist = float(np.abs(trace.twist).max())
     place = {
-        "peak": trace.peak_tilt / CYLINDER.alpha,
-        "last_tilt": float(trace.tilt[-1]) / CYLINDER.alpha,
+        "peak": trace.peak_tilt / PIER.alpha,
+        "last_tilt": float(trace.tilt[-1]) / PIER.alpha,
         "last_away": displacement(float(trace.tilt[-1])),
         "rests": trace.rests,
         "passes": len(trace.passes),

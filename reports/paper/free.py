@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, InitialState, Trace
+from rockwobble.models.cylinder import PIER
 
 from ..figures.thinning import kept_samples
 from . import Statement, verdict_of
@@ -102,7 +103,6 @@ def _largest(ratio: Array, chosen: NDArray[np.bool_]) -> float:
 
 SPIN, STEADY, BOTH = "very small spin", "steady wobble", "both"
 SMALLER = "a tenth of the very small spin"  # not drawn: only its greatest force is asked for
-CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 # the paper does not say from where it releases
 RELEASE = 0.5  # tilt over alpha
 _SMALL_SPIN = 1e-3  # [rad/s]
@@ -125,11 +125,11 @@ RESIDUAL = 1e-6
 
 def free_modes() -> dict[str, Trace]:
     """Run the three releases, and one of yet smaller spin."""
-    steady = reduced.steady_wobble_rate(CYLINDER, RELEASE * CYLINDER.alpha)
+    steady = reduced.steady_wobble_rate(PIER, RELEASE * PIER.alpha)
     spins = {SPIN: _SMALL_SPIN, STEADY: steady, BOTH: _SHARE_OF_STEADY * steady, SMALLER: 0.1 * _SMALL_SPIN}
     return {
         mode: reduced.simulate(
-            Case(CYLINDER, initial=_release(spin), duration=_DURATION),
+            Case(PIER, initial=_release(spin), duration=_DURATION),
             rtol=_RTOL,
             sample_step=_DURATION if mode == SMALLER else _SAMPLE_STEP,
         )
@@ -138,7 +138,7 @@ def free_modes() -> dict[str, Trace]:
 
 
 def _release(spin: float) -> InitialState:
-    return InitialState(tilt=RELEASE * CYLINDER.alpha, rolling_rate=spin)
+    return InitialState(tilt=RELEASE * PIER.alpha, rolling_rate=spin)
 
 
 def drawn_samples(trace: Trace, points: int = _POINTS) -> pd.DataFrame:
@@ -163,13 +163,13 @@ def mode_statements(modes: Mapping[str, Trace]) -> list[Statement]:
 
 def _turn(trace: Trace) -> Statement:
     turns = trace.passes["angle_of_turn"].to_numpy()
-    turn, limit = float(turns.mean()), reduced.limiting_angle_of_turn(CYLINDER)
+    turn, limit = float(turns.mean()), reduced.limiting_angle_of_turn(PIER)
     numbers = {
         "passes": len(turns),
         "turn": math.degrees(turn),
         "spread": math.degrees(float(np.ptp(turns))),
         "over": math.degrees(turn - math.pi),
-        "exact": math.degrees(reduced.angle_of_turn(CYLINDER, _release(float(trace.rolling_rate[0])))),
+        "exact": math.degrees(reduced.angle_of_turn(PIER, _release(float(trace.rolling_rate[0])))),
         "limit": math.degrees(limit),
     }
     verdict = verdict_of(0.0 < turn - math.pi < _LITTLE, abs(turn - limit) < _WELL)
@@ -193,7 +193,7 @@ def _steady(trace: Trace) -> Statement:
     change = float(np.abs(trace.tilt / trace.tilt[0] - 1.0).max())
     turned = trace.rolling_angle - trace.rolling_angle[0]
     period = float(np.interp(2.0 * math.pi, turned, trace.time))
-    formula = float(reduced.wobbling_period(CYLINDER, float(trace.tilt[0])))
+    formula = float(reduced.wobbling_period(PIER, float(trace.tilt[0])))
     numbers = {"change": change, "duration": float(trace.time[-1]), "period": period, "formula": formula}
     verdict = verdict_of(change < _STEADY, abs(period / formula - 1.0) < _STEADY)
     return Statement(figure=4, name="steady", numbers=numbers, verdict=verdict)
@@ -202,10 +202,10 @@ def _steady(trace: Trace) -> Statement:
 def _place(modes: Mapping[str, Trace]) -> Statement:
     away = displacement(float(modes[SPIN].passes["minimum_tilt"].min()))
     twist = max(float(np.abs(trace.twist).max()) for trace in modes.values())
-    swing = reduced.free_response(CYLINDER, _release(float(modes[BOTH].rolling_rate[0])))
+    swing = reduced.free_response(PIER, _release(float(modes[BOTH].rolling_rate[0])))
     numbers = {
-        "least": swing.minimum_tilt / CYLINDER.alpha,
-        "largest": swing.maximum_tilt / CYLINDER.alpha,
+        "least": swing.minimum_tilt / PIER.alpha,
+        "largest": swing.maximum_tilt / PIER.alpha,
         "turn": math.degrees(float(modes[BOTH].passes["angle_of_turn"].mean())),
         "away": away,
         "twist": twist,

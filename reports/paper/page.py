@@ -26,6 +26,7 @@ from rockwobble.compare.studies.spectrum.maps import (
 )
 from rockwobble.compare.studies.spectrum.study import tables_of
 from rockwobble.models import Run
+from rockwobble.models.cylinder import PIER
 
 from ..figures.palette import DARK, ORDER, SHADED, Style, model_style, run_styles
 from ..figures.picture import TIME, Axis, Layer, Line, Panel, Picture, Rule
@@ -97,7 +98,7 @@ def page_of(paper: Paper) -> Page:
         values={
             **spectrum_values(spectrum, tables),
             "statements": found,
-            "cylinder": free.CYLINDER,
+            "cylinder": PIER,
             "release": free.RELEASE,
             "about": paper.manifest,
         },
@@ -154,7 +155,7 @@ def free_picture(table: pd.DataFrame) -> Picture:
     """Return figure 4: one column for each mode, the path of the centre of mass above its time histories."""
     modes = {str(mode): rows for mode, rows in table.groupby("mode", sort=False)}
     orbits = [_orbit(mode, rows) for mode, rows in modes.items()]
-    histories = [_histories(rows, free.CYLINDER.alpha) for rows in modes.values()]
+    histories = [_histories(rows, PIER.alpha) for rows in modes.values()]
     rate = 1.1 * max(float(np.abs(each[1]).max()) for each in histories)
     # the same scale across, so that the modes compare; the rates of rolling need their own
     ends = ((0.0, 1.1 * free.RELEASE), (-rate, rate), (None, None), (None, None))
@@ -202,7 +203,7 @@ def _column(rows: pd.DataFrame, name: str) -> Array:
 
 def earthquake_picture(table: pd.DataFrame, record: pd.DataFrame, numbers: Mapping[str, float]) -> Picture:
     """Return figure 5: response above, record below, the strong part shaded."""
-    cylinder, gravity = earthquake.CYLINDER, 9.81
+    cylinder, gravity = PIER, 9.81
     marks: list[Layer] = [Rule(at=numbers["from"], until=numbers["until"], axis="x", colour=SHADED)]
     if math.isfinite(numbers["agreement"]):
         marks.append(Rule(at=numbers["agreement"], axis="x", colour="#777777"))

@@ -116,6 +116,8 @@ def test_an_agreement_is_tested_by_motion_beyond_the_tolerance(cylinder, make_tr
     assert [agreed(leaves, 0.0002).tested for leaves in (2.4, 2.6)] == [False, True]
     lean = make_trace(time, np.full_like(time, 0.3 * cylinder.alpha))  # released, and not yet in motion
     assert not agreement_time(make_pair(cylinder, lean, lean)).tested
+    sinks = make_trace(time, cylinder.alpha * (0.3 - 0.01 * time))  # motion is up or down
+    assert agreement_time(make_pair(cylinder, sinks, sinks)).tested
 
 
 def test_a_summary_holds_both_bounds_and_the_time_of_the_run(cylinder, make_trace):

@@ -147,6 +147,12 @@ def never_finer(right: Subject) -> Subject:
     return dataclasses.replace(right, at_step=lambda _: heavy(right))
 
 
+def lossy(right: Subject) -> Subject:
+    # of a model that states its energy and no rates, so that nothing else tells
+    loses = field("energy", lambda energy: energy * (1.0 - 1e-7 * np.arange(len(energy))))
+    return dataclasses.replace(loses(right), knows=frozenset({"tilt", "energy"}))
+
+
 heavy = asked(heavier)
 
 
@@ -178,6 +184,7 @@ def test_the_reduced_models_hold(right: Subject, group: str) -> None:
             found, passes=found.passes.assign(angle_of_turn=1.00001 * found.passes["angle_of_turn"])))),
         (laws.planar_rocking, "planar", heavy),
         (lagrange.free_motion, "recess", field("energy", lambda e: e * (1.0 + 1e-7 * np.arange(len(e))))),
+        (lagrange.free_motion, "recess", lossy),
         (lagrange.free_motion, "recess", field("rolling_rate", lambda rate: 1.0001 * rate)),
         (lagrange.rolling_loss, "recess", asked(less_resistance)),
         (lagrange.rolling_loss, "recess", field("energy_lost", lambda lost: (1.0 + 1e-6) * lost)),

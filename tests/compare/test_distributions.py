@@ -31,6 +31,7 @@ from rockwobble.compare.metrics.statistics import (
     ratio_within_reach,
     share_interval,
     signed_rank_p,
+    stated,
 )
 
 ROUNDING = 1e-12
@@ -288,3 +289,11 @@ def test_several_probabilities_are_corrected_for_their_number():
     np.testing.assert_allclose(adjusted(np.array([0.04, 0.01, 0.03])), [0.06, 0.03, 0.06], atol=ROUNDING)
     assert adjusted(np.array([0.6, 0.7])).tolist() == [1.0, 1.0]
     assert adjusted(np.array([0.03])).tolist() == [0.03]
+
+
+def test_a_median_is_stated_of_as_many_as_can_bound_it() -> None:
+    # the median is outside of all n values where all lie on one side of it: 2 of 2^n
+    for count in range(1, 12):
+        enough = 1.0 - 2.0 * 0.5**count >= CONFIDENCE
+        assert math.isnan(stated(1.2, count)) is not enough
+        assert math.isnan(quantile_interval(np.arange(1.0, count + 1.0), 0.5).value) is not enough

@@ -114,7 +114,7 @@ def test_failed_runs_are_counted_and_named(monkeypatch):
     assert len(found.members) == 14
     # of six members that do not differ; what failed has no part in the counts and quantiles of its method
     assert found.contrasts.loc[0, ["compared", "ratio"]].tolist() == [6, 1.0]
-    assert methods.loc["flat-ground model", ["runs", "rocked", "overturned"]].tolist() == [7, 6, 0]
+    assert methods.loc["flat-ground model", ["runs", "uplifted", "overturned"]].tolist() == [7, 6, 0]
     assert math.isfinite(methods.loc["flat-ground model", "peak_median"])
 
 
@@ -164,7 +164,7 @@ def test_a_failed_run_is_no_member_that_stands():
     assert again.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
     turned = ensemble_of(members, {**found.facts, "methods": {"flat-ground model": "", "recess model": ""}})
     assert turned.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
-    assert again.methods.loc[0, ["runs", "rocked", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
+    assert again.methods.loc[0, ["runs", "uplifted", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
 
 
 def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monkeypatch, tmp_path):

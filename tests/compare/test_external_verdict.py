@@ -122,6 +122,30 @@ def later(table, delay):
     return pd.concat([table.iloc[[0] * len(waits)].assign(time=waits), table])
 
 
+@pytest.mark.parametrize("larger", [0.99, 1.01])
+@pytest.mark.parametrize(
+    ("start", "code"),
+    [
+        # beyond the balance all goes with its rate p: the size is wrong, or gravity
+        (InitialState(1.2 * PIER.alpha), ["time_scale"]),
+        (InitialState(1.02 * PIER.alpha, rolling_rate=0.1), ["time_scale"]),
+        # spin and a rate of the tilt have times of their own: it is later by more the longer it falls
+        (InitialState(0.5 * PIER.alpha, rolling_rate=1.5), []),
+        (InitialState(0.9 * PIER.alpha, tilt_rate=0.3, rolling_rate=0.2), []),
+    ],
+)
+def test_a_fall_of_another_size_is_no_offset_of_the_clock(save, start, code, larger):
+    case = Case(PIER, initial=start, duration=6.0, name="falls")
+    model = reduced.simulate(case)
+    body = dataclasses.replace(PIER, semidiagonal=larger * PIER.semidiagonal)
+    for other, delay, expected in ((body, 0.0, code), (PIER, 0.3, ["time_offset"])):
+        found = reduced.simulate(dataclasses.replace(case, cylinder=other))
+        table = pd.DataFrame({"time": found.time, "tilt [deg]": np.degrees(found.tilt)})
+        table["azimuth [deg]"] = np.degrees(found.rolling_angle) % 360.0
+        trajectory = read_trajectory(save(later(table, delay)), case)
+        assert [mistake.code for mistake in judge(trajectory, model, case).mistakes] == expected
+
+
 ANGLES, XYZ = ("tilt [deg]", "azimuth [deg]"), ("x", "y", "z")
 DEGREES, RADIAN = math.degrees(1.0), math.radians(1.0)
 # what is done to a file, and what is to be named: what it concerns, code, value (None: there is none)

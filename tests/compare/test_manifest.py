@@ -11,10 +11,11 @@ import pytest
 from rockwobble.compare.storage import provenance
 from rockwobble.compare.storage.manifest import (
     MANIFEST,
+    Manifest,
     file_state,
-    made_now,
     read_manifests,
     read_results,
+    with_provenance,
     write_pages,
     write_results,
 )
@@ -24,15 +25,15 @@ TABLE = pd.DataFrame({"peak": [0.1, float("nan")], "run": ["a", "b"]})
 
 
 def write(folder, kind="study", tables=("points",), **options):
-    made = made_now(
-        kind,
+    made = Manifest(
+        kind=kind,
         inputs="0" * 32,
         command="rockwobble study",
         seeds={"members": 3},
         headline={"largest": 0.1},
         about={"extent": [1.0, 2.0]},
     )
-    return write_results(folder, made, dict.fromkeys(tables, TABLE), **options)
+    return write_results(folder, with_provenance(made), dict.fromkeys(tables, TABLE), **options)
 
 
 def test_what_was_written_is_read_again(tmp_path):
@@ -85,6 +86,7 @@ def test_a_second_run_replaces_its_own_files_and_touches_nothing_else(tmp_path):
         "points.parquet",
         "rows.parquet",
         MANIFEST,
+        Manifest,
     }
     assert [made.kind for made in read_manifests(tmp_path)] == ["study", "other"]
     assert read_results(tmp_path, "other").table("rows")["run"].tolist() == ["a", "b"]

@@ -54,7 +54,7 @@ def made_up(space: list[str], x: list[str], y: list[str]) -> TiltMaps:
     )
 
 
-def test_islands_are_what_stands_above_the_lowest_overturning_intensity():
+def test_gaps_are_what_stands_above_the_lowest_overturning_intensity():
     spectrum = made_up(["ooXoOX", "XooXX?", "oooooo", "oXo?oX", "oXoooo"], ["......"] * 5, ["......"] * 5)
     table = safe_gaps(spectrum)
     assert set(table["series"]) == {SPATIAL}

@@ -23,8 +23,9 @@ from rockwobble.compare.studies.tradeoff.methods import (
     methods_for,
     rest_line,
 )
-from rockwobble.compare.studies.tradeoff.problem import FINE_REST_TILT, PIER, Problem
+from rockwobble.compare.studies.tradeoff.problem import FINE_REST_TILT, Problem
 from rockwobble.compare.studies.tradeoff.study import costs, engine_factors, plateaus, rest_tilt_price
+from rockwobble.models.cylinder import PIER
 from rockwobble.multibody.engines import registry
 
 # a release at a tolerance of 1e-8 turns by 1.5e-7 deg too much or too little

@@ -43,7 +43,7 @@ from rockwobble.compare.studies.validity.study import PARTS, measure_all
 from rockwobble.models import Cylinder, Run
 from rockwobble.reduced import body, problem
 from rockwobble.reduced.body import Body
-from rockwobble.reduced.exact import _checks
+from rockwobble.reduced.exact import _shape
 
 Tables = Mapping[str, pd.DataFrame]
 # of the transverse inertia: far above every error of an engine, and no other body
@@ -69,7 +69,7 @@ def heavier_models() -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(problem, "body_of", heavier_body)
-        patch.setattr(_checks, "body_of", heavier_body)
+        patch.setattr(_shape, "body_of", heavier_body)
         yield
 
 

@@ -152,8 +152,8 @@ def test_notebooks_are_short_ask_a_question_and_hold_no_output(notebook: Path) -
     assert [cell["id"] for cell in code if cell["outputs"] or cell["execution_count"] is not None] == []
 
 
-def test_there_are_six_notebooks() -> None:
-    assert [path.name[:2] for path in NOTEBOOKS] == ["01", "02", "03", "04", "05", "06"]
+def test_notebooks_are_numbered_in_the_order_in_which_they_are_read() -> None:
+    assert [path.name[:2] for path in NOTEBOOKS] == ["01", "02", "03", "04", "05", "06", "07"]
 
 
 def test_one_version_is_said_everywhere() -> None:

@@ -120,7 +120,7 @@ def test_angles_a_turn_apart_are_one_angle() -> None:
         replace(
             run,
             uplift_direction=turn,
-            extrema=np.array([[0.2, 0.1, turn, 1.0], [0.4, 0.0, turn + 0.5, -1.0]]),
+            extrema=np.array([[0.2, 0.1, turn, 1.0], [0.4, 0.01, turn + 0.5, -1.0]]),
         )
         for run, turn in zip(three(lambda step: shape * step), turns, strict=True)
     ]
@@ -138,6 +138,15 @@ def test_the_estimate_is_what_a_halving_moves() -> None:
     assert error > 1e-8
     # the second order that is left is quartered: three of four parts are gone by the last halving
     assert found.error_estimate == pytest.approx(3.0 * error, rel=1e-6)
+
+
+def test_a_landing_with_every_step_alike_is_no_agreement() -> None:
+    # contact resolves 1e-6 rad: a swing that ends below it is known up to its top, and no further
+    for low, until in ((1.01e-6, 0.99), (0.99e-6, 0.3)):
+        runs = three(lambda step: 1e-5 * step * np.sin(0.1 * np.arange(100)))
+        points = np.array([[0.1, 0.02, 0.0, -1.0], [0.3, 0.1, 0.0, 1.0], [0.4, low, 0.0, -1.0]])
+        found = extrapolation([replace(run, extrema=points) for run in runs], ALPHA)
+        assert found.settled_until == pytest.approx(until)
 
 
 @pytest.mark.parametrize("code", ["unresolved_pass", "energy"])

@@ -4,9 +4,9 @@
     python tests/mutation generated --count 10 --only reduced/integration/uplift.py
 
 A fault changes an operator, a comparison, a number, a condition, a sign or the order of two arguments.
-Conditions under which bad input is refused, messages and annotations are left out. `rockwobble check` is
-asked first, then the tests of the package; a crash and a run out of time count as found. Rows are kept in a
-table: a later call with the same sources goes on where the last one ended.
+Conditions under which bad input is refused, messages and annotations are left out. The tests
+that call the changed function are asked first, then `rockwobble check`; a crash and a run out of time count
+as found. Rows are kept in a table: a later call with the same sources goes on where the last one ended.
 """
 
 from __future__ import annotations
@@ -21,13 +21,17 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
-PACKAGES = ("models", "reduced", "multibody", "compare")
+from .reach import PACKAGES, Reach, near, read
+
 _LEFT_OUT = shutil.ignore_patterns(".git", "__pycache__", ".mypy_cache", ".ruff_cache", "published", "docs")
-_LIMIT = 900.0  # [s] many times what check, or the tests of a package, take
+_LIMIT = 600.0  # [s] many times what the check takes
+_SLOWER, _START = 10.0, 120.0  # times the recorded time of tests, and seconds beside it: of a busy machine
+# [s] of tests that are asked: what calls a function and does not see its fault in so long seldom does later
+_LONGEST = 60.0
 _OPERATORS: dict[type[ast.operator], ast.operator] = {
     ast.Add: ast.Sub(),
     ast.Sub: ast.Add(),
@@ -61,6 +65,8 @@ class GeneratedFault:
     file : str
         Path in the checkout.
     place : int
+    function : int, optional
+        First line of the function that it is in.
     change : str
         Line, kind, and what is changed.
     sources : str
@@ -69,6 +75,7 @@ class GeneratedFault:
 
     file: str
     place: int
+    function: int | None
     change: str
     sources: str
 
@@ -87,10 +94,14 @@ class Row:
 def faults_of(file: str, source: str) -> list[GeneratedFault]:
     """Return the faults of a file."""
     digest = hashlib.sha256(source.encode()).hexdigest()[:12]
+    tree = ast.parse(source)
+    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
     found = []
-    for place, (kind, node) in enumerate(_sites(ast.parse(source))):
-        words = f"line {getattr(node, 'lineno', 0)}, {kind}: {' '.join(ast.unparse(node).split())[:60]}"
-        found.append(GeneratedFault(file=file, place=place, change=words, sources=digest))
+    for place, (kind, node) in enumerate(_sites(tree)):
+        line = getattr(node, "lineno", 0)
+        words = f"line {line}, {kind}: {' '.join(ast.unparse(node).split())[:60]}"
+        function = _function_at(functions, line)
+        found.append(GeneratedFault(file=file, place=place, function=function, change=words, sources=digest))
     return found
 
 
@@ -100,6 +111,15 @@ def applied(fault: GeneratedFault, source: str) -> str:
     kind, node = list(_sites(tree))[fault.place]
     _change(kind, node)
     return ast.unparse(ast.fix_missing_locations(tree))
+
+
+def _function_at(functions: Sequence[ast.FunctionDef], line: int) -> int | None:
+    """Return the first line of the innermost function with a line in its body, as its code object has it."""
+    around = [node for node in functions if node.body[0].lineno <= line <= (node.end_lineno or 0)]
+    if not around:
+        return None
+    innermost = max(around, key=lambda node: node.lineno)
+    return min([innermost.lineno, *(each.lineno for each in innermost.decorator_list)])
 
 
 def _sites(tree: ast.AST) -> Iterator[tuple[str, ast.AST]]:
@@ -166,28 +186,48 @@ def sample(checkout: Path, count: int, seed: int, only: str = "") -> list[Genera
     return turns[:count]
 
 
-def tried(root: Path, fault: GeneratedFault) -> Row:
-    """Put a fault into a copy of the checkout, ask check and tests, and take it out again."""
+def tried(root: Path, fault: GeneratedFault, tests: Sequence[Reach]) -> Row:
+    """Put a fault into a copy of the checkout, ask tests and check, and take it out again."""
     path = root / fault.file
     source = path.read_text(encoding="utf-8")
     path.write_text(applied(fault, source), encoding="utf-8")
+    compiled, aside = root / "reduced/__pycache__", root.parent / "compiled"
+    if compiled.is_dir():  # what is compiled from other sources is removed
+        shutil.copytree(compiled, aside)
+    found_by, detail = "nothing", ""
     try:
-        package = fault.file.split("/")[0]
-        tests = ["-m", "pytest", "-x", "-q", "-n0", "-p", "no:cacheprovider", f"tests/{package}"]
-        found_by, detail = "nothing", ""
-        for name, command in (("check", ["-c", _CHECK]), ("tests", tests)):
-            failed, words = _run(root, command)
+        asked: list[str] = []
+        seconds = 0.0
+        for test in near(tests, fault.file, fault.function):
+            if asked and seconds + test.seconds > _LONGEST:
+                break
+            asked.append(test.test)
+            seconds += test.seconds
+        named = root.parent / "asked.txt"
+        named.write_text("\n".join(asked), encoding="utf-8")
+        of_tests = ["-m", "pytest", "-x", "-q", "-n0", "-p", "no:cacheprovider", f"@{named}"]
+        for name, command, limit in (
+            ("tests", of_tests, _START + _SLOWER * seconds),
+            ("check", ["-c", _CHECK], _LIMIT),
+        ):
+            failed, words = _run(root, command, limit=limit)
             if failed:
                 found_by, detail = name, words
                 break
     finally:
         path.write_text(source, encoding="utf-8")
+        if aside.is_dir():
+            shutil.rmtree(compiled)
+            aside.rename(compiled)
     return Row(file=fault.file, change=fault.change, sources=fault.sources, found_by=found_by, detail=detail)
 
 
-def _run(root: Path, command: list[str]) -> tuple[bool, str]:
+def _run(root: Path, command: list[str], *, limit: float) -> tuple[bool, str]:
     """Return whether a command failed, and its last line."""
-    environment = os.environ | {"PYTHONPATH": str(root / ".editable"), "PYTHONDONTWRITEBYTECODE": "1"}
+    environment = os.environ | {
+        "PYTHONPATH": f"{root / '.editable'}{os.pathsep}{root / 'tests'}",
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
     try:
         shown = subprocess.run(
             [sys.executable, "-P", *command],
@@ -196,7 +236,7 @@ def _run(root: Path, command: list[str]) -> tuple[bool, str]:
             capture_output=True,
             text=True,
             check=False,
-            timeout=_LIMIT,
+            timeout=limit,
         )
     except subprocess.TimeoutExpired:
         return True, "out of time"
@@ -204,7 +244,27 @@ def _run(root: Path, command: list[str]) -> tuple[bool, str]:
     return shown.returncode != 0, " ".join(lines[-1:])[:200]
 
 
-def run(checkout: Path, table: Path, *, count: int, seed: int, only: str = "") -> int:
+def recorded(root: Path, reach: Path) -> list[Reach]:
+    """Return what each test calls: as it was recorded, or else by a run of the tests in the copy.
+
+    Raises
+    ------
+    ValueError
+        If check or tests fail in the copy without a fault.
+    """
+    if not reach.is_file():
+        tests = [f"tests/{package}" for package in PACKAGES]
+        record = ["-m", "pytest", "-q", "-n0", "-p", "no:cacheprovider", "-p", "mutation.reach", *tests]
+        os.environ["REACH"] = str(reach.resolve())
+        for command in (["-c", _CHECK], record):
+            failed, words = _run(root, command, limit=_LIMIT)
+            if failed:
+                reach.unlink(missing_ok=True)
+                raise ValueError(f"check and tests must pass without a fault, got {words}")
+    return read(reach)
+
+
+def run(checkout: Path, table: Path, *, count: int, seed: int, only: str, reach: Path) -> int:
     """Try a sample, keep the table, print the score, and return the exit code.
 
     Raises
@@ -220,12 +280,10 @@ def run(checkout: Path, table: Path, *, count: int, seed: int, only: str = "") -
     with tempfile.TemporaryDirectory(prefix="faults-") as folder:
         root = Path(folder) / "copy"
         shutil.copytree(checkout, root, symlinks=True, ignore=_LEFT_OUT)
-        failed, words = _run(root, ["-c", _CHECK])
-        if failed:
-            raise ValueError(f"the check must pass without a fault, got {words}")
+        tests = recorded(root, reach)
         for fault in sample(checkout, count, seed, only):
             known = kept.get((fault.file, fault.change, fault.sources))
-            rows.append(known or tried(root, fault))
+            rows.append(known or tried(root, fault, tests))
             kept[fault.file, fault.change, fault.sources] = rows[-1]
             _write(table, list(kept.values()))
             print(f"{rows[-1].found_by}: {fault.file}, {fault.change}", flush=True)

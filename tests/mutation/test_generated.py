@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from mutation import generated
 from mutation.generated import applied, faults_of, sample, tried
+from mutation.reach import Reach, near, read
 
 CHECKOUT = Path(__file__).parents[2]
 SOURCE = '''"""Text 1."""
@@ -35,6 +39,46 @@ def test_a_fault_is_one_change_outside_of_refusals_and_messages(kind: str, expec
     assert expected in applied(next(each for each in faults if f", {kind}: " in each.change), SOURCE)
 
 
+def test_a_fault_is_known_by_the_innermost_function() -> None:
+    inner = "ONE = 1\n\n@cache\ndef f(x=2):\n    def g():\n        return 3\n    return 4\n"
+    places = {fault.change[-1]: fault.function for fault in faults_of("f.py", inner)}
+    assert places == {"1": None, "2": None, "3": 5, "4": 3}
+
+
+def test_tests_that_call_the_function_are_nearest_and_the_fastest_first() -> None:
+    def reach(test: str, seconds: float, *calls: str) -> Reach:
+        return Reach(test=test, seconds=seconds, calls=frozenset(calls))
+
+    other = reach("tests/compare/test_a.py::test_other", 0.1, "models/a.py:3")
+    slow, fast = (reach(f"tests/models/test_a.py::test_{t}", t, "models/a.py:3") for t in (9.0, 1.0))
+    beside, far = (
+        reach("tests/models/test_a.py::test_b", 2.0, "models/a.py:7"),
+        reach("tests/models/t.py::t", 1.0),
+    )
+    tests = [other, slow, fast, beside, far]
+    assert near(tests, "models/a.py", 3) == [fast, slow, other]
+    assert near(tests, "models/a.py", None) == [fast, beside, slow, other]
+    assert near(tests, "models/b.py", 3) == [fast, far, beside, slow]
+
+
+def test_what_tests_and_shared_fixtures_call_is_recorded(tmp_path: Path) -> None:
+    (tmp_path / "models").mkdir()
+    (tmp_path / "models/a.py").write_text("def one():\n    return 1\n\ndef two():\n    return 2\n")
+    (tmp_path / "test_a.py").write_text(
+        "import pytest\nfrom models.a import one, two\n"
+        "@pytest.fixture(scope='module')\ndef shared():\n    return two()\n"
+        "def test_a(shared):\n    one()\ndef test_b(shared):\n    pass\ndef test_c():\n    pass\n"
+    )
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "mutation.reach", "--rootdir", ".", "test_a.py"]
+    paths = {
+        "PYTHONPATH": f"{tmp_path}{os.pathsep}{CHECKOUT / 'tests'}",
+        "REACH": str(tmp_path / "reach.json"),
+    }
+    subprocess.run(command, cwd=tmp_path, env=os.environ | paths, check=True, capture_output=True)
+    calls = {each.test.split("::")[1]: sorted(each.calls) for each in read(tmp_path / "reach.json")}
+    assert calls == {"test_a": ["models/a.py:1", "models/a.py:4"], "test_b": ["models/a.py:4"], "test_c": []}
+
+
 def test_a_sample_is_spread_over_the_files_and_always_the_same() -> None:
     first = sample(CHECKOUT, 40, 1)
     assert len({fault.file for fault in first}) == 40
@@ -44,9 +88,9 @@ def test_a_sample_is_spread_over_the_files_and_always_the_same() -> None:
 
 
 @pytest.mark.parametrize(
-    ("checked", "test", "found_by"), [(1, 2, "check"), (2, 1, "tests"), (2, 2, "nothing")]
+    ("checked", "test", "found_by"), [(1, 2, "check"), (2, 1, "tests"), (1, 1, "tests"), (2, 2, "nothing")]
 )
-def test_check_is_asked_first_and_then_the_tests(
+def test_tests_are_asked_first_and_then_check(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, checked: int, test: int, found_by: str
 ) -> None:
     (tmp_path / "models").mkdir()
@@ -60,6 +104,7 @@ def test_check_is_asked_first_and_then_the_tests(
     )
     monkeypatch.setattr(generated, "_CHECK", check)
     (fault,) = faults_of("models/a.py", "ONE = 1\n")
-    row = tried(tmp_path, fault)
+    asked = Reach(test="tests/models/test_a.py::test_a", seconds=0.1, calls=frozenset())
+    row = tried(tmp_path, fault, [asked])
     assert row.found_by == found_by, row.detail
     assert (tmp_path / "models/a.py").read_text() == "ONE = 1\n"

@@ -18,6 +18,7 @@ from rockwobble.reduced.body import Body, body_of
 from rockwobble.reduced.equations import energy, flat_rhs, planar_rhs, recess_rhs
 from rockwobble.reduced.forces import contact_force, derived_quantities, top_force
 from rockwobble.reduced.integration.resisted import RESISTED_FLAT, RESISTED_PLANAR, RESISTED_RECESS
+from rockwobble.reduced.rolling import across_inertia, needed_to_stand, pivot
 
 AGREEMENT = 1e-12  # relative to the terms of each sum; measured 4e-14, and 4e-16 without twist
 DIGITS = 40
@@ -275,6 +276,26 @@ def test_rolling_resistance_in_a_plane(seed: int, side: float) -> None:
         power = body.delta * pressed(motion) * abs(state.theta_rate) / (1 + 2 * given.slab.share)
         scale = scales_of(given, state)
         assert_close((found[1], found[3]), (motion.theta, power), (scale.theta, power))
+
+
+@pytest.mark.parametrize("seed", range(170, 178))
+def test_what_holds_a_body_that_pivots(seed: int) -> None:
+    """Without the couple it tilts and rolls away as the couple would have to hold it."""
+    given = sample(seed, twisting=True)
+    body, s, c = given.body, np.sin(given.theta), np.cos(given.theta)
+    rate = float(np.sqrt(body.g / body.h))
+    with mp.workdps(DIGITS):
+        state = State(mp.mpf(given.theta), mp.mpf(0), mp.mpf(given.phi), mp.mpf(rate), mp.mpf(0))
+        kinetic = kinetic_energy(given.column, state, given.slab.share) / (1 + 2 * given.slab.share)
+        motion = newton_euler(given.column, state, vector(*given.ground), False, given.slab)
+        inertia = pivot(body, s, c)[0]
+        assert_close((inertia,), (2 * kinetic / state.phi_rate**2,), (body.A,))
+        vertical = body.g + given.ground[2]
+        found = needed_to_stand(body, given.theta, given.phi, rate, vertical, given.ground, True)
+        across = -across_inertia(body, s, c, True) * mp.sin(state.theta) * motion.psi
+        size = body.A * scales_of(given, state).theta + rate**2 * body.A
+        # the inertia of what rolls and pivots is a quotient of what may nearly cancel
+        assert_close(found, (-body.A * motion.theta, across), (size, 1e3 * size))
 
 
 @pytest.mark.parametrize("seed", range(200, 210))

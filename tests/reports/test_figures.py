@@ -69,6 +69,12 @@ def test_svg_has_the_same_bytes_and_says_what_it_shows():
         assert said in words(content)
 
 
+def test_words_of_a_picture_keep_their_digits():
+    line = Line(x=np.array([0.0, 1.0]), y=np.array([0.0, 1.0]), name="a step of 0.0025 s")
+    picture = Picture(name="one", title="One", panels=[Panel(x=TIME, y=ALPHA, layers=[line])])
+    assert "a step of 0.0025 s" in words(svg(picture))
+
+
 def test_no_text_is_too_small_to_be_read():
     drawn = figure(maps(np.ones((2, 2)), Shades(label="bias", unit="%", low=0.0, high=2.0)))
     sizes = [text.get_fontsize() for text in drawn.findobj(lambda each: hasattr(each, "get_fontsize"))]

@@ -59,7 +59,8 @@ def test_a_run_says_what_its_method_gives_and_no_more():
     assert "0.2471 α = 2.7950 deg" in opening
     said = facts(page)
     assert said["uplift"] == "2.0885 s towards 121.56 deg"
-    assert (said["near-upright passes"], said["friction demand"]) == ("18", "0.221")
+    # the swing that is followed past the end makes no demand that is known
+    assert (said["near-upright passes"], said["friction demand"]) == ("18", "0.221, up to the end of the run")
     assert said["end"] == "15 s, moving, followed over still ground to 15.86 s"
     assert {"closest pass", "restraining moment", "computing time"} < set(said)
     assert not {"time step", "residual twist", "wall contact"} & set(said)

@@ -29,7 +29,7 @@ def call(*arguments: str) -> int:
         (["--semidiagonal", "a"], "'--semidiagonal': must be a number, a list such as 1,2,6 or a range"),
         (["--scale", "1:2"], "'--scale': must be a number"),
         (["--tan-alpha", "1:2:1"], "'--tan-alpha': must be a number"),
-        (["--model", "glued"], "models must be of recess, flat, planar, got 'glued'"),
+        (["--model", "glued"], "a model of a grid must be one of recess, flat, planar, got 'glued'"),
         (["--record-x", "a.at2"], "each record needs both horizontal components"),
         (["--units", "g"], "--units belongs to a record"),
         (["no-such-suite"], "no-such-suite"),
@@ -38,7 +38,7 @@ def call(*arguments: str) -> int:
         (["--plane", "1"], "plane is of planar motion, got models recess"),
         (["--workers", "0"], "'--workers': must be at least 1, got 0"),
         (["--chunk", "0"], "'--chunk': must be at least 1, got 0"),
-        (["--gravity", "-1"], "gravity must be positive"),
+        (["--gravity", "-1"], "gravity must be above 0, got -1"),
         (["--record-z", "up.at2"], "--record-z belongs to a record"),
         (
             ["--semidiagonal", "1:9:99999", "--scale", "1:9:99999"],

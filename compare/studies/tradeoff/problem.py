@@ -23,7 +23,6 @@ from numpy.typing import NDArray
 from rockwobble import reduced
 from rockwobble.models import (
     Case,
-    Cylinder,
     InitialState,
     Run,
     Trace,
@@ -31,6 +30,7 @@ from rockwobble.models import (
     synthetic_motions,
     with_motions,
 )
+from rockwobble.models.cylinder import PIER
 from rockwobble.models.support import SUPPORTS, Support
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 
@@ -42,7 +42,6 @@ Array = NDArray[np.float64]
 # that just uplifts chatters at upright without end, and there is no solution to compare with
 TIGHT = 1e-12
 FINE_REST_TILT = 1e-10
-PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 _STEPS = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5)  # [s] of the engines
 _TURN_LENGTH = 2.6  # [s] a period of the tilt is 2.39 s

@@ -515,7 +515,7 @@ class Difference:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reference:
-    """What a trajectory is compared with.
+    """A model that trajectories are compared with.
 
     Attributes
     ----------
@@ -731,7 +731,7 @@ class Mistake:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """What takes a mistake back: of the columns, or of the motion that they tell."""
+    """Correction of a mistake: of the columns, or of the motion that they tell."""
 
     mistake: Mistake
     values: Callable[[Values], Values] = field(default=lambda values: values)
