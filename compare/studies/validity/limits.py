@@ -312,7 +312,7 @@ def restraining_moment(tables: Tables) -> Numbers:
     }
 
 
-def free_rocking(tables: Tables) -> Numbers:
+def free_response(tables: Tables) -> Numbers:
     """Return the difference of recess and flat ground in a pass, and the releases that an engine decides."""
     table = tables["free_response"]
     off = np.abs(column(table, "flat_turn") - column(table, "turn"))
@@ -451,7 +451,7 @@ def damping(tables: Tables) -> pd.DataFrame:
 LIMITS: Mapping[str, Callable[[Tables], Numbers]] = {
     limit.__name__: limit
     for limit in (
-        *(records, single_peaks, traces, free_rocking, friction, contact),
+        *(records, single_peaks, traces, free_response, friction, contact),
         *(restraining_moment, rings, soft_contact, vertical),
     )
 }
