@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 
 TESTS = Path(__file__).resolve().parents[1]
-ENGINES = ("rockwobble", "mujoco", "pybullet", "dart", "drake", "exudyn")
+ENGINES = ("rockwobble", "mujoco", "pybullet", "dart", "drake", "exudyn", "rapier")
 
 
 def cases(names: list[str], only: list[str]) -> None:

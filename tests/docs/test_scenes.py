@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 import importlib
+import math
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
+import rockwobble as rw
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody import available_engines
+from rockwobble.reduced import free_response
+
+FloatArray = NDArray[np.float64]
 
 SCENES = Path(__file__).parents[2] / "docs" / "scenes"
+CAN = Cylinder(semidiagonal=math.sqrt(5.0), tan_alpha=0.5)
 TURN = 203.909800  # [deg] tests/reference/finite_release.csv: h/b = 2, rolling rate 0.1 rad/s, flat ground
 # first order in the step: 4e-3 deg at 1e-4 s in Bullet, less in the others
 TURN_ERROR = 0.01  # [deg]
@@ -66,11 +76,73 @@ def test_the_can_as_data_is_the_can_of_the_scene(monkeypatch: pytest.MonkeyPatch
             assert body.mass == 1.0
         assert geom.size[:2] == pytest.approx([scene.B, scene.H])
     start = scene.released(mujoco.MjModel.from_xml_path(str(SCENES / "can.xml")))
-    # digits of the table in docs/guide/engines.md
+    # digits of the table in docs/guide/scenes/angle-of-turn.md
     assert start.qpos == pytest.approx(
         [0.4862568516, 0, 2.1762508995, 0.9932897335, 0, 0.1156525195, 0], abs=1e-9
     )
     assert start.qvel[:3] == pytest.approx([0.0, 0.0486256857, 0.0], abs=1e-9)
+
+
+def close_passes(share: float = 0.0, end: float = 40.0, **how: Any) -> FloatArray:
+    """Return the lean every 0.1 s of docs/guide/scenes/close-passes.md, its release off by a share."""
+    shaken = GroundMotion(np.outer(np.resize([0.0, 2.0, 0.0, -2.0], 81), [1.0, 0.0]), 0.5)
+    start = InitialState(0.5 * CAN.alpha * (1.0 + share), rolling_angle=0.5 * math.pi, rolling_rate=0.05)
+    trace = rw.simulate(
+        Case(CAN, shaken, initial=start, duration=end), support="flat", sample_step=0.1, **how
+    )
+    direction = np.column_stack([np.cos(trace.rolling_angle), np.sin(trace.rolling_angle)])
+    return np.sin(trace.tilt)[:, None] * direction
+
+
+def factors(share: float, **how: Any) -> FloatArray:
+    """Return by how much a share of the tilt of release has grown at 10, 20, 30 and 40 s."""
+    apart = np.linalg.norm(close_passes(share, **how) - close_passes(**how), axis=1)
+    return apart[100:401:100] / (share * math.sin(0.5 * CAN.alpha))
+
+
+def test_close_passes_amplify_as_stated() -> None:
+    stated = [63.1, 4.49e3, 4.43e5, 5.4e7]
+    assert factors(1e-10, rtol=1e-12, rest_tilt=0.0) == pytest.approx(stated, rel=0.02)  # as stated
+    # on still ground by quadrature
+    high, low = (
+        free_response(CAN, InitialState(0.5 * CAN.alpha * (1.0 + share), rolling_rate=0.05)).angle_of_turn
+        for share in (1e-5, -1e-5)
+    )
+    assert (high - low) / 2e-5 == pytest.approx(0.0818, abs=5e-5)
+
+
+def test_close_passes_amplify_in_an_engine_as_in_the_model() -> None:
+    found = factors(1e-10, end=20.0, engine="mujoco", time_step=2e-4)
+    assert found[0] == pytest.approx(63.1, rel=0.1)  # tolerances of the page
+    assert 1e2 < found[1] < 1e5
+
+
+def test_the_file_of_close_passes_has_their_release() -> None:
+    import mujoco
+
+    model = mujoco.MjModel.from_xml_path(str(SCENES / "close_passes.xml"))
+    tilt, rate = 0.5 * CAN.alpha, 0.05
+    axis = np.array([0.0, math.sin(tilt), math.cos(tilt)])
+    centre = np.array([0.0, 1.0 - axis[2], axis[1]]) + 2.0 * axis
+    turning = rate * (np.array([0.0, 0.0, 1.0]) - axis)
+    position, velocity = model.key_qpos[0], model.key_qvel[0]
+    assert position == pytest.approx([*centre, math.cos(0.5 * tilt), -math.sin(0.5 * tilt), 0.0, 0.0])
+    assert velocity[:3] == pytest.approx(np.cross(turning, centre - [0.0, 1.0, 0.0]))
+    world = np.empty(3)
+    mujoco.mju_rotVecQuat(world, velocity[3:], position[3:])  # from body axes
+    assert world == pytest.approx(turning)
+
+
+def test_the_uplift_sweep_and_the_turn_are_those_of_the_model() -> None:
+    for share, stated in ((0.49, 0.0), (0.51, 3.69e-3)):
+        motion = GroundMotion([[0.0, 0.0], *[[share * 9.81, 0.0]] * 25], 0.02)
+        trace = rw.simulate(Case(CAN, motion, duration=0.5), support="flat", rtol=1e-11)
+        assert trace.tilt[-1] == pytest.approx(stated, abs=5e-6)  # digits of the page
+    release = InitialState(0.5 * CAN.alpha, rolling_rate=0.1)
+    trace = rw.simulate(Case(CAN, initial=release, duration=2.0), support="flat", rtol=1e-12)
+    (passed,) = trace.passes.itertuples()
+    assert math.degrees(passed.angle_of_turn) == pytest.approx(203.9098, abs=5e-5)
+    assert 2.0 * passed.time == pytest.approx(1.4554, abs=5e-5)
 
 
 def test_drawings_are_those_that_their_scripts_make(monkeypatch: pytest.MonkeyPatch) -> None:
