@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import mujoco
@@ -154,3 +155,14 @@ def _compiled(
     if support == "ring" and ring is None:
         _, ring = take_ring({}, "ring", cylinder.tan_alpha)
     return compile_scene(scene, settings, standing=standing, ring=ring)
+
+
+@pytest.mark.parametrize("length", [0.5, 6.0])
+def test_inertias_that_are_left_out_are_those_of_a_solid(length: float) -> None:
+    plain = scaled_body(PIER, length)
+    b, height = PIER.base_radius, 2.0 * PIER.half_height
+    stated = scaled_body(
+        dataclasses.replace(PIER, transverse_inertia=b * b / 4 + height**2 / 12, axial_inertia=b * b / 2),
+        length,
+    )
+    assert dataclasses.astuple(plain) == pytest.approx(dataclasses.astuple(stated), rel=ROUNDING)
