@@ -12,6 +12,7 @@ from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.studies import extremes
 from rockwobble.compare.studies.extremes import FINE, Condition, conditions, judge, methods
 from rockwobble.models import Case, Diagnostic, InitialState, Run, Trace
+from rockwobble.models.cylinder import PIER
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 
 PLANAR, RECESS, _ = extremes.MODELS
@@ -162,3 +163,10 @@ def test_methods_are_the_three_models_and_each_support_of_each_engine() -> None:
         for name in own_engines()
     )
     assert sum(run.engine is None for run in found) == 3
+
+
+def test_one_thing_at_a_time_is_taken_to_its_extreme() -> None:
+    for condition in conditions():
+        case = condition.case
+        assert (case.cylinder == PIER) == (condition.extreme not in ("size", "slenderness")), condition
+        assert (case.gravity == 9.81) == (condition.extreme != "gravity"), condition
