@@ -45,14 +45,16 @@ def may_sit_down(
     """Return whether the cylinder comes to rest: f < 0 and too little energy left to matter.
 
     The bound is the energy of a standstill at the tilt `rest_tilt` alpha, less what the ground
-    acceleration takes off the restoring moment. With rolling resistance a twist rate may be left over,
+    acceleration takes off the restoring moment, to which the couple of rolling resistance adds: it wears the
+    motion down where the ground overcomes the weight but not both. With it a twist rate may be left over,
     which near upright stays what it is, as B phi' does: then the bound is the energy with both at that tilt,
     beyond which the motion cannot rise. The twist is left to the friction of the base that closes.
     """
     limit = rest_tilt * body.alpha
     if theta > 10.0 * limit:  # above the bound, unless az exceeds 9 g
         return False
-    share = 1.0 + a[2] / body.g - hypot(a[0], a[1]) * body.cos_alpha / (body.g * body.sin_alpha)
+    held = (1.0 + a[2] / body.g) * (1.0 + body.delta / body.b)
+    share = held - hypot(a[0], a[1]) * body.cos_alpha / (body.g * body.sin_alpha)
     if share <= 0.0 or excess(body, a) >= 0.0:
         return False
     standing = energy(body, limit, 0.0, 0.0, 0.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 import textwrap
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -60,6 +61,8 @@ _DARK = 0.6
 # a tenth of a point is an eighth of a pixel
 _PATH, _LONG_NUMBER = re.compile(rb'(?<= d=")[^"]+'), re.compile(rb"(\.\d)\d+")
 _INDENT = re.compile(rb"\n +")
+_STATED, _NAME = re.compile(rb' style="([^"]*)"'), re.compile(rb' id="([^"]*)"')
+_LINK = re.compile(rb'#([^")]+)[")]')
 _HATCHES = {"": "", "/": "//", "x": "xx", ".": ".."}
 
 
@@ -70,7 +73,19 @@ def svg(picture: Picture, *, titled: bool = False) -> bytes:
         figure(picture, titled=titled).savefig(
             buffer, format="svg", dpi=_RASTER_DPI, metadata={"Date": None, "Creator": "rockwobble"}
         )
-    return _INDENT.sub(b"\n", _PATH.sub(_short, buffer.getvalue()))
+    return compact(buffer.getvalue())
+
+
+def compact(drawn: bytes) -> bytes:
+    """Return an SVG of matplotlib in half its room: styles once, short paths, only names that are used."""
+    drawn = _INDENT.sub(b"\n", _PATH.sub(_short, drawn))
+    repeated = [style for style, count in Counter(_STATED.findall(drawn)).items() if count > 2]
+    classes = {style: b"s%d" % number for number, style in enumerate(repeated)}
+    used = {*_LINK.findall(drawn)}
+    drawn = _NAME.sub(lambda name: name[0] if name[1] in used else b"", drawn)
+    drawn = _STATED.sub(lambda one: b' class="%s"' % classes[one[1]] if one[1] in classes else one[0], drawn)
+    rules = b"".join(b"\n.%s{%s}" % (name, style) for style, name in classes.items())
+    return drawn.replace(b"</style>", rules + b"</style>", 1)
 
 
 def _short(path: re.Match[bytes]) -> bytes:

@@ -21,6 +21,11 @@ def medians() -> pd.DataFrame:
     return pd.read_csv(PUBLISHED / "medians-300.csv")
 
 
+def row_of(table: pd.DataFrame, method: str, ratio: float) -> dict[str, float]:
+    own = table[(table["method"] == method) & (table["slab_mass_ratio"] == ratio)]
+    return {str(name): value for name, value in own.iloc[0].items()}
+
+
 def said() -> str:
     found = SECTION.search(GUIDE.read_text(encoding="utf-8"))
     assert found
@@ -32,8 +37,7 @@ def said() -> str:
 def test_each_number_of_the_guide_is_that_of_the_table(
     medians: pd.DataFrame, title: str, ratio: float
 ) -> None:
-    own = medians[(medians["method"] == METHODS[title]) & (medians["slab_mass_ratio"] == ratio)]
-    row = own.iloc[0]
+    row = row_of(medians, METHODS[title], ratio)
     numbers = [
         "{:.2f} ({:.2f} to {:.2f})".format(*(row[f"{name}{end}"] for end in ("", "_low", "_high")))
         for name in ("median", "over_alone", "over_equivalent", "over_3d")
@@ -47,9 +51,9 @@ def test_each_number_of_the_guide_is_that_of_the_table(
 def test_a_deck_helps_by_what_the_guide_says(medians: pd.DataFrame) -> None:
     few = pd.read_csv(PUBLISHED / "medians-p695.csv")
     for table in (medians, few):
-        rows = table[table["method"] == "recess model"].set_index("slab_mass_ratio")
         for ratio in (1.0, 4.0):
-            numbers = [rows.loc[ratio, f"over_alone{end}"] for end in ("", "_low", "_high")]
+            row = row_of(table, "recess model", ratio)
+            numbers = [row[f"over_alone{end}"] for end in ("", "_low", "_high")]
             assert "{:.2f} ({:.2f} to {:.2f})".format(*numbers) in said().replace("\n", " ")
     # and the larger cylinder is as good
     rows = medians[medians["slab_mass_ratio"] > 0.0]

@@ -95,8 +95,12 @@ def heavier(case: Case, options: Options) -> Case:
 
 
 def larger(case: Case, options: Options) -> Case:
-    size = 1.001 * case.cylinder.semidiagonal
-    return dataclasses.replace(case, cylinder=dataclasses.replace(case.cylinder, semidiagonal=size))
+    body = case.cylinder
+    column = body.cylinder if isinstance(body, WobblingFrame) else body
+    column = dataclasses.replace(column, semidiagonal=1.001 * column.semidiagonal)
+    if isinstance(body, WobblingFrame):
+        column = WobblingFrame(column, body.slab_mass_ratio, body.columns)
+    return dataclasses.replace(case, cylinder=column)
 
 
 def lighter_slab(case: Case, options: Options) -> Case:

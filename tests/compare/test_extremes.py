@@ -14,7 +14,7 @@ from rockwobble.compare.studies.extremes import FINE, Condition, conditions, jud
 from rockwobble.models import Case, Diagnostic, InitialState, Run, Trace
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 
-PLANAR, RECESS = Run(None, "flat", plane=0.0), Run(None, "recess")
+PLANAR, RECESS, _ = extremes.MODELS
 ENGINE, RING = Run("mujoco", "recess"), Run("mujoco", "ring")
 
 

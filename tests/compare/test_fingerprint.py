@@ -76,10 +76,16 @@ def test_what_has_no_bits_has_no_name():
         job(duration=0.1),
         job(gravity=9.8),
         job(friction=0.9),
+        job(rolling_resistance=0.01),
     ],
 )
 def test_each_input_of_a_run_is_in_its_name(other):
     assert job_fingerprint(other) != job_fingerprint(job())
+
+
+def test_what_is_left_out_where_it_is_none_is_in_the_name_by_its_value():
+    names = {job_fingerprint(job(rolling_resistance=length)) for length in (0.0, 0.01, 0.02)}
+    assert len(names) == 3
 
 
 def test_engine_settings_are_in_the_name():

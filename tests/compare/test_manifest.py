@@ -86,7 +86,6 @@ def test_a_second_run_replaces_its_own_files_and_touches_nothing_else(tmp_path):
         "points.parquet",
         "rows.parquet",
         MANIFEST,
-        Manifest,
     }
     assert [made.kind for made in read_manifests(tmp_path)] == ["study", "other"]
     assert read_results(tmp_path, "other").table("rows")["run"].tolist() == ["a", "b"]

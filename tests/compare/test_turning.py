@@ -103,8 +103,8 @@ def test_contact_points_count_only_where_both_are_tilted(cylinder, make_trace, t
 
 def test_contact_points_count_from_5_per_cent_of_the_peak_of_the_reference(cylinder, make_trace, time):
     high, angle = 0.3 * cylinder.alpha, 2.0 * time
-    # then at 10 % of that peak: below 5 % of alpha, and of the trial's own peak; at last at 4 % of it
-    share = np.where(time < 4.0, 1.0, np.where(time < 8.0, 0.1, 0.04))
+    # then just above 5 % of that peak: below 5 % of alpha, and of the trial's own peak; at last just below
+    share = np.where(time < 4.0, 1.0, np.where(time < 8.0, 0.0502, 0.0498))
     reference = make_trace(time, high * share, rolling_angle=angle)
     trial = make_trace(
         time, high * np.where(time < 4.0, 3.0, share), rolling_angle=angle + 0.3 * (time >= 4.0)

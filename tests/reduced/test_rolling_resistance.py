@@ -251,7 +251,7 @@ def test_motion_in_space_comes_to_a_standstill_too() -> None:
 def test_the_couple_that_holds_leaves_what_pivots(seed: int) -> None:
     """It keeps theta' = psi' = 0 by the equations of flat ground, and the moment of the ground is D'' a_t."""
     random = np.random.default_rng(seed)
-    cylinder = list(BODIES.values())[seed % len(BODIES)]
+    cylinder = [*BODIES.values(), WobblingFrame(BODIES["h = 2b"], 0.7)][seed]
     body = body_of(cylinder, G, 0.02 * cylinder.base_radius)
     tilt, phi, rate = random.uniform(0.05, 1.3), random.uniform(0.0, 6.0), random.normal()
     a = tuple(random.normal(size=3))
@@ -264,7 +264,7 @@ def test_the_couple_that_holds_leaves_what_pivots(seed: int) -> None:
     Lambda_rate -= s * turning
     S_rate += twist_share(body, s, c) * turning
     assert Lambda_rate * S == pytest.approx(S_rate * Lambda, rel=1e-9, abs=1e-12 * abs(S * Lambda))
-    inertia = body.I1 * s * s + body.I2 * c * c + (body.b * c - body.h * s) ** 2
+    inertia = body.I1 * s * s + body.I2 * c * c + body.mu * (body.b * c - body.h * s) ** 2
     across = a[1] * math.cos(phi) - a[0] * math.sin(phi)
     assert S_rate / S * rate * inertia == pytest.approx((body.b * c - body.h * s) * across, rel=1e-9)
 
@@ -304,8 +304,8 @@ def test_a_cylinder_pivots_on_a_rim_that_the_couple_holds() -> None:
     assert np.ptp(exact) > 0.1 * cylinder.alpha
     for rtol in (1e-7, 1e-8, 1e-9):
         error = np.abs(reduced.simulate(stronger, support="flat", rtol=rtol).tilt - exact).max()
-        # what leaves the balance magnifies the error of its first steps
-        assert error / cylinder.alpha < 4.0 * math.exp(body.p * duration) * rtol
+        # what leaves the balance magnifies the error of its first steps, slower than the tolerance at first
+        assert error / cylinder.alpha < 10.0 * math.exp(body.p * duration) * rtol
 
 
 @pytest.mark.parametrize(

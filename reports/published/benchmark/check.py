@@ -854,6 +854,7 @@ LONG = 3.0
 # windows in which the clock is fitted, over that scale: the first motion agrees best, and may be too little
 WINDOWS = (3.0, 6.0, 12.0)
 SHORTEST_DELAY = 0.01  # an offset of the clock that is named, over the time scale
+SAME_OFFSET = 0.1  # difference of the offsets in several windows, over the largest: a clock has one
 LARGEST_DELAY = 0.5  # the largest that is tried, over the length of the run
 FINE = 40.0  # samples of the time scale in the first search of an offset
 ALIKE = 1.5  # rocking repeats itself: of offsets whose misfit is at most this times the least, the smallest
@@ -1045,7 +1046,11 @@ def _with_lean_of_path(motion: Motion) -> Motion:
 
 def _clocks(reference: Reference, motion: Motion) -> Iterator[Change]:
     """Yield offsets and rates of the clock, as the tilts tell them."""
-    for offset in fitted_offsets(reference, motion):
+    offsets = fitted_offsets(reference, motion)
+    if reference.is_free and offsets and max(offsets) - min(offsets) > SAME_OFFSET * max(map(abs, offsets)):
+        # a fall and a near pass magnify what differs, and are later by more the longer they last
+        offsets = []
+    for offset in offsets:
         # a clock that is off by less than a sample cannot be told from what a model and noise make of samples
         if abs(offset) > max(motion.step, SHORTEST_DELAY * reference.time_scale):
             mistake = Mistake(code="time_offset", concerns="time", value=offset)
