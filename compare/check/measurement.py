@@ -113,7 +113,7 @@ def not_run(name: str, note: str) -> Result:
 GRAVITY = 9.81  # [m/s^2], the default of a case
 WALLED = tuple(each.name for each in SUPPORTS.values() if each.walls)
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
-FRAME = WobblingFrame(Cylinder(semidiagonal=3.0, tan_alpha=0.2), 1.0, columns=1)
+FRAME = WobblingFrame(PIER, 1.0, columns=1)
 THRESHOLD = GRAVITY * PIER.tan_alpha  # ground acceleration of its uplift [m/s^2]
 
 
@@ -153,7 +153,7 @@ def steady(acceleration: ArrayLike, duration: float) -> GroundMotion:
 
 # one pass of the upright position, at 0.1 alpha
 RELEASE = released(0.5, 0.5, 3.0, name="release")
-FRAME_RELEASE = released(0.5, 0.5, 2.4, FRAME, "release of a frame")
+FRAME_RELEASE = released(0.5, 0.5, 3.4, FRAME, "release of a frame")
 # rocks in three dimensions from rest, through several passes that are not near; one for each component
 SHOCK_TIMES = (0.0, 0.5, 1.0, 1.5, 2.0)
 SHOCK = THRESHOLD * np.array(

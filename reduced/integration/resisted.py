@@ -50,7 +50,10 @@ from .systems import (
 # squared cosine of the turn of the couple in a step up to which the step follows it
 _FOLLOWED = 0.64
 # times the tolerance on rates: so slow a body whose couple would hold it is still
-_STILL = 10.0
+_STILL = 40.0
+# rate that the couple may take in a step of one so slow, over that which it has. The tolerance does not see
+# that rate: steps at the bound of stability, 3.3, would keep 21 tolerances of it whatever the push
+_STABLE = 2.0
 # of 1/p: time after which a body is let go where the couple ceases to hold it while the push turns. Before,
 # the speed grows with the square of the time, and the couple turns with it the faster the smaller it is
 _BEFORE_SERIES = 1e-4
@@ -129,10 +132,12 @@ def _make_ratio(
         # a step much longer than the turn sees a jump, of which its error may miss all but a hundredth
         speeds = (y[1] * y[1] + across * across) * (y_new[1] * y_new[1] + across_new * across_new)
         along = y[1] * y_new[1] + across * across_new
-        if along > 0.0 and along * along > _FOLLOWED * speeds:
-            return found
         unit = abs(y[1]) + abs(across) + body.p * sqrt(body.sin_alpha * y[0])
-        return max(found, 2.0 * body.delta * body.g / body.A * h / (rtol * unit))
+        taken = body.delta * body.g / body.A * h
+        if along > 0.0 and along * along > _FOLLOWED * speeds:
+            slow = sqrt(y_new[1] * y_new[1] + across_new * across_new)
+            return max(found, taken / (_STABLE * slow)) if slow < _STILL * rtol * unit else found
+        return max(found, 2.0 * taken / (rtol * unit))
 
     return ratio
 

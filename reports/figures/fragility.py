@@ -53,9 +53,7 @@ def _ratios(found: Fragility) -> Picture | None:
     reach = min(1.15 * max([*known, 2.0 * math.log1p(margin)]), math.log(4.0))
     low, high = math.exp(-reach), math.exp(reach)
     names = [f"{method}\n/ {against}" for method, against in pairs]
-    x_axis, y_axis = ratio_axes(
-        "median over median (above 1 unsafe: the first method)", low, high, _RATIOS, names
-    )
+    x_axis, y_axis = ratio_axes("ratio of medians, unsafe above 1", low, high, _RATIOS, names)
     panels = []
     for cylinder in cylinders:
         own = {

@@ -1,13 +1,15 @@
 """Rolling resistance: error over tolerance, computing time, and the engines beside the models.
 
-`python tests/benchmarks rolling_losses` prints three tables: error of the models over the tolerance in free
-response, their computing time over that of the models without it (runs in turns, medians of ratios), and the
-rolling friction of engines against the models over step and coefficient of friction.
+`python tests/benchmarks rolling_losses` prints four tables: quantities that have a law, by it and by the
+models; error of the models over the tolerance in free response; their computing time over that of the models
+without it (runs in turns, medians of ratios); the rolling friction of engines against the models over step
+and coefficient of friction.
 """
 
 from __future__ import annotations
 
 import dataclasses
+import math
 import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -15,8 +17,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.reduced.body import body_of
 from rockwobble.reduced.problem import make_problem
+from rockwobble.reduced.rolling import impact_ratio
 from rockwobble.reduced.simulation import make_ready
 
 from .console import options_of, show
@@ -35,6 +39,67 @@ def _released(share: float, *, spin: float, friction: float = 1.0, duration: flo
     release = InitialState(0.5 * _PIER.alpha, rolling_rate=spin)
     length = share * _PIER.base_radius
     return Case(_PIER, initial=release, duration=duration, friction=friction, rolling_resistance=length)
+
+
+def _swing(cylinder: Cylinder, length: float, spin: float) -> float:
+    """Return the share of its energy that a release from alpha/2 loses to the next maximum."""
+    release = InitialState(0.5 * cylinder.alpha, rolling_rate=spin)
+    case = Case(cylinder, initial=release, duration=2.5, rolling_resistance=length)
+    trace = reduced.simulate(case, rtol=1e-12, sample_step=1e-4)
+    maxima = trace.extrema[trace.extrema[:, 3] > 0.0, 0]
+    lost = np.interp(maxima[:2], trace.time, trace.energy_lost)
+    return float(lost[1] - lost[0]) / float(trace.energy[0])
+
+
+def _swing_laws(cylinder: Cylinder) -> tuple[float, float]:
+    """Return what `_swing` is to first order in delta/b: in a plane, and in the limit of vanishing spin."""
+    body, tilt = body_of(cylinder, 9.81), 0.5 * cylinder.alpha
+    b, h = body.b, body.h
+    theta = np.linspace(0.0, tilt, 20_001)
+    lever, height = b * np.cos(theta) - h * np.sin(theta), b * np.sin(theta) + h * np.cos(theta)
+    fall = body.g * (height[-1] - height)
+    normal = body.g * (1.0 - lever**2 / body.A) - height * 2.0 * fall / body.A
+    x = np.linspace(0.0, 1.0, 20_001)
+    longer = np.trapezoid(np.sqrt(x * x + body.A / body.J * (1.0 - x * x)), x)
+    energy = body.g * (height[-1] - h)
+    load, at_pass = 2.0 * b * float(np.trapezoid(normal, theta)) / energy, 4.0 * b * b / body.A
+    return load + at_pass, load + longer * at_pass
+
+
+def quantities() -> pd.DataFrame:
+    """Return quantities that have a law of first order in delta/b, by it and by the models."""
+    import pandas as pd
+
+    small, tall = 1e-6, Cylinder(semidiagonal=math.sqrt(5.0), tan_alpha=0.5)
+    length = small * tall.base_radius
+    plane, space = _swing_laws(tall)
+    slender = Cylinder(semidiagonal=1.0, tan_alpha=0.025)
+    body = body_of(slender, 9.81)
+    loss = 2.0 * body.b**2 / body.A
+    rolled = 1.0 - impact_ratio(body._replace(delta=body.b), 1.0)
+    housner = 1.0 - reduced.restitution_from_momentum(slender)
+    disc, tilt = Cylinder(semidiagonal=1.0, tan_alpha=1e4), 0.02
+    ends = math.sqrt(tilt) / (2.0 / 3.0 * 2e-3 * math.sqrt(9.81))
+    release = InitialState(tilt, rolling_rate=reduced.steady_wobble_rate(disc, tilt))
+    case = Case(disc, initial=release, duration=0.9 * ends, rolling_resistance=2e-3 * disc.base_radius)
+    spun = reduced.simulate(case, rtol=1e-9)
+    late = spun.time > 0.5 * ends
+    logs = np.log(ends - spun.time[late]), np.log(np.abs(spun.rolling_rate[late]))
+    along = 1.25 * 9.81 * _PIER.tan_alpha * np.arange(0.0, 1.0, 0.01)
+    ramp = GroundMotion(np.column_stack([along, np.zeros_like(along)]), 0.01)
+    waits = [
+        reduced.simulate(Case(_PIER, ramp, rolling_resistance=share * _PIER.base_radius)).uplift_time
+        for share in (0.0, 0.03)
+    ]
+    rows = [
+        ("loss of a swing from rest, over delta/b", plane, _swing(tall, length, 0.0) / small),
+        ("the same with a near-upright pass", space, _swing(tall, length, 1e-5) / small),
+        ("loss of speed at a pass, delta = b, tan(alpha) 0.025", loss, rolled),
+        ("the same of Housner's impact", loss, housner),
+        ("exponent of a disc's precession in the time left", -1.0, float(np.polyfit(*logs, 1)[0])),
+        ("delay of uplift on 1.25 g tan(alpha)/s, delta/b 0.03 [s]", 0.03 / 1.25, waits[1] - waits[0]),
+    ]
+    return pd.DataFrame(rows, columns=["quantity", "law", "model"])
 
 
 def errors() -> pd.DataFrame:
@@ -121,6 +186,8 @@ def main(arguments: Sequence[str]) -> int:
     options_of("rolling_losses", "Error, computing time and engines with rolling resistance.").parse_args(
         arguments
     )
+    forms = {"quantity": "", "law": ".5f", "model": ".5f"}
+    show(quantities(), "Quantities by law and model", forms)
     forms = {"model": "", "rtol": ".0e", "tilt_error": ".1e", "energy_error": ".1e", "steps": "d"}
     show(errors(), "Free response, errors of tilt (in alpha) and of the energy account", forms)
     forms = {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import dataclasses
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -41,6 +42,7 @@ from rockwobble.models import Case, GroundMotion, Trace
 
 ROOT = Path(__file__).resolve().parents[2]
 # of the faults in the sources of the recess model, each tenth: all of them take minutes in the interpreter
+WRITTEN = 1e-11  # a signal is kept to twelve digits
 FAULTS = [one for one in mutations() if one.faults][::10]
 
 
@@ -67,6 +69,16 @@ def test_twelve_cases_have_names_claims_and_terms_of_their_own() -> None:
     cases = short_cases()
     assert len(cases) == 12
     assert len({short.name for short in cases}) == len({short.term for short in cases}) == 12
+
+
+def test_the_signals_of_a_release_begin_where_it_leans(certificate: dict[str, Any]) -> None:
+    for short, one in zip(short_cases(), certificate["fingerprint"], strict=True):
+        start = short.case.initial
+        if start is not None:
+            lean = math.sin(start.tilt) / math.sin(short.case.cylinder.alpha)
+            along = [lean * math.cos(start.rolling_angle), lean * math.sin(start.rolling_angle)]
+            begins = [one["signals"][name][0] for name in ("lean_x", "lean_y")]
+            assert begins == pytest.approx(along, rel=WRITTEN), short.name
 
 
 def test_it_is_the_same_here_and_in_a_file(certificate: dict[str, Any], tmp_path: Path) -> None:

@@ -12,11 +12,11 @@ import pytest
 from benchmarks.false_alarms import case_of, larger, records
 
 from rockwobble import reduced
-from rockwobble.compare.check import Result, external_model, suite
+from rockwobble.compare.check import Result, check, external_model, suite
 from rockwobble.compare.check.measurement import released
 from rockwobble.compare.check.suite import SuiteRuns, check_suite
 from rockwobble.compare.runs.execution import Job
-from rockwobble.models import Case, Cylinder, Run, Trace, el_centro_1940
+from rockwobble.models import Case, Cylinder, Run, Suite, Trace, el_centro_1940
 from rockwobble.models.cylinder import PIER
 from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import standard_engines
@@ -187,3 +187,12 @@ def test_a_second_engine_decides(
     found = suite.likely_cause(SuiteRuns(), job, model, wrong, until=1.0)
     assert found[0] == cause
     assert note in found[1]
+
+
+def test_the_runs_of_a_suite_are_asked_before_one_starts() -> None:
+    release = released(0.5, 0.5, 0.5)
+    done = check(suite=Suite([release], [Run("mujoco", "recess")]), workers=1)
+    assert done.passed
+    assert {result.group for result in done.results} == {"agreement"}
+    with pytest.raises(ValueError, match="time_step must be at most"):
+        check(suite=Suite([release], [Run("mujoco", "recess"), Run("mujoco", "recess", 1.0)]), workers=1)

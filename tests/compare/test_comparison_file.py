@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -104,3 +106,14 @@ def test_the_manifest_has_the_main_numbers(saved, tmp_path):
 def test_a_folder_without_a_comparison(tmp_path):
     with pytest.raises(ValueError, match="does not hold results of rockwobble"):
         Comparison.load(tmp_path)
+
+
+def test_a_median_is_of_the_rows_and_of_six_at_least(saved):
+    rows = pd.concat([saved[0].summary] * 3, ignore_index=True)
+    assert len(rows) >= 6
+    rows["agreement_time"] = 10.0 + np.arange(len(rows))
+    many, few = (
+        replace(saved[0], tables={**saved[0].tables, "summary": part}).headline() for part in (rows, rows[:5])
+    )
+    assert many["median agreement time [s]"] == rows["agreement_time"].median()
+    assert few["median agreement time [s]"] is None

@@ -152,3 +152,33 @@ def test_an_engine_of_another_package_that_changed_makes_other_runs(
     assert first["engine own"].startswith("1, ")
     assert {"numpy", "rockwobble"} <= first.keys()
     assert "mujoco" not in first
+
+
+def test_the_commit_of_a_checkout_says_that_code_was_changed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def git(*arguments: str) -> str:
+        user = ("-c", "user.name=a", "-c", "user.email=a@b", "-c", "commit.gpgsign=false")
+        command = ["git", "-C", str(tmp_path), *user, *arguments]
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+    def found() -> str:
+        provenance.commit.cache_clear()
+        return provenance.commit()
+
+    code, published = tmp_path / "code.py", tmp_path / "reports" / "published" / "table.csv"
+    monkeypatch.setattr(provenance, "__file__", str(code))
+    git("init", "-q")
+    published.parent.mkdir(parents=True)
+    for path in (code, published):
+        path.write_text("1\n")
+    assert found() == ""  # no file of this repository
+    git("add", ".")
+    git("commit", "-q", "-m", "first")
+    head = git("rev-parse", "HEAD")
+    assert found() == head
+    published.write_text("2\n")
+    assert found() == head
+    code.write_text("2\n")
+    assert found() == f"{head}+"
+    provenance.commit.cache_clear()

@@ -125,6 +125,8 @@ def test_quick_is_a_part_of_the_full_report_in_every_respect() -> None:
         quick, full = list(part.tasks(QUICK)), list(part.tasks(FULL))
         assert 0 < len(quick) <= len(full)
         assert sum(part.cost(**task) for task in quick) < sum(part.cost(**task) for task in full)
+    for name in ("tan_alphas", "releases", "shaken_tan_alphas", "sizes"):
+        assert set(getattr(QUICK, name)) <= set(getattr(FULL, name)), name
     assert FULL.members >= 20
     assert {ring.friction for ring in FULL.rings} >= {0.0, 0.5, 1.0}
     assert len({ring.clearance for ring in FULL.rings}) >= 4

@@ -162,6 +162,13 @@ def test_closeness_knows_an_end_before_the_other() -> None:
     assert closeness(whole, short, ALPHA) == Closeness(0.0, pytest.approx(0.29), pytest.approx(0.29))
 
 
+def test_closeness_ends_at_the_last_pass_before_a_divergence() -> None:
+    fine = made(np.full(50, 0.1), passes=(0.05, 0.1, 0.2, 0.4))
+    off = np.where(fine.time < 0.15, 1e-6, np.where(fine.time < 0.3, 2e-6, 0.1))
+    found = closeness(made(fine.tilt + off), fine, ALPHA)
+    assert found == Closeness(pytest.approx(2e-6), pytest.approx(0.2), pytest.approx(0.3))
+
+
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
