@@ -396,7 +396,7 @@ def uplifts(made: Callable[[], World], step: float) -> list[str]:
     return wrong
 
 
-def main(name: str, variant: str) -> None:
+def printed(name: str, variant: str) -> None:
     """Print what a simulator does, as JSON in the last line."""
     package, default, better, simulator = WORLDS[name]
     best = variant == "best"
@@ -408,4 +408,4 @@ def main(name: str, variant: str) -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    printed(*sys.argv[1:])
