@@ -354,7 +354,7 @@ def check(
         chosen = [subjects.trajectories(traces, support=support, tolerance=tolerance)]
         results = [not_run("all other checks", "one motion does not tell: give a model that can be called")]
     else:
-        chosen = _of_this_machine()
+        chosen = baseline_subjects()
         missing = [name for name in standard_engines() if name not in available_engines()]
         results = [not_run(f"checks of {name}", engine_lack(name)) for name in missing]
     for group in (each for each in GROUPS if only is None or each in only):
@@ -369,13 +369,7 @@ def check(
 
 
 def baseline_subjects() -> list[Subject]:
-    """Return the subjects whose numbers are kept: the reduced models, and the standard engines."""
-    standard = [name for name in standard_engines() if name in available_engines()]
-    return [subjects.reduced_model(), *map(subjects.engine, standard)]
-
-
-def _of_this_machine() -> list[Subject]:
-    """Return the reduced models and our engines that are installed here."""
+    """Return the subjects whose numbers are kept: the reduced models, and our engines installed here."""
     return [subjects.reduced_model(), *(subjects.engine(name) for name in own_engines())]
 
 

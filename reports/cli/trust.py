@@ -245,6 +245,7 @@ def update(reason: str | None) -> None:
     if not (reason or "").strip():
         raise ValueError("nothing was changed: a new baseline needs a --reason, got none")
     date = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
+    new = {group: new[group] for group, *_ in changed}
     text = agreement.updated_baseline(old, new, reason=reason or "", date=date, versions=package_versions())
     rs.replace_files(agreement.baseline_folder(), {agreement.BASELINES: text.encode()})
     print(f"Written: {agreement.baseline_folder() / agreement.BASELINES}")

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 # the oldest minor release that is asked for, and how many to go on by: a wheel of Drake has 170 MB
 SINCE: Mapping[str, tuple[tuple[int, int], int]] = MappingProxyType(
-    {"mujoco": ((3, 3), 1), "dart": ((6, 0), 1), "drake": ((1, 12), 10)}
+    {"mujoco": ((3, 3), 1), "dart": ((6, 0), 1), "drake": ((1, 12), 10), "rapier": ((0, 36), 1)}
 )
 # packages of the same version that the wheel leans on
 _COMPANIONS: Mapping[str, Mapping[int, tuple[str, ...]]] = MappingProxyType({"mujoco": {4: ("mujoco-core",)}})

@@ -90,7 +90,7 @@ def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):
     assert [panel.title for panel in ratios.panels] == ["pier", "tower", "Mean of all cylinders"]
     assert [panel.title for panel in pier.panels] == [
         "Planar analysis",
-        "Recess",
+        "Ideal recess",
         "Flat ground",
         "Recess with clearance",
     ]

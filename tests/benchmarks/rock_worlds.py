@@ -1,0 +1,411 @@
+"""One can in one simulator, with the settings it starts from or with better ones: what `who_can_rock` runs.
+
+It needs numpy and the simulator alone, so that a simulator may have an environment of its own:
+
+    python tests/benchmarks/rock_worlds.py physx best
+
+A simulator is a function of a step [s] and of whether its settings are the better ones; it returns a `World`.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+import math
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+Array = Any  # of float64; the stubs of the simulators disagree about arrays
+B, H, G = 1.0, 2.0, 9.81  # radius and half height [m], gravity [m/s^2]
+TILT, SPIN = 0.5 * math.atan(0.5), 0.1  # tilt [rad] and rolling rate [rad/s] of the release
+INERTIA = np.array([(3 * B**2 + 4 * H**2) / 12, (3 * B**2 + 4 * H**2) / 12, B**2 / 2])  # of 1 kg
+DIRECTIONS, RAMP, LENGTH = 7, 0.02, 0.5  # of the uplift sweep; [s]
+NOTHING: Array = np.zeros(3)
+# [rad] at the end of the sweep: 3.7e-3 at 0.51 g, none at 0.49 g
+STANDS, LEANS = 3e-4, 1e-3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class World:
+    """A can in a simulator.
+
+    Parameters
+    ----------
+    put : callable
+        Puts the mass centre [m], the quaternion (scalar first), velocity [m/s] and angular velocity [rad/s].
+    step : callable
+        Takes a step under a gravity [m/s^2].
+    lean : callable
+        Returns the horizontal components of the axis.
+    kept : object
+        What must live as long as the world does.
+    """
+
+    put: Callable[[Array, Array, Array, Array], None]
+    step: Callable[[Array], None]
+    lean: Callable[[], tuple[float, float]]
+    kept: object = None
+
+
+def _lean(w: float, x: float, y: float, z: float) -> tuple[float, float]:
+    return 2.0 * (x * z + w * y), 2.0 * (y * z - w * x)
+
+
+def mujoco(step: float, best: bool) -> World:
+    """Contact of 20 ms, pyramidal cone."""
+    import mujoco  # type: ignore[import-untyped]
+
+    model = mujoco.MjModel.from_xml_string(
+        '<mujoco><worldbody><geom type="plane" size="9 9 1"/><body name="can"><freejoint/>'
+        '<geom type="cylinder" size="1 2" mass="1"/></body></worldbody></mujoco>'
+    )
+    model.opt.timestep = step
+    data = mujoco.MjData(model)
+
+    def put(position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
+        data.qpos[:] = [*position, *quaternion]
+        data.qvel[:3] = velocity
+        mujoco.mju_rotVecQuat(data.qvel[3:], spin, quaternion * [1, -1, -1, -1])
+
+    def take(gravity: Array) -> None:
+        model.opt.gravity[:] = gravity
+        mujoco.mj_step(model, data)
+
+    return World(put=put, step=take, lean=lambda: _lean(*data.qpos[3:]))
+
+
+def pybullet(step: float, best: bool) -> World:
+    """Friction 1 on both, margin of 4 cm, damping of 0.04."""
+    import pybullet
+
+    pybullet.connect(pybullet.DIRECT)
+    pybullet.setTimeStep(step)
+    ground = pybullet.createMultiBody(0.0, pybullet.createCollisionShape(pybullet.GEOM_PLANE))
+    shape = pybullet.createCollisionShape(pybullet.GEOM_CYLINDER, radius=B, height=2 * H)
+    can = pybullet.createMultiBody(1.0, shape)
+    for body in (ground, can):
+        pybullet.changeDynamics(body, -1, lateralFriction=1.0)
+
+    def put(position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
+        pose = np.roll(quaternion, -1).tolist()
+        pybullet.resetBasePositionAndOrientation(can, position.tolist(), pose)
+        pybullet.resetBaseVelocity(can, velocity.tolist(), spin.tolist())
+
+    def take(gravity: Array) -> None:
+        pybullet.setGravity(*gravity)
+        pybullet.stepSimulation()
+
+    def lean() -> tuple[float, float]:
+        x, y, z, w = pybullet.getBasePositionAndOrientation(can)[1]
+        return _lean(w, x, y, z)
+
+    return World(put=put, step=take, lean=lean)
+
+
+def dart(step: float, best: bool) -> World:
+    """A box as the ground, detector of its own."""
+    import dartpy
+
+    world = dartpy.simulation.World()
+    world.setTimeStep(step)
+    ground, body = dartpy.dynamics.Skeleton("ground"), dartpy.dynamics.Skeleton("can")
+    plate = ground.createWeldJointAndBodyNodePair()[1]
+    joint, can = body.createFreeJointAndBodyNodePair()
+    slab = plate.createShapeNode(dartpy.dynamics.BoxShape([20.0, 20.0, 0.2]))
+    below = dartpy.math.Isometry3()
+    below.set_translation([0.0, 0.0, -0.1])
+    slab.setRelativeTransform(below)
+    can.setInertia(dartpy.dynamics.Inertia(1.0, [0.0, 0.0, 0.0], np.diag(INERTIA)))
+    for shape in (slab, can.createShapeNode(dartpy.dynamics.CylinderShape(B, 2 * H))):
+        shape.createCollisionAspect()
+        shape.createDynamicsAspect()
+    world.addSkeleton(ground)
+    world.addSkeleton(body)
+
+    def put(position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
+        pose = dartpy.math.Isometry3()
+        pose.set_quaternion(dartpy.math.Quaternion(*quaternion))
+        pose.set_translation(position)
+        joint.setTransform(pose)
+        joint.setLinearVelocity(velocity)
+        joint.setAngularVelocity(spin)
+
+    def take(gravity: Array) -> None:
+        world.setGravity(gravity)
+        world.step()
+
+    def lean() -> tuple[float, float]:
+        axis = can.getTransform().rotation()[:2, 2]
+        return float(axis[0]), float(axis[1])
+
+    return World(put=put, step=take, lean=lean)
+
+
+def drake(step: float, best: bool) -> World:
+    """Discrete contact, stiffness from an allowed penetration of 1 mm."""
+    from pydrake import geometry
+    from pydrake.common.eigen_geometry import Quaternion
+    from pydrake.math import RigidTransform, RotationMatrix
+    from pydrake.multibody.math import SpatialVelocity
+    from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, CoulombFriction
+    from pydrake.multibody.tree import SpatialInertia, UnitInertia
+    from pydrake.systems.analysis import Simulator
+    from pydrake.systems.framework import DiagramBuilder
+
+    builder = DiagramBuilder()
+    plant, _ = AddMultibodyPlantSceneGraph(builder, step)
+    can = plant.AddRigidBody("can", SpatialInertia(1.0, NOTHING, UnitInertia(*INERTIA)))
+    here, friction = RigidTransform(), CoulombFriction(1.0, 1.0)
+    plant.RegisterCollisionGeometry(plant.world_body(), here, geometry.HalfSpace(), "ground", friction)
+    plant.RegisterCollisionGeometry(can, here, geometry.Cylinder(B, 2 * H), "can", friction)
+    plant.Finalize()
+    simulator = Simulator(builder.Build())
+    inside = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    steps = iter(range(1, sys.maxsize))
+    field = plant.gravity_field()
+
+    def put(position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
+        pose = RigidTransform(RotationMatrix(Quaternion(*quaternion)), position)
+        plant.SetFreeBodyPose(inside, can, pose)
+        plant.SetFreeBodySpatialVelocity(inside, can, SpatialVelocity(spin, velocity))
+
+    def take(gravity: Array) -> None:
+        # gravity is fixed once the plant is: the rest is a force at the mass centre
+        from pydrake.multibody.math import SpatialForce
+        from pydrake.multibody.plant import ExternallyAppliedSpatialForce
+
+        push = ExternallyAppliedSpatialForce()
+        push.body_index, push.F_Bq_W = (
+            can.index(),
+            SpatialForce(NOTHING, gravity - field.gravity_vector()),
+        )
+        plant.get_applied_spatial_force_input_port().FixValue(inside, [push])
+        simulator.AdvanceTo(next(steps) * step)
+
+    def lean() -> tuple[float, float]:
+        axis = plant.EvalBodyPoseInWorld(inside, can).rotation().matrix()[:2, 2]
+        return float(axis[0]), float(axis[1])
+
+    return World(put=put, step=take, lean=lean)
+
+
+def rapier(step: float, best: bool) -> World:
+    """Contact of 30 Hz, four substeps, friction shared by the contacts."""
+    import rapier3d
+
+    world = rapier3d.PhysicsWorld(gravity=(0.0, 0.0, -G))
+    world.integration_parameters.dt = step
+    ground = world.rigid_bodies.insert(rapier3d.RigidBody.fixed().build())
+    plane = rapier3d.Collider.halfspace((0.0, 0.0, 1.0)).friction(1.0)
+    world.colliders.insert_with_parent(plane.build(), ground, world.rigid_bodies)
+    handle = world.rigid_bodies.insert(rapier3d.RigidBody.dynamic().can_sleep(False).build())
+    density = 1.0 / (math.pi * B**2 * 2 * H)
+    shape = rapier3d.Collider.cylinder(H, B).density(density).friction(1.0)
+    upright = shape.rotation((math.pi / 2, 0.0, 0.0))
+    world.colliders.insert_with_parent(upright.build(), handle, world.rigid_bodies)
+    can = world.rigid_bodies[handle]
+
+    def put(position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
+        can.translation = rapier3d.Vec3(*position.tolist())
+        can.rotation = rapier3d.Rotation3(**dict(zip("wxyz", quaternion.tolist(), strict=True)))
+        can.linvel, can.angvel = rapier3d.Vec3(*velocity.tolist()), rapier3d.Vec3(*spin.tolist())
+
+    def take(gravity: Array) -> None:
+        world.gravity = rapier3d.Vec3(*gravity.tolist())
+        world.step()
+
+    def lean() -> tuple[float, float]:
+        x, y, z, w = can.rotation.quaternion
+        return _lean(w, x, y, z)
+
+    return World(put=put, step=take, lean=lean)
+
+
+def physx(step: float, best: bool, corners: int = 0) -> World:
+    """Temporal Gauss-Seidel, 10 iterations, angular damping of 0.05; better without damping and with 50."""
+    import sapien
+    from sapien import physx
+
+    system = physx.PhysxCpuSystem()
+    system.set_timestep(step)
+    material, half = physx.PhysxMaterial(1.0, 1.0, 0.0), math.sqrt(0.5)
+    ground, can = physx.PhysxRigidStaticComponent(), physx.PhysxRigidDynamicComponent()
+    plane, shape = physx.PhysxCollisionShapePlane(material), physx.PhysxCollisionShapeCylinder(B, H, material)
+    if corners:
+        with tempfile.NamedTemporaryFile("w", suffix=".obj") as mesh:
+            mesh.write(_prism(corners))
+            mesh.flush()
+            shape = physx.PhysxCollisionShapeConvexMesh(mesh.name, [1.0, 1.0, 1.0], material)
+    plane.set_local_pose(sapien.Pose([0.0, 0.0, 0.0], [half, 0.0, -half, 0.0]))  # its normal along z
+    shape.set_local_pose(sapien.Pose([0.0, 0.0, 0.0], [half, 0.0, half, 0.0]))  # its axis along z
+    ground.attach(plane)
+    can.attach(shape)
+    can.set_mass(1.0)
+    can.set_cmass_local_pose(sapien.Pose())
+    can.set_inertia(INERTIA)
+    can.sleep_threshold = 0.0
+    if best:
+        can.angular_damping, can.solver_position_iterations = 0.0, 50
+        plane.contact_offset = shape.contact_offset = 0.002
+    scene = sapien.Scene([system])
+    entities = [sapien.Entity(), sapien.Entity()]
+    for entity, component in zip(entities, (ground, can), strict=True):
+        entity.add_component(component)
+        entity.add_to_scene(scene)
+    body = entities[1]
+
+    def put(position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
+        body.set_pose(sapien.Pose(position, quaternion))
+        can.set_linear_velocity(velocity)
+        can.set_angular_velocity(spin)
+
+    def take(gravity: Array) -> None:
+        can.add_force_at_point(gravity - [0.0, 0.0, -G], body.get_pose().p)
+        system.step()
+
+    return World(put=put, step=take, lean=lambda: _lean(*map(float, body.get_pose().q)), kept=scene)
+
+
+def _prism(corners: int) -> str:
+    """Return a prism inscribed in the can, its axis along x, as an OBJ file."""
+    turns = math.tau * np.arange(corners) / corners
+    points = [f"v {x} {B * math.cos(turn)} {B * math.sin(turn)}" for x in (-H, H) for turn in turns]
+    faces = []
+    for one in range(1, corners + 1):
+        other = one % corners + 1
+        faces += [f"f {one} {corners + one} {corners + other}", f"f {one} {corners + other} {other}"]
+    for one in range(2, corners):
+        faces += [f"f 1 {one} {one + 1}", f"f {corners + 1} {corners + one + 1} {corners + one}"]
+    return "\n".join([*points, *faces])
+
+
+def _newton(solver: str, **better: Any) -> Callable[[float, bool], World]:
+    def made(step: float, best: bool) -> World:
+        import newton
+        import warp
+
+        warp.config.quiet = True
+        kind = getattr(newton.solvers, f"Solver{solver}")
+        builder = newton.ModelBuilder()
+        if hasattr(kind, "register_custom_attributes"):
+            kind.register_custom_attributes(builder)
+        builder.add_ground_plane(cfg=newton.ModelBuilder.ShapeConfig(mu=1.0))
+        config = newton.ModelBuilder.ShapeConfig(density=1.0 / (math.pi * B**2 * 2 * H), mu=1.0)
+        body = builder.add_body()
+        builder.add_shape_cylinder(body, radius=B, half_height=H, cfg=config)
+        model = builder.finalize(device="cpu")
+        states, contacts, control = [model.state(), model.state()], model.contacts(), model.control()
+        engine = kind(model, **(better if best else {}))
+
+        def put(position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
+            pose, rates = [*position, *np.roll(quaternion, -1)], [*velocity, *spin]
+            for state in states:
+                state.body_q.assign(np.array([pose], dtype=np.float32))
+                state.body_qd.assign(np.array([rates], dtype=np.float32))
+                state.joint_q.assign(np.array(pose, dtype=np.float32))
+                state.joint_qd.assign(np.array(rates, dtype=np.float32))
+
+        def take(gravity: Array) -> None:
+            model.set_gravity(tuple(gravity.tolist()))
+            states[0].clear_forces()
+            model.collide(states[0], contacts)
+            engine.step(states[0], states[1], control, contacts, step)
+            states.reverse()
+
+        def lean() -> tuple[float, float]:
+            x, y, z, w = map(float, states[0].body_q.numpy()[0, 3:])
+            return _lean(w, x, y, z)
+
+        return World(put=put, step=take, lean=lean)
+
+    made.__doc__ = f"Newton's {solver}, on a processor."
+    return made
+
+
+# package, step [s] of the settings it starts from and of the better ones, and the simulator
+WORLDS: Mapping[str, tuple[str, float, float, Callable[[float, bool], World]]] = {
+    "mujoco": ("mujoco", 0.002, math.nan, mujoco),
+    "pybullet": ("pybullet", 1 / 240, math.nan, pybullet),
+    "dart": ("dartpy", 0.001, math.nan, dart),
+    "drake": ("drake", 0.001, math.nan, drake),
+    "rapier": ("rapier3d", 1 / 60, math.nan, rapier),
+    "physx": ("sapien", 1 / 100, 1e-4, physx),
+    "physx-32": ("sapien", 1 / 100, 1e-4, functools.partial(physx, corners=32)),
+    "physx-64": ("sapien", 1 / 100, 1e-4, functools.partial(physx, corners=64)),
+    "newton-xpbd": (
+        "newton",
+        1 / 500,
+        1 / 1000,
+        _newton("XPBD", iterations=20, rigid_contact_relaxation=1.0),
+    ),
+    "newton-mujoco": ("newton", 1 / 500, 1 / 1000, _newton("MuJoCo")),
+}
+
+
+def turned(world: World, step: float) -> dict[str, float]:
+    """Return the angle of turn [deg], the next largest tilt over the release, and microseconds a step."""
+    axis = np.array([math.sin(TILT), 0.0, math.cos(TILT)])
+    centre = np.array([B * (1 - axis[2]), 0.0, B * axis[0]]) + H * axis
+    spin = SPIN * (np.array([0.0, 0.0, 1.0]) - axis)
+    quaternion = np.array([math.cos(TILT / 2), 0.0, math.sin(TILT / 2), 0.0])
+    world.put(centre, quaternion, np.cross(spin, centre - [B, 0.0, 0.0]), spin)
+    down, leans, started = np.array([0.0, 0.0, -G]), [], 0.0
+    for number in range(int(2.0 / step)):
+        if number == 1:  # the first step may compile
+            started = time.process_time()
+        world.step(down)
+        leans.append(world.lean())
+    seconds = (time.process_time() - started) / (len(leans) - 1)
+    lean = np.array(leans)
+    tilt = np.arcsin(np.minimum(np.hypot(*lean.T), 1.0))
+    upright = int(tilt[: int(1.2 / step)].argmin())
+    top = upright + int(tilt[upright:].argmax())
+    azimuth = np.unwrap(np.arctan2(lean[:, 1], lean[:, 0]))
+    return {"turn": math.degrees(azimuth[top]), "tilt": tilt[top] / TILT, "microseconds": 1e6 * seconds}
+
+
+def misses(tilt: float, aside: float, share: float) -> list[str]:
+    """Return what is wrong with a tilt [rad] and its direction [rad] off the load, under a share of g."""
+    if share < 0.5:
+        return ["leans at 0.49 g"] if tilt > STANDS else []
+    if tilt < LEANS:
+        return ["stands at 0.51 g"]
+    return ["aside at 0.51 g"] if abs(aside) > math.radians(1.0) else []
+
+
+def uplifts(made: Callable[[], World], step: float) -> list[str]:
+    """Return what goes wrong in the uplift sweep: nothing if all seven directions are right."""
+    wrong: list[str] = []
+    for azimuth in math.tau * np.arange(DIRECTIONS) / DIRECTIONS:
+        for share in (0.49, 0.51):
+            world = made()
+            world.put(np.array([0.0, 0.0, H]), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3), np.zeros(3))
+            for number in range(int(LENGTH / step)):
+                push = share * G * min(1.0, (number + 0.5) * step / RAMP)
+                world.step(np.array([-push * math.cos(azimuth), -push * math.sin(azimuth), -G]))
+            x, y = world.lean()
+            tilt, aside = math.hypot(x, y), math.remainder(math.atan2(y, x) - azimuth - math.pi, math.tau)
+            wrong += misses(tilt, aside, share)
+    return wrong
+
+
+def printed(name: str, variant: str) -> None:
+    """Print what a simulator does, as JSON in the last line."""
+    package, default, better, simulator = WORLDS[name]
+    best = variant == "best"
+    step = better if best else default
+    found: dict[str, Any] = {"version": version(package), "time_step": step, "wrong": None}
+    found |= turned(simulator(step, best), step)
+    found["wrong"] = uplifts(lambda: simulator(step, best), step)
+    print(json.dumps(found))
+
+
+if __name__ == "__main__":
+    printed(*sys.argv[1:])
