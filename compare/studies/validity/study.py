@@ -16,7 +16,7 @@ from ...storage.manifest import Number
 from ...storage.provenance import engine_makers, fingerprint, reduced_makers
 from ...storage.results import Results
 from ..plans import ValidityPlan
-from .free_response import FREE_RESPONSE, SLIP, VERIFICATION
+from .releases import FREE_RESPONSE, SLIP, VERIFICATION
 from .limits import limits_of
 from .plan import (
     FULL,
