@@ -33,8 +33,8 @@ TITLES = {
     PLANAR_Y: "planar y (north-south)",
 }
 # Rest tilt (over alpha) of the random runs below a boundary: just above uplift a cylinder chatters below it
-# through millions of steps. A rest may change what follows (`reduced.REST_TILT`), not the share that overturns;
-# the lowest that is found so is confirmed.
+# through millions of steps. A rest may change what follows (`reduced.REST_TILT`), but not the share that
+# overturns; the lowest that is found so is confirmed.
 _CALM = 1e-5
 _AZIMUTH = {PLANAR_X: 0.0, PLANAR_Y: 0.5 * math.pi}  # of the plane [rad]
 

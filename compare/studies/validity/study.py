@@ -16,7 +16,6 @@ from ...storage.manifest import Number
 from ...storage.provenance import engine_makers, fingerprint, reduced_makers
 from ...storage.results import Results
 from ..plans import ValidityPlan
-from .releases import FREE_RESPONSE, SLIP, VERIFICATION
 from .limits import limits_of
 from .plan import (
     FULL,
@@ -30,6 +29,7 @@ from .plan import (
     shaken_case,
     source_of,
 )
+from .releases import FREE_RESPONSE, SLIP, VERIFICATION
 from .shaken import CONTACT, FOLLOWING, PEAKS, RECORDS, RINGS
 
 PARTS: Mapping[str, Part] = {
