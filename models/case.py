@@ -259,6 +259,9 @@ class Run:
         planar = self.settings.get("plane") is not None
         return "planar model" if planar else _MODEL_NAMES.get(self.support, f"{self.support} model")
 
+    def __hash__(self) -> int:
+        return hash((self.engine, self.support, self.time_step, frozenset(self.settings.items())))
+
     def __reduce__(self) -> tuple[object, ...]:
         # a mapping proxy does not pickle, and runs travel to worker processes
         return _restore_run, (self.engine, self.support, self.time_step, dict(self.settings))

@@ -289,9 +289,10 @@ def save_with_page(found: Results, out: Path, *, details: bool = False) -> Calla
 
     def show() -> None:
         page.show(details=details)
-        names = dict.fromkeys([*reversed(pages), *found.sheets(), "manifest.json"])
         tables = [f"{name}.parquet" for name in found.tables]
-        more = f" and {len(tables)} tables as Parquet" if len(tables) > 3 else ", ".join(["", *tables])
+        few = tables if len(tables) <= 3 else []
+        names = dict.fromkeys([*reversed(pages), *found.sheets(), "manifest.json", *few])
+        more = "" if few else f" and {len(tables)} tables as Parquet"
         print(f"\nWritten to {out}: {', '.join(names)}{more}")
 
     return show

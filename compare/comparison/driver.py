@@ -177,6 +177,9 @@ def _runs(case_or_suite: Case | Suite, runs: Iterable[Run] | None, *, needed: bo
     chosen = chosen or default_runs()
     if not chosen:
         raise ValueError("there must be at least one engine to compare with, found none installed")
+    for run in chosen:
+        if not isinstance(run, Run):
+            raise TypeError(f"runs must be Run values, such as Run('mujoco', 'recess'), got {run!r}")
     return chosen
 
 

@@ -19,7 +19,7 @@ from rockwobble.models.support import support_named
 from ...metrics.pair import overturned, tolerance_of
 from ...metrics.statistics import Contrast, contrast
 from ...runs.choice import require_runnable
-from ...runs.execution import SAMPLE_STEP, Job, job_fingerprint, simulate_run
+from ...runs.execution import SAMPLE_STEP, Job, job_fingerprint, require_case, simulate_run
 from ...runs.progress import ProgressCallback, Stages
 from ...storage.manifest import Number, Stored
 from ...storage.provenance import fingerprint
@@ -281,6 +281,7 @@ def advise(
     >>> found.trust.kind, found.grades["engine"]
     ('trace', 'not tested')
     """
+    require_case(case)
     plan = AdvicePlan(**({} if run is None else {"support": run.support}) | options)
     if run is not None:
         if run.support != plan.support:

@@ -266,7 +266,7 @@ def fragility(
     """
     bodies, asked = _named(cylinders), FragilityPlan(**options)
     chosen = methods_of(methods, restitution=asked.restitution)
-    if asked.levels is None and asked.scales is None:
+    if asked.levels is None and asked.scales is None and motions:  # without, the plan says what is missing
         asked = replace(asked, levels=default_levels(bodies, motions, asked))
     plan = RunPlan(cylinders=bodies, motions=motions, methods=chosen, options=asked)
     facts = _facts(plan) | {"source": source, "doubts": doubts_of(motions)}
