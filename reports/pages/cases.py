@@ -18,7 +18,12 @@ def describe(case: Case) -> list[str]:
         f"(R = {cylinder.semidiagonal:g} m, tan alpha = {cylinder.tan_alpha:g})"
     ]
     if cylinder.slab_mass_ratio > 0.0:
-        lines.append(f"Slab: {cylinder.slab_mass_ratio:g} times the mass of all columns under it")
+        columns = getattr(cylinder, "columns", 1)
+        named = "the column" if columns == 1 else f"all {columns} columns"
+        lines.append(f"Slab: {cylinder.slab_mass_ratio:g} times the mass of {named} under it")
+    resistance = case.rolling_resistance / cylinder.base_radius
+    if resistance > 0.0:
+        lines.append(f"Rolling resistance: {case.rolling_resistance:g} m ({resistance:.3g} b)")
     if motion is not None:
         # here, because the help of the command line needs no numpy
         from rockwobble.compare.studies.spectrum.maps import uplift_factor
@@ -26,7 +31,8 @@ def describe(case: Case) -> list[str]:
 
         from .diagnostics import warnings
 
-        factor = uplift_factor(motion, cylinder.tan_alpha, case.gravity, until=case.length)
+        threshold = cylinder.tan_alpha * (1.0 + resistance)  # over g
+        factor = uplift_factor(motion, threshold, case.gravity, until=case.length)
         within = " within the run" if case.length < motion.duration else ""
         count, components = motion.acceleration.shape
         lines.append(

@@ -197,10 +197,15 @@ def test_a_peak_is_told_in_times_of_what_uplifts_under_the_vertical_component():
     assert f"({0.5 * 2.5 / 9.81 / 0.2:.2f} times the uplift threshold within the run)" in ground
 
 
-def test_the_slab_of_a_frame_is_told():
+def test_the_slab_of_a_frame_and_its_resistance_are_stated():
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    alone, loaded = (describe(Case(body, duration=1.0)) for body in (pier, WobblingFrame(pier, 0.25)))
-    assert loaded == [alone[0], "Slab: 0.25 times the mass of all columns under it", *alone[1:]]
+    motion = GroundMotion([[0.0, 0.0], [2.5, 0.0], [0.0, 0.0]], 0.1)
+    alone = describe(Case(pier, motion))
+    loaded = describe(Case(WobblingFrame(pier, 0.25), motion, rolling_resistance=0.5 * pier.base_radius))
+    assert loaded[1].startswith("Slab: 0.25 times the mass of all 3 columns")
+    assert loaded[2].endswith("(0.5 b)")
+    assert "(1.27 times the uplift threshold)" in alone[1]
+    assert "(0.85 times the uplift threshold)" in loaded[3]
 
 
 def test_a_trajectory_is_one_more_run(folder, no_engines, monkeypatch, capsys):
