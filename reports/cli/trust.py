@@ -16,7 +16,7 @@ import rockwobble as rw
 import rockwobble.compare as rc
 import rockwobble.compare.storage as rs
 
-from ..console import FAILED, interruptible, shown_progress, user_input
+from ..console import FAILED, complain, interruptible, shown_progress, user_input
 from . import options
 from .command import takes_options
 
@@ -291,7 +291,7 @@ def certify(
     validated (against an experiment, by the hash of its data; there is none yet). Nothing is written where a
     check fails.
 
-    Exit code 0 if it is written, 2 for bad input or a check that fails.
+    Exit code 0 if it is written, 1 if a check fails, 2 for bad input.
 
     Example: rockwobble certify --engine mujoco --out mujoco.json
     """
@@ -314,7 +314,11 @@ def certify(
             given = f"{engine} with {', '.join(subject.supports)}"
             raise ValueError(f"--engine must have a recess, got {given}")
         checked = subject if engine else reduced_model()
-        found = make(subject, run_checks(checked, only or CLAIMING))
+        results = list(run_checks(checked, only or CLAIMING))
+        if failed := [result.name for result in results if result.failed]:
+            complain(f"a check failed, and nothing is certified: {failed[0]}")
+            raise typer.Exit(FAILED)
+        found = make(subject, results)
         write_certificate(found, out)
     print(f"{out}: {len(found['claims'])} claims, {len(found['fingerprint'])} cases")
 

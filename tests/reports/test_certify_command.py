@@ -67,6 +67,16 @@ def test_verify_answers_with_one_word_and_its_exit_code(
     assert run("verify", "nowhere.json") == 2
 
 
+def test_nothing_is_certified_where_a_check_fails(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    failed = Result(group="conserved", name="energy", value=2.0, bound=1.0, reason="", outcome="FAILED")
+    monkeypatch.setattr("rockwobble.compare.check.run_checks", lambda *_: iter([failed]))
+    assert run("certify") == 1
+    assert "nothing is certified: energy" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize("group", ["protocol", "baseline", "metrics"])
 def test_groups_without_claims_are_refused(
     run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str], group: str
