@@ -69,7 +69,7 @@ def test_groups_that_hold(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
 def test_failures_alone_are_printed_and_end_with_1(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(groups, "_of_this_machine", lambda: [groups.subjects.reduced_model()])
+    monkeypatch.setattr(groups, "baseline_subjects", lambda: [groups.subjects.reduced_model()])
     monkeypatch.setattr(groups, "GROUPS", {"agreement": check_of(lambda *_: iter(MADE))})
     monkeypatch.setattr(groups, "GROUPS", groups.GROUPS)
     assert run("--only", "agreement") == 1
@@ -122,7 +122,7 @@ def test_a_report_that_cannot_be_written_in_the_end_is_one_line_after_the_result
         (tmp_path / "a").mkdir(exist_ok=True)
         yield GOOD
 
-    monkeypatch.setattr(groups, "_of_this_machine", lambda: [groups.subjects.reduced_model()])
+    monkeypatch.setattr(groups, "baseline_subjects", lambda: [groups.subjects.reduced_model()])
     monkeypatch.setitem(groups.GROUPS, "exact", check_of(in_the_way))
     assert run("--only", "exact", option, str(tmp_path / "a")) == 2
     out, err = capsys.readouterr()
