@@ -29,6 +29,7 @@ from .reach import PACKAGES, Reach, near, read
 
 _LEFT_OUT = shutil.ignore_patterns(".git", "__pycache__", ".mypy_cache", ".ruff_cache", "published", "docs")
 _LIMIT = 600.0  # [s] many times what the check takes
+_RECORDING = 7200.0  # [s] many times what the tests take one after another, each call recorded
 _SLOWER, _START = 10.0, 120.0  # times the recorded time of tests, and seconds beside it: of a busy machine
 # [s] of tests that are asked: what calls a function and does not see its fault in so long seldom does later
 _LONGEST = 60.0
@@ -256,8 +257,9 @@ def recorded(root: Path, reach: Path) -> list[Reach]:
         tests = [f"tests/{package}" for package in PACKAGES]
         record = ["-m", "pytest", "-q", "-n0", "-p", "no:cacheprovider", "-p", "mutation.reach", *tests]
         os.environ["REACH"] = str(reach.resolve())
-        for command in (["-c", _CHECK], record):
-            failed, words = _run(root, command, limit=_LIMIT)
+        print("recording once what each test calls, some half an hour; kept in", reach, flush=True)
+        for command, limit in ((["-c", _CHECK], _LIMIT), (record, _RECORDING)):
+            failed, words = _run(root, command, limit=limit)
             if failed:
                 reach.unlink(missing_ok=True)
                 raise ValueError(f"check and tests must pass without a fault, got {words}")
