@@ -46,7 +46,10 @@ class GroundMotion:
 
     def __init__(self, acceleration: ArrayLike, time_step: float, name: str = "") -> None:
         try:
-            samples = np.array(acceleration, dtype=np.float64, order="C")
+            given = np.array(acceleration, order="C")
+            if np.iscomplexobj(given):  # numpy would drop the imaginary part
+                raise TypeError
+            samples = given.astype(np.float64, order="C")
         except (TypeError, ValueError):
             raise ValueError("acceleration must be numbers in 2 or 3 columns [m/s^2]") from None
         if samples.ndim != 2 or samples.shape[1] not in (2, 3) or samples.shape[0] < 2:

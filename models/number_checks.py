@@ -24,8 +24,8 @@ def require_positive(name: str, value: float, unit: str = "") -> float:
 def require_finite(name: str, value: float, unit: str) -> float:
     """Return `value` as a float, or raise ValueError unless it is a finite real number."""
     try:
-        # text is refused even where it spells a number, because it would be kept as text
-        number = math.nan if isinstance(value, str | bytes) else float(value)
+        # text is refused even where it spells a number, because it would be kept as text; a truth is no size
+        number = math.nan if isinstance(value, str | bytes | bool | np.bool_) else float(value)
     except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name} must be a finite number{_in(unit)}, got {quoted(value)}") from None
     if not math.isfinite(number):

@@ -55,7 +55,7 @@ def test_a_value_is_frozen_hashable_and_travels() -> None:
     assert len({cylinder, Cylinder(semidiagonal=6.0, tan_alpha=0.2)}) == 1
 
 
-@pytest.mark.parametrize("bad", [0.0, -1.0, math.nan, math.inf, -math.inf, "6", "six", None, 10**400])
+@pytest.mark.parametrize("bad", [0.0, -1.0, math.nan, math.inf, -math.inf, True, "6", "six", None, 10**400])
 @pytest.mark.parametrize("name", ["semidiagonal", "tan_alpha"])
 def test_refuses_a_size_that_is_no_positive_number(name: str, bad: Any) -> None:
     given = {"semidiagonal": 6.0, "tan_alpha": 0.2, name: bad}

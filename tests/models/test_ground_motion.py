@@ -85,7 +85,9 @@ def test_refuses_a_shape_that_is_no_motion(bad: Any) -> None:
         GroundMotion(bad, 0.1)
 
 
-@pytest.mark.parametrize("bad", [[["a", "b"], ["c", "d"]], [[1.0, 2.0], [3.0]], None, [[{}, 1], [1, 1]]])
+@pytest.mark.parametrize(
+    "bad", [[["a", "b"], ["c", "d"]], [[1.0, 2.0], [3.0]], None, [[{}, 1], [1, 1]], [[1j, 0], [0, 1]]]
+)
 def test_refuses_what_is_no_number(bad: Any) -> None:
     with pytest.raises(ValueError, match=r"^acceleration must "):
         GroundMotion(bad, 0.1)
