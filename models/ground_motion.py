@@ -45,11 +45,11 @@ class GroundMotion:
     name: str = ""
 
     def __init__(self, acceleration: ArrayLike, time_step: float, name: str = "") -> None:
+        if isinstance(acceleration, np.ndarray) and np.iscomplexobj(acceleration):
+            # numpy would drop the imaginary part
+            raise ValueError(f"acceleration must be real numbers, got {acceleration.dtype} numbers")
         try:
-            given = np.array(acceleration, order="C")
-            if np.iscomplexobj(given):  # numpy would drop the imaginary part
-                raise TypeError
-            samples = given.astype(np.float64, order="C")
+            samples = np.array(acceleration, dtype=np.float64, order="C")
         except (TypeError, ValueError):
             raise ValueError("acceleration must be numbers in 2 or 3 columns [m/s^2]") from None
         if samples.ndim != 2 or samples.shape[1] not in (2, 3) or samples.shape[0] < 2:
