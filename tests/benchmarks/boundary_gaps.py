@@ -56,10 +56,10 @@ def scan(size: float, tan_alpha: float, support: str, probes: int, seed: int) ->
         options: dict[str, Any] = {"support": support, "rtol": RTOL, "workers": 1}
         return reduced.peak_tilts([size], tan_alpha, motion, unit * levels, **options).ravel()
 
-    def at(_: list[int], level: float) -> Array:
+    def at(_: int, levels: Array) -> Array:
         nonlocal count
-        count += 1
-        return peaks(np.array([level]))
+        count += len(levels)
+        return peaks(levels)
 
     run = partial(run_searches, peak_tilts=at, workers=1)
     known = peaks(GRID)

@@ -54,14 +54,15 @@ def scan_scales(case: Case, support: str = "recess") -> tuple[pd.DataFrame, pd.D
     for name in (SPATIAL,) if case.is_release else SERIES:
         run = partial(_peak, case, series=name, support=support)
 
-        def at(_: list[int], factor: float, run: Callable[[float], float] = run) -> Array:
-            return np.array([run(factor)])
+        def at(_: int, factors: Array, run: Callable[[float], float] = run) -> Array:
+            return np.array(list(in_threads(run, factors)))
 
         peaks = _in_threads(run, FACTORS)
         start = 0.0
         if not case.is_release:
             start = uplift_of_series(name, motion, tan_alpha, gravity, until=case.length)
-        search = search_lowest(FACTORS, peaks, start=start, step=step, alpha=case.cylinder.alpha)
+        alpha, stands = case.cylinder.alpha, not case.is_release
+        search = search_lowest(FACTORS, peaks, start=start, step=step, alpha=alpha, stands=stands)
         found = run_searches([search], at)[0]
         factor = float(np.fmin(found, lowest_on_grid(FACTORS, peaks[None])[0]))
         again = [run(factor * nudge, rtol=CHECK_RTOL) for nudge in (1.0, 1.0 - NUDGE, 1.0 + NUDGE)]

@@ -387,7 +387,7 @@ def tilt_maps(
     gravity, probes = asked.gravity, asked.probes
     unit = intensity_unit(tan_alpha, motion, gravity)
     peaks, lowest, below, start = {}, {}, {}, {}
-    stages = Stages(progress, [1.0] * len(SERIES))
+    stages = Stages(progress, [1.0, 4.0] * len(SERIES))
     for index, name in enumerate(SERIES):
         start[name] = uplift_of_series(name, motion, tan_alpha, gravity) / unit
         run = partial(
@@ -406,14 +406,15 @@ def tilt_maps(
         )
         with stages.stage(TITLES[name]):
             peaks[name] = run(sizes, scales=unit * levels, workers=workers)
-            at = partial(_at_level, run, sizes, unit)
+            at = partial(_at_levels, run, sizes, unit)
             found = run_searches([search(known) for known in peaks[name]], at, workers=workers)
+        with stages.stage(f"{TITLES[name]}: {probes} random intensities below each boundary"):
             probing = [
                 probe_below(start[name], levels[-1], each, probes=probes, seed=(index, i))
                 for i, each in enumerate(found)
             ]
             calm = partial(run, rest_tilt=max(rest_tilt, _CALM))
-            at = partial(_at_level, calm, sizes, unit)
+            at = partial(_at_levels, calm, sizes, unit)
             lowest[name], below[name] = np.array(run_searches(probing, at, workers=workers)).T
     return TiltMaps(
         tan_alpha=tan_alpha,
@@ -434,5 +435,5 @@ def tilt_maps(
     )
 
 
-def _at_level(run: Callable[..., Array], sizes: Array, unit: float, group: list[int], level: float) -> Array:
-    return run(sizes[group], scales=[unit * level], workers=1)[:, 0]
+def _at_levels(run: Callable[..., Array], sizes: Array, unit: float, i: int, levels: Array) -> Array:
+    return run(sizes[i : i + 1], scales=unit * levels, workers=1)[0]

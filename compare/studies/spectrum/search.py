@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Generator, Sequence
-from functools import partial
 from typing import TypeVar
 
 import numpy as np
@@ -26,7 +25,6 @@ from ...metrics.statistics import CONFIDENCE
 Array = NDArray[np.float64]
 T = TypeVar("T")
 # Yields intensities (m,), is sent the peak tilts of one cylinder there (m,) [rad], returns what it found.
-# Many searches go on side by side; those that want the same intensity share the preparation of its motion.
 Search = Generator[Array, Array, T]
 
 _COARSEST = 8.0  # of these, where nothing asks for a finer one
@@ -44,7 +42,7 @@ def lowest_on_grid(intensities: Array, peak_tilts: Array) -> Array:
 
 
 def search_lowest(
-    intensities: Array, known: Array, *, start: float, step: float, alpha: float
+    intensities: Array, known: Array, *, start: float, step: float, alpha: float, stands: bool = True
 ) -> Search[float]:
     """Search for the lowest intensity that overturns one cylinder; NaN where none is found.
 
@@ -62,21 +60,25 @@ def search_lowest(
         between may overturn; none is longer than eight times this.
     alpha : float
         Slenderness [rad].
+    stands : bool, optional
+        Whether the cylinder stands still at `start`, where it would chatter for long, and is not run there.
     """
     fell = overturned(known)
     last = int(fell.argmax()) if fell.any() else len(intensities) - 1
-    if not start <= intensities[last]:
+    if not start < intensities[last]:
         return float(intensities[last]) if fell.any() else math.nan
     inside = intensities[: last + 1] > start
     levels = np.concatenate([[start], intensities[: last + 1][inside]])
     parts = np.ceil(np.diff(levels) / (_COARSEST * step) * (1.0 - 1e-12)).astype(int)
     between = [np.linspace(a, b, n + 1)[1:-1] for a, b, n in zip(levels, levels[1:], parts, strict=False)]
-    wanted = np.concatenate([levels[:1], *between])
-    levels, tilts = levels[1:], known[: last + 1][inside]
-    while len(wanted):
-        levels, tilts = np.concatenate([levels, wanted]), np.concatenate([tilts, (yield wanted)])
-        order = np.argsort(levels, kind="stable")
-        levels, tilts = levels[order], tilts[order]
+    wanted = np.concatenate([[] if stands else levels[:1], *between])
+    tilts = known[: last + 1][inside]
+    levels, tilts = (levels, np.concatenate([[0.0], tilts])) if stands else (levels[1:], tilts)
+    while True:
+        if len(wanted):
+            levels, tilts = np.concatenate([levels, wanted]), np.concatenate([tilts, (yield wanted)])
+            order = np.argsort(levels, kind="stable")
+            levels, tilts = levels[order], tilts[order]
         fell = overturned(tilts)
         if fell.any():
             levels, tilts = levels[: fell.argmax() + 1], tilts[: fell.argmax() + 1]
@@ -86,8 +88,9 @@ def search_lowest(
         steepest = np.fmax.reduce([slopes[i : i + len(widths)] for i in range(2 * _BESIDE + 1)])
         reached = np.fmax(tilts[:-1], tilts[1:]) + _REACH * steepest * widths > alpha
         halved = np.flatnonzero(reached & (widths > step * (1.0 + 1e-9)))
+        if not len(halved):
+            return float(levels[-1]) if overturned(tilts).any() else math.nan
         wanted = 0.5 * (levels[halved] + levels[halved + 1])
-    return float(levels[-1]) if overturned(tilts).any() else math.nan
 
 
 def probe_below(
@@ -126,41 +129,29 @@ def gap_bound(probes: int) -> float:
 
 def run_searches(
     searches: Sequence[Search[T]],
-    peak_tilts: Callable[[list[int], float], Array],
+    peak_tilts: Callable[[int, Array], Array],
     *,
     workers: int | None = None,
 ) -> list[T]:
-    """Run searches side by side; return what each found.
+    """Run searches side by side, each in one thread; return what each found.
 
     Parameters
     ----------
     searches : sequence of Search
     peak_tilts : callable
-        Runs some of them, by index, at one intensity, in one thread, for their peak tilts [rad].
+        Runs one of them, by index, at some intensities (m,), for their peak tilts (m,) [rad].
     workers : int, optional
         Number of threads. Default: one for each processor that this process may use.
     """
-    found: dict[int, T] = {}
-    wanted: dict[int, Array] = {}
 
-    def go_on(i: int, step: Callable[[], Array]) -> None:
+    def run(i: int) -> T:
+        search = searches[i]
         try:
-            wanted[i] = step()
+            wanted = next(search)
+            while True:
+                wanted = search.send(peak_tilts(i, wanted))
         except StopIteration as end:
-            found[i] = end.value
+            found: T = end.value
+            return found
 
-    for i, search in enumerate(searches):
-        go_on(i, search.__next__)
-    while wanted:
-        groups: dict[float, list[int]] = {}
-        for i, levels in wanted.items():
-            for level in levels.tolist():
-                groups.setdefault(level, []).append(i)
-        tilts: dict[tuple[int, float], float] = {}
-        results = in_threads(peak_tilts, groups.values(), groups, workers=workers)
-        for (level, group), result in zip(groups.items(), results, strict=True):
-            tilts |= {(i, level): tilt for i, tilt in zip(group, result.tolist(), strict=True)}
-        asked, wanted = wanted, {}
-        for i, levels in asked.items():
-            go_on(i, partial(searches[i].send, np.array([tilts[i, level] for level in levels.tolist()])))
-    return [found[i] for i in range(len(searches))]
+    return list(in_threads(run, range(len(searches)), workers=workers))
