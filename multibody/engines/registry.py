@@ -217,11 +217,6 @@ def engine_packages() -> dict[str, str]:
     return {name: entry.package for name, entry in _ENGINES.items()}
 
 
-def engine_modules() -> dict[str, str]:
-    """Return the module that each of our engines imports, by the name of the engine."""
-    return {name: entry.module or entry.package for name, entry in _ENGINES.items()}
-
-
 def _lack(entry: _Entry) -> str:
     """What an engine lacks here, to follow its name, and how to get it; nothing where it is here."""
     if importlib.util.find_spec(entry.module or entry.package) is None:
