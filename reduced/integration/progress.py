@@ -34,7 +34,7 @@ from .result import (
     write,
 )
 from .stepping import Stepper
-from .systems import System
+from .systems import System, make_is_flat
 from .uplift import excess, nearest_branch, start_length, started, uplift_in
 
 
@@ -212,7 +212,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     """Return what carries the runs of one model on by one method."""
     _, restarted, _, partial, _ = stepper
     tried, ending_of = make_events(system, stepper)
-    momenta = system.momenta
+    momenta, is_flat = system.momenta, make_is_flat(system.momenta)
     placed: Callable[..., State] = system.placed
     resists, hold, set_off, stopped = system.resists, system.hold, system.set_off, system.stopped
 
@@ -281,8 +281,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     @inlined
     def is_still(y: State) -> bool:
         """Return whether a body stands still, tilted."""
-        L, S = momenta(y)
-        return bool(y[1] == 0.0 and L == 0.0 and S == 0.0)
+        return bool(y[1] == 0.0 and is_flat(y))
 
     @inlined
     def held(piece: Piece, wait: float, wanted: Wanted, run: Stage) -> Stage:

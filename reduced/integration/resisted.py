@@ -42,6 +42,7 @@ from .systems import (
     Weights,
     flat_combine,
     flat_ratio,
+    make_is_flat,
     planar_combine,
     planar_ratio,
     scales,
@@ -195,7 +196,7 @@ def _make_system(
 
     `place` gives a state other rates theta' and s psi'; `pivots` is as for `needed_to_stand`.
     """
-    momenta, placed_before = model.momenta, model.placed
+    momenta, placed_before, is_flat = model.momenta, model.placed, make_is_flat(model.momenta)
 
     @jit
     def placed(body: Body, y: State, theta: float, omega: float, phi: float, L: float) -> State:
@@ -224,8 +225,7 @@ def _make_system(
 
     @jit
     def hold(body: Body, y: State, a: Vector, slope: Vector) -> float:
-        L, S = momenta(y)
-        if y[1] != 0.0 or L != 0.0 or S != 0.0:
+        if y[1] != 0.0 or not is_flat(y):
             # over still ground nothing changes the rate at which it pivots
             return inf if y[-1] == PIVOTS and pushed(body, y, a, slope)[0] <= 0.0 else 0.0
         time = hold_time(body, y[0], y[2], a, slope, pivots)
