@@ -45,7 +45,7 @@ from math import copysign, cos, inf, sin, sqrt
 
 from ._compile import inlined, jit
 from .body import Body
-from .equations import in_plane_below
+from .equations import base_inertia, in_plane_below
 
 Vector = tuple[float, float, float]
 
@@ -107,7 +107,7 @@ def couple(
 def twist_share(body: Body, s: float, c: float) -> float:
     """Return s (1 - G/B), the part that a couple along the lean has in S'."""
     t = s / (1.0 + c)
-    return s - (body.E + body.C * t) / (body.J + (2.0 * body.E + body.C * t) * t)
+    return s - (body.E + body.C * t) / base_inertia(body, t)
 
 
 @inlined
@@ -123,7 +123,7 @@ def pivot(body: Body, s: float, c: float) -> tuple[float, float]:
 def across_rate(body: Body, s: float, c: float, Lambda: float, S: float) -> float:
     """Return s psi' [rad/s]."""
     t = s / (1.0 + c)
-    H = body.J + (2.0 * body.E + body.C * t) * t
+    H = base_inertia(body, t)
     twist_rate = S * H / (body.J * body.C - body.E * body.E)
     return twist_share(body, s, c) * twist_rate - Lambda / (s * H)
 
@@ -131,10 +131,9 @@ def across_rate(body: Body, s: float, c: float, Lambda: float, S: float) -> floa
 @inlined
 def across_inertia(body: Body, s: float, c: float, pivots: bool) -> float:
     """Return the inertia of s psi' [m^2], of what pivots beside that as it did."""
-    t = s / (1.0 + c)
     if pivots:
         return (body.J * body.C - body.E * body.E) / pivot(body, s, c)[0]
-    return body.J + (2.0 * body.E + body.C * t) * t
+    return base_inertia(body, s / (1.0 + c))
 
 
 @inlined
@@ -142,7 +141,7 @@ def rolling_momentum(body: Body, theta: float, Lambda: float, S: float) -> float
     """Return B phi' [m^2/s], Lambda and what the twist rate takes off it."""
     s, c = sin(theta), cos(theta)
     t = s / (1.0 + c)
-    H = body.J + (2.0 * body.E + body.C * t) * t
+    H = base_inertia(body, t)
     return Lambda + s * (body.E + body.C * t) * H / (body.J * body.C - body.E * body.E) * S
 
 
@@ -159,7 +158,7 @@ def pivoting_rate(body: Body, s: float, c: float, Lambda: float, S: float) -> fl
 def momenta_of(body: Body, s: float, c: float, pivoting: float, across: float) -> tuple[float, float]:
     """Return Lambda and S [m^2/s] for the moment of momentum of `pivoting` and the rate `across`, s psi'."""
     t = s / (1.0 + c)
-    H = body.J + (2.0 * body.E + body.C * t) * t
+    H = base_inertia(body, t)
     share, M = twist_share(body, s, c), (body.J * body.C - body.E * body.E) / H
     # what pivots slower by as much as it rolls: tau' = Omega + (share H/I_v) across, by (1 - G/B) and B
     twist_rate = pivoting + share * H / pivot(body, s, c)[0] * across

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .._compile import inlined, jit
 from ..body import Body
-from ..equations import energy
+from ..equations import base_inertia, energy
 from ..rolling import PIVOTS, rolling_momentum
 from ..trigonometry import sin_cos
 from .events import NONE, REPEATED, Turn, make_events
@@ -155,8 +155,7 @@ _HAIR = 1e-6  # of 1/p; an uplift so near to the next sample leaves no more than
 def spin_momentum(body: Body, theta: float, phi_rate: float) -> float:
     """Return L = B phi' [m^2/s]."""
     s, c = sin_cos(theta)
-    t = s / (1.0 + c)
-    return s * s * (body.J + (2.0 * body.E + body.C * t) * t) * phi_rate
+    return s * s * base_inertia(body, s / (1.0 + c)) * phi_rate
 
 
 class Lift(NamedTuple):
