@@ -204,6 +204,12 @@ def _needed_and_its_rate(
     return tilting, turning, tilting_1, turning_1
 
 
+@inlined
+def _turning_below(body: Body, a: Vector) -> float:
+    """Return the couple along the lean [m^2/s^2] that cannot be told from none: of motion in one plane."""
+    return (body.h + body.b) * in_plane_below(body, a[0], a[1])
+
+
 @jit
 def push(
     body: Body, theta: float, phi: float, pivoting: float, a: Vector, slope: Vector, pivots: bool
@@ -219,7 +225,7 @@ def push(
     tilting, turning, tilting_1, turning_1 = _needed_and_its_rate(
         body, theta, phi, pivoting, a, slope, pivots
     )
-    if abs(turning) <= (body.h + body.b) * in_plane_below(body, a[0], a[1]):
+    if abs(turning) <= _turning_below(body, a):
         turning = 0.0
     size = sqrt(tilting * tilting + turning * turning)
     if size == 0.0:
@@ -238,7 +244,7 @@ def hold_time(body: Body, theta: float, phi: float, a: Vector, slope: Vector, pi
     """
     allowed, allowed_1 = body.delta * (body.g + a[2]), body.delta * slope[2]
     tilting, turning, tilting_1, turning_1 = _needed_and_its_rate(body, theta, phi, 0.0, a, slope, pivots)
-    below = (body.h + body.b) * in_plane_below(body, a[0], a[1])
+    below = _turning_below(body, a)
     if pivots and (abs(turning) > below or abs(turning_1) > below):
         return 0.0
     excess = tilting * tilting + turning * turning - allowed * allowed
@@ -276,7 +282,7 @@ def couple_on(
         allowed, needed = body.delta * (body.g + a[2]), sqrt(tilting * tilting + turning * turning)
         if needed <= allowed:
             return tilting, turning
-        if abs(turning) > (body.h + body.b) * in_plane_below(body, a[0], a[1]):
+        if abs(turning) > _turning_below(body, a):
             # about to move the way that it is pushed, as far as both inertias are alike: for a first moment
             share = max(0.0, allowed) / needed
             return share * tilting, share * turning
