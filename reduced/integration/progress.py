@@ -345,14 +345,14 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
                 landing = Turn(MINIMUM, ending.h, 0.0, y[2])
                 y, restart = rebounded(body, y, options.restitution), True
                 resting = y[1] == 0.0  # no speed is left: it stands, or lifts off again by (25) and (26)
-            if options.rest_tilt > 0.0 and not ending.overturns:
+            if not ending.overturns:
                 a = ground(piece.a, piece.slope, elapsed)
-                L, S = momenta(y)
-                resting = resting or may_sit_down(body, options.rest_tilt, y[0], y[1], L, S, a)
-            if resists and not (resting or ending.overturns):
-                a = ground(piece.a, piece.slope, elapsed)
-                y = stopped(body, options.rtol, y, a, piece.slope)
-                restart = restart or is_still(y)
+                if options.rest_tilt > 0.0:
+                    L, S = momenta(y)
+                    resting = resting or may_sit_down(body, options.rest_tilt, y[0], y[1], L, S, a)
+                if resists and not resting:
+                    y = stopped(body, options.rtol, y, a, piece.slope)
+                    restart = restart or is_still(y)
         after = Stage(elapsed, y, k, h_next, restart, resting, peak, sample, step_count, status)
         return Step(after, turn, landing)
 
