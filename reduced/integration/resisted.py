@@ -50,10 +50,10 @@ from .systems import (
 
 # squared cosine of the turn of the couple in a step up to which the step follows it
 _FOLLOWED = 0.64
-# times the tolerance on rates: so slow a body whose couple would hold it is still
+# times the tolerance on rates: so slow a body whose couple would hold it is still. Twice the 21 that steps at
+# the bound of their stability would keep whatever the push: the tolerance does not see such a rate
 _STILL = 40.0
-# rate that the couple may take in a step of one so slow, over that which it has. The tolerance does not see
-# that rate: steps at the bound of stability, 3.3, would keep 21 tolerances of it whatever the push
+# rate that the couple may take in a step of one so slow, over that which it has; stable up to 3.3
 _STABLE = 2.0
 # of 1/p: time after which a body is let go where the couple ceases to hold it while the push turns. Before,
 # the speed grows with the square of the time, and the couple turns with it the faster the smaller it is
