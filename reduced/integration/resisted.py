@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf, sqrt
-from typing import Any
 
 from .._compile import inlined, jit
 from ..body import Body
@@ -213,7 +212,7 @@ def _make_system(
         return with_side(place(body, y, omega, across), side)
 
     @inlined
-    def pushed(body: Body, y: State, a: Vector, slope: Vector) -> Any:
+    def pushed(body: Body, y: State, a: Vector, slope: Vector) -> tuple[float, float, float, float]:
         s, c = sin_cos(y[0])
         pivoting = pivoting_rate(body, s, c, *momenta(y)) if pivots else 0.0
         return push(body, y[0], y[2], pivoting, a, slope, pivots)
