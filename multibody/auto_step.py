@@ -29,8 +29,6 @@ from rockwobble.models import Diagnostic, Trace
 from .guard import LARGEST_STEP
 
 _DIVERGED = 0.01  # of alpha
-# diagnostics beside which no estimate of the error is known: a pass is left to chance, or contact drives
-UNKNOWN = ("unresolved_pass", "energy")
 _SAME_TIME = 1e-9  # of the length of a run
 
 Progress = Callable[[float], None]
@@ -77,13 +75,14 @@ def closeness(coarse: Trace, fine: Trace, alpha: float) -> Closeness:
 def unknown_from(trace: Trace) -> tuple[float, str]:
     """Return from when on no estimate of the error of a trace is known [s], and the code that says so.
 
-    A base that comes down to less than contact resolves lands, with every step alike, where the motion may
-    go on: after the last maximum before that the runs agree, and all may be wrong.
+    A pass nearer to upright than contact resolves is left to chance; a base that comes down to less lands,
+    with every step alike, where the motion may go on: after the last maximum before that the runs agree, and
+    all may be wrong. Or contact drives the motion.
     """
     time, tilt, _, kind = trace.extrema.T
     low = np.flatnonzero((kind < 0.0) & (tilt < trace.contact_resolution))[:1]
     landing = time[max(int(low[0]) - 1, 0)] if len(low) else math.inf
-    return min((float(landing), "unresolved_pass"), *((trace.first(code), code) for code in UNKNOWN))
+    return min((float(landing), "unresolved_pass"), (trace.first("energy"), "energy"))
 
 
 def common_count(traces: Sequence[Trace]) -> int:

@@ -33,7 +33,7 @@ LONGEST = 15.0
 _TURN = 1e-6
 # Drift of a tilt in that time, over its distance from either end. A wobble at 0.1 and 0.5 alpha, where it is
 # stable, drifts by 2e-5 at most in MuJoCo and Drake (tan alpha 0.1 to 1, R 1 to 30 m), by 3e-3 in Rapier,
-# which is not decided; one at 0.9 alpha departs by 5e-3 at least in MuJoCo. The mean of 2e-5 and 5e-3.
+# which is not decided; one at 0.9 alpha departs by 5e-3 at least in MuJoCo. The geometric mean of both.
 _STEADY = 3e-4
 
 

@@ -44,6 +44,12 @@ def in_plane_below(body: Body, ax: float, ay: float) -> float:
     return _PLANE * (abs(ax) + abs(ay) + body.g * (body.sin_alpha / body.cos_alpha))
 
 
+@inlined
+def base_inertia(body: Body, t: float) -> float:
+    """Return H [m^2]."""
+    return body.J + (2.0 * body.E + body.C * t) * t
+
+
 @jit
 def planar_rhs(body: Body, theta: float, direction: float, a: float, az: float) -> float:
     """Return theta'' [rad/s^2] in one vertical plane: (21) with phi' = 0.
@@ -114,7 +120,7 @@ def flat_rhs(
     t = s / (1.0 + c)
     sec2 = 1.0 + t * t
     roll = E + C * t
-    H = J + (2.0 * E + C * t) * t
+    H = base_inertia(body, t)
     H_theta = roll * sec2
     delta = J * C - E * E
     M = delta / H
@@ -159,7 +165,7 @@ def energy(body: Body, theta: float, omega: float, L: float, S: float) -> float:
     """
     s, c = sin_cos(theta)
     t = s / (1.0 + c)
-    H = body.J + (2.0 * body.E + body.C * t) * t
+    H = base_inertia(body, t)
     spin = L * L / (2.0 * s * s * H) if L != 0.0 else 0.0
     twist = S * S * H / (2.0 * (body.J * body.C - body.E * body.E)) if S != 0.0 else 0.0
     return 0.5 * body.A * omega * omega + spin + twist + body.g * s * (body.b - body.h * t)

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from ._compile import jit, kernel
 from .body import Body
-from .equations import energy, flat_rhs
+from .equations import base_inertia, energy, flat_rhs
 from .rolling import couple_on, twist_share
 
 # columns of what `derived_quantities` returns
@@ -61,7 +61,7 @@ def contact_force(
     t = s / (1.0 + c)
     sec2 = 1.0 + t * t
     roll, reach = E + C * t, h + b * t
-    H = body.J + (2.0 * E + C * t) * t
+    H = base_inertia(body, t)
     H_theta = roll * sec2
     a_r = ax * cos(phi) + ay * sin(phi)
     a_t = ay * cos(phi) - ax * sin(phi)

@@ -45,7 +45,7 @@ from math import copysign, cos, inf, sin, sqrt
 
 from ._compile import inlined, jit
 from .body import Body
-from .equations import in_plane_below
+from .equations import base_inertia, in_plane_below
 
 Vector = tuple[float, float, float]
 
@@ -107,7 +107,7 @@ def couple(
 def twist_share(body: Body, s: float, c: float) -> float:
     """Return s (1 - G/B), the part that a couple along the lean has in S'."""
     t = s / (1.0 + c)
-    return s - (body.E + body.C * t) / (body.J + (2.0 * body.E + body.C * t) * t)
+    return s - (body.E + body.C * t) / base_inertia(body, t)
 
 
 @inlined
@@ -123,7 +123,7 @@ def pivot(body: Body, s: float, c: float) -> tuple[float, float]:
 def across_rate(body: Body, s: float, c: float, Lambda: float, S: float) -> float:
     """Return s psi' [rad/s]."""
     t = s / (1.0 + c)
-    H = body.J + (2.0 * body.E + body.C * t) * t
+    H = base_inertia(body, t)
     twist_rate = S * H / (body.J * body.C - body.E * body.E)
     return twist_share(body, s, c) * twist_rate - Lambda / (s * H)
 
@@ -131,10 +131,9 @@ def across_rate(body: Body, s: float, c: float, Lambda: float, S: float) -> floa
 @inlined
 def across_inertia(body: Body, s: float, c: float, pivots: bool) -> float:
     """Return the inertia of s psi' [m^2], of what pivots beside that as it did."""
-    t = s / (1.0 + c)
     if pivots:
         return (body.J * body.C - body.E * body.E) / pivot(body, s, c)[0]
-    return body.J + (2.0 * body.E + body.C * t) * t
+    return base_inertia(body, s / (1.0 + c))
 
 
 @inlined
@@ -142,7 +141,7 @@ def rolling_momentum(body: Body, theta: float, Lambda: float, S: float) -> float
     """Return B phi' [m^2/s], Lambda and what the twist rate takes off it."""
     s, c = sin(theta), cos(theta)
     t = s / (1.0 + c)
-    H = body.J + (2.0 * body.E + body.C * t) * t
+    H = base_inertia(body, t)
     return Lambda + s * (body.E + body.C * t) * H / (body.J * body.C - body.E * body.E) * S
 
 
@@ -159,7 +158,7 @@ def pivoting_rate(body: Body, s: float, c: float, Lambda: float, S: float) -> fl
 def momenta_of(body: Body, s: float, c: float, pivoting: float, across: float) -> tuple[float, float]:
     """Return Lambda and S [m^2/s] for the moment of momentum of `pivoting` and the rate `across`, s psi'."""
     t = s / (1.0 + c)
-    H = body.J + (2.0 * body.E + body.C * t) * t
+    H = base_inertia(body, t)
     share, M = twist_share(body, s, c), (body.J * body.C - body.E * body.E) / H
     # what pivots slower by as much as it rolls: tau' = Omega + (share H/I_v) across, by (1 - G/B) and B
     twist_rate = pivoting + share * H / pivot(body, s, c)[0] * across
@@ -205,6 +204,12 @@ def _needed_and_its_rate(
     return tilting, turning, tilting_1, turning_1
 
 
+@inlined
+def _turning_below(body: Body, a: Vector) -> float:
+    """Return the couple along the lean [m^2/s^2] that cannot be told from none: of motion in one plane."""
+    return (body.h + body.b) * in_plane_below(body, a[0], a[1])
+
+
 @jit
 def push(
     body: Body, theta: float, phi: float, pivoting: float, a: Vector, slope: Vector, pivots: bool
@@ -220,7 +225,7 @@ def push(
     tilting, turning, tilting_1, turning_1 = _needed_and_its_rate(
         body, theta, phi, pivoting, a, slope, pivots
     )
-    if abs(turning) <= (body.h + body.b) * in_plane_below(body, a[0], a[1]):
+    if abs(turning) <= _turning_below(body, a):
         turning = 0.0
     size = sqrt(tilting * tilting + turning * turning)
     if size == 0.0:
@@ -239,7 +244,7 @@ def hold_time(body: Body, theta: float, phi: float, a: Vector, slope: Vector, pi
     """
     allowed, allowed_1 = body.delta * (body.g + a[2]), body.delta * slope[2]
     tilting, turning, tilting_1, turning_1 = _needed_and_its_rate(body, theta, phi, 0.0, a, slope, pivots)
-    below = (body.h + body.b) * in_plane_below(body, a[0], a[1])
+    below = _turning_below(body, a)
     if pivots and (abs(turning) > below or abs(turning_1) > below):
         return 0.0
     excess = tilting * tilting + turning * turning - allowed * allowed
@@ -277,7 +282,7 @@ def couple_on(
         allowed, needed = body.delta * (body.g + a[2]), sqrt(tilting * tilting + turning * turning)
         if needed <= allowed:
             return tilting, turning
-        if abs(turning) > (body.h + body.b) * in_plane_below(body, a[0], a[1]):
+        if abs(turning) > _turning_below(body, a):
             # about to move the way that it is pushed, as far as both inertias are alike: for a first moment
             share = max(0.0, allowed) / needed
             return share * tilting, share * turning

@@ -14,11 +14,11 @@ from pathlib import Path
 import pytest
 
 import rockwobble
-from rockwobble.multibody.engines.registry import engine_modules
+from rockwobble.multibody.engines.registry import engine_packages
 
 CHECKOUT = Path(__file__).parents[1]
 FOLDERS = ["models", "reduced", "multibody", "compare", "reports"]
-ENGINES = list(engine_modules().values())
+ENGINES = [*engine_packages().values(), "pydrake"]  # the name by which Drake is imported
 HEAVY = [*ENGINES, "pandas", "pyarrow", "matplotlib", "jinja2", "scipy", "sympy"]
 
 

@@ -184,7 +184,9 @@ GROUNDS = {
     "less weight, no loss": (1.0, (0.01, 0.0, -0.25)),
 }
 DIRECTIONS, SLENDERNESS = 24, (0.1, 0.2, 0.5, 1.0)  # of the sweep of static loads
-_MEAN = 1.0 / 120.0  # of differences of velocities over 60 steps, each off at random: what the weights leave
+# what the mean of a force over 65 steps has of velocities that are off at random: root of the sum of squares
+# of the differences of the weights of its Hann window, pi/(2 33^1.5)
+_MEAN = 1.0 / 120.0
 _ASIDE = 0.04  # [-] no symmetry of a collision detector, in steps of the sweep
 
 

@@ -35,7 +35,7 @@ from ..kinematics import about_vertical
 from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
 from ..scene import Scene
 from ..settings import Count, EngineSettings, Positive, Share, Small, positive
-from .declared import Declared, Leapfrog, body_friction, contact_counts
+from .declared import Declared, Leapfrog, contact_counts
 
 if TYPE_CHECKING:
     from dartpy.constraint import BoxedLcpSolver
@@ -113,12 +113,11 @@ def make_scene(scene: Scene, settings: DartSettings) -> DartScene:
     solver = world.getConstraintSolver()
     # its own detector and FCL's find one contact under a flat base, and Bullet's rounds the rim
     solver.setCollisionDetector(dartpy.collision.OdeCollisionDetector())
-    friction = body_friction(scene.friction, "pair")
 
     def collide(node: BodyNode, outline: Shape) -> ShapeNode:
         placed = node.createShapeNode(outline)
         placed.createCollisionAspect()
-        placed.createDynamicsAspect().setFrictionCoeff(friction)
+        placed.createDynamicsAspect().setFrictionCoeff(scene.friction)
         return placed
 
     ground = dynamics.Skeleton("ground")

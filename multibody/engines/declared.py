@@ -1,8 +1,7 @@
-"""Common parts of the engines of this package: members of the protocol, steps of leapfrog, friction."""
+"""Common parts of the engines of this package: members of the protocol, steps of leapfrog."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import asdict
 from functools import cache
@@ -97,30 +96,3 @@ class Leapfrog:
 def contact_counts(contacts: int) -> SceneCounts:
     """Return the counts of a step of one body: a normal and two directions of friction for each contact."""
     return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
-
-
-CONVENTIONS = ("pair", "product")
-
-
-def body_friction(pair: float, convention: str) -> float:
-    """Return the coefficient of cylinder and ground alike whose pair has the coefficient `pair` [-].
-
-    Parameters
-    ----------
-    pair : float
-        Coulomb coefficient between cylinder and ground.
-    convention : {"pair", "product"}
-        How the engine combines two equal bodies: to what both have, or not at all, because it takes that
-        of the pair (MuJoCo's explicit pairs); by the product (Bullet). A rim that slides in Bullet feels
-        2 to 5 % less friction than that; one that holds is not concerned.
-
-    Raises
-    ------
-    ValueError
-        If the convention is unknown.
-    """
-    if convention == "pair":
-        return pair
-    if convention == "product":
-        return math.sqrt(pair)  # neither body is the rough one; Bullet bounds the product at 10
-    raise ValueError(f"convention must be one of {', '.join(CONVENTIONS)}, got {convention!r}")

@@ -33,7 +33,7 @@ from ..kinematics import about_vertical
 from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
 from ..scene import Body, Scene
 from ..settings import EngineSettings, NotNegative, Positive, one_of, positive
-from .declared import Declared, Leapfrog, body_friction, contact_counts
+from .declared import Declared, Leapfrog, contact_counts
 
 if TYPE_CHECKING:
     from pydrake.multibody.tree import MultibodyForces
@@ -149,10 +149,9 @@ def make_scene(scene: Scene, settings: DrakeSettings, points: int) -> DrakeScene
     inertia = RotationalInertia(transverse, transverse, axial)
     origin: Any = np.zeros(3)
     body = plant.AddRigidBody("cylinder", SpatialInertia.MakeFromCentralInertia(1.0, origin, inertia))
-    friction = body_friction(scene.friction, "pair")
     contact = ProximityProperties()
     # two bodies in series are half as stiff as each
-    cone = plants.CoulombFriction(friction, friction)
+    cone = plants.CoulombFriction(scene.friction, scene.friction)
     AddContactMaterial(settings.dissipation, 2.0 * settings.contact_stiffness, cone, contact)
     middle: Any = np.array([0.0, 0.0, 0.5 * shape.height - shape.mass_centre_height])
     size = _POINT_SIZE * shape.base_radius

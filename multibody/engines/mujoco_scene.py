@@ -17,7 +17,6 @@ from ..protocol import Array
 from ..ring import RingSettings, wall_feet, wall_orientations
 from ..scene import Scene, Start
 from ..settings import Count, EngineSettings, Positive, one_of, positive
-from .declared import body_friction
 
 if TYPE_CHECKING:
     import mujoco  # type: ignore[import-untyped]
@@ -208,9 +207,8 @@ def _set_contact(
     rim = settings.impedance if standing else settings.rolling_impedance
     # friction stays as hard as it is on the corners
     spec.option.impratio = _yield(rim) / _yield(settings.impedance)
-    ground = body_friction(scene.friction, "pair")
     for pair in spec.pairs:
-        friction = ground if ring is None or _bears(pair) else ring.ring_friction
+        friction = scene.friction if ring is None or _bears(pair) else ring.ring_friction
         impedance = rim if _bears(pair) else settings.impedance
         # the cone bounds the couple and the friction together, and what grips leaves less to the couple
         rolling = scene.rolling_resistance if _bears(pair) else 0.0

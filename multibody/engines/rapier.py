@@ -26,7 +26,7 @@ import numpy as np
 from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
 from ..scene import Scene
 from ..settings import Count, EngineSettings, Positive, Share, Small
-from .declared import Declared, Leapfrog, body_friction, contact_counts
+from .declared import Declared, Leapfrog, contact_counts
 
 _SLOP = 10.0  # depths of the rim that Rapier does not correct: of what lands, it corrects the rest
 # [rad] lean from which the guide acts in full: its torque shakes a closed base, which friction holds as
@@ -34,7 +34,7 @@ _SLOP = 10.0  # depths of the rim that Rapier does not correct: of what lands, i
 _OPEN = 2e-4
 _FASTEST_RISE = 1e-3  # [m/s] of a base that has landed deeper: taken back at once, it would be thrown back
 _HALF_DISC = 0.125  # of b: a disc whose far edge is clear of the ground until the side is down
-_GUIDE = 0.05  # 2 h sqrt(stiffness of the guide); see `declared.GUIDE`: stiffer, it acts on a rounded twist
+_GUIDE = 0.05  # 2 h sqrt(stiffness of the guide); see `settings.GUIDE`: stiffer, it acts on a rounded twist
 _FACTS = EngineFacts(
     title="Rapier (single precision)",
     step_time=2e-5,
@@ -194,9 +194,8 @@ def _build(rapier: ModuleType, scene: Scene, settings: RapierSettings) -> tuple[
     frequency = settings.contact_frequency * scene.unit_time
     softness = rapier.SpringCoefficients(frequency, settings.contact_damping_ratio)
     how.contact_softness = how.static_contact_softness = softness
-    friction = body_friction(scene.friction, "pair")
     ground = world.rigid_bodies.insert(rapier.RigidBody.fixed().build())
-    plane = rapier.Collider.halfspace((0.0, 0.0, 1.0)).friction(friction)
+    plane = rapier.Collider.halfspace((0.0, 0.0, 1.0)).friction(scene.friction)
     world.colliders.insert_with_parent(plane.build(), ground, world.rigid_bodies)
     inertia = body.transverse_inertia, body.transverse_inertia, body.axial_inertia
     centre = (0.0, 0.0, body.mass_centre_height)
@@ -204,7 +203,7 @@ def _build(rapier: ModuleType, scene: Scene, settings: RapierSettings) -> tuple[
     cylinder = rapier.RigidBody.dynamic().can_sleep(False).gyroscopic_forces(True).allow_fast_rotation(True)
     handle = world.rigid_bodies.insert(cylinder.additional_mass_properties(mass).build())
     half = _HALF_DISC * body.base_radius
-    disc = rapier.Collider.cylinder(half, body.base_radius).density(0.0).friction(friction)
+    disc = rapier.Collider.cylinder(half, body.base_radius).density(0.0).friction(scene.friction)
     disc = disc.rotation((0.5 * math.pi, 0.0, 0.0)).translation((0.0, 0.0, half))
     world.colliders.insert_with_parent(disc.build(), handle, world.rigid_bodies)
     return world, world.rigid_bodies[handle]

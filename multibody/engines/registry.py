@@ -121,7 +121,7 @@ def stand_in(name: str) -> str | None:
 
 def own_engines() -> tuple[str, ...]:
     """Return the names of our engines whose packages are installed here, without importing them."""
-    return tuple(name for name, entry in _ENGINES.items() if _is_here(entry))
+    return tuple(name for name, entry in _ENGINES.items() if not _lack(entry))
 
 
 def available_engines() -> tuple[str, ...]:
@@ -156,15 +156,9 @@ def find_engine(name: str) -> Engine:
     BrokenEngineError
         If another package declares it and it does not load, or is no engine; a ValueError that says why.
     """
-    entry = _ENGINES.get(name)
-    if entry is None:
-        declared = _declared()
-        if name not in declared:
-            raise ValueError(f"engine must be one of {', '.join((*_ENGINES, *declared))}, got {name!r}")
-        return _load(name, declared[name])
-    if not _is_here(entry):
-        raise EngineNotInstalledError(f"engine {name!r} {_lack(entry)}")
-    return _made(name)
+    engine = _engine_named(name)
+    _require_installed(name)
+    return engine
 
 
 def engine_for(case: Case, name: str, support: str) -> Engine:
@@ -177,10 +171,10 @@ def engine_for(case: Case, name: str, support: str) -> Engine:
     ValueError
         Saying what is allowed, and as `find_engine` does.
     """
-    entry = _ENGINES.get(name)
-    engine = find_engine(name) if entry is None else _made(name)
+    engine = _engine_named(name)
     _require_able(engine, name, case, support)
-    return find_engine(name)
+    _require_installed(name)
+    return engine
 
 
 def _require_able(engine: Engine, name: str, case: Case, support: str) -> None:
@@ -215,22 +209,12 @@ def engine_facts(name: str) -> EngineFacts:
     ValueError
         If there is no such engine; BrokenEngineError if it is of another package and does not load.
     """
-    entry = _ENGINES.get(name)
-    return find_engine(name).facts if entry is None else _made(name).facts
+    return _engine_named(name).facts
 
 
 def engine_packages() -> dict[str, str]:
     """Return the package of each of our engines, by the name of the engine."""
     return {name: entry.package for name, entry in _ENGINES.items()}
-
-
-def engine_modules() -> dict[str, str]:
-    """Return the module that each of our engines imports, by the name of the engine."""
-    return {name: entry.module or entry.package for name, entry in _ENGINES.items()}
-
-
-def _is_here(entry: _Entry) -> bool:
-    return not _lack(entry)
 
 
 def _lack(entry: _Entry) -> str:
@@ -250,10 +234,21 @@ def _has_library(name: str) -> bool:
         return False
 
 
-def _made(name: str) -> Engine:
-    # our modules import the package of an engine only where it is used
-    module = importlib.import_module(f".{name}", __package__)
-    return cast(Engine, getattr(module, f"{name.capitalize()}Engine")())
+def _require_installed(name: str) -> None:
+    lack = _lack(_ENGINES[name]) if name in _ENGINES else ""  # what another package declares is installed
+    if lack:
+        raise EngineNotInstalledError(f"engine {name!r} {lack}")
+
+
+def _engine_named(name: str) -> Engine:
+    """Return an engine, one of ours also where its package, which it imports when it opens, is missing."""
+    if name in _ENGINES:
+        module = importlib.import_module(f".{name}", __package__)
+        return cast(Engine, getattr(module, f"{name.capitalize()}Engine")())
+    declared = _declared()
+    if name not in declared:
+        raise ValueError(f"engine must be one of {', '.join((*_ENGINES, *declared))}, got {name!r}")
+    return _load(name, declared[name])
 
 
 def _declared() -> dict[str, list[EntryPoint]]:

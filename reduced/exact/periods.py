@@ -16,27 +16,50 @@ rolling angle. A thin disc in a recess has W^2 = 4 g cos theta/ (b sin theta (6 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import overload
+from collections.abc import Callable, Sequence
+from functools import wraps
+from typing import Any, Protocol, overload
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import Cylinder
 
 from ..body import Body
-from ._shape import body_under, inertia_growth, require_tilts
+from ._shape import body_under, inertia_growth
+
+Array = NDArray[np.float64]
 
 
-@overload
-def planar_quarter_period(cylinder: Cylinder, tilt: float, *, gravity: float = ...) -> float: ...
-@overload
-def planar_quarter_period(
-    cylinder: Cylinder, tilt: NDArray[np.float64] | Sequence[float], *, gravity: float = ...
-) -> NDArray[np.float64]: ...
-def planar_quarter_period(
-    cylinder: Cylinder, tilt: float | NDArray[np.float64] | Sequence[float], *, gravity: float = 9.81
-) -> float | NDArray[np.float64]:
+class _OfTilts(Protocol):
+    """A function of one tilt, or of each in an array."""
+
+    @overload
+    def __call__(self, cylinder: Cylinder, tilt: float, *, gravity: float = ...) -> float: ...
+    @overload
+    def __call__(
+        self, cylinder: Cylinder, tilt: Array | Sequence[float], *, gravity: float = ...
+    ) -> Array: ...
+
+
+def _of_tilts(function: Callable[..., Array]) -> _OfTilts:
+    """Let a function of an array take one tilt as well, and refuse those that are not between 0 and alpha."""
+
+    @wraps(function)
+    def checked(cylinder: Cylinder, tilt: ArrayLike, *, gravity: float = 9.81) -> Any:
+        theta, alpha = np.asarray(tilt, dtype=float), cylinder.alpha
+        outside = ~((theta > 0.0) & (theta < alpha))  # also where it is not a number
+        if np.any(outside):
+            first = float(np.extract(outside, theta)[0])
+            raise ValueError(f"tilt must be above 0 and below alpha = {alpha!r} [rad], got {first!r}")
+        found = function(cylinder, theta, gravity=gravity)
+        return found if np.ndim(tilt) else float(found)
+
+    return checked
+
+
+@_of_tilts
+def planar_quarter_period(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81) -> Array:
     """Return the time of planar rocking from rest at `tilt` to the upright position.
 
     Parameters
@@ -69,20 +92,11 @@ def planar_quarter_period(
     array([0.626609, 2.068604])
     """
     body = body_under(cylinder, gravity)
-    theta = require_tilts(tilt, body.alpha)
-    quarter = quarter_period(body, theta, body.alpha - theta)
-    return quarter if np.ndim(tilt) else float(quarter)
+    return quarter_period(body, tilt, body.alpha - tilt)
 
 
-@overload
-def rocking_period(cylinder: Cylinder, tilt: float, *, gravity: float = ...) -> float: ...
-@overload
-def rocking_period(
-    cylinder: Cylinder, tilt: NDArray[np.float64] | Sequence[float], *, gravity: float = ...
-) -> NDArray[np.float64]: ...
-def rocking_period(
-    cylinder: Cylinder, tilt: float | NDArray[np.float64] | Sequence[float], *, gravity: float = 9.81
-) -> float | NDArray[np.float64]:
+@_of_tilts
+def rocking_period(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81) -> Array:
     """Return the period of planar rocking released from rest at `tilt`.
 
     Parameters
@@ -116,7 +130,7 @@ def rocking_period(
     return 4.0 * planar_quarter_period(cylinder, tilt, gravity=gravity)
 
 
-def quarter_period(body: Body, theta: NDArray[np.float64], gap: NDArray[np.float64]) -> NDArray[np.float64]:
+def quarter_period(body: Body, theta: Array, gap: Array) -> Array:
     """Return the quarter period [s] of a maximum tilt `theta`, where `gap` is alpha - theta."""
     from scipy.special import elliprf
 
@@ -127,15 +141,8 @@ def quarter_period(body: Body, theta: NDArray[np.float64], gap: NDArray[np.float
     return np.asarray(phase / np.sqrt(body.p2))
 
 
-@overload
-def steady_wobble_rate(cylinder: Cylinder, tilt: float, *, gravity: float = ...) -> float: ...
-@overload
-def steady_wobble_rate(
-    cylinder: Cylinder, tilt: NDArray[np.float64] | Sequence[float], *, gravity: float = ...
-) -> NDArray[np.float64]: ...
-def steady_wobble_rate(
-    cylinder: Cylinder, tilt: float | NDArray[np.float64] | Sequence[float], *, gravity: float = 9.81
-) -> float | NDArray[np.float64]:
+@_of_tilts
+def steady_wobble_rate(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81) -> Array:
     """Return the rolling rate W at which the recess model wobbles with constant tilt.
 
     Parameters
@@ -169,23 +176,14 @@ def steady_wobble_rate(
     1.115452
     """
     body = body_under(cylinder, gravity)
-    theta = require_tilts(tilt, body.alpha)
-    t = np.tan(0.5 * theta)
+    t = np.tan(0.5 * tilt)
     # 2 V'/B' with V' = g R sin(alpha - theta) and B' = 4 t K/n^2
-    moment = body.g * cylinder.semidiagonal * np.sin(body.alpha - theta)
-    rate = (1.0 + t * t) * np.sqrt(0.5 * moment / (t * inertia_growth(body, t)))
-    return rate if np.ndim(tilt) else float(rate)
+    moment = body.g * cylinder.semidiagonal * np.sin(body.alpha - tilt)
+    return np.asarray((1.0 + t * t) * np.sqrt(0.5 * moment / (t * inertia_growth(body, t))))
 
 
-@overload
-def wobbling_period(cylinder: Cylinder, tilt: float, *, gravity: float = ...) -> float: ...
-@overload
-def wobbling_period(
-    cylinder: Cylinder, tilt: NDArray[np.float64] | Sequence[float], *, gravity: float = ...
-) -> NDArray[np.float64]: ...
-def wobbling_period(
-    cylinder: Cylinder, tilt: float | NDArray[np.float64] | Sequence[float], *, gravity: float = 9.81
-) -> float | NDArray[np.float64]:
+@_of_tilts
+def wobbling_period(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81) -> Array:
     """Return the period of steady wobble, in which the contact point goes once around the rim.
 
     Parameters
@@ -214,5 +212,4 @@ def wobbling_period(
     >>> round(wobbling_period(pier, 0.5 * pier.alpha), 6)
     5.632861
     """
-    period = 2.0 * np.pi / steady_wobble_rate(cylinder, np.asarray(tilt), gravity=gravity)
-    return period if np.ndim(tilt) else float(period)
+    return 2.0 * np.pi / steady_wobble_rate(cylinder, tilt, gravity=gravity)

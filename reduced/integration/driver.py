@@ -47,7 +47,7 @@ from .stepping import Stepper
 from .systems import System
 
 _FIRST_STEP = 1e-3  # of 1/p, where a run begins in motion
-_STILL = (0.0, 0.0, 0.0)
+_STILL_GROUND = (0.0, 0.0, 0.0)
 # a literal 0 has a type of its own, for which its users would be compiled too
 _FIRST_SAMPLE = cast("int", np.int64(0))
 # of 1/p; what leaves the balance, or unstable steady wobble, grows by exp(p t), and what comes to it slows
@@ -83,7 +83,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
             if now >= end:
                 if following or run.resting or has_turned(log, still_from(record, time_step)):
                     break
-                if resists and hold(body, run.y, _STILL, _STILL) == inf:
+                if resists and hold(body, run.y, _STILL_GROUND, _STILL_GROUND) == inf:
                     break
                 end, following, mark = now + _LONGEST / body.p, True, mark_of(run.y, log)
                 index, jumps = len(record), True

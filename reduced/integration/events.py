@@ -17,7 +17,7 @@ from ..rolling import PIVOTS
 from .record import Vector, ground
 from .result import HALF_PI, MAXIMUM, MINIMUM, State
 from .stepping import Stepper
-from .systems import System
+from .systems import System, make_is_flat
 
 TAKEN, REPEATED = range(2)  # what becomes of a step
 NO_TURN = 0.0  # beside MAXIMUM and MINIMUM
@@ -73,13 +73,8 @@ class Events(NamedTuple):
 def make_events(system: System, stepper: Stepper) -> Events:
     """Return the search for events in the steps that `stepper` takes."""
     _, restarted, advance, partial, acceleration = stepper
-    momenta, placed, resists, let_go = system.momenta, system.placed, system.resists, system.let_go
-
-    @inlined
-    def is_flat(y: State) -> bool:
-        """Return whether a state has neither spin nor twist rate: exactly planar motion."""
-        L, S = momenta(y)
-        return bool(L == 0.0 and S == 0.0)
+    placed, resists, let_go = system.placed, system.resists, system.let_go
+    is_flat = make_is_flat(system.momenta)
 
     @jit
     def turning_point(

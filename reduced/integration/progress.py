@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .._compile import inlined, jit
 from ..body import Body
-from ..equations import energy
+from ..equations import base_inertia, energy
 from ..rolling import PIVOTS, rolling_momentum
 from ..trigonometry import sin_cos
 from .events import NONE, REPEATED, Turn, make_events
@@ -34,7 +34,7 @@ from .result import (
     write,
 )
 from .stepping import Stepper
-from .systems import System
+from .systems import System, make_is_flat
 from .uplift import excess, nearest_branch, start_length, started, uplift_in
 
 
@@ -155,8 +155,7 @@ _HAIR = 1e-6  # of 1/p; an uplift so near to the next sample leaves no more than
 def spin_momentum(body: Body, theta: float, phi_rate: float) -> float:
     """Return L = B phi' [m^2/s]."""
     s, c = sin_cos(theta)
-    t = s / (1.0 + c)
-    return s * s * (body.J + (2.0 * body.E + body.C * t) * t) * phi_rate
+    return s * s * base_inertia(body, s / (1.0 + c)) * phi_rate
 
 
 class Lift(NamedTuple):
@@ -212,7 +211,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     """Return what carries the runs of one model on by one method."""
     _, restarted, _, partial, _ = stepper
     tried, ending_of = make_events(system, stepper)
-    momenta = system.momenta
+    momenta, is_flat = system.momenta, make_is_flat(system.momenta)
     placed: Callable[..., State] = system.placed
     resists, hold, set_off, stopped = system.resists, system.hold, system.set_off, system.stopped
 
@@ -281,8 +280,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     @inlined
     def is_still(y: State) -> bool:
         """Return whether a body stands still, tilted."""
-        L, S = momenta(y)
-        return bool(y[1] == 0.0 and L == 0.0 and S == 0.0)
+        return bool(y[1] == 0.0 and is_flat(y))
 
     @inlined
     def held(piece: Piece, wait: float, wanted: Wanted, run: Stage) -> Stage:
@@ -347,14 +345,14 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
                 landing = Turn(MINIMUM, ending.h, 0.0, y[2])
                 y, restart = rebounded(body, y, options.restitution), True
                 resting = y[1] == 0.0  # no speed is left: it stands, or lifts off again by (25) and (26)
-            if options.rest_tilt > 0.0 and not ending.overturns:
+            if not ending.overturns:
                 a = ground(piece.a, piece.slope, elapsed)
-                L, S = momenta(y)
-                resting = resting or may_sit_down(body, options.rest_tilt, y[0], y[1], L, S, a)
-            if resists and not (resting or ending.overturns):
-                a = ground(piece.a, piece.slope, elapsed)
-                y = stopped(body, options.rtol, y, a, piece.slope)
-                restart = restart or is_still(y)
+                if options.rest_tilt > 0.0:
+                    L, S = momenta(y)
+                    resting = resting or may_sit_down(body, options.rest_tilt, y[0], y[1], L, S, a)
+                if resists and not resting:
+                    y = stopped(body, options.rtol, y, a, piece.slope)
+                    restart = restart or is_still(y)
         after = Stage(elapsed, y, k, h_next, restart, resting, peak, sample, step_count, status)
         return Step(after, turn, landing)
 

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf, sqrt
-from typing import Any
 
 from .._compile import inlined, jit
 from ..body import Body
@@ -42,6 +41,7 @@ from .systems import (
     Weights,
     flat_combine,
     flat_ratio,
+    make_is_flat,
     planar_combine,
     planar_ratio,
     scales,
@@ -49,10 +49,10 @@ from .systems import (
 
 # squared cosine of the turn of the couple in a step up to which the step follows it
 _FOLLOWED = 0.64
-# times the tolerance on rates: so slow a body whose couple would hold it is still
+# times the tolerance on rates: so slow a body whose couple would hold it is still. Twice the 21 that steps at
+# the bound of their stability would keep whatever the push: the tolerance does not see such a rate
 _STILL = 40.0
-# rate that the couple may take in a step of one so slow, over that which it has. The tolerance does not see
-# that rate: steps at the bound of stability, 3.3, would keep 21 tolerances of it whatever the push
+# rate that the couple may take in a step of one so slow, over that which it has; stable up to 3.3
 _STABLE = 2.0
 # of 1/p: time after which a body is let go where the couple ceases to hold it while the push turns. Before,
 # the speed grows with the square of the time, and the couple turns with it the faster the smaller it is
@@ -195,7 +195,7 @@ def _make_system(
 
     `place` gives a state other rates theta' and s psi'; `pivots` is as for `needed_to_stand`.
     """
-    momenta, placed_before = model.momenta, model.placed
+    momenta, placed_before, is_flat = model.momenta, model.placed, make_is_flat(model.momenta)
 
     @jit
     def placed(body: Body, y: State, theta: float, omega: float, phi: float, L: float) -> State:
@@ -212,7 +212,7 @@ def _make_system(
         return with_side(place(body, y, omega, across), side)
 
     @inlined
-    def pushed(body: Body, y: State, a: Vector, slope: Vector) -> Any:
+    def pushed(body: Body, y: State, a: Vector, slope: Vector) -> tuple[float, float, float, float]:
         s, c = sin_cos(y[0])
         pivoting = pivoting_rate(body, s, c, *momenta(y)) if pivots else 0.0
         return push(body, y[0], y[2], pivoting, a, slope, pivots)
@@ -224,8 +224,7 @@ def _make_system(
 
     @jit
     def hold(body: Body, y: State, a: Vector, slope: Vector) -> float:
-        L, S = momenta(y)
-        if y[1] != 0.0 or L != 0.0 or S != 0.0:
+        if y[1] != 0.0 or not is_flat(y):
             # over still ground nothing changes the rate at which it pivots
             return inf if y[-1] == PIVOTS and pushed(body, y, a, slope)[0] <= 0.0 else 0.0
         time = hold_time(body, y[0], y[2], a, slope, pivots)

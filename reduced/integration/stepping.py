@@ -37,7 +37,7 @@ from ..body import Body
 from . import taylor
 from .record import Vector, ground
 from .result import State
-from .systems import System
+from .systems import System, make_is_flat
 
 C2, C3, C4, C5 = 0.161, 0.327, 0.9, 0.9800255409045097
 A2 = (0.161,)
@@ -146,16 +146,11 @@ def runge_kutta(system: System, combine: Callable[..., State], error_ratio: Call
     ``error_ratio(body, rtol, h, y, y_new, error, flat)`` the error over what is allowed.
     """
     step = make_step(system.derivative, combine)
-    momenta, derivative = system.momenta, system.derivative
+    derivative, is_flat = system.derivative, make_is_flat(system.momenta)
 
     @jit
     def restarted(body: Body, y: State, a: Vector, work: NDArray[np.float64]) -> State:
         return derivative(body, y, a)
-
-    @jit
-    def is_flat(y: State) -> bool:
-        L, S = momenta(y)
-        return bool(L == 0.0 and S == 0.0)
 
     @jit
     def advance(

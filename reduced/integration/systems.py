@@ -65,6 +65,17 @@ class System(NamedTuple):
     stopped: Callable[..., State] = _as_it_was  # (body, rtol, y, a, slope) -> y, still where it is held
 
 
+def make_is_flat(momenta: Callable[[State], tuple[float, float]]) -> Callable[[State], bool]:
+    """Return the test whether a state has neither spin nor twist rate: exactly planar motion."""
+
+    @inlined
+    def is_flat(y: State) -> bool:
+        L, S = momenta(y)
+        return bool(L == 0.0 and S == 0.0)
+
+    return is_flat
+
+
 @inlined
 def scales(
     body: Body, rtol: float, tilt: float, rate: float, spin_rate: float, flat: bool

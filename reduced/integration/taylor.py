@@ -40,8 +40,8 @@ from .record import Vector
 from .result import State
 from .systems import scales
 
-ORDER = 16  # the highest; from 12 to 16 the cost is the same at 1e-8, and a high one serves 1e-12
-_WIDTH = ORDER + 1
+_ORDER = 16  # the highest; from 12 to 16 the cost is the same at 1e-8, and a high one serves 1e-12
+_WIDTH = _ORDER + 1
 TILT, RATE, ANGLE, MOMENTUM, S, V, COS, SIN, B, Q, W, WW, X, D, RADIAL, ACROSS = (
     _WIDTH * i for i in range(16)
 )
@@ -76,7 +76,7 @@ def partial(body: Body, c: NDArray[np.float64], path: Path, time: float) -> tupl
     """Return the state at `time` [s] after the start of a step and its derivative: of the same series."""
     unit, order = path
     x = time / unit
-    acceleration, angle_rate, torque = order * c[RATE + order], order * c[ANGLE + order], 0.0
+    acceleration, angle_rate = order * c[RATE + order], order * c[ANGLE + order]
     torque = order * c[MOMENTUM + order]
     for k in range(order - 1, 0, -1):
         acceleration = acceleration * x + k * c[RATE + k]
@@ -99,8 +99,8 @@ _LEAST_ORDER = 4  # below it two terms in a row may be small by accident
 _SECOND, _THIRD, _FOURTH = (cast("int", np.int64(order)) for order in (2, 3, 4))
 # A step aims at a remainder of this share of the tolerance, as a geometric series with the ratio of
 # the last two terms has it: in a close pass the remainders of a hundred steps have one sign.
-AIM = 0.1
-LAST_BUT_ONE = 10.0  # tolerances that the term before the last may be large, whatever the last one is
+_AIM = 0.1
+_LAST_BUT_ONE = 10.0  # tolerances that the term before the last may be large, whatever the last one is
 _KEPT_FOR = 32.0  # steps for which sine and cosine are taken over: rounding adds up no further
 
 
@@ -238,7 +238,7 @@ def expand(
     sums, newest, before = extend(body, zero, sums, newest, h, _THIRD, c)
     sums, newest, last = extend(body, zero, sums, newest, h, _FOURTH, c)
     order = _LEAST_ORDER
-    while order < ORDER and not fits(last, before):
+    while order < _ORDER and not fits(last, before):
         order, before = order + 1, last
         sums, newest, last = extend(body, zero, sums, newest, h, order, c)
     c[TRIG], c[TRIG + 1], c[TRIG + 2], c[TRIG + 3] = sums.s, sums.v, sums.cos, sums.sin
@@ -325,10 +325,8 @@ def extend(
 @inlined
 def fits(last: float, before: float) -> bool:
     """Return whether a series with these last two terms, in tolerances, may end here."""
-    return last * last <= AIM * (before - last) and before <= LAST_BUT_ONE
+    return last * last <= _AIM * (before - last) and before <= _LAST_BUT_ONE
 
-
-__all__ = ["acceleration", "advance", "partial", "restarted", "workspace"]
 
 _SAFETY = 0.9  # on the length of a step that the order limits
 _GROWTH = 4.0  # bound on the growth of the step from one to the next
@@ -345,8 +343,8 @@ def restarted(body: Body, y: State, a: Vector, work: NDArray[np.float64]) -> Sta
 @jit
 def fitting_share(order: int, last: float, before: float) -> float:
     """Return the share of the unit of time at which a series with these last two terms fits."""
-    by_remainder = (AIM * before / (last * last)) ** (1.0 / (order + 1))
-    by_term = (LAST_BUT_ONE / before) ** (1.0 / (order - 1))
+    by_remainder = (_AIM * before / (last * last)) ** (1.0 / (order + 1))
+    by_term = (_LAST_BUT_ONE / before) ** (1.0 / (order - 1))
     return float(_SAFETY * min(1.0, by_remainder, by_term))
 
 

@@ -99,8 +99,10 @@ def search(
 
 @pytest.mark.parametrize("code", ["unresolved_pass", "energy"])
 def test_what_is_left_to_chance_has_not_settled(code: str) -> None:
-    left = Diagnostic(code=code, time=0.2)
-    run, steps = search(lambda step: replace(made(np.full(50, 0.1)), facts=(left,)))
+    left: dict[str, Any] = {"facts": (Diagnostic(code=code, time=0.2),)}
+    if code == "unresolved_pass":  # contact resolves 1e-6 rad
+        left = {"extrema": np.array([[0.1, 0.1, 0.0, 1.0], [0.2, 1e-7, 0.0, -1.0]])}
+    run, steps = search(lambda step: replace(made(np.full(50, 0.1)), **left))
     assert len(steps) == 2
     assert (step_fact(run).code, step_fact(run).detail) == ("unsettled", code)
     assert np.isnan(run.error_estimate)

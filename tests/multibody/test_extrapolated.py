@@ -150,22 +150,26 @@ def test_a_landing_with_every_step_alike_is_no_agreement() -> None:
         assert found.settled_until == pytest.approx(until)
 
 
+def left_to_chance(code: str, time: float) -> dict[str, Any]:
+    """Return what a trace has that is known until then: contact drives it, or its next swing ends too low."""
+    if code == "energy":
+        return {"facts": (Diagnostic(code=code, time=time),)}
+    return {"extrema": np.array([[time, 0.1, 0.0, 1.0], [time + 0.1, 1e-7, 0.0, -1.0]])}
+
+
 @pytest.mark.parametrize("code", ["unresolved_pass", "energy"])
 def test_beyond_what_is_left_to_chance_it_is_the_finest_run(code: str) -> None:
     runs = three(lambda step: 1e-5 * step * np.sin(0.1 * np.arange(100)))
-    late = Diagnostic(code=code, time=0.5)
-    runs[-1] = replace(runs[-1], facts=(late,))
+    runs[-1] = replace(runs[-1], **left_to_chance(code, 0.5))
     found = extrapolation(runs, ALPHA)
     assert found.settled_until == pytest.approx(0.5)
     np.testing.assert_array_equal(found.tilt[51:], runs[-1].tilt[51:])
-    assert [(fact.code, fact.detail) for fact in found.facts[1:]] == [
-        ("extrapolated", ""),
-        ("not_extrapolated", code),
-    ]
-    runs[-1] = replace(runs[-1], facts=(replace(late, time=-0.01),))
+    noted = [(fact.code, fact.detail) for fact in found.facts[-2:]]
+    assert noted == [("extrapolated", ""), ("not_extrapolated", code)]
+    runs[-1] = replace(runs[-1], **left_to_chance(code, -0.01))
     found = extrapolation(runs, ALPHA)
     assert np.isnan(found.error_estimate)
-    assert [(fact.code, fact.detail) for fact in found.facts[1:]] == [("not_extrapolated", code)]
+    assert (found.facts[-1].code, found.facts[-1].detail) == ("not_extrapolated", code)
 
 
 def test_beyond_a_divergence_it_is_the_finest_run() -> None:

@@ -7,18 +7,8 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
-from rockwobble.multibody.engines.declared import body_friction
 
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=3.0)
-
-
-@pytest.mark.parametrize("pair", [0.0, 0.3, 1.0, 5.0])
-def test_conventions(pair: float) -> None:
-    for convention, combine in (("pair", max), ("product", lambda a, b: a * b)):
-        own = body_friction(pair, convention)
-        assert combine(own, own) == pytest.approx(pair)
-    with pytest.raises(ValueError, match="convention must be one of pair, product, got 'mean'"):
-        body_friction(pair, "mean")
 
 
 @pytest.mark.parametrize("direction", [0.0, 0.7])
