@@ -115,8 +115,8 @@ def on_symbols(function: Any) -> Callable[..., Any]:
     """Return a function of the code that runs on symbols."""
     original = getattr(function, "py_func", function)
     names = {**original.__globals__, "sin_cos": sin_cos, "math": types.SimpleNamespace(atan=sp.atan)}
-    if "recess_motion" in original.__code__.co_names:
-        names["recess_motion"] = on_symbols(equations.recess_motion)
+    for part in {"recess_motion", "base_inertia"}.intersection(original.__code__.co_names):
+        names[part] = on_symbols(getattr(equations, part))
     run = types.FunctionType(original.__code__, names, argdefs=original.__defaults__)
 
     def exactly(*arguments: Any) -> Any:
