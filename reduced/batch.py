@@ -61,7 +61,7 @@ def peak_tilts(
     slab_mass_ratio : float, optional
         Mass of the slab over that of all columns [-]: the peaks of a `WobblingFrame`.
     rolling_resistance : float, optional
-        As in `Case` [m]: the same length for every size; 0 for a frame.
+        As in `Case` [m]: the same length for every size.
     workers : int, optional
         Number of threads; default: that of the cores.
     progress : callable, optional

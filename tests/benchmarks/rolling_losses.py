@@ -1,9 +1,9 @@
 """Rolling resistance: error over tolerance, computing time, and the engines beside the models.
 
-`python tests/benchmarks rolling_losses` prints four tables: quantities that have a law, by it and by the
-models; error of the models over the tolerance in free response; their computing time over that of the models
-without it (runs in turns, medians of ratios); the rolling friction of engines against the models over step
-and coefficient of friction.
+`python tests/benchmarks rolling_losses` prints six tables: quantities that have a law, by it and by the
+models; error of the models over the tolerance in free response; how random releases end in the models; their
+computing time over that of the models without it (runs in turns, medians of ratios); the rolling friction of
+engines against the models over step and coefficient of friction, and in a frame; when engines uplift.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, WobblingFrame, el_centro_1940
 from rockwobble.reduced.body import body_of
 from rockwobble.reduced.problem import make_problem
 from rockwobble.reduced.rolling import impact_ratio
@@ -31,14 +31,29 @@ if TYPE_CHECKING:
 SHARE = 0.01  # delta over b
 TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
 ENGINES = {"mujoco": ((1.0, 20.0), (4e-4, 2e-4, 1e-4)), "pybullet": ((1.0, 4.0), (4e-4, 2e-4))}
+GRIP = {"mujoco": 20.0, "pybullet": 4.0}  # friction that leaves the couple whole
+UPLIFTS = (("mujoco", 2e-4), ("mujoco", 1e-4), ("pybullet", 2e-4))
 _ROUNDS = 100  # of timed runs
 _PIER = Cylinder(semidiagonal=6.0, tan_alpha=1.0 / 3.0)
 
 
-def _released(share: float, *, spin: float, friction: float = 1.0, duration: float = 4.0) -> Case:
+def _released(
+    share: float,
+    *,
+    spin: float,
+    friction: float = 1.0,
+    duration: float = 4.0,
+    cylinder: Cylinder | WobblingFrame = _PIER,
+) -> Case:
     release = InitialState(0.5 * _PIER.alpha, rolling_rate=spin)
     length = share * _PIER.base_radius
-    return Case(_PIER, initial=release, duration=duration, friction=friction, rolling_resistance=length)
+    return Case(cylinder, initial=release, duration=duration, friction=friction, rolling_resistance=length)
+
+
+def _ramp() -> GroundMotion:
+    """Return a ground acceleration that grows by 1.25 g tan(alpha) per second."""
+    along = 1.25 * 9.81 * _PIER.tan_alpha * np.arange(0.0, 1.0, 0.01)
+    return GroundMotion(np.column_stack([along, np.zeros_like(along)]), 0.01)
 
 
 def _swing(cylinder: Cylinder, length: float, spin: float) -> float:
@@ -85,10 +100,8 @@ def quantities() -> pd.DataFrame:
     spun = reduced.simulate(case, rtol=1e-9)
     late = spun.time > 0.5 * ends
     logs = np.log(ends - spun.time[late]), np.log(np.abs(spun.rolling_rate[late]))
-    along = 1.25 * 9.81 * _PIER.tan_alpha * np.arange(0.0, 1.0, 0.01)
-    ramp = GroundMotion(np.column_stack([along, np.zeros_like(along)]), 0.01)
     waits = [
-        reduced.simulate(Case(_PIER, ramp, rolling_resistance=share * _PIER.base_radius)).uplift_time
+        reduced.simulate(Case(_PIER, _ramp(), rolling_resistance=share * _PIER.base_radius)).uplift_time
         for share in (0.0, 0.03)
     ]
     rows = [
@@ -146,50 +159,122 @@ def times(rounds: int = _ROUNDS) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["model", "steps_without", "steps_with", "ratio", "low", "high"])
 
 
-def engines() -> pd.DataFrame:
-    """Return the largest error of the tilt [alpha] and the share of the energy lost, engine and model."""
+def releases(count: int, seed: int) -> pd.DataFrame:
+    """Return how random releases end: cylinders of 0.5 to 10 m, tan(alpha) 0.05 to 3, delta/b to 0.1.
+
+    Of the runs that did not fail: the largest share of the first energy by which the account is open, and the
+    largest number of steps, over 20 sqrt(R/g) after the release.
+    """
     import pandas as pd
 
     rows = []
+    for model, options in reduced.MODELS.items():
+        random = np.random.default_rng(seed)
+        traces = []
+        for _ in range(count):
+            cylinder = Cylinder(
+                semidiagonal=random.uniform(0.5, 10.0),
+                tan_alpha=math.exp(random.uniform(*np.log([0.05, 3.0]))),
+            )
+            unit = math.sqrt(9.81 / cylinder.semidiagonal)
+            tilt_rate, spin = unit * random.normal(scale=[0.05, 0.5])
+            spin = 0.0 if model == "planar" else spin
+            release = InitialState(
+                random.uniform(0.1, 0.95) * cylinder.alpha, tilt_rate=tilt_rate, rolling_rate=spin
+            )
+            length = random.uniform(0.0, 0.1) * cylinder.base_radius
+            case = Case(cylinder, initial=release, duration=20.0 / unit, rolling_resistance=length)
+            traces.append(reduced.simulate(case, **options))
+        ended = [trace for trace in traces if trace.outcome != "failed"]
+        open_by = max(
+            np.abs((trace.energy + trace.energy_lost) / trace.energy[0] - 1.0).max() for trace in ended
+        )
+        standing = sum(trace.outcome == "stands" for trace in ended)
+        steps = max(trace.step_count for trace in ended)
+        rows.append((model, count, count - len(ended), standing, float(open_by), steps))
+    return pd.DataFrame(rows, columns=["model", "releases", "failed", "stands", "account", "most_steps"])
+
+
+def engines() -> pd.DataFrame:
+    """Return what engines and models have of the same releases, of a cylinder and of a frame.
+
+    Columns: the largest error of the tilt, and what it would be without loss [alpha]; the share of the energy
+    that model and engine lose, and the largest difference of it on the way.
+    """
+    import pandas as pd
+
+    cases = []
+    for share in (0.0, 0.004, 0.02):
+        for engine, (frictions, steps) in ENGINES.items():
+            for friction in frictions if share else [GRIP[engine]]:
+                cases += [(_released(share, spin=0.5, friction=friction), engine, step) for step in steps]
+    frame = WobblingFrame(_PIER, 1.0, columns=1)
+    for engine, friction in GRIP.items():
+        case = _released(0.02, spin=0.5, friction=friction, duration=2.0, cylinder=frame)
+        cases.append((case, engine, 2e-4))
+    rows: list[tuple[object, ...]] = []
     for support in ("recess", "flat"):
-        for share in (0.004, 0.02):
-            for engine, (frictions, steps) in ENGINES.items():
-                for friction in frictions:
-                    case = _released(share, spin=0.5, friction=friction)
-                    model = reduced.simulate(case, support=support, rtol=1e-10)
-                    free = reduced.simulate(
-                        dataclasses.replace(case, rolling_resistance=0.0), support=support
-                    )
-                    effect = float(np.abs(free.tilt - model.tilt).max()) / _PIER.alpha
-                    lost = model.energy_lost[-1] / model.energy[0]
-                    for step in steps:
-                        trace = multibody.simulate(case, engine=engine, support=support, time_step=step)
-                        error = float(np.abs(trace.tilt - model.tilt).max()) / _PIER.alpha
-                        taken = 1.0 - trace.energy[-1] / trace.energy[0]
-                        rows.append((support, share, engine, friction, step, error, effect, lost, taken))
-    names = [
-        "support",
-        "delta_b",
-        "engine",
-        "friction",
-        "step",
-        "tilt_error",
-        "effect",
-        "lost",
-        "engine_lost",
-    ]
+        for case, engine, step in cases:
+            model = reduced.simulate(case, support=support, rtol=1e-10)
+            free = reduced.simulate(dataclasses.replace(case, rolling_resistance=0.0), support=support)
+            trace = multibody.simulate(case, engine=engine, support=support, time_step=step)
+            kept, taken = model.energy / model.energy[0], trace.energy / trace.energy[0]
+            body = "frame" if case.cylinder is frame else "cylinder"
+            share = case.rolling_resistance / _PIER.base_radius
+            row = (
+                support,
+                body,
+                share,
+                engine,
+                case.friction,
+                step,
+                _apart(trace, model),
+                _apart(free, model),
+            )
+            rows.append((*row, 1.0 - kept[-1], 1.0 - taken[-1], float(np.abs(taken - kept).max())))
+    names = ["support", "body", "delta_b", "engine", "friction", "step"]
+    names += ["tilt_error", "effect", "lost", "engine_lost", "account"]
     return pd.DataFrame(rows, columns=names)
+
+
+def _apart(trial: Trace, reference: Trace) -> float:
+    """Return the largest difference of two tilts [alpha]."""
+    return float(np.abs(trial.tilt - reference.tilt).max()) / _PIER.alpha
+
+
+def uplifts() -> pd.DataFrame:
+    """Return when the tilt of an engine on the ramp reaches 1e-4 alpha, after that of the model [ms].
+
+    Beside it that of the model without loss, and the largest difference of the tilts [alpha], in 0.95 s;
+    delta/b 0.03.
+    """
+    import pandas as pd
+
+    rows = []
+    for engine, step in UPLIFTS:
+        length = 0.03 * _PIER.base_radius
+        case = Case(_PIER, _ramp(), duration=0.95, friction=GRIP[engine], rolling_resistance=length)
+        model = reduced.simulate(case, rtol=1e-10, sample_step=1e-3)
+        free = reduced.simulate(dataclasses.replace(case, rolling_resistance=0.0), sample_step=1e-3)
+        trace = multibody.simulate(case, engine=engine, time_step=step, sample_step=1e-3)
+        tilts = [each.tilt / _PIER.alpha for each in (model, free, trace)]
+        begun, without, later = (float(np.interp(1e-4, tilt, model.time)) for tilt in tilts)
+        rows.append((engine, step, 1e3 * (later - begun), 1e3 * (without - begun), _apart(trace, model)))
+    return pd.DataFrame(rows, columns=["engine", "step", "after", "without_loss", "tilt_error"])
 
 
 def main(arguments: Sequence[str]) -> int:
     """Print the tables."""
-    options_of("rolling_losses", "Error, computing time and engines with rolling resistance.").parse_args(
-        arguments
-    )
-    forms = {"quantity": "", "law": ".5f", "model": ".5f"}
+    parser = options_of("rolling_losses", "Error, computing time and engines with rolling resistance.")
+    parser.add_argument("--releases", type=int, default=300, help="number of random releases (default 300)")
+    parser.add_argument("--seed", type=int, default=1, help="of the random releases (default 1)")
+    given = parser.parse_args(arguments)
+    forms = {"quantity": "", "law": ".5g", "model": ".5g"}
     show(quantities(), "Quantities by law and model", forms)
     forms = {"model": "", "rtol": ".0e", "tilt_error": ".1e", "energy_error": ".1e", "steps": "d"}
     show(errors(), "Free response, errors of tilt (in alpha) and of the energy account", forms)
+    forms = {"model": "", "releases": "d", "failed": "d", "stands": "d", "account": ".1e", "most_steps": "d"}
+    show(releases(given.releases, given.seed), f"Random releases, seed {given.seed}", forms)
     forms = {
         "model": "",
         "steps_without": "d",
@@ -199,7 +284,9 @@ def main(arguments: Sequence[str]) -> int:
         "high": ".2f",
     }
     show(times(), "Computing time with over without, with quartiles", forms)
-    forms = {"support": "", "delta_b": ".3f", "engine": "", "friction": ".0f", "step": ".0e"}
-    forms |= {"tilt_error": ".1e", "effect": ".1e", "lost": ".4f", "engine_lost": ".4f"}
+    forms = {"support": "", "body": "", "delta_b": ".3f", "engine": "", "friction": ".0f", "step": ".0e"}
+    forms |= {"tilt_error": ".1e", "effect": ".1e", "lost": ".4f", "engine_lost": ".4f", "account": ".1e"}
     show(engines(), "Rolling friction of engines against the models, tilt in alpha", forms)
+    forms = {"engine": "", "step": ".0e", "after": ".1f", "without_loss": ".1f", "tilt_error": ".1e"}
+    show(uplifts(), "Uplift of engines after the models [ms], delta/b 0.03, tilt in alpha", forms)
     return 0
