@@ -170,7 +170,14 @@ def _standing_alone(names: list[str] | None) -> list[str] | None:
     return names
 
 
-def _named(names: list[str] | None) -> list[str] | None:
+def named(names: list[str] | None) -> list[str] | None:
+    """Return names of engines, or none alone.
+
+    Raises
+    ------
+    typer.BadParameter
+        If all are meant, or none and others.
+    """
     if names and ALL in names:
         raise typer.BadParameter("all is for compare; name each engine here, or none")
     return _standing_alone(names)
@@ -179,7 +186,7 @@ def _named(names: list[str] | None) -> list[str] | None:
 ENGINES = "mujoco, pybullet, dart, drake, exudyn, rapier or another that is installed"
 _SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (recess with clearance, by engines)"
 _DEFAULT = "Default: those that serve any case and are no extra"
-Engines = Annotated[list[str] | None, method(f"{ENGINES}; may be repeated. {_DEFAULT}.", callback=_named)]
+Engines = Annotated[list[str] | None, method(f"{ENGINES}; may be repeated. {_DEFAULT}.", callback=named)]
 EnginesOrAll = Annotated[
     list[str] | None,
     method(

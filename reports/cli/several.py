@@ -108,7 +108,8 @@ class ManyMethods:
         ),
     ] = None
     engine: Annotated[
-        list[str] | None, options.method(f"{options.ENGINES}; may be repeated. Default: none.")
+        list[str] | None,
+        options.method(f"{options.ENGINES}; may be repeated. Default: none.", callback=options.named),
     ] = None
     support: options.Supports = None
     setting: options.Settings = None
@@ -132,7 +133,7 @@ class ManyMethods:
 
         given, supports = settings(self.setting), self.support
         chosen: list[str | rw.Run] = [] if self.model == ["none"] else list(self.model or MODELS)
-        if not self.engine:
+        if not self.engine or self.engine == [options.NO_ENGINE]:
             if supports or given or self.time_step is not None:
                 raise ValueError("--support, --set and --time-step are for engines, give --engine as well")
             return chosen

@@ -217,7 +217,9 @@ RestTilt = Annotated[
 def simulate(
     context: typer.Context,
     problem: Problem,
-    engine: Annotated[str | None, options.method(f"{options.ENGINES}. Default: the reduced model.")] = None,
+    engine: Annotated[
+        str | None, options.method(f"{options.ENGINES}. Default: none, the reduced model.")
+    ] = None,
     support: options.Support = "recess",
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
@@ -249,7 +251,8 @@ def simulate(
                 case = replace(case, initial=replace(case.initial, rolling_angle=plane))
             rs.require_writable(out)
             model = {"plane": plane, "restitution": restitution, "rest_tilt": rest_tilt}
-            run = _with_settings(case, rw.Run(engine, support, time_step), setting, model)
+            named = None if engine == options.NO_ENGINE else engine
+            run = _with_settings(case, rw.Run(named, support, time_step), setting, model)
             require_feasible([case], [run])
             rr.require_runnable(case, run)
         for line in time_needed([case], [run]):

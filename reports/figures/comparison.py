@@ -43,8 +43,8 @@ def tilt_picture(view: CaseView, name: str = "figure") -> Picture:
         title=f"Tilt: {view.case.name}, R = {cylinder.semidiagonal:g} m, tan α = {cylinder.tan_alpha:g}",
         caption="Angle of the axis from the vertical over the slenderness, of the runs of each support and "
         "its model. Below, the difference from the reference: its largest value within the last second. "
-        "Diamonds mark where 1 % of α is first exceeded: beyond it single traces say nothing about "
-        "each other.",
+        "Diamonds mark where 1 % of α, or a tenth of the peak where that is less, is first exceeded: beyond "
+        "it single traces say nothing about each other.",
         panels=[
             *(_tilts(view, group, support) for group, support in zip(groups, view.supports, strict=True)),
             *(_differences(view, reference) for reference in view.rows["reference"].unique()),
@@ -79,18 +79,23 @@ def _tilts(view: CaseView, runs: Sequence[str], support: str) -> Panel:
 
 
 def _differences(view: CaseView, reference: str) -> Panel:
-    layers: list[Layer] = [Rule(at=AGREEMENT, axis="y", text="1 % of α", side="right")]
-    for row, other, trial in view.pairs():
-        if row.reference != reference:
-            continue
+    pairs = [each for each in view.pairs() if each[0].reference == reference]
+    bounds = {
+        row.tolerance: "1 % of α" if row.tolerance >= AGREEMENT else "a tenth of the peak"
+        for row, *_ in pairs
+    }
+    layers: list[Layer] = [
+        Rule(at=max(bound, SMALLEST), axis="y", text=text, side="right") for bound, text in bounds.items()
+    ]
+    for row, other, trial in pairs:
         pair = make_pair(view.case.cylinder, other, trial, until=view.case.length)
         style = view.styles[row.run]
         apart = np.maximum(envelope(pair.time, np.abs(pair.tilt_difference)), SMALLEST)
         layers.append(Line(x=pair.time, y=apart, name=row.run, style=style))
-        if row.diverged:
+        if row.left_tolerance:
             mark = Style(colour=style.colour, dash="none", symbol="diamond")
-            at = np.array([view.divergence(row)])
-            layers.append(Line(x=at, y=np.array([AGREEMENT]), style=mark, size=7.0))
+            at = np.array([row.within_tolerance_until])
+            layers.append(Line(x=at, y=np.array([row.tolerance]), style=mark, size=7.0))
     y = Axis(label="|tilt difference| / α", unit="-", log=True, low=SMALLEST, high=3.0)
     return Panel(x=TIME, y=y, layers=layers, title=f"difference from {reference}", height=_HEIGHT)
 

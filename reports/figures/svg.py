@@ -52,6 +52,7 @@ _STYLE: Any = {
     "path.simplify_threshold": 0.3,
 }
 _SMALL = 8
+_BETWEEN = 4.0  # least distance of the words of two ticks [pixel]
 _RASTER_DPI = 200  # of maps, whose cells as paths would take ten times the room
 _EDGED_CELLS = 2500  # with more cells than these, a white edge would hide them
 # more numbers than these would run into each other
@@ -136,6 +137,19 @@ def _settle(drawn: Figure) -> None:
     for axes in drawn.axes:
         x, y, width, height = (round(each, 3) for each in axes.get_position(original=True).bounds)
         axes.set_position((x, y, width, height))
+        _separate(axes)
+
+
+def _separate(axes: Axes) -> None:
+    """Leave out the words of each tick of the x axis that would touch the last ones."""
+    free = -np.inf
+    for words in axes.get_xticklabels():
+        if not (words.get_visible() and words.get_text()):
+            continue
+        place = words.get_window_extent()
+        words.set_visible(bool(place.x0 >= free))
+        if words.get_visible():
+            free = place.x1 + _BETWEEN
 
 
 def _panel(axes: Axes, panel: Panel, picture: Picture) -> None:

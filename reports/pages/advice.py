@@ -6,12 +6,13 @@ import math
 from collections.abc import Hashable, Iterator, Mapping
 from typing import Any
 
-from rockwobble.compare.comparison.prediction import BEATEN
+from rockwobble.compare.comparison.prediction import BEATEN, UNTESTED
 from rockwobble.compare.metrics.statistics import FEWEST
 from rockwobble.compare.studies.advice.advice import Advice
-from rockwobble.compare.studies.advice.grades import BROKEN, GRADES, NEAR, SENSITIVE, UNSAFE
+from rockwobble.compare.studies.advice.grades import BROKEN, NEAR, SENSITIVE, UNSAFE
 from rockwobble.compare.studies.advice.members import COPIES, SPIKES
 from rockwobble.compare.studies.advice.scales import planar_shares
+from rockwobble.compare.studies.advice.trust import Verification
 from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.compare.studies.spectrum.study import CHECK_RTOL, NUDGE
 from rockwobble.models import AGREEMENT
@@ -71,7 +72,6 @@ def page_of(found: Advice) -> Page:
         "meanings": [CODES[code][1] for code in found.response["diagnostics"]],
         "grades": grades,
         "numbers": _numbers(found),
-        "every_grade": GRADES,
         "limits": {
             **{"near": NEAR, "unsafe": UNSAFE, "broken": BROKEN, "sensitive": SENSITIVE, "beaten": BEATEN},
             "fewest": FEWEST,
@@ -83,10 +83,109 @@ def page_of(found: Advice) -> Page:
         "shares": planar_shares(found.planar) if len(found.planar) else [],
         "loss": 1.0 - restitution_from_momentum(found.cylinder),
         "holds": support_named(facts["support"]),
-        "slips": found.groups["slip_95"].max() if len(found.groups) else math.nan,
-        "lost": found.groups["lost_95"].max() if len(found.groups) else math.nan,
+        "reasons": _reasons(found) if grades else {},
+        **dict(zip(("slips", "lost"), found.missing, strict=True)),
     }
     return Page(name="advice", template="advice", values=values, pictures=drawn)
+
+
+def _reasons(found: Advice) -> dict[str, str]:
+    """What the grade of each topic rests on in this case."""
+    if found.response["outcome"] == "failed":
+        return {"trace": "the run failed"}
+    slip, lost = found.missing
+    few = f"fewer than {FEWEST} runs differ"
+    contact = "never lost in 95 % of all runs" if found.grades["contact"] == "satisfied" else few
+    if lost > 0.0:
+        contact = f"lost for {number(lost, 'percent')} of the time in motion"
+    return {
+        "overturning": _reason_of_overturning(found),
+        "friction": _reason_of_friction(found, slip, few),
+        "contact": contact,
+        "trace": _reason_of_trace(found),
+        "intensity": _reason_of_intensity(found),
+        "engine": _reason_of_engine(found),
+    }
+
+
+def _reason_of_overturning(found: Advice) -> str:
+    if found.overturned:
+        return "it overturns as given"
+    grade, lowest = found.grades["overturning"], found.lowest_factor
+    chance, name = max(
+        ((row["chance"], row["name"]) for row in _groups(found) if row["chance"] > 0.0), default=(0.0, "")
+    )
+    reasons = [f"of {name}, {number(chance, 'percent')} overturn"] if chance else []
+    if grade == "not satisfied":
+        return reasons[0]
+    if grade == "caution":
+        near = [f"{number(lowest)} times this shaking overturns it"] if lowest < NEAR else []
+        return "; ".join([*reasons, *near])
+    if found.facts["motion"] is None:
+        return "no copy overturns" if grade == "satisfied" else "the copies are all one run"
+    if not len(found.lowest):
+        return "no run overturns, but no other scales of this shaking were run"
+    if math.isnan(lowest):
+        return f"no run overturns, nor up to {number(found.scales['factor'].max())} times this shaking"
+    return f"no run overturns; the lowest scale found to is {number(lowest)}"
+
+
+def _reason_of_friction(found: Advice, slip: float, few: str) -> str:
+    given, grade = found.facts["friction"], found.grades["friction"]
+    if given is None:
+        demand = found.demands.set_index("demand")["value"].get("friction", math.nan)
+        return "not given" if math.isnan(demand) else f"not given, the demand is {number(demand)}"
+    if given < found.cylinder.tan_alpha and found.response["uplift_time"] > 0.0:
+        return (
+            f"{number(given)} is below b/h = {number(found.cylinder.tan_alpha)}: it slides before it uplifts"
+        )
+    if slip > 0.0:
+        return f"{number(given)} is too little for {number(slip, 'percent')} of the time in motion"
+    return f"{number(given)} suffices in 95 % of all runs" if grade == "satisfied" else few
+
+
+def _reason_of_trace(found: Advice) -> str:
+    trust, engine = found.trust, found.verification
+    if not found.copies_differ and trust.kind != "statistics":
+        return "the copies are all one run"
+    ran = engine is not None and engine.outcome != "failed"
+    if trust.kind == "trace":
+        return f"{'model, engine' if ran else 'model'} and copies agree to the end"
+    ends = "the engine diverges" if ran else "engines should diverge"
+    if trust.because == "data":
+        ends = "the copies diverge"
+    reason = f"largest tilt at {number(found.response['peak_time'])} s, {ends} at {number(trust.until)} s"
+    return f"{reason}: trust statistics" if trust.kind == "statistics" else reason
+
+
+def _reason_of_intensity(found: Advice) -> str:
+    low, high = found.beside
+    if math.isnan(low):
+        return "no other scales of this shaking were run"
+    off = "12 % more or less shaking"
+    if math.isinf(high):
+        return f"{off} overturns it"
+    if low == 0.0:
+        return f"{off} leaves it at rest"
+    return f"{off} changes the tilt by {number(max(high / found.peak, found.peak / low))} times"
+
+
+def _reason_of_engine(found: Advice) -> str:
+    engine = found.verification
+    if engine is None:
+        return "not run"
+    if engine.outcome == "failed":
+        return f"it failed: {_failure(engine)}"
+    agrees = f"agrees until {_agreed_until(engine)}, predicted until {_predicted_until(found)}"
+    if engine.divergence == "earlier":
+        return f"{agrees}: less than half as long"
+    if not engine.moves:
+        return "it stays at rest, the model moves"
+    if (engine.outcome == "overturned") != found.overturned:
+        return "it stands, the model overturns" if found.overturned else "it overturns, the model stands"
+    if engine.divergence == "too little motion":
+        return "the model's tilt hardly changes, which tests nothing"
+    return f"{agrees}, which tests nothing" if engine.divergence in UNTESTED else agrees
 
 
 def _groups(found: Advice) -> list[dict[str, Any]]:
@@ -166,27 +265,37 @@ def _check(name: str, value: str, note: str = "") -> Row:
 
 
 def _agreement(found: Advice) -> Iterator[Row]:
-    trust, prediction, engine = found.trust, found.facts["prediction"], found.verification
+    trust, engine = found.trust, found.verification
     until, note = "its end", ""
     if trust.kind != "trace":
         until, note = f"{number(trust.until, '.4g')} s", f"then {_ENDS[trust.because]}"
     yield _check("the trace can be trusted until", until, note)
-    reason, tolerance = prediction["reason"], min(AGREEMENT, found.response["tolerance"])
-    end = found.response["uplift_time"] + prediction["length"]
-    until = f"{number(end, '.4g')} s" if reason else "the end"
+    tolerance = min(AGREEMENT, found.response["tolerance"])
     name = f"model and engine agree within {number(tolerance)} α, predicted, until"
-    yield _check(name, until, _PREDICTED[reason])
+    yield _check(name, _predicted_until(found), _PREDICTED[found.facts["prediction"]["reason"]])
     if engine is None:
         return
     method = f"{engine.label} {engine.version}, step {number(engine.time_step)} s, agrees until"
     if engine.outcome == "failed":
-        failure = "; ".join(CODES[code][1] for code in parted(engine.diagnostics))
-        yield _check(method, "failed", failure)
+        yield _check(method, "failed", _failure(engine))
         return
-    until = f"{number(engine.agreed_until, '.4g')} s" if engine.diverged else "the end"
     tilt = f"largest tilt {number(engine.peak_tilt)} α" if engine.moves else "it stays at rest"
     tilt = "it overturns" if engine.outcome == "overturned" else tilt
-    yield _check(method, until, f"{_DIVERGENCE[engine.divergence]}; {tilt}")
+    yield _check(method, _agreed_until(engine), f"{_DIVERGENCE[engine.divergence]}; {tilt}")
+
+
+def _predicted_until(found: Advice) -> str:
+    prediction = found.facts["prediction"]
+    end = found.response["uplift_time"] + prediction["length"]
+    return f"{number(end, '.4g')} s" if prediction["reason"] else "the end"
+
+
+def _agreed_until(engine: Verification) -> str:
+    return f"{number(engine.agreed_until, '.4g')} s" if engine.diverged else "the end"
+
+
+def _failure(engine: Verification) -> str:
+    return "; ".join(CODES[code][1] for code in parted(engine.diagnostics))
 
 
 def _scales(found: Advice) -> Iterator[Row]:

@@ -178,12 +178,17 @@ def main_rows(view: CaseView) -> list[Row]:
             "reference": row.reference.removesuffix(" model"),
             "peak": _peak(row.peak_tilt, row.outcome),
             "reference_peak": _peak(row.reference_peak_tilt, row.reference_outcome),
-            "agrees": _until(row, row.reference_uplift_time),
-            "predicted": min(row.reference_uplift_time + row.predicted_agreement_time, view.case.length),
-            "cause": CAUSES[cause_of(view, row)] if row.diverged else None,
+            "agrees": _agrees(row),
+            "predicted": min(row.predicted_until, view.case.length),
+            "cause": CAUSES[cause_of(view, row)] if row.left_tolerance else None,
         }
         for row in rows_of(view.rows)
     ]
+
+
+def _agrees(row: SummaryRow) -> str:
+    """Return the end of an agreement as in the headline, in the time of the run; that of the run with +."""
+    return f"{row.within_tolerance_until:.2f}{'' if row.left_tolerance else '+'}"
 
 
 def _until(row: SummaryRow, start: float) -> str:
@@ -278,7 +283,7 @@ def worst_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]
             "place": places[row.case],
             "length": lengths[row.case],
             "peak": abs(row.peak_tilt_difference),
-            "agrees": f"{row.within_tolerance_until:.2f}{'' if row.left_tolerance else '+'}",
+            "agrees": _agrees(row),
         }
         for row in rows_of(worst.drop_duplicates("case"))
     ]

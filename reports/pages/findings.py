@@ -122,11 +122,12 @@ def notes(view: CaseView) -> str:
     values = {
         "failed": {label: failure(view.facts.get(label, ())) for label in lost},
         "still": bool(runs) and not any(math.isfinite(each.uplift_time) for each in view.traces.values()),
+        "swings": [label for label, trace in view.traces.items() if trace.peak_time > trace.time[-1]],
         "causes": causes,
         "external": [_mistakes(row) for row in sound if row.support == EXTERNAL],
         "remarks": _together({run: remarks(view.facts[run]) for run in runs}),
     }
-    parts = [sentence(WORDS, macro, values) for macro in ("failures", "parted", "mistakes")]
+    parts = [sentence(WORDS, macro, values) for macro in ("failures", "swings", "parted", "mistakes")]
     parts += [*early_sentences(view.rows), *budget_sentences(view.rows), sentence(WORDS, "remarks", values)]
     return " ".join(filter(None, parts))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import io
 import itertools
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
@@ -155,6 +156,25 @@ def test_an_overturned_group_moves_without_bound(found):
     assert [top[name] for name in groups["group"]] == ["overturns"] * len(groups)
 
 
+def numbers_in(words: str) -> list[float]:
+    return [float(word) for word in re.findall(r"\d+(?:\.\d+)?", words)]
+
+
+def test_a_reason_states_the_numbers_of_its_grade(found):
+    reasons = page_of(found).values["reasons"]
+    needed = found.demands.set_index("demand")["value"]["friction"]
+    assert numbers_in(reasons["friction"]) == [pytest.approx(needed, rel=PRINTED)]
+    low, high = found.beside
+    times = max(high / found.peak, found.peak / low)
+    assert numbers_in(reasons["intensity"])[1:] == [pytest.approx(times, rel=PRINTED)]
+    prediction = dataclasses.asdict(Prediction(length=5.0, reason="pass"))
+    engine = changed(found, verification=ENGINE, prediction=prediction)
+    end = found.response["uplift_time"] + 5.0
+    assert numbers_in(page_of(engine).values["reasons"]["engine"]) == [22.0, pytest.approx(end, rel=PRINTED)]
+    slides = page_of(changed(found, friction=0.1)).values["reasons"]["friction"]
+    assert numbers_in(slides) == [0.1, 0.2]
+
+
 ENGINE = {
     "label": "mujoco recess",
     "version": "4.0.0",
@@ -180,10 +200,12 @@ def test_every_code_has_words(found):
     engines = [ENGINE | {"divergence": each} for each in (*DIVERGENCES, *UNTESTED)]
     engines += [ENGINE | {"outcome": "overturned"}, ENGINE | {"moves": False}]
     engines += [ENGINE | {"outcome": "failed", "diagnostics": "energy_gain", "divergence": ""}]
-    notes = set()
+    notes, reasons = set(), set()
     for engine in engines:
-        rows = page_of(changed(found, verification=engine)).values["checks"]
-        notes |= {row["note"] for row in rows if "mujoco" in row["name"]}
+        values = page_of(changed(found, verification=engine)).values
+        notes |= {row["note"] for row in values["checks"] if "mujoco" in row["name"]}
+        reasons.add(values["reasons"]["engine"])
+    assert len(reasons) == 7  # as predicted in three ways
     assert len(notes) >= 7  # two verdicts are the same
     assert all(notes)
     for kind, because in (("trace", ""), ("peak", "data"), ("statistics", "methods")):

@@ -23,6 +23,7 @@ from rockwobble.models import (
 from rockwobble.models.diagnostic import CODES, REASONS
 from rockwobble.reports.figures.case_view import case_views, rows_of
 from rockwobble.reports.pages import findings as budget_of_run
+from rockwobble.reports.pages.comparison import main_rows
 from rockwobble.reports.pages.diagnostics import counted, failure, remarks, sentence
 from rockwobble.reports.pages.findings import (
     CAUSES,
@@ -150,6 +151,23 @@ def test_a_motion_below_the_bound_agrees_within_a_tenth_of_its_peak():
     text = headline(table(small), LENGTH)
     assert "2\u00a0×\u00a010⁻⁶ alpha" in text
     assert "9.0 s" in text
+
+
+def test_the_table_ends_an_agreement_where_the_headline_does():
+    small = row(tolerance=2e-3, diverged=False, left_tolerance=True, predicted_until=8.0)
+    small.within_tolerance_until = 9.0
+    (line,) = main_rows(case_view(small))
+    assert (line["agrees"], line["predicted"], line["cause"]) == ("9.00", 8.0, "unresolved pass")
+
+
+def test_a_peak_after_the_end_of_its_curve_is_named():
+    times = {"mujoco recess": 12.5, "recess model": 11.0}
+    traces = {
+        label: SimpleNamespace(peak_time=peak, time=[0.0, 12.0], uplift_time=1.7)
+        for label, peak in times.items()
+    }
+    text = notes(case_view(row(), traces=traces))
+    assert "The peak of mujoco recess is that" in text
 
 
 def test_runs_with_one_diagnostic_are_named_together_and_what_failed_says_why():

@@ -197,6 +197,17 @@ class Advice(Results, kind=KIND):
         return float(np.nanmin(tilts)), float(np.nanmax(tilts))
 
     @property
+    def missing(self) -> tuple[float, float]:
+        """Shares of the moving time in which friction and contact are missing.
+
+        Those that 95 % of the runs of each group do not exceed or, where too few differ, those as given.
+        """
+        worst = self.groups.max(numeric_only=True)
+        if math.isnan(worst.get("lost_95", math.nan)):
+            return self.response["slip"], self.response["lost"]
+        return float(worst["slip_95"]), float(worst["lost_95"])
+
+    @property
     def grades(self) -> dict[str, Grade]:
         """Grade of each topic that there is something to say about; the criteria are in `grades`."""
         response, facts, engine = self.response, self.facts, self.verification
@@ -205,9 +216,7 @@ class Advice(Results, kind=KIND):
         if not self.moves:
             return {}
         shaken, friction = facts["motion"] is not None, facts["friction"]
-        worst = self.groups.max(numeric_only=True)
-        spread = not math.isnan(worst["lost_95"])
-        slip, lost = (worst["slip_95"], worst["lost_95"]) if spread else (response["slip"], response["lost"])
+        (slip, lost), spread = self.missing, bool(self.groups["lost_95"].notna().any())
         slides = friction is not None and friction < self.cylinder.tan_alpha and response["uplift_time"] > 0.0
         found: dict[str, Grade] = {
             "overturning": grade_overturning(
