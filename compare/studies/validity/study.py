@@ -15,7 +15,7 @@ from ...runs.progress import ProgressCallback
 from ...storage.manifest import Number
 from ...storage.provenance import engine_makers, fingerprint, reduced_makers
 from ...storage.results import Results
-from ..plans import ValidityPlan
+from ..plans import QuickPlan
 from .limits import limits_of, records
 from .plan import (
     FULL,
@@ -77,7 +77,7 @@ class Validity(Results, kind=KIND):
 
 def measure_validity(
     folder: str | Path,
-    plan: ValidityPlan,
+    plan: QuickPlan,
     *,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
