@@ -34,7 +34,7 @@ from ..comparison.prediction import (
 )
 from ..comparison.summary import SUMMARY_COLUMNS, summary_row
 from ..external.verdict import numbers_of
-from ..metrics.pair import is_release, landings, rms
+from ..metrics.pair import landings, rms
 from ..runs.choice import at_step, own_model, require_runnable, support_of
 from ..runs.execution import Job, simulate_all
 from ..runs.progress import ProgressCallback
@@ -156,7 +156,7 @@ def compared(runs: SuiteRuns, job: Job, name: str, model: Trace, trace: Trace) -
     yield _compared(runs, job, name, model, trace, clean=False)
     if (other := _in_motion(job)) is not None:
         (trace,) = runs.traces([other])
-        words = "first seconds" if is_release(job.case) else "met rocking"
+        words = "first seconds" if job.case.is_release else "met rocking"
         name = f"{name}, {words}"
         model = runs.solve(other.case, model.run.support)
         if trace.outcome == "failed":
@@ -178,7 +178,7 @@ def in_motion(case: Case) -> Case | None:
     None where nothing moves.
     """
     motion, unit = case.motion, time_scale(case)
-    if is_release(case):
+    if case.is_release:
         return dataclasses.replace(case, duration=min(case.length, _LENGTH * unit))
     if motion is None or motion.peak == 0.0:
         return None

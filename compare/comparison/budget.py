@@ -35,7 +35,6 @@ from ..metrics.pair import (
     Agreement,
     agreement_time,
     first_unresolved_pass,
-    is_release,
     landings,
     make_pair,
     rms,
@@ -311,7 +310,7 @@ class Refined:
     def smooth(self) -> bool:
         """Whether the error of the run is a power series in the step: from rest not in every engine."""
         assert self.run.engine is not None  # only runs of engines are refined
-        return is_release(self.case) or engine_facts(self.run.engine).smooth_uplift
+        return self.case.is_release or engine_facts(self.run.engine).smooth_uplift
 
     @property
     def extrapolated(self) -> bool:

@@ -246,7 +246,7 @@ def comparison_of(
             for key, each in (budgets or {}).items()
         },
     }
-    return Comparison(tables=tables, facts=plain_json.loads(plain_json.dumps(facts)))
+    return Comparison(tables=tables, facts=facts)
 
 
 def _header(case: Case) -> Mapping[str, object] | None:

@@ -29,7 +29,6 @@ from rockwobble.multibody.scene import REFERENCE_TIME_STEP, froude_scale
 from ..metrics.pair import (
     FloatArray,
     agreement_time,
-    is_release,
     landings,
     make_pair,
     rms,
@@ -89,7 +88,7 @@ def estimated_error(case: Case, engine: str | None, time_step: float) -> float:
         return _SMALLEST_ERROR
     facts = engine_facts(engine)
     step = time_step / time_scale(case) / REFERENCE_TIME_STEP
-    error = facts.release_error * case.cylinder.tan_alpha**2 if is_release(case) else facts.uplift_error
+    error = facts.release_error * case.cylinder.tan_alpha**2 if case.is_release else facts.uplift_error
     return max(error * math.pow(step, facts.order), _SMALLEST_ERROR)
 
 

@@ -131,12 +131,6 @@ def external_motion(trace: Trace) -> Motion:
     return replace(motion, noise=poses.noise, path_noise=poses.position_noise)
 
 
-def own_samples(trace: Trace) -> Motion:
-    """Return tilt and azimuth at the samples of the file."""
-    poses = measurement(trace).poses
-    return motion_at(poses.time, poses.tilt, poses.rolling_angle if "azimuth" in poses.given else None)
-
-
 def read_trajectory(external: External | str | Path, case: Case) -> Trace:
     """Read an external trajectory of the case that it answers.
 

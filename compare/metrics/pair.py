@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockwobble.models import AGREEMENT, Case, Cylinder, GroundMotion, Trace
+from rockwobble.models import AGREEMENT, Cylinder, GroundMotion, Trace
 from rockwobble.models.shown import Brief
 
 from ..runs.choice import support_of
@@ -118,11 +118,6 @@ def make_pair(cylinder: Cylinder, reference: Trace, trial: Trace, *, until: floa
 def start_of(trace: Trace) -> float:
     """Return uplift or release of a trace [s]; 0 where there is none."""
     return trace.uplift_time if math.isfinite(trace.uplift_time) else 0.0
-
-
-def is_release(case: Case) -> bool:
-    """Return whether a case starts tilted."""
-    return case.initial is not None and case.initial.tilt > 0.0
 
 
 def _finite_end(trace: Trace) -> float:

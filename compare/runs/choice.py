@@ -320,7 +320,7 @@ def _unable(name: str, cases: Sequence[Case]) -> str:
         engine = find_engine(name)
     except BrokenEngineError as error:
         return str(error)
-    stands = any(case.initial is None or case.initial.tilt == 0.0 for case in cases)
+    stands = not all(case.is_release for case in cases)
     return (
         f"{name} cannot uplift a cylinder that stands and is left out"
         if stands and not engine.uplifts

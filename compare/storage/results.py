@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
+from rockwobble.models import plain_json
 from rockwobble.models.shown import Shown, brief
 
 from .manifest import Manifest, Number, Stored, read_results, with_provenance, write_results
@@ -36,6 +37,10 @@ class Results(Shown):
     tables: Mapping[str, pd.DataFrame]
     facts: Mapping[str, Any]
     manifest: Manifest | None = None
+
+    def __post_init__(self) -> None:
+        # as they are loaded: what is drawn of results must not depend on whether they were stored
+        object.__setattr__(self, "facts", plain_json.loads(plain_json.dumps(self.facts)))
 
     def __init_subclass__(cls, *, kind: str) -> None:
         cls.kind = kind

@@ -47,7 +47,7 @@ from ..runs.progress import ProgressCallback
 from ..storage.manifest import Number
 from ..storage.provenance import code_digests, fingerprint, package_versions
 from ..storage.results import Results
-from .plans import ExtremesPlan
+from .plans import QuickPlan
 
 KIND = "extremes"
 MODELS = (Run(None, "flat", plane=0.0), Run(None, "recess"), Run(None, "flat"))
@@ -148,7 +148,7 @@ class Extremes(Results, kind=KIND):
 
 def measure_extremes(
     folder: str | Path,
-    plan: ExtremesPlan,
+    plan: QuickPlan,
     *,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
@@ -159,7 +159,7 @@ def measure_extremes(
     ----------
     folder : str or Path
         Keeps each finished run: a second call, after whatever ended the first, repeats none that is there.
-    plan : ExtremesPlan
+    plan : QuickPlan
     workers : int, optional
         Processes; default one for each processor.
     progress : callable, optional

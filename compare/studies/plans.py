@@ -180,30 +180,12 @@ class SpectrumPlan(Plan):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ValidityPlan(Plan):
-    """Limits of the reduced model: the extent of its maps."""
-
-    quick: bool = option(False, "Coarse maps and few runs: some two minutes on two cores.", flag="--quick")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TradeoffPlan(Plan):
-    """Error against computing time: the number of points."""
+class QuickPlan(Plan):
+    """Extent of a published study: validity, trade-off or extremes."""
 
     quick: bool = option(
         False,
-        "Fewer points and fewer members: some two minutes on two idle cores.",
-        flag="--quick",
-    )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExtremesPlan(Plan):
-    """Extreme conditions: which of them."""
-
-    quick: bool = option(
-        False,
-        "Only the two ends of each extreme: some two minutes on two idle cores.",
+        "Coarser maps, fewer points, members and conditions: some two minutes on two idle cores.",
         flag="--quick",
     )
 

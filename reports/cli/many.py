@@ -17,7 +17,7 @@ import rockwobble.compare.storage as rs
 from rockwobble.compare.studies.plans import Copies, FragilityPlan, SpectrumPlan
 
 from ..console import interruptible, save_with_page, show_and_save, shown_progress, user_input
-from ..pages.cases import describe
+from ..pages.cases import describe, motion_warnings
 from . import options
 from .command import takes_options
 from .estimate import require_feasible, require_sweep
@@ -67,9 +67,6 @@ def fragility(
     with interruptible(out):
         with user_input():
             from rockwobble.compare.studies.fragility.runs import methods_of
-            from rockwobble.models.records.units import doubts_of
-
-            from ..pages.diagnostics import warnings
 
             rs.require_writable(out)
             if cylinder:
@@ -82,7 +79,7 @@ def fragility(
             for name, each in bodies.items():
                 size = f"R = {each.semidiagonal:g} m, tan alpha = {each.tan_alpha:g}"
                 print(f"{name}: {size}" if cylinder else size)
-            print(f"Motions: {len(motions)}, {source}", *warnings(doubts_of(motions)), sep="\n")
+            print(f"Motions: {len(motions)}, {source}", *motion_warnings(motions), sep="\n")
         with user_input(), shown_progress() as progress:
             found = rw.fragility(
                 bodies,
@@ -185,10 +182,6 @@ def ensemble(
     """
     with interruptible(out):
         with user_input():
-            from rockwobble.models.records.units import doubts_of
-
-            from ..pages.diagnostics import warnings
-
             rs.require_writable(out)
             refuse_options_of_engines(context, engine)
             stated: rw.Case | rw.Suite | list[rw.Case]
@@ -211,7 +204,7 @@ def ensemble(
                     print(line)
                 print(f"Members: {count}, {source}")
                 shaking = [] if isinstance(stated, rw.Case) else [each.motion for each in stated]
-            for line in warnings(doubts_of(shaking)):
+            for line in motion_warnings(shaking):
                 print(line)
         with user_input(), shown_progress() as progress:
             found = rw.ensemble(
@@ -335,10 +328,6 @@ def _suite(name: str, models: list[str] | None) -> rw.Suite:
 
 
 def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
-    from rockwobble.models.records.units import doubts_of
-
-    from ..pages.diagnostics import warnings
-
     motions: Iterable[rw.GroundMotion | None]
     if isinstance(plan, rc.Grid):
         motions = plan.motions
@@ -367,7 +356,7 @@ def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
             )
         ),
         f"Runs: {runs:,} ({what})",
-        *warnings(doubts_of(motions)),
+        *motion_warnings(motions),
     ]
 
 

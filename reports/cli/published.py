@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rockwobble.compare.studies.plans import ExtremesPlan, TradeoffPlan, ValidityPlan
+from rockwobble.compare.studies.plans import QuickPlan
 
 from ..console import FAILED, results_in, show_and_save, user_input
 from . import options
@@ -16,7 +16,7 @@ from .command import takes_options
 
 @takes_options
 def validity(
-    plan: ValidityPlan,
+    plan: QuickPlan,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-validity"),
 ) -> None:
@@ -40,7 +40,7 @@ def validity(
 
 
 @takes_options
-def tradeoff(plan: TradeoffPlan, out: options.Out = Path("rockwobble-tradeoff")) -> None:
+def tradeoff(plan: QuickPlan, out: options.Out = Path("rockwobble-tradeoff")) -> None:
     """Measure what accuracy costs: the reduced models, scipy's solvers and the engines on three problems.
 
     The angle of turn in free response, two times El Centro until ten seconds after uplift, and the
@@ -61,7 +61,7 @@ def tradeoff(plan: TradeoffPlan, out: options.Out = Path("rockwobble-tradeoff"))
 
 @takes_options
 def extremes(
-    plan: ExtremesPlan,
+    plan: QuickPlan,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-extremes"),
 ) -> None:

@@ -13,7 +13,7 @@ import rockwobble.compare as rc
 import rockwobble.compare.runs as rr
 
 from ..console import complain
-from ..pages.cases import group_of
+from ..pages.cases import group_of, motion_warnings
 from .estimate import time_needed
 from .problem import PROBLEM, refuse
 
@@ -80,14 +80,11 @@ def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list
 def describe_suite(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> Iterator[str]:
     """Yield the lines that echo what will run, and how long it may take."""
     from rockwobble.compare.runs.choice import run_labels
-    from rockwobble.models.records.units import doubts_of
-
-    from ..pages.diagnostics import warnings
 
     groups = Counter(group_of(case.name) for case in cases)
     yield f"Suite {name}: {len(cases)} cases x {len(runs)} runs = {len(cases) * len(runs)} runs of engines"
     counted = (f"{group} ({count})" if count > 1 else group for group, count in groups.items())
     yield f"Cases: {', '.join(counted)}"
     yield f"Runs: {', '.join(run_labels(runs))}"
-    yield from warnings(doubts_of(case.motion for case in cases))
+    yield from motion_warnings(case.motion for case in cases)
     yield from time_needed(cases, runs, always=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -10,13 +11,13 @@ import pandas as pd
 
 from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.studies.advice.advice import Advice
-from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
+from rockwobble.compare.studies.spectrum.maps import SERIES
 
 from .ensemble import peak_shares
 from .palette import GREY, Style, model_style, run_styles
 from .picture import TIME, Array, Axis, Band, Line, Panel, Picture, Rule
+from .spectrum import NAMES, series_styles
 
-NAMES = {SPATIAL: "3D", PLANAR_X: "planar x (east-west)", PLANAR_Y: "planar y (north-south)"}
 SHORT = {"copies": "copies", "acceleration": "same acceleration", "velocity": "same velocity"}
 _STANDS, _SIDE = 1.2, 1.3  # [alpha] where tilts are cut, and where overturned runs are drawn
 _SCALES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
@@ -100,8 +101,7 @@ def _tilt(found: Advice) -> Panel:
 
 
 def _scales(found: Advice) -> Panel:
-    scales, model = found.scales, model_style(found.facts["model"])
-    planes = run_styles([PLANAR_X, PLANAR_Y])
+    scales, styles = found.scales, series_styles(found.facts["model"])
     layers: list[Line | Rule] = [Rule(at=1.0, axis="x", text="as given")]
     for name in SERIES:
         rows = scales[scales["series"] == name]
@@ -109,8 +109,7 @@ def _scales(found: Advice) -> Panel:
             continue
         peaks = rows["peak_tilt"].to_numpy(float)
         tilt = np.where(overturned(peaks), _SIDE, np.minimum(peaks / found.cylinder.alpha, _STANDS))
-        style = model if name == SPATIAL else planes[name]
-        marked = Style(colour=style.colour, dash=style.dash, symbol="circle")
+        marked = replace(styles[name], symbol="circle")
         layers.append(
             Line(
                 x=rows["factor"].to_numpy(float), y=tilt, name=NAMES[name], style=marked, size=2.5, width=1.0

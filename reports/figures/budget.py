@@ -9,9 +9,8 @@ import numpy as np
 from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING, Comparison, ErrorBudget
 
 from .case_view import CaseView, rows_of
-from .heat import names
 from .palette import Style, pale
-from .picture import TIME, Axis, Bars, Layer, Line, Panel, Picture, Rule, Text
+from .picture import TIME, Axis, Bars, Layer, Line, Panel, Picture, Rule, Text, list_axis
 from .thinning import envelope
 
 # blue, pale orange and vermilion of Okabe and Ito: apart in every kind of colour vision and in grey
@@ -76,8 +75,7 @@ def all_budgets_picture(comparison: Comparison) -> Picture | None:
 def _stacked(bars: Sequence[Bar], name: str) -> Picture | None:
     if not bars:
         return None
-    places, ticks = names([label for label, _, _ in bars])
-    ends = np.zeros(len(bars))
+    places, ends = np.arange(len(bars), dtype=np.float64), np.zeros(len(bars))
     layers: list[Bars | Text] = []
     for part, (words, style, hatch) in PARTS.items():
         starts, ends = ends, ends + np.array([part_shares(budget)[part] for _, budget, _ in bars])
@@ -88,7 +86,7 @@ def _stacked(bars: Sequence[Bar], name: str) -> Picture | None:
     shares = [(share, f"{share:g}") for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
     panel = Panel(
         x=Axis(label="share of the parts", unit="-", low=0.0, high=1.25, ticks=shares),
-        y=Axis(label="", unit="", ticks=ticks, low=-0.6, high=len(bars) - 0.4, reverse=True),
+        y=list_axis([label for label, _, _ in bars]),
         layers=layers,
         height=0.9 + 0.27 * len(bars),
     )

@@ -15,7 +15,7 @@ from rockwobble.compare.studies.ensemble import pairs
 from rockwobble.compare.studies.fragility.study import Row
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles
-from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, ecdf
+from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, ecdf, list_axis
 
 # beyond the largest ratio, and at least beyond the margin
 _ROOM = 1.25
@@ -138,9 +138,8 @@ def ratio_axes(
 ) -> tuple[Axis, Axis]:
     """Return the axis of ratios, and one with the names below each other."""
     shown = [(tick, f"{tick:g}") for tick in ticks if low <= tick <= high]
-    lines = [(float(place), name) for place, name in enumerate(names)]
     x = Axis(label=label, unit="-", log=True, low=low, high=high, ticks=shown)
-    return x, Axis(label="", unit="", low=-0.6, high=len(names) - 0.4, ticks=lines, reverse=True)
+    return x, list_axis(names)
 
 
 def _bar(row: Row, ends: str, place: int, span: tuple[float, float], name: str, width: float) -> Line:

@@ -7,7 +7,7 @@ import numpy as np
 from rockwobble.compare.studies.extremes import Extremes
 
 from .palette import GREY, ORDER, PALE
-from .picture import Axis, Bars, Panel, Picture
+from .picture import Axis, Bars, Panel, Picture, list_axis
 
 # verdict: colour and hatch; what nothing explains stands out
 _SHADES = {
@@ -33,10 +33,9 @@ def pictures(found: Extremes) -> list[Picture]:
         colours = [colour] * len(methods)
         layers.append(Bars(places=places, start=start, end=end, colours=colours, name=verdict, hatch=hatch))
         start = end
-    ticks = list(enumerate(methods))
     panel = Panel(
         x=Axis(label="runs", unit="-", low=0.0),
-        y=Axis(label="method", unit="", low=-0.6, high=len(methods) - 0.4, ticks=ticks, reverse=True),
+        y=list_axis(methods, "method"),
         layers=layers,
         height=0.4 * len(methods) + 1.0,
     )

@@ -57,6 +57,12 @@ class Axis:
         return f"{self.label} [{self.unit}]" if self.unit else self.label
 
 
+def list_axis(names: Sequence[str], label: str = "") -> Axis:
+    """Return the y axis of a list that is read downwards, with the names at 0, 1, 2, ..."""
+    ticks = list(enumerate(names))
+    return Axis(label=label, unit="", low=-0.6, high=len(ticks) - 0.4, ticks=ticks, reverse=True)
+
+
 TIME = Axis(label="time", unit="s")
 TILT = Axis(label="tilt / α", unit="-", low=0.0)
 

@@ -20,7 +20,7 @@ from .heat import PEAKS, Heat, peak_map
 from .palette import Style, model_style, run_styles
 from .picture import Axis, Line, Panel, Picture, separated
 
-NAMES = {SPATIAL: "3D", PLANAR_X: "planar x (east-west)", PLANAR_Y: "planar y (north-south)"}
+NAMES = TITLES | {SPATIAL: "3D"}
 _HEIGHT = 3.4
 _ASIDE = {SPATIAL: 0.0, PLANAR_X: -0.3, PLANAR_Y: 0.3}  # of the spacing of sizes: gaps side by side
 
@@ -81,9 +81,13 @@ def _map(spectrum: TiltMaps, series: str) -> Heat:
     return peak_map(spectrum.semidiagonals, spectrum.intensities, tilt, fell)
 
 
+def series_styles(model: str) -> dict[str, Style]:
+    """Return the style of each series, in 3D that of the model of this label."""
+    return {SPATIAL: model_style(model), **run_styles([PLANAR_X, PLANAR_Y])}
+
+
 def _curves(spectrum: TiltMaps) -> list[Line]:
-    planes = run_styles([PLANAR_X, PLANAR_Y])
-    styles = {SPATIAL: model_style(str(Run(None, spectrum.support))), **planes}
+    styles = series_styles(str(Run(None, spectrum.support)))
     gaps = safe_gaps(spectrum)
     spacing = float(np.diff(spectrum.semidiagonals).min(initial=np.inf))
     half = 0.5 * float(np.diff(spectrum.intensities).min(initial=np.inf))

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.metrics.statistics import quantile_interval
 from rockwobble.compare.studies.validity.limits import (
     CONTRASTS,
     FEWEST,
@@ -15,8 +14,8 @@ from rockwobble.compare.studies.validity.limits import (
     Tables,
     cells,
     column,
+    contrasts,
     models_apart,
-    ratios,
 )
 from rockwobble.compare.studies.validity.shaken import FLAT, FREE, PERTURBED, RECESS
 from rockwobble.compare.studies.validity.study import Validity
@@ -24,7 +23,7 @@ from rockwobble.models.support import SUPPORTS
 
 from .heat import Gap, Heat, Shades, contour, names
 from .palette import DARK, GREY, ORDER, PALE, Style, mark_styles
-from .picture import Array, Axis, Layer, Line, Panel, Picture, Rule, group_lines, separated
+from .picture import Array, Axis, Layer, Line, Panel, Picture, Rule, group_lines, list_axis, separated
 
 _FREE_PANELS = 4
 _FAR = 1e3  # what infinite is drawn as: beyond every scale
@@ -211,7 +210,7 @@ def pictures(found: Validity) -> list[Picture]:
     """Return all figures of the report, in its order."""
     tables = found.tables
     return [
-        _records(tables["records"]),
+        _records(contrasts(tables)),
         *map_pictures(tables),
         _agreement(tables["following"]),
         _verification(tables["verification"]),
@@ -228,26 +227,22 @@ def _records(table: pd.DataFrame) -> Picture:
     ratio = Axis(label=label, unit="-", log=True, low=low, high=high, ticks=ticks)
     methods = [method for method, against in CONTRASTS if against == RECESS]
     panels = []
-    for tan_alpha, points in table.groupby("tan_alpha", sort=False):
-        names: list[tuple[float, str]] = []
+    for tan_alpha, points in table[table["against"] == RECESS].groupby("tan_alpha", sort=False):
+        names: list[str] = []
         layers: list[Line | Rule] = [Rule(at=1.0, axis="x", colour=GREY, dash="solid")]
-        for place, (point, runs) in enumerate(points.groupby(POINT, sort=False)):
-            _, size, intensity = (float(str(each)) for each in point)
-            names.append((float(place), f"R = {size:g} m,\n{intensity:g} g tan α"))
-            for index, method in enumerate(methods):
-                values = ratios(runs, method, RECESS)
-                with np.errstate(divide="ignore"):
-                    logarithms = np.log(values[~np.isnan(values)])
-                # the quantiles of the table
-                known = [quantile_interval(logarithms, share).value for share in (0.05, 0.5, 0.95)]
-                spread = np.clip(np.exp(known), *_RATIO_ENDS)
-                y = place + _APART * (index - 0.5 * (len(methods) - 1))
+        for place, (_, rows) in enumerate(points.groupby(POINT, sort=False)):
+            first = rows.iloc[0]
+            names.append(f"R = {first['semidiagonal']:g} m,\n{first['intensity']:g} g tan α")
+            for row in rows.to_dict("records"):
+                method = row["method"]
+                y = place + _APART * (methods.index(method) - 0.5 * (len(methods) - 1))
+                spread = np.clip([row[name] for name in ("ratio_05", "ratio", "ratio_95")], *_RATIO_ENDS)
                 colour = _STYLES[method].colour
                 layers.append(Line(x=spread[::2], y=np.full(2, y), style=Style(colour=colour), width=1.6))
                 mark = Style(colour=colour, dash="none", symbol=_MEDIANS[method])
                 layers.append(Line(x=spread[1:2], y=np.array([y]), name=METHODS[method], style=mark))
-        y_axis = Axis(label="", unit="", low=-0.6, high=len(names) - 0.4, ticks=names, reverse=True)
         title, height = f"tan α = {float(str(tan_alpha)):g}", 0.9 + 0.75 * len(names)
+        y_axis = list_axis(names)
         panels.append(Panel(x=ratio, y=y_axis, layers=layers, title=title, height=height))
     return Picture(
         name="records",

@@ -6,7 +6,9 @@ import math
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rockwobble.models import Case
+    from collections.abc import Iterable
+
+    from rockwobble.models import Case, GroundMotion
 
 
 def describe(case: Case) -> list[str]:
@@ -27,9 +29,6 @@ def describe(case: Case) -> list[str]:
     if motion is not None:
         # here, because the help of the command line needs no numpy
         from rockwobble.compare.studies.spectrum.maps import uplift_factor
-        from rockwobble.models.records.units import doubts_of
-
-        from .diagnostics import warnings
 
         threshold = cylinder.tan_alpha * (1.0 + resistance)  # over g
         factor = uplift_factor(motion, threshold, case.gravity, until=case.length)
@@ -40,7 +39,7 @@ def describe(case: Case) -> list[str]:
             f"{components} components, peak {motion.peak / case.gravity:.3f} g "
             f"({1.0 / factor:.2f} times the uplift threshold{within})"
         )
-        lines += warnings(doubts_of([motion]))
+        lines += motion_warnings([motion])
     if initial is not None:
         lines.append(
             f"Release: tilt {math.degrees(initial.tilt):.4g} deg "
@@ -48,6 +47,15 @@ def describe(case: Case) -> list[str]:
         )
     lines.append(f"Length of the run: {case.length:.4g} s")
     return lines
+
+
+def motion_warnings(motions: Iterable[GroundMotion | None]) -> list[str]:
+    """Return a line on each doubt about ground motions."""
+    from rockwobble.models.records.units import doubts_of
+
+    from .diagnostics import warnings
+
+    return warnings(doubts_of(motions))
 
 
 def group_of(name: str) -> str:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.compare.studies.plans import SpectrumPlan
 from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL, TiltMaps
 from rockwobble.compare.studies.spectrum.study import planar_contrast, unconservative_from
 from rockwobble.models import el_centro_1940
@@ -23,21 +24,18 @@ from . import Statement, verdict_of
 Array = NDArray[np.float64]
 
 TAN_ALPHA = 0.1
-SIZES = (0.5, 30.0)  # [m]
-INTENSITIES = (1.0, 12.0)  # [g tan alpha]
-GRID = 100
 LARGE = 20.0  # [m] from which on a cylinder is "large": the upper third of the paper's sizes
 _PROBES = 5  # random intensities below each lowest, for each intensity of the grid: a coarse one is a glance
 _EVERY = 0.95  # share of the sizes that may pass for all of them: single ones are a matter of chance
 
 
-def problem(grid: int = GRID) -> dict[str, Any]:
+def problem(grid: int) -> dict[str, Any]:
     """Return the arguments of `tilt_maps`: `grid` sizes and as many intensities."""
     return {
         "tan_alpha": TAN_ALPHA,
         "motion": el_centro_1940(),
-        "semidiagonals": np.linspace(*SIZES, grid),
-        "intensities": np.linspace(*INTENSITIES, grid),
+        "semidiagonals": np.linspace(*SpectrumPlan.SIZES[:2], grid),
+        "intensities": np.linspace(*SpectrumPlan.INTENSITIES[:2], grid),
         "probes": _PROBES * grid,
     }
 

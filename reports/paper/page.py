@@ -16,10 +16,7 @@ from rockwobble.compare.storage.manifest import Number
 from rockwobble.compare.storage.provenance import code_digests, fingerprint, package_versions
 from rockwobble.compare.storage.results import Results
 from rockwobble.compare.studies.spectrum.maps import (
-    PLANAR_X,
-    PLANAR_Y,
     SERIES,
-    SPATIAL,
     TiltMaps,
     maps_of,
     tilt_maps,
@@ -28,9 +25,9 @@ from rockwobble.compare.studies.spectrum.study import tables_of
 from rockwobble.models import Run
 from rockwobble.models.cylinder import PIER
 
-from ..figures.palette import DARK, ORDER, SHADED, Style, model_style, run_styles
+from ..figures.palette import DARK, ORDER, SHADED, Style
 from ..figures.picture import TIME, Axis, Layer, Line, Panel, Picture, Rule
-from ..figures.spectrum import NAMES, picture_of
+from ..figures.spectrum import NAMES, picture_of, series_styles
 from ..pages.page import Page
 from ..pages.spectrum import spectrum_values
 from . import earthquake, free, from_frame, overturning, to_frame
@@ -247,7 +244,7 @@ def _signed_log(values: Array) -> Array:
 def overturning_picture(spectrum: TiltMaps) -> Picture:
     """Return figure 6: the maps, and the lowest intensities on the axes of the paper and on equal shaking."""
     whole = picture_of(spectrum)
-    styles = {SPATIAL: model_style(str(Run(None, spectrum.support))), **run_styles([PLANAR_X, PLANAR_Y])}
+    styles = series_styles(str(Run(None, spectrum.support)))
     curves = []
     for own, label in ((True, "own peak / (g tan α)"), (False, "peak resultant / (g tan α)")):
         lowest = lowest_on_axes(spectrum, own=own)

@@ -165,10 +165,11 @@ def test_the_chunks_of_a_suite_have_names_for_whoever_waits():
 
 
 def test_the_manifest_says_what_was_swept(tmp_path):
-    table = sweep(grid(), out=tmp_path, workers=1).table
+    found = sweep(grid(), out=tmp_path, workers=1)
     made = read_results(tmp_path, KIND).manifest
-    assert made.headline == {"runs": 40, **table["outcome"].value_counts().to_dict()}
+    assert made.headline == {"runs": 40, **found.table["outcome"].value_counts().to_dict()}
     assert (made.about["semidiagonals"], made.about["runs"]) == (SIZES, 40)
+    assert found.facts == made.about
     motions = read_results(tmp_path, KIND).table("motions")
     assert np.array_equal(motions[["acceleration_x", "acceleration_y"]], SHORT.acceleration)
 

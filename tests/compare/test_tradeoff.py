@@ -12,7 +12,7 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare.runs.progress import Progress
-from rockwobble.compare.studies.plans import TradeoffPlan
+from rockwobble.compare.studies.plans import QuickPlan
 from rockwobble.compare.studies.tradeoff import problem as problems
 from rockwobble.compare.studies.tradeoff import study
 from rockwobble.compare.studies.tradeoff.methods import (
@@ -120,7 +120,7 @@ def test_all_methods_are_timed_in_turn_and_told_in_times_of_one(
     for each in ("tradeoff.methods", "scene_cost"):  # what is installed beyond these is timed in the same way
         monkeypatch.setattr(f"rockwobble.compare.studies.{each}.own_engines", standard_here)
     events: list[Progress] = []
-    found = study.measure_tradeoff(TradeoffPlan(quick=True), progress=events.append)
+    found = study.measure_tradeoff(QuickPlan(quick=True), progress=events.append)
     assert (events[-1].state, events[-1].done, events[-1].share) == ("finished", events[-1].total, 1.0)
     base = found.points[(found.points["line"] == BASE_LINE) & (found.points["value"] == BASE_TOLERANCE)]
     assert base[["ratio", "ratio_low", "ratio_high"]].to_numpy().tolist() == [[1.0, 1.0, 1.0]]

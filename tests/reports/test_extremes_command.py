@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from rockwobble.compare.studies import extremes as scan
 from rockwobble.compare.studies.extremes import Extremes, Verdict, measure_extremes
-from rockwobble.compare.studies.plans import ExtremesPlan
+from rockwobble.compare.studies.plans import QuickPlan
 from rockwobble.reports.cli.main import app
 from rockwobble.reports.pages import extremes as pages
 from rockwobble.reports.pages.page import Page
@@ -75,10 +75,10 @@ def test_a_second_scan_repeats_nothing(tmp_path: Path, monkeypatch: pytest.Monke
     cheap = [each for each in scan.conditions() if each.value in ("0.001 s", "R = 0.01 m")]
     monkeypatch.setattr(scan, "conditions", lambda **_: cheap)
     monkeypatch.setattr(scan, "methods", lambda: scan.MODELS[:2])
-    first = measure_extremes(tmp_path, ExtremesPlan(), workers=1)
+    first = measure_extremes(tmp_path, QuickPlan(), workers=1)
     assert list(first.extremes["verdict"]) == ["fine"] * 4
     monkeypatch.setattr(scan, "judge", None)
-    again = measure_extremes(tmp_path, ExtremesPlan(), workers=1)
+    again = measure_extremes(tmp_path, QuickPlan(), workers=1)
     pd.testing.assert_frame_equal(first.extremes, again.extremes)
     assert again.headline() == {"runs": 4, "fine": 4}
 

@@ -25,6 +25,7 @@ from .fit import TOO_FEW, resamples
 from .runs import MODELS, Method, RunPlan, default_levels, methods_of, own_model, run_plan
 from .tables import (
     DEFAULT_LIMITS,
+    LIMITS,
     OVERTURNED,
     blocks_of,
     contrast_table,
@@ -34,7 +35,6 @@ from .tables import (
     efficiency_table,
     fit_table,
     gap_table,
-    require_limits,
 )
 
 KIND = "fragility"
@@ -287,7 +287,7 @@ def _facts(plan: RunPlan) -> dict[str, object]:
         "methods": {method.label: _described(method, plan.methods) for method in plan.methods},
         "levels": None if asked.levels is None else list(map(float, asked.levels)),
         "scales": list(plan.scales) if asked.levels is None else None,
-        "limits": list(DEFAULT_LIMITS if asked.limits is None else require_limits(asked.limits)),
+        "limits": [name for name in LIMITS if name in (asked.limits or DEFAULT_LIMITS)],
         **{name: getattr(asked, name) for name in named},
         **({"rolling_resistance": asked.rolling_resistance} if asked.rolling_resistance else {}),
         "inputs": fingerprint([(task.name, task.label, task.key()) for task in plan.tasks()]),

@@ -10,14 +10,12 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-
-from rockwobble.models.number_checks import require_one_of
 
 from ...metrics.statistics import Interval
 from .fit import (
@@ -47,22 +45,6 @@ LIMITS: Mapping[str, float] = {
     CONTACT_LOST: math.nan,
 }
 DEFAULT_LIMITS = tuple(name for name in LIMITS if name != CONTACT_LOST)
-
-
-def require_limits(names: Iterable[str]) -> tuple[str, ...]:
-    """Return the limit states, each once, in the order of `LIMITS`.
-
-    Raises
-    ------
-    ValueError
-        If one is unknown, or there is none.
-    """
-    given = list(names)
-    for name in given:
-        require_one_of("a limit", name, LIMITS)
-    if not given:
-        raise ValueError("a fragility needs at least one limit, got none")
-    return tuple(name for name in LIMITS if name in given)
 
 
 def exceeded(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:

@@ -15,7 +15,7 @@ from rockwobble.models import Case
 from ...runs.progress import ProgressCallback, Stage, Stages
 from ...storage.manifest import Number
 from ...storage.results import Results
-from ..plans import TradeoffPlan
+from ..plans import QuickPlan
 from ..scene_cost import scene_costs
 from .methods import BASE, BASE_LINE, REST_PANEL, Method, MethodResult, methods_for, rest_line
 from .problem import FINE_REST_TILT, Problem, problems, sampling_distance
@@ -61,12 +61,12 @@ class Tradeoff(Results, kind="tradeoff"):
         return {"engine over recess model, least": low, "engine over recess model, largest": high}
 
 
-def measure_tradeoff(plan: TradeoffPlan, *, progress: ProgressCallback | None = None) -> Tradeoff:
+def measure_tradeoff(plan: QuickPlan, *, progress: ProgressCallback | None = None) -> Tradeoff:
     """Measure all methods on all problems.
 
     Parameters
     ----------
-    plan : TradeoffPlan
+    plan : QuickPlan
     progress : callable, optional
         Called with a `Progress` at the start and the end of each round.
     """

@@ -106,11 +106,6 @@ def contrasts(tables: Tables) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def ratios(runs: pd.DataFrame, method: str, against: str) -> Array:
-    """Return the ratios of the peaks of two methods, a record each; 0 and infinite where one overturns."""
-    return np.exp(pairs(runs, method, against, member="motion", peak="peak").log_ratios())
-
-
 def records(tables: Tables) -> Numbers:
     """Return the range over the points of the contrasts of each method.
 

@@ -15,8 +15,8 @@ from ...runs.progress import ProgressCallback
 from ...storage.manifest import Number
 from ...storage.provenance import engine_makers, fingerprint, reduced_makers
 from ...storage.results import Results
-from ..plans import ValidityPlan
-from .limits import limits_of
+from ..plans import QuickPlan
+from .limits import limits_of, records
 from .plan import (
     FULL,
     QUICK,
@@ -62,7 +62,7 @@ class Validity(Results, kind=KIND):
 
     def headline(self) -> dict[str, Number]:
         """Return the ratios of the peaks of the engine to those of the model, over the records."""
-        numbers = limits_of(self.tables)["records"]
+        numbers = records(self.tables)
         return {
             f"peak {where} over that of the model, {what}": numbers[f"{name}_{end}"]
             for name, where in _PLACES.items()
@@ -77,7 +77,7 @@ class Validity(Results, kind=KIND):
 
 def measure_validity(
     folder: str | Path,
-    plan: ValidityPlan,
+    plan: QuickPlan,
     *,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
