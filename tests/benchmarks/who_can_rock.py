@@ -207,8 +207,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return pythons.get(simulator.partition("-")[0]) or environment(simulator, Path(scratch))
 
         if given.times:
-            known: Any = _known(given.out).to_dict("records")
-            rows: list[dict[str, Any]] = [row for row in known if row["simulator"] in chosen]
+            kept: Any = known(given.out).to_dict("records")
+            rows: list[dict[str, Any]] = [row for row in kept if row["simulator"] in chosen]
         else:
             rows = [row for simulator in chosen for row in _measured(simulator, python_of)]
         _time(rows, python_of)
@@ -256,7 +256,8 @@ def _table(rows: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=list(_COLUMNS))
 
 
-def _known(out: Path) -> pd.DataFrame:
+def known(out: Path) -> pd.DataFrame:
+    """Return the table that a folder has."""
     import pandas as pd
 
     return pd.read_csv(out / "simulators.csv", dtype={"version": str}).fillna({"version": "", "remark": ""})
@@ -267,8 +268,8 @@ def _write(table: pd.DataFrame, out: Path) -> None:
 
     out.mkdir(parents=True, exist_ok=True)
     if (out / "simulators.csv").exists():
-        known = _known(out)
-        table = pd.concat([known[~known["simulator"].isin(table["simulator"])], table])
+        kept = known(out)
+        table = pd.concat([kept[~kept["simulator"].isin(table["simulator"])], table])
     order = {name: place for place, name in enumerate(KNOWN)}
     table = table.sort_values("simulator", key=lambda names: names.map(order), kind="stable")
     table.to_csv(out / "simulators.csv", index=False)

@@ -123,10 +123,10 @@ def main() -> None:
     (HERE / "scoreboard.json").write_text(json.dumps(found, indent=1) + "\n", "utf-8")
     words = (
         "Each cell has the verdict of check.py and, of all criteria of the case, the error that is largest "
-        'against its bound. "cannot": the code says that it has no such support or start; "left out": its runs '
-        'last too long; "not run": nobody has. "extrapolated to": the first time from which on, in one of the '
-        "runs of the case, halving the step brought it no closer, as in single precision; from then on it is the "
-        "run at the finest step. Single peaks and times mean what README.md says."
+        'against its bound. "cannot": the code says that it has no such support or start; "left out": its '
+        'runs last too long; "not run": nobody has. "extrapolated to": in one of the runs of the case '
+        "halving the step brought it no closer from then on, as in single precision; the rest is the run at "
+        "the finest step. Single peaks and times mean what README.md says."
     )
     text = ["# Scoreboard", words, markdown(table), "## What was run", markdown(made)]
     (HERE / "scoreboard.md").write_text("\n\n".join(text) + "\n", "utf-8")
