@@ -146,11 +146,16 @@ def made_table(rows: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
 def _write(table: pd.DataFrame, out: Path) -> None:
     import pandas as pd
 
+    earlier: dict[str, dict[str, str]] = {}
     if (out / "manifest.json").exists():
-        known = EngineVersions.load(out).versions
-        table = pd.concat([known[~known["engine"].isin(table["engine"])], table], ignore_index=True)
+        before = EngineVersions.load(out)
+        kept = before.versions[~before.versions["engine"].isin(table["engine"])]
+        origin = {"date": before.manifest.date, "commit": before.manifest.commit}
+        known = before.facts.get("earlier", {})
+        earlier = {str(name): known.get(name, origin) for name in kept["engine"].unique()}
+        table = pd.concat([kept, table], ignore_index=True)
     command = "python tests/benchmarks engine_versions --out " + str(out)
-    found = EngineVersions(tables={"versions": table}, facts={}).made_by(command)
+    found = EngineVersions(tables={"versions": table}, facts={"earlier": earlier}).made_by(command)
     pages = page_of(found).files()
     found.save(out, pages=pages)
     print(f"Written to {out}: manifest.json, versions.csv, versions.parquet, {', '.join(pages)}")
