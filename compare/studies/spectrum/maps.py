@@ -436,4 +436,5 @@ def tilt_maps(
 
 
 def _at_levels(run: Callable[..., Array], sizes: Array, unit: float, i: int, levels: Array) -> Array:
-    return run(sizes[i : i + 1], scales=unit * levels, workers=1)[0]
+    peaks: Array = run(sizes[i : i + 1], scales=unit * levels, workers=1)
+    return peaks[0]
