@@ -436,5 +436,4 @@ def tilt_maps(
 
 
 def _at_levels(run: Callable[..., Array], sizes: Array, unit: float, i: int, levels: Array) -> Array:
-    peaks: Array = run(sizes[i : i + 1], scales=unit * levels, workers=1)
-    return peaks[0]
+    return run(sizes[i : i + 1], scales=unit * levels, workers=1).ravel()
