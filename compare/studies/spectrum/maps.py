@@ -376,7 +376,7 @@ def tilt_maps(
     >>> spectrum.overturned("3d").tolist()
     [[False, True], [False, False]]
     """
-    asked = SpectrumPlan(**options)
+    asked = SpectrumPlan.of(**options)
     sizes, levels = (
         np.linspace(*default) if given is None else require_increasing(name, given)
         for name, given, default in (
