@@ -84,8 +84,10 @@ def compact(drawn: bytes) -> bytes:
     drawn = _PLACE.sub(lambda place: _LONG_NUMBER.sub(rb"\1", place[0]), drawn)
     repeated = [style for style, count in Counter(_STATED.findall(drawn)).items() if count > 2]
     classes = {style: b"s%d" % number for number, style in enumerate(repeated)}
-    used = {*_LINK.findall(drawn)}
-    drawn = _NAME.sub(lambda name: name[0] if name[1] in used else b"", drawn)
+    links, named = dict.fromkeys(_LINK.findall(drawn)), {*_NAME.findall(drawn)}
+    names = {name: b"n%d" % number for number, name in enumerate(filter(named.__contains__, links))}
+    drawn = _NAME.sub(lambda name: b' id="%s"' % names[name[1]] if name[1] in names else b"", drawn)
+    drawn = _LINK.sub(lambda link: link[0].replace(link[1], names.get(link[1], link[1])), drawn)
     drawn = _STATED.sub(lambda one: b' class="%s"' % classes[one[1]] if one[1] in classes else one[0], drawn)
     rules = b"".join(b"\n.%s{%s}" % (name, style) for style, name in classes.items())
     return _ungrouped(drawn.replace(b"</style>", rules + b"</style>", 1))
