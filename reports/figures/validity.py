@@ -215,7 +215,7 @@ def pictures(found: Validity) -> list[Picture]:
         _agreement(tables["following"]),
         _verification(tables["verification"]),
         _slip(tables["slip"]),
-        _rings(tables["rings"]),
+        *([_rings(tables["rings"])] if "rings" in tables else []),
         _contact(tables["contact"]),
     ]
 

@@ -33,8 +33,6 @@ def page_of(found: Validity) -> Page:
         "contrasts": _contrasts(contrasts(tables)),
         "summary": _summary(cells(tables)),
         **_needs(needs(tables)),
-        "rings": _rings(tables["rings"]),
-        "worst": _worst(tables["rings"]),
         "damping": damping(tables).to_dict("records"),
         "ranges": {
             name: (float(tables[part][column].min()), float(tables[part][column].max()))
@@ -47,8 +45,11 @@ def page_of(found: Validity) -> Page:
         },
         "largest_peak": LARGEST_PEAK,
         "records": found.facts["records"],
+        "slab_mass_ratio": found.facts.get("slab_mass_ratio", 0.0),
         "about": found.manifest,
     }
+    if "rings" in tables:  # under a slab they are not
+        values |= {"rings": _rings(tables["rings"]), "worst": _worst(tables["rings"])}
     return Page(name="validity", template="validity", values=values, pictures=pictures(found))
 
 

@@ -112,7 +112,7 @@ def records(tables: Tables) -> Numbers:
     NAME_least and NAME_largest, of the median ratio to the recess model; NAME_05_least to NAME_95_largest, of
     what 5 % and 95 % of the records of a point do not exceed; NAME_within and NAME_beyond, the number of
     points where the median is known to be within the margin, and beyond it. NAME "halved" is the ring at half
-    the step against itself.
+    the step against itself; under a slab neither is there.
     """
     table, runs = contrasts(tables), tables["records"]
     numbers: Numbers = {
@@ -120,6 +120,8 @@ def records(tables: Tables) -> Numbers:
         "points": float(len(table[POINT].drop_duplicates())),
     }
     for (method, against), name in _NAMES.items():
+        if not {method, against} <= set(runs["method"]):  # under a slab there is no ring
+            continue
         own = table[(table["method"] == method) & (table["against"] == against)]
         for share in ("", "_05", "_95"):
             numbers[f"{name}{share}_least"] = float(own[f"ratio{share}"].min())
@@ -458,6 +460,6 @@ def limits_of(tables: Tables) -> dict[str, Numbers]:
     Parameters
     ----------
     tables : mapping of DataFrame
-        Of each part by its name, as `measure_all` returns them.
+        Of each part by its name, as `measure_all` returns them: without rings there is no limit of them.
     """
-    return {name: limit(tables) for name, limit in LIMITS.items()}
+    return {name: limit(tables) for name, limit in LIMITS.items() if name != rings.__name__ or name in tables}
