@@ -26,7 +26,7 @@ _NEEDS = {
 
 def page_of(found: Validity) -> Page:
     """Return the report."""
-    tables = found.tables
+    tables, slab = found.tables, found.facts.get("slab_mass_ratio", 0.0)
     values: dict[str, object] = {
         "limits": limits_of(tables),
         "margin": MARGIN,
@@ -45,10 +45,10 @@ def page_of(found: Validity) -> Page:
         },
         "largest_peak": LARGEST_PEAK,
         "records": found.facts["records"],
-        "slab_mass_ratio": found.facts.get("slab_mass_ratio", 0.0),
+        "slab_mass_ratio": slab,
         "about": found.manifest,
     }
-    if "rings" in tables:  # under a slab they are not
+    if not slab:
         values |= {"rings": _rings(tables["rings"]), "worst": _worst(tables["rings"])}
     return Page(name="validity", template="validity", values=values, pictures=pictures(found))
 

@@ -312,7 +312,8 @@ def needs_of(trace: Trace) -> dict[str, float]:
     """Return the needs of the recess model of ground and recess in a run.
 
     friction, least_normal [weights], moment, the restraining moment over weight and base radius; NaN where it
-    does not move or overturns. In a frame of base or top, whichever asks for more, over the weight it carries.
+    does not move or overturns. In a frame of base or top, whichever asks for more, over the weight that it
+    carries.
     """
     needs = trace.assumptions
     if needs is None or trace.outcome != "stands" or not trace.peak_tilt > 0.0:
