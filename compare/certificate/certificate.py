@@ -95,8 +95,9 @@ class ShortCase:
 
 def short_cases(*, slab: bool = True) -> tuple[ShortCase, ...]:
     """Return the cases, the simplest first; that of a frame where there is a slab."""
-    pushed = [[0.0, 0.0, 0.0], [2.2, 0.5, -1.0], [1.0, 1.8, 1.0]]
-    frame = _shaken("frame", "mass of the slab, in mu of (18) and nu of the forces", pushed, 0.7, body=FRAME)
+    # so strong and long that an engine with a slab 1 % heavier is off by more than it repeats
+    pushes = [[0.0, 0.0, 0.0], [2.6, 0.6, -1.2], [1.2, 2.2, 1.2]]
+    frame = _shaken("frame", "mass of the slab, in (18) and in the forces", pushes, 1.0, 3.5, body=FRAME)
     return (
         _release("tilting", "restoring moment p^2 sin(alpha - theta)", PIER, 0.0, 1.0),
         _release("rolling", "B and B'/2A of (18) and (19)", PIER, 0.8, 2.0),
@@ -112,7 +113,7 @@ def short_cases(*, slab: bool = True) -> tuple[ShortCase, ...]:
         ),
         _shaken("uplift", "uplift (25), (26) and a_r of (18)", [[0.0, 0.0], [1.6, 1.9]], 1.4),
         _shaken("turning-push", "a_t of (19)", [[0.0, 0.0], [2.2, 0.5], [1.0, 1.8]], 0.7),
-        _shaken("vertical", "g + az", pushed, 0.7),
+        _shaken("vertical", "g + az", [[0.0, 0.0, 0.0], [2.2, 0.5, -1.0], [1.0, 1.8, 1.0]], 0.7),
         *([frame] if slab else []),
         ShortCase(
             name="planar",
