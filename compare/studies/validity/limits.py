@@ -332,8 +332,12 @@ def free_response(tables: Tables) -> Numbers:
 
 
 def _decided(table: pd.DataFrame) -> Numbers:
-    """Count the runs that confirm their model, those that contradict it, and all whose pass is resolved."""
-    resolved = table.assign(apart=models_apart(table))[table["resolved"].astype(bool)]
+    """Count the runs that confirm their model, those that contradict it, and all whose pass is resolved.
+
+    One that failed decides nothing: it has said so itself.
+    """
+    decides = table["resolved"].astype(bool) & (table["outcome"] != "failed")
+    resolved = table.assign(apart=models_apart(table))[decides]
     error = np.abs(column(resolved, "engine_turn") - column(resolved, "turn"))
     turn_off = error / np.abs(column(resolved, "turn"))
     period_off = np.abs(quotient(resolved, "engine_half_period", "half_period") - 1.0)
