@@ -386,8 +386,17 @@ def read_certificate(path: Path) -> Certificate:
 
 
 def write_certificate(certificate: Certificate, path: Path) -> None:
-    """Write it whole, or not at all."""
-    replace_files(path.parent, {path.name: (json.dumps(certificate, indent=1) + "\n").encode()})
+    """Write it whole, or not at all; a claim is a line."""
+    parts = [
+        f" {json.dumps(name)}: "
+        + (
+            "[\n  " + ",\n  ".join(map(json.dumps, part)) + "\n ]"
+            if isinstance(part, list)
+            else json.dumps(part)
+        )
+        for name, part in certificate.items()
+    ]
+    replace_files(path.parent, {path.name: ("{\n" + ",\n".join(parts) + "\n}\n").encode()})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
