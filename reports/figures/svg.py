@@ -62,7 +62,7 @@ _DARK = 0.6
 _LEADING = re.compile(rb"(?<!\d)0(?=\.[1-9])")
 _PATH, _SEGMENT = re.compile(rb'(?<= d=")[^"]+'), re.compile(rb"([MLQCz])([^MLQCz]*)")
 _PLACE, _LONG_NUMBER = re.compile(rb'(?: [xy]="|translate\()[^")]+'), re.compile(rb"(\.\d)\d+")
-_NOTHING = re.compile(rb"\n *<!--.*?-->|(?<=\n) +")
+_NOTHING = re.compile(rb'\n *<!--.*?-->|(?<=\n) +| transform="rotate\(-0 [^"]*"')
 _STATED, _NAME = re.compile(rb' style="([^"]*)"'), re.compile(rb' id="([^"]*)"')
 _LINK = re.compile(rb'#([^")]+)[")]')
 _HATCHES = {"": "", "/": "//", "x": "xx", ".": ".."}
@@ -80,7 +80,7 @@ def svg(picture: Picture, *, titled: bool = False) -> bytes:
 
 def compact(drawn: bytes) -> bytes:
     """Return an SVG of matplotlib in half its room: styles once, short paths, only names that are used."""
-    drawn = _NOTHING.sub(b"", _PATH.sub(_short, drawn))
+    drawn = _NOTHING.sub(b"", _PATH.sub(_short, drawn)).replace(b"<use xlink:href", b"<use href")
     drawn = _PLACE.sub(lambda place: _LONG_NUMBER.sub(rb"\1", place[0]), drawn)
     repeated = [style for style, count in Counter(_STATED.findall(drawn)).items() if count > 2]
     classes = {style: b"s%d" % number for number, style in enumerate(repeated)}
