@@ -68,7 +68,11 @@ def show(store: Store, as_json: Json = False) -> None:
 
 def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
     lines = {name: number(value) for name, value in made.headline.items()}
-    lines |= {name: _text(value) for name, value in made.about.items() if not isinstance(value, Mapping)}
+    lines |= {
+        name.replace("_", " "): _text(value)
+        for name, value in made.about.items()
+        if not isinstance(value, Mapping) and name not in ("inputs", "seed")  # which follow
+    }
     lines |= {
         "made by": made.command or "a program",
         "made on": f"{made.date}, {made.processor}",
