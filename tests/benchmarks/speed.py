@@ -13,7 +13,6 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,6 +22,7 @@ from rockwobble import reduced
 from rockwobble.compare.studies.tradeoff.methods import SOLVERS, TOLERANCE_SCALE, SolverName, start_of
 from rockwobble.models import Case, Cylinder, WobblingFrame, el_centro_1940
 from rockwobble.reduced.body import body_of
+from rockwobble.reduced.problem import Problem as ReducedProblem
 from rockwobble.reduced.problem import make_problem
 from rockwobble.reduced.simulation import make_ready
 from rockwobble.reduced.solution import Solution
@@ -239,27 +239,29 @@ def frame_ratios(rounds: int = 200) -> pd.DataFrame:
     frame, motion = WobblingFrame(pier, 1.0), el_centro_1940().scaled(2.0)
     size = pier.semidiagonal * body_of(pier, 1.0).p2 / body_of(frame, 1.0).p2
     larger = Cylinder(semidiagonal=size, tan_alpha=pier.tan_alpha)
-    for (model, options), (name, cylinder) in product(
-        reduced.MODELS.items(), {"of its columns": pier, "of its p": larger}.items()
-    ):
-        problems = []
-        for body in (cylinder, frame):
-            given = {"support": "recess", "plane": None, "restitution": 1.0, "rest_tilt": 1e-8} | dict(
-                options
-            )
-            problems.append(make_problem(Case(body, motion, duration=20.0), rtol=1e-8, **given))
-            make_ready(problems[-1].kernel)
-        steps = [problem.solve(np.empty(0))[0].step_count for problem in problems]
-        ratios = []
-        for turn in range(rounds):
-            times = {}
-            for place in (0, 1) if turn % 2 else (1, 0):
-                begin = time.perf_counter()
-                problems[place].solve(np.empty(0))
-                times[place] = (time.perf_counter() - begin) / steps[place]
-            ratios.append(times[1] / times[0])
-        rows.append((model, name, *steps, *np.percentile(ratios, [50, 25, 75])))
+    for model, options in reduced.MODELS.items():
+        given = {"support": "recess", "plane": None, "restitution": 1.0, "rest_tilt": 1e-8} | dict(options)
+        for name, cylinder in (("of its columns", pier), ("of its p", larger)):
+            cases = (Case(body, motion, duration=20.0) for body in (cylinder, frame))
+            problems = [make_problem(case, rtol=1e-8, **given) for case in cases]
+            rows.append((model, name, *_step_ratio(problems, rounds)))
     return pd.DataFrame(rows, columns=list(FRAME_FORMS))
+
+
+def _step_ratio(problems: Sequence[ReducedProblem], rounds: int) -> tuple[float, ...]:
+    """Return the steps of two problems, and the median and quartiles of the ratio of their times a step."""
+    for problem in problems:
+        make_ready(problem.kernel)
+    steps = [problem.solve(np.empty(0))[0].step_count for problem in problems]
+    ratios = []
+    for turn in range(rounds):
+        times = {}
+        for place in (0, 1) if turn % 2 else (1, 0):
+            begin = time.perf_counter()
+            problems[place].solve(np.empty(0))
+            times[place] = (time.perf_counter() - begin) / steps[place]
+        ratios.append(times[1] / times[0])
+    return (*steps, *np.percentile(ratios, [50, 25, 75]))
 
 
 def _seconds(solver: Solver, rtol: float) -> float:
