@@ -387,15 +387,12 @@ def read_certificate(path: Path) -> Certificate:
 
 def write_certificate(certificate: Certificate, path: Path) -> None:
     """Write it whole, or not at all; a claim is a line."""
-    parts = [
-        f" {json.dumps(name)}: "
-        + (
-            "[\n  " + ",\n  ".join(map(json.dumps, part)) + "\n ]"
-            if isinstance(part, list)
-            else json.dumps(part)
-        )
-        for name, part in certificate.items()
-    ]
+    parts = []
+    for name, part in certificate.items():
+        text = json.dumps(part)
+        if isinstance(part, list):
+            text = "[\n  " + ",\n  ".join(json.dumps(each, separators=(",", ":")) for each in part) + "\n ]"
+        parts.append(f" {json.dumps(name)}: {text}")
     replace_files(path.parent, {path.name: ("{\n" + ",\n".join(parts) + "\n}\n").encode()})
 
 

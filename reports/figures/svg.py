@@ -105,7 +105,7 @@ def _ungrouped(drawn: bytes) -> bytes:
 
 
 def _short(path: re.Match[bytes]) -> bytes:
-    """Return a path whose segments are relative to their start, in tenths of a point: an eighth of a pixel."""
+    """Return a path of segments relative to their start, in tenths of a point: an eighth of a pixel."""
     found, here, last = b"", (0, 0), b""
     for letter, numbers in _SEGMENT.findall(path[0]):
         tenths = [round(10.0 * float(number)) for number in numbers.split()]
