@@ -58,7 +58,7 @@ KNOWN: Mapping[str, tuple[str, str]] = MappingProxyType(
         "newton-mujoco": ("soft, convex optimisation", "single"),
         "newton-semi-implicit": ("springs, semi-implicit Euler", "single"),
         "newton-featherstone": ("springs, generalised coordinates", "single"),
-        "newton-vbd": ("vertex block descent", "single"),
+        "newton-vbd": ("augmented vertex block descent", "single"),
         "newton-steel": ("projected Gauss-Seidel", "single"),
         "newton-kamino": ("complementarity by proximal ADMM", "single"),
         "newton-style3d": ("projective dynamics of cloth", "single"),

@@ -66,7 +66,7 @@ def cell(entry: dict[str, Any], case: str) -> str:
     if worst is None or worst["error"] is None:
         return str(one["verdict"])
     until = entry.get("extrapolated_until", {}).get(case)
-    limit = "" if until is None else f"; extrapolated to {until:.2g} s"
+    limit = "" if until is None else f"; extrapolated to {until:.2g} s" if until else "; not extrapolated"
     return f"{one['verdict']} ({worst['name']} {worst['error']:.1e} {worst['unit']}{limit})"
 
 
@@ -125,8 +125,8 @@ def main() -> None:
         "Each cell has the verdict of check.py and, of all criteria of the case, the error that is largest "
         'against its bound. "cannot": the code says that it has no such support or start; "left out": its '
         'runs last too long; "not run": nobody has. "extrapolated to": in one of the runs of the case '
-        "halving the step brought it no closer from then on, as in single precision; the rest is the run at "
-        "the finest step. Single peaks and times mean what README.md says."
+        "halving the step brought it no closer from then on, as in single precision; the rest, or all that "
+        'is "not extrapolated", is the run at the finest step. Single peaks and times mean what README.md says.'
     )
     text = ["# Scoreboard", words, markdown(table), "## What was run", markdown(made)]
     (HERE / "scoreboard.md").write_text("\n\n".join(text) + "\n", "utf-8")
