@@ -126,7 +126,8 @@ def main() -> None:
         'against its bound. "cannot": the code says that it has no such support or start; "left out": its '
         'runs last too long; "not run": nobody has. "extrapolated to": in one of the runs of the case '
         "halving the step brought it no closer from then on, as in single precision; the rest, or all that "
-        'is "not extrapolated", is the run at the finest step. Single peaks and times mean what README.md says.'
+        'is "not extrapolated", is the run at the finest step. '
+        "Single peaks and times mean what README.md says."
     )
     text = ["# Scoreboard", words, markdown(table), "## What was run", markdown(made)]
     (HERE / "scoreboard.md").write_text("\n\n".join(text) + "\n", "utf-8")
