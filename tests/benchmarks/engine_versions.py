@@ -147,8 +147,8 @@ def _write(table: pd.DataFrame, out: Path) -> None:
     import pandas as pd
 
     earlier: dict[str, dict[str, str]] = {}
-    if (out / "manifest.json").exists():
-        before = EngineVersions.load(out)
+    before = EngineVersions.load(out) if (out / "manifest.json").exists() else None
+    if before is not None and before.manifest is not None:
         kept = before.versions[~before.versions["engine"].isin(table["engine"])]
         origin = {"date": before.manifest.date, "commit": before.manifest.commit}
         known = before.facts.get("earlier", {})

@@ -381,7 +381,7 @@ def _newton(
         model = builder.finalize(device="cpu")
         states, contacts, control = [model.state(), model.state()], model.contacts(), model.control()
         settings = {"config": kind.Config()} if solver == "ImplicitMPM" else better if best else {}
-        engine = kind(model, **settings)
+        engine, load = kind(model, **settings), _DOWN
 
         def put(position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
             pose, rates = [*position, *np.roll(quaternion, -1)], [*velocity, *spin]
@@ -392,7 +392,11 @@ def _newton(
                 state.joint_qd.assign(np.array(rates, dtype=np.float32))
 
         def take(gravity: Array) -> None:
-            model.set_gravity(tuple(gravity.tolist()))
+            nonlocal load
+            if not np.array_equal(gravity, load):
+                load = gravity
+                model.set_gravity(tuple(gravity.tolist()))
+                engine.notify_model_changed(newton.ModelFlags.MODEL_PROPERTIES)
             states[0].clear_forces()
             model.collide(states[0], contacts)
             engine.step(states[0], states[1], control, contacts, step)

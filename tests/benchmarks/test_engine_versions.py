@@ -51,12 +51,14 @@ def test_rows_of_other_engines_stay_and_say_when_they_were_measured(
     table: pd.DataFrame, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def row(engine: str, version: str, *_: object, **__: object) -> dict[str, Any]:
-        return {**table.iloc[1].to_dict(), "engine": engine, "version": version}
+        figures = {str(name): value for name, value in table.iloc[1].items()}
+        return figures | {"engine": engine, "version": version}
 
     monkeypatch.setattr(engine_versions, "_row", row)
     for engine in ("dart", "rapier", "dart"):
         engine_versions.main(["--engine", engine, "--version", "9.0.0", "--out", str(tmp_path)])
     found = EngineVersions.load(tmp_path)
+    assert found.manifest is not None
     assert list(found.versions["engine"]) == ["rapier", "dart"]
     assert found.facts["earlier"] == {
         "rapier": {"date": found.manifest.date, "commit": found.manifest.commit}

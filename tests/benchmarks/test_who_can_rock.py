@@ -69,3 +69,19 @@ def test_simulators_that_move_no_rigid_body_are_named() -> None:
     cannot = table[table["remark"] == "RuntimeError: moves no rigid body"]["simulator"]
     assert sorted(cannot) == ["newton-mpm", "newton-style3d"]
     assert all(f"`{name}`" in WORDS for name in cannot)
+
+
+def test_newton_leans_on_its_own_contacts() -> None:
+    table = known(PUBLISHED)
+    own = table[table["simulator"].str.startswith("newton-") & table["turn"].notna()]
+    own = own[own["simulator"] != "newton-mujoco"]  # which has contacts of MuJoCo
+    assert own["uplift"].str.contains("7 × leans at 0.49 g").all()
+    cited = [
+        ("newton-xpbd", "default"),
+        ("newton-xpbd", "best"),
+        ("newton-mujoco", "default"),
+        ("mujoco", "default"),
+    ]
+    for simulator, settings in cited:
+        each = row(simulator, settings)
+        assert f"{each.turn:.2f}° and {each.tilt:.3f}" in WORDS
