@@ -95,8 +95,8 @@ class Recorder:
         )
         self.looks = 0  # at the solver, and how often it had not converged
         self.unsolved = 0
-        self.grip_time = math.nan  # when more than friction held the rim, which only a joint does [s]
-        self.pull_time = math.nan  # when the ground held the rim down, which only a joint does [s]
+        # when more than friction held an end, and when it was held down, which only a joint does [s]
+        self.grip_time = self.pull_time = math.nan
         # a standing cylinder leans by less, in no direction
         sure = sure_tilt(body, rounding)
         self.floor = sure if start.standing else min(sure, 0.5 * lean)
@@ -194,15 +194,18 @@ class Recorder:
         within = state.tilt < math.atan(body.tan_alpha)
         self.fastest = max(self.fastest, float(np.abs(state.tilt_rate[within]).max(initial=0.0)))
         self._sample(time, rows)
-        force = force_of_steps(
-            poses, after, acceleration, self._scene.time_step, self._scene.gravity, body.slab_mass_ratio
-        )
-        self.forces.add(force)
+        # on the base, and of a frame on the slab
+        ends = [
+            force_of_steps(poses, after, acceleration, self._scene.time_step, self._scene.gravity, gain)
+            for gain in body.gains
+        ]
+        self.forces.add(ends[0])
         # a wall may well push the cylinder down, by its friction or where the rim is below it
         if math.isnan(self.pull_time) and wall is None:
-            self.pull_time = first_pull(time, force[2])
+            self.pull_time = float(np.fmin.reduce([first_pull(time, force[2]) for force in ends]))
         if math.isnan(self.grip_time) and wall is None:
-            self.grip_time = first_grip(time, force, self._scene.friction)
+            friction = self._scene.friction
+            self.grip_time = float(np.fmin.reduce([first_grip(time, force, friction) for force in ends]))
         self._angle, self._twist, self._leans = float(angle[-1]), float(state.twist[-1]), bool(leans[-1])
         self._count += stop
 
