@@ -210,7 +210,8 @@ def _add_slab(plant: Any, graph: Any, contact: Any, mass: float) -> None:
     from pydrake.multibody.tree import PrismaticJoint, SpatialInertia
 
     parent = ground = plant.world_body()
-    for name, axis in zip("xyz", np.eye(3), strict=True):
+    axes: Any = np.eye(3)
+    for name, axis in zip("xyz", axes, strict=True):
         inertia = SpatialInertia.SolidSphereWithMass(mass, 1.0) if name == "z" else SpatialInertia.Zero()
         body = plant.AddRigidBody(f"slab {name}", inertia)
         plant.AddJoint(PrismaticJoint(f"slab {name}", parent.body_frame(), body.body_frame(), axis))

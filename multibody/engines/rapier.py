@@ -105,6 +105,7 @@ class _RapierStepper(Leapfrog):
         self._world, self._cylinder, self._slab = _build(rapier3d, scene, settings)
         # position [m] and quaternion, scalar first
         self._pose: tuple[float, float, float, float, float, float, float]
+        self._slab_height: float
         start = scene.start
         position, velocity, spin = start.position.copy(), start.velocity, start.angular_velocity
         position[2] -= settings.depth

@@ -26,9 +26,8 @@ RELEASED = {
 }
 ENGINES = [name for name in RELEASED if name in multibody.available_engines()]
 ORDER = 0.2  # of the slope of the error
-SHAKEN = (
-    5e-5  # relative RMS at the default step; measured 5.0e-6 to 1.3e-5, of a cylinder alone 6.4e-6 to 1.0e-5
-)
+# relative RMS at the default step; measured 5.0e-6 to 1.3e-5, of a cylinder alone 6.4e-6 to 1.0e-5
+SHAKEN = 5e-5
 UNTIL = {"mujoco": 15.0, "pybullet": 15.0, "dart": 6.0}  # [s]; a step of DART costs four times another's
 # weights; a window of 65 steps has the curvature of the force, measured 5e-5; 4e-3 in single precision
 FORCE, ROUNDED_FORCE = 1e-3, 1e-2
