@@ -53,6 +53,8 @@ class Recorder:
         Whether the release is at rest in tilt.
     rounding : float
         Relative rounding error of the engine.
+    joined : bool
+        Whether a joint keeps the slab of a frame on the top; a column in contact may hop without it.
     """
 
     def __init__(
@@ -62,8 +64,11 @@ class Recorder:
         rolling_angle: float,
         starts_at_turn: bool,
         rounding: float = 2.0**-53,
+        *,
+        joined: bool = False,
     ) -> None:
         body, start = scene.body, scene.start
+        self._gains = body.gains if joined else body.gains[:1]
         self._scene, self._samples = scene, samples
         self.asked = float(samples[-1])  # end of the run that was asked for, before it was extended [s]
         self.off_grid = False  # whether it is no sample of a run that is extended
@@ -194,10 +199,10 @@ class Recorder:
         within = state.tilt < math.atan(body.tan_alpha)
         self.fastest = max(self.fastest, float(np.abs(state.tilt_rate[within]).max(initial=0.0)))
         self._sample(time, rows)
-        # on the base, and of a frame on the slab
+        # on the base, and on a slab that keeps to the top
         ends = [
             force_of_steps(poses, after, acceleration, self._scene.time_step, self._scene.gravity, gain)
-            for gain in body.gains
+            for gain in self._gains
         ]
         self.forces.add(ends[0])
         # a wall may well push the cylinder down, by its friction or where the rim is below it
