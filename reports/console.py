@@ -5,14 +5,13 @@ from __future__ import annotations
 import codecs
 import io
 import math
-import os
 import shlex
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -22,7 +21,6 @@ import rockwobble.compare.storage as rs
 from .pages.table import number
 
 if TYPE_CHECKING:
-    from _typeshed import ReadableBuffer
     from rich.text import Text
 
     from rockwobble.compare.runs.progress import Progress, ProgressCallback
@@ -91,54 +89,11 @@ def interruptible(kept: Path | None = None) -> Iterator[None]:
 
 
 def forgive_output() -> None:
-    """Let no output stop a command: results outlive a closed pipe, a full device and a poor encoding."""
+    """Let no poor encoding of the output stop a command."""
     codecs.register_error("rockwobble", _plain)
-    _open_standard_files()
-    sys.stdout, sys.stderr = _forgiving(sys.stdout, "standard output"), _forgiving(sys.stderr, "")
-
-
-def _open_standard_files() -> None:
-    """Put the null device in the place of standard files that are closed: a later file would take theirs."""
-    for descriptor in range(3):
-        try:
-            os.fstat(descriptor)
-        except OSError:
-            os.dup2(os.open(os.devnull, os.O_RDWR), descriptor)
-
-
-def _forgiving(stream: TextIO | None, name: str) -> TextIO:
-    if stream is None:  # closed when Python started
-        return Path(os.devnull).open("w", encoding="utf-8")
-    if not isinstance(stream, io.TextIOWrapper):
-        return stream
-    if stream.isatty():
-        stream.reconfigure(errors="rockwobble")
-        return stream
-    try:
-        raw = _Forgiving(stream.fileno(), "w", closefd=False)
-    except OSError:  # in memory, as in a test
-        return stream
-    raw.said = name
-    return io.TextIOWrapper(
-        io.BufferedWriter(raw), encoding=stream.encoding, errors="rockwobble", line_buffering=True
-    )
-
-
-class _Forgiving(io.FileIO):
-    """A file that says once that it cannot be written, and then takes everything."""
-
-    said = ""
-
-    def write(self, data: ReadableBuffer, /) -> int:
-        try:
-            return super().write(data)
-        except BrokenPipeError:
-            pass  # the reader has closed it
-        except OSError as error:
-            if self.said:
-                complain(f"{self.said} cannot be written: {error.strerror}")
-                self.said = ""
-        return memoryview(data).nbytes
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="rockwobble", line_buffering=True)
 
 
 def _plain(error: UnicodeError) -> tuple[str, int]:

@@ -153,7 +153,7 @@ def ensemble(
     >>> found.methods[["method", "runs", "failed"]].values.tolist()
     [['recess model', 5, 0], ['flat-ground model', 5, 0]]
     """
-    plan = Copies(**options)
+    plan = Copies.of(**options)
     about: dict[str, object] = {"seed": plan.seed}
     if isinstance(case_or_members, Case):
         perturbation = plan.perturbation

@@ -181,12 +181,24 @@ class SpectrumPlan(Plan):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class QuickPlan(Plan):
-    """Extent of a published study: validity, trade-off or extremes."""
+    """Extent of a published study."""
 
     quick: bool = option(
         False,
         "Coarser maps, fewer points, members and conditions: some two minutes on two idle cores.",
         flag="--quick",
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ValidityPlan(QuickPlan):
+    """Extent of the study of the limits, and the slab that its cylinders carry."""
+
+    slab_mass_ratio: float = option(
+        0.0,
+        "Mass of a rigid slab that only translates over that of the column under it; 0 is a cylinder alone.",
+        group="Cylinder",
+        least=0.0,
     )
 
 

@@ -20,7 +20,7 @@ from ..console import interruptible, save_with_page, show_and_save, shown_progre
 from ..pages.cases import describe, motion_warnings
 from . import options
 from .command import takes_options
-from .estimate import require_feasible, require_sweep
+from .estimate import sweep_time
 from .problem import BODY, Body, Problem, Record, refuse, refuse_options_of_engines
 from .several import GridOptions, ManyMethods, ManyMotions, cylinders_of
 from .suite_choice import chosen_runs, refuse_problem_options, without_missing
@@ -198,8 +198,6 @@ def ensemble(
                 shown = stated if isinstance(stated, rw.Case) else stated[0]
                 count = copies.copies if isinstance(stated, rw.Case) else len(stated)
                 runs = _runs(engine, support, time_step, None)
-                # each engine and its own model, and a perturbed copy of that
-                require_feasible([shown], [rw.Run(None, "recess"), *runs], members=count, samples=False)
                 for line in describe(shown) if isinstance(stated, rw.Case) else describe(shown)[:1]:
                     print(line)
                 print(f"Members: {count}, {source}")
@@ -296,7 +294,7 @@ def sweep(
             stated = {each.name for each in fields(GridOptions)}
             refuse(context, stated, f"does not go with a suite, got {suite}: the file states the problems")
             plan = _suite(suite, model)
-        how_long = require_sweep(plan)
+        how_long = sweep_time(plan)
         rs.require_writable(out)
     for line in (*_echo(plan), how_long):
         print(line)

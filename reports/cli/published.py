@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rockwobble.compare.studies.plans import QuickPlan
+from rockwobble.compare.studies.plans import QuickPlan, ValidityPlan
 
 from ..console import FAILED, results_in, show_and_save, user_input
 from . import options
@@ -16,7 +16,7 @@ from .command import takes_options
 
 @takes_options
 def validity(
-    plan: QuickPlan,
+    plan: ValidityPlan,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-validity"),
 ) -> None:
@@ -26,6 +26,8 @@ def validity(
     and on flat ground, beside a perturbed copy of the model; what friction, contact and moment a recess
     needs; clearances, softer contact and less friction. Takes about 40 minutes on two idle cores. What is
     measured is kept in the folder: a second run repeats nothing.
+
+    With a slab the same of a frame of one column. A recess with clearance, which takes no slab, is left out.
 
     Writes validity.html, validity.md with its pictures as SVG, as Parquet the tables of all parts and every
     number of the report (limits). `rockwobble report` draws the pages again.

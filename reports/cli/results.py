@@ -20,7 +20,7 @@ from ..pages.cases import describe
 from ..pages.table import number
 from . import options
 from .command import takes_options
-from .estimate import require_feasible, time_needed
+from .estimate import require_memory, time_needed
 from .options import settings
 from .problem import Problem, given_options, refuse
 
@@ -68,7 +68,11 @@ def show(store: Store, as_json: Json = False) -> None:
 
 def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
     lines = {name: number(value) for name, value in made.headline.items()}
-    lines |= {name: _text(value) for name, value in made.about.items() if not isinstance(value, Mapping)}
+    lines |= {
+        name.replace("_", " "): _text(value)
+        for name, value in made.about.items()
+        if not isinstance(value, Mapping) and name not in ("inputs", "seed")  # which follow
+    }
     lines |= {
         "made by": made.command or "a program",
         "made on": f"{made.date}, {made.processor}",
@@ -174,7 +178,7 @@ def view(
                 case = problem.case()
                 asked = rw.Run(engine or rw.multibody.DEFAULT_ENGINE, support, time_step)
                 (run,) = rr.with_settings(case, [asked], settings(setting))
-                require_feasible([case], [run])
+                require_memory([case], [run])
                 rr.require_runnable(case, run)
                 name = case.name
             rs.require_writable(out)

@@ -22,7 +22,7 @@ from ..console import FAILED, complain, interruptible, show_and_save, shown_prog
 from ..pages.cases import describe
 from . import options
 from .command import takes_options
-from .estimate import require_feasible, time_needed
+from .estimate import require_memory, time_needed
 from .options import settings
 from .problem import Problem, given_options, refuse_options_of_engines, restated
 from .suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
@@ -140,7 +140,7 @@ def compare(
             if setting:
                 runs = list(rr.with_settings(cases[0], runs, settings(setting)))
             rs.require_writable(out)
-            require_feasible(cases, runs)
+            require_memory(cases, runs)
             for each in cases:
                 for run in runs:
                     rr.require_runnable(each, run)
@@ -253,7 +253,7 @@ def simulate(
             model = {"plane": plane, "restitution": restitution, "rest_tilt": rest_tilt}
             named = None if engine == options.NO_ENGINE else engine
             run = _with_settings(case, rw.Run(named, support, time_step), setting, model)
-            require_feasible([case], [run])
+            require_memory([case], [run])
             rr.require_runnable(case, run)
         for line in time_needed([case], [run]):
             print(line, file=sys.stderr)
@@ -320,7 +320,7 @@ def advise(
         with user_input():
             case = problem.case()
             run = _run(case, engine, plan.support, time_step)
-            require_feasible([case], [rw.Run(None, "recess"), *([] if run is None else [run])])
+            require_memory([case], [rw.Run(None, "recess"), *([] if run is None else [run])])
             rs.require_writable(out)
         with shown_progress("stages") as progress:
             found = rw.advise(

@@ -285,7 +285,7 @@ def certify(
         ),
     ] = None,
 ) -> None:
-    """Write a certificate: claims with their evidence, and a fingerprint of twelve short cases.
+    """Write a certificate: claims with their evidence, and a fingerprint of short cases.
 
     A claim is verified (against exact solutions), cross-validated (between independent formulations) or
     validated (against an experiment, by the hash of its data; there is none yet). Nothing is written where a

@@ -214,8 +214,8 @@ def pictures(found: Validity) -> list[Picture]:
         *map_pictures(tables),
         _agreement(tables["following"]),
         _verification(tables["verification"]),
-        _slip(tables["slip"]),
-        _rings(tables["rings"]),
+        # with a slab there is no ring, and what slips first is not the base
+        *([] if found.facts.get("slab_mass_ratio") else [_slip(tables["slip"]), _rings(tables["rings"])]),
         _contact(tables["contact"]),
     ]
 

@@ -26,15 +26,13 @@ _NEEDS = {
 
 def page_of(found: Validity) -> Page:
     """Return the report."""
-    tables = found.tables
+    tables, slab = found.tables, found.facts.get("slab_mass_ratio", 0.0)
     values: dict[str, object] = {
         "limits": limits_of(tables),
         "margin": MARGIN,
         "contrasts": _contrasts(contrasts(tables)),
         "summary": _summary(cells(tables)),
         **_needs(needs(tables)),
-        "rings": _rings(tables["rings"]),
-        "worst": _worst(tables["rings"]),
         "damping": damping(tables).to_dict("records"),
         "ranges": {
             name: (float(tables[part][column].min()), float(tables[part][column].max()))
@@ -47,8 +45,11 @@ def page_of(found: Validity) -> Page:
         },
         "largest_peak": LARGEST_PEAK,
         "records": found.facts["records"],
+        "slab_mass_ratio": slab,
         "about": found.manifest,
     }
+    if not slab:
+        values |= {"rings": _rings(tables["rings"]), "worst": _worst(tables["rings"])}
     return Page(name="validity", template="validity", values=values, pictures=pictures(found))
 
 

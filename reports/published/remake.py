@@ -11,11 +11,13 @@ tables of a study are, `rockwobble report reports/published/NAME` draws its page
 
 from __future__ import annotations
 
+import json
 import shlex
 import shutil
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 from rockwobble.compare.storage.manifest import MANIFEST, read_manifests
@@ -69,10 +71,12 @@ STUDIES = {
 # what the code did that made them: a test fails once it does something else
 CERTIFICATES = {"reduced": "certify", "mujoco": "certify --engine mujoco"}
 NOT_KEPT = ("*.html", "finished")
+# tables once more, as text
+SHEETS = ("counts.csv", "counts.json", "members.csv")
 # a table beyond this is made again by the command that the page names [bytes]
 LARGEST = 300_000
 # of a study that lacks one, and is drawn no more: what claims of other pages rest on
-STILL_KEPT = ("contrasts.parquet",)
+STILL_KEPT = ("contrasts.parquet", "counts.parquet")
 # of the control no page is shown
 CONTROLS = {"fragility/half-step": (*STILL_KEPT, MANIFEST)}
 
@@ -82,6 +86,7 @@ def trim(folder: Path, *, only: tuple[str, ...] | None = None) -> None:
     for pattern in NOT_KEPT:
         for path in folder.glob(pattern):
             shutil.rmtree(path) if path.is_dir() else path.unlink()
+    _drop(folder, SHEETS)
     tables = list(folder.glob("*.parquet"))
     named = [folder / name for made in read_manifests(folder) for name in made.files]
     if (
@@ -94,6 +99,16 @@ def trim(folder: Path, *, only: tuple[str, ...] | None = None) -> None:
         table = path.suffix in (".parquet", ".json") and path.name not in (*STILL_KEPT, MANIFEST)
         if path.is_file() and (table if only is None else path.name not in only):
             path.unlink()
+
+
+def _drop(folder: Path, names: Sequence[str]) -> None:
+    """Remove files and what the manifest says of them."""
+    manifest = folder / MANIFEST
+    stated = json.loads(manifest.read_text())
+    for name in names:
+        (folder / name).unlink(missing_ok=True)
+        stated["files"].pop(name, None)
+    manifest.write_text(json.dumps(stated, indent=1) + "\n")
 
 
 def changes_since() -> dict[str, dict[str, int]]:

@@ -21,6 +21,8 @@ from numpy.typing import NDArray
 from rockwobble import reduced
 from rockwobble.compare.studies.tradeoff.methods import SOLVERS, TOLERANCE_SCALE, SolverName, start_of
 from rockwobble.models import Case, Cylinder, WobblingFrame, el_centro_1940
+from rockwobble.reduced.body import body_of
+from rockwobble.reduced.problem import Problem as ReducedProblem
 from rockwobble.reduced.problem import make_problem
 from rockwobble.reduced.simulation import make_ready
 from rockwobble.reduced.solution import Solution
@@ -220,31 +222,46 @@ def measure(
     )
 
 
+FRAME_FORMS = {"model": "", "cylinder": "", "steps": "d", "steps_frame": "d"} | dict.fromkeys(
+    ("ratio", "low", "high"), ".3f"
+)
+
+
 def frame_ratios(rounds: int = 200) -> pd.DataFrame:
-    """Return the time a step of each kernel with a frame over that with a cylinder, and its quartiles."""
+    """Return the time a step of each kernel with a frame over that with a cylinder, and its quartiles.
+
+    Of a cylinder as its columns, and of one with its p, which in one plane makes its motion: what a step
+    takes depends on the motion, too.
+    """
     import pandas as pd
 
     pier, rows = Cylinder(semidiagonal=6.0, tan_alpha=0.2), []
-    motion = el_centro_1940().scaled(2.0)
+    frame, motion = WobblingFrame(pier, 1.0), el_centro_1940().scaled(2.0)
+    size = pier.semidiagonal * body_of(pier, 1.0).p2 / body_of(frame, 1.0).p2
+    larger = Cylinder(semidiagonal=size, tan_alpha=pier.tan_alpha)
     for model, options in reduced.MODELS.items():
-        problems = []
-        for body in (pier, WobblingFrame(pier, 1.0)):
-            given = {"support": "recess", "plane": None, "restitution": 1.0, "rest_tilt": 1e-8} | dict(
-                options
-            )
-            problems.append(make_problem(Case(body, motion, duration=20.0), rtol=1e-8, **given))
-            make_ready(problems[-1].kernel)
-        steps = [problem.solve(np.empty(0))[0].step_count for problem in problems]
-        ratios = []
-        for turn in range(rounds):
-            times = {}
-            for place in (0, 1) if turn % 2 else (1, 0):
-                begin = time.perf_counter()
-                problems[place].solve(np.empty(0))
-                times[place] = (time.perf_counter() - begin) / steps[place]
-            ratios.append(times[1] / times[0])
-        rows.append((model, *steps, *np.percentile(ratios, [50, 25, 75])))
-    return pd.DataFrame(rows, columns=["model", "steps", "steps_frame", "ratio", "low", "high"])
+        given = {"support": "recess", "plane": None, "restitution": 1.0, "rest_tilt": 1e-8} | dict(options)
+        for name, cylinder in (("of its columns", pier), ("of its p", larger)):
+            cases = (Case(body, motion, duration=20.0) for body in (cylinder, frame))
+            problems = [make_problem(case, rtol=1e-8, **given) for case in cases]
+            rows.append((model, name, *_step_ratio(problems, rounds)))
+    return pd.DataFrame(rows, columns=list(FRAME_FORMS))
+
+
+def _step_ratio(problems: Sequence[ReducedProblem], rounds: int) -> tuple[float, ...]:
+    """Return the steps of two problems, and the median and quartiles of the ratio of their times a step."""
+    for problem in problems:
+        make_ready(problem.kernel)
+    steps = [problem.solve(np.empty(0))[0].step_count for problem in problems]
+    ratios = []
+    for turn in range(rounds):
+        times = {}
+        for place in (0, 1) if turn % 2 else (1, 0):
+            begin = time.perf_counter()
+            problems[place].solve(np.empty(0))
+            times[place] = (time.perf_counter() - begin) / steps[place]
+        ratios.append(times[1] / times[0])
+    return (*steps, *np.percentile(ratios, [50, 25, 75]))
 
 
 def _seconds(solver: Solver, rtol: float) -> float:
@@ -260,8 +277,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = options_of("speed", "How much faster the reduced kernel is than others at equal error.")
     parser.add_argument("--frame", action="store_true", help="a frame beside a cylinder")
     if parser.parse_args(arguments).frame:
-        forms = {"model": "", "steps": "d", "steps_frame": "d", "ratio": ".3f", "low": ".3f", "high": ".3f"}
-        show(frame_ratios(), "Time a step with a frame over that with a cylinder, with quartiles", forms)
+        show(
+            frame_ratios(), "Time a step with a frame over that with a cylinder, with quartiles", FRAME_FORMS
+        )
         return 0
     table = measure(say=lambda line: print(line, file=sys.stderr))
     seconds = _AFTER_UPLIFT

@@ -8,6 +8,7 @@ import json
 import math
 import subprocess
 import sys
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,8 @@ import jsonschema
 import numpy as np
 import pytest
 from mutation.listed import mutations
-from mutation.mutant import mutated
+from mutation.mutant import Fault, mutated
+from mutation.places import after_assignment
 
 from rockwobble import reduced
 from rockwobble.compare.certificate import (
@@ -65,10 +67,39 @@ def changed_by(change: Any) -> Subject:
     return dataclasses.replace(right, source=source)
 
 
-def test_twelve_cases_have_names_claims_and_terms_of_their_own() -> None:
+def without_frame(certificate: dict[str, Any]) -> dict[str, Any]:
+    """As an earlier version made it, or of an engine that carries no slab."""
+    entries = [one for one in certificate["fingerprint"] if one["name"] != "frame"]
+    return certificate | {"fingerprint": entries}
+
+
+def test_cases_have_names_claims_and_terms_of_their_own() -> None:
     cases = short_cases()
-    assert len(cases) == 12
-    assert len({short.name for short in cases}) == len({short.term for short in cases}) == 12
+    assert len(cases) == len({short.name for short in cases}) == len({short.term for short in cases}) == 13
+    assert [short.name for short in cases if short not in short_cases(slab=False)] == ["frame"]
+
+
+def test_what_carries_no_slab_has_no_case_of_a_frame() -> None:
+    place = [short.name for short in short_cases()].index("frame")
+    others = [short.name for short in short_cases(slab=False)][: place + 1]
+    entries = islice(fingerprint(dataclasses.replace(models(), carries_slab=False)), place + 1)
+    assert [one["name"] for one in entries] == others
+
+
+def test_a_certificate_without_a_frame_is_verified_for_what_it_holds(certificate: dict[str, Any]) -> None:
+    older = without_frame(certificate)
+    assert verify(older).word == SAME
+    with pytest.raises(ValueError, match="other cases"):
+        verify(older | {"fingerprint": older["fingerprint"][1:]})
+
+
+@pytest.mark.parametrize("name", ["gamma", "w", "mu"])
+def test_a_slab_of_one_percent_more_is_a_change_of_the_frame(certificate: dict[str, Any], name: str) -> None:
+    # a term of a cylinder alone is 1 with or without the fault
+    wrong = after_assignment("body_of", name, f"{name} = {name} if gamma == 0.0 else 1.01 * {name}")
+    with mutated(Fault(file="body.py", change=wrong)) as copy:
+        answer = verify(certificate, models(copy))
+    assert (answer.word, answer.case) == (CHANGED, "frame")
 
 
 def test_the_signals_of_a_release_begin_where_it_leans(certificate: dict[str, Any]) -> None:
@@ -171,7 +202,7 @@ def test_copies_are_computed_only_where_something_differs(certificate: dict[str,
         return right.source(case, *given, **options)
 
     assert verify(certificate, dataclasses.replace(right, source=source)).word == SAME
-    assert len(runs) == 12
+    assert len(runs) == 13
 
 
 def test_late_peaks_are_those_after_the_agreement_time() -> None:
@@ -237,9 +268,12 @@ def test_the_copy_in_the_published_folder_reads_certificates_with_numpy_alone(
 
     older = {**certificate, "format": certificate["format"] - 1}
     (tmp_path / "older.json").write_text(json.dumps(older))
-    refused = run("older.json", "one.json")
-    assert refused.returncode == 2
-    assert "make both anew" in refused.stderr
+    write_certificate(without_frame(certificate), tmp_path / "no frame.json")
+    assert run("no frame.json", "one.json").returncode == 0
+    for names in (("older.json", "one.json"), ("one.json", "no frame.json")):
+        refused = run(*names)
+        assert refused.returncode == 2
+        assert "make both anew" in refused.stderr
     same, changed, bad = run("one.json", "one.json"), run("one.json", "other.json"), run("one.json", "none")
     assert (same.returncode, same.stdout.strip()) == (0, "same")
     assert changed.returncode == 1

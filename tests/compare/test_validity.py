@@ -18,6 +18,7 @@ from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.validity import study
 from rockwobble.compare.studies.validity.limits import (
+    ALIKE,
     FEWEST,
     LIMITS,
     cells,
@@ -35,13 +36,14 @@ from rockwobble.compare.studies.validity.plan import (
     FULL,
     LARGEST_PEAK,
     QUICK,
+    REFERENCE_SIZE,
     shaken_case,
     source_of,
 )
 from rockwobble.compare.studies.validity.shaken import FREE, HALVED, RECESS
-from rockwobble.compare.studies.validity.study import PARTS, measure_all
-from rockwobble.models import Cylinder, Run
-from rockwobble.reduced import body, problem
+from rockwobble.compare.studies.validity.study import PARTS, measure_all, validity_of
+from rockwobble.models import Cylinder, InitialState, Run, WobblingFrame
+from rockwobble.reduced import body, free_response, problem, steady_wobble_rate
 from rockwobble.reduced.body import Body
 from rockwobble.reduced.exact import _shape
 
@@ -219,10 +221,15 @@ def test_the_vertical_component_counts_what_it_alone_overturns() -> None:
 def test_a_friction_that_slips_at_one_release_does_not_hold() -> None:
     slip = pd.DataFrame(
         {"share": [0.5, 0.9, 1.0] * 2, "slip": [0.0, 0.0, 0.0, 0.1, 0.1, 0.0], "tilt_rms": 0.0}
-    )
+    ).assign(outcome="stands")
     needed = pd.DataFrame({"tan_alpha": [0.2], "friction": [0.2]})
     found = friction({"free_response": needed, "slip": slip, "peaks": needed})
     assert (found["slips_at"], found["holds_from"]) == (0.9, 1.0)
+    # under a slab it slips at the top, which an engine does not count: the tilt errs, or energy ends the run
+    for sign in ({"tilt_rms": [0.1, 0.1, 0.0]}, {"outcome": ["failed", "failed", "stands"]}):
+        under = slip.iloc[:3].assign(**sign)
+        found = friction({"free_response": needed, "slip": under, "peaks": needed})
+        assert (found["slips_at"], found["holds_from"]) == (0.9, 1.0)
 
 
 def test_soft_contact_is_told_by_its_damping_and_failures_are_counted(tables: Tables) -> None:
@@ -286,3 +293,39 @@ def test_a_report_shows_itself_by_figure(tmp_path_factory: pytest.TempPathFactor
     synthetic = replace(found, facts={**found.facts, "records": source_of(["synthetic 1"])})
     shows_itself(synthetic, "motions synthetic records", "peaks 24 rows")
     assert found.plot("slip").axes
+
+
+# a number of each part that a slab changes
+OF_THE_BODY = {
+    "free_response": "period",
+    "verification": "half_period",
+    "peaks": "friction",
+    "slip": "needed",
+    "contact": "recess_peak",
+    "following": "reference_peak_tilt",
+    "records": "peak",
+}
+
+
+def test_with_a_slab_every_part_but_that_of_rings_is_of_the_frame_and_says_so(
+    tables: Tables, tmp_path: Path
+) -> None:
+    extent = replace(TINY, sizes=(4.0,), slab_mass_ratio=1.0)
+    found = validity_of(measure_all(extent, tmp_path, workers=1), extent)
+    assert set(found.tables) == {*OF_THE_BODY, "limits"} == {*PARTS, "limits"} - {"rings"}
+    assert all((table["slab_mass_ratio"] == 1.0).all() for table in found.tables.values())
+    for name, column in OF_THE_BODY.items():
+        known, alone = (each[name][column].dropna() for each in (found.tables, tables))
+        assert len(known)
+        assert not set(known) & set(alone), name
+    assert set(found.limits["limit"]) == set(LIMITS) - {"rings"}
+    assert "ring" not in set(found.records["method"])
+    frame = WobblingFrame(Cylinder(semidiagonal=REFERENCE_SIZE, tan_alpha=0.2), 1.0, columns=1)
+    tilt = 0.5 * frame.alpha
+    release = InitialState(tilt, rolling_rate=0.1 * steady_wobble_rate(frame, tilt))
+    assert found.free_response["period"].iloc[0] == free_response(frame, release).period
+    # the engine has the slab, too, and one end of its column slips where the model says
+    numbers = limits_of(found.tables)
+    assert (numbers["free_response"]["confirmed"], numbers["free_response"]["points"]) == (2.0, 2.0)
+    assert (numbers["friction"]["slips_at"], numbers["friction"]["holds_from"]) == (0.9, 1.05)
+    assert numbers["traces"]["recess_peak_worst"] < ALIKE

@@ -1,7 +1,8 @@
 """Functions of the packages that each test calls, recorded by one run of the tests.
 
 `python -m pytest -p mutation.reach` writes the table, of JSON, to the file that the environment names in
-`REACH`. Compiled functions are not seen: what is compiled is called by no test.
+`REACH`; of several processes it joins what each wrote. Tests that fail are left out and named: they find
+nothing. Compiled functions are not seen: what is compiled is called by no test.
 """
 
 from __future__ import annotations
@@ -68,6 +69,7 @@ class Recorder:
         self._running: dict[int, CodeType] = {}
         self._fixtures: dict[str, set[str]] = {}
         self._tests: dict[str, tuple[float, set[str], Sequence[str]]] = {}
+        self._failed: dict[str, None] = {}
 
     @pytest.hookimpl(hookwrapper=True)
     def pytest_fixture_setup(self, fixturedef: Any) -> Generator[None]:
@@ -96,9 +98,14 @@ class Recorder:
         threading.settrace(None)
         self._tests[item.nodeid] = time.process_time() - started, self._names(), item.fixturenames
 
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Note what fails."""
+        if report.failed:
+            self._failed[report.nodeid] = None
+
     def pytest_sessionfinish(self) -> None:
         """Write the table."""
-        rows = [
+        rows: list[Any] = [
             (
                 test,
                 round(seconds, 3),
@@ -106,7 +113,17 @@ class Recorder:
             )
             for test, (seconds, calls, fixtures) in self._tests.items()
         ]
-        Path(os.environ["REACH"]).write_text(json.dumps(rows), encoding="utf-8")
+        table = Path(os.environ["REACH"])
+        if worker := os.environ.get("PYTEST_XDIST_WORKER"):
+            table = table.with_suffix(f".{worker}")
+        else:
+            for part in table.parent.glob(f"{table.stem}.gw*"):
+                rows += json.loads(part.read_text(encoding="utf-8"))
+                part.unlink()
+        rows = [row for row in rows if row[0] not in self._failed]
+        table.write_text(json.dumps(rows), encoding="utf-8")
+        for test in self._failed:
+            print(f"\nleft out, since it fails without a fault: {test}")
 
     def _names(self) -> set[str]:
         return {

@@ -143,7 +143,7 @@ def median_of(counts: pd.DataFrame) -> float:
 
 
 def test_fragility() -> None:
-    counts = pd.read_csv(PUBLISHED / "fragility" / "p695" / "counts.csv")
+    counts = pd.read_parquet(PUBLISHED / "fragility" / "p695" / "counts.parquet")
     fell = counts[counts["limit"] == "overturned"]
     medians = {key: median_of(rows) for key, rows in fell.groupby(["cylinder", "method"])}
     cylinders = list(fell["cylinder"].unique())

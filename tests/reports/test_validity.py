@@ -79,6 +79,17 @@ def test_other_numbers_say_something_else(found: Validity) -> None:
     assert "not on the safe side" in changed(found, "records", high)
 
 
+def test_with_a_slab_it_is_named_and_no_clearance_is(found: Validity) -> None:
+    tables = {name: table for name, table in found.tables.items() if name != "rings"}
+    facts = {**found.facts, "slab_mass_ratio": 0.25}
+    page = page_of(dataclasses.replace(found, tables=tables, facts=facts))
+    document = page.markdown()
+    assert "under a slab of 0.25 times its mass" in document
+    assert "## A recess with clearance" not in document
+    shown = re.findall(r"\]\((.*?)\.svg\)", document)
+    assert sorted(shown) == sorted(picture.name for picture in page.pictures)
+
+
 def test_the_command_stores_what_its_pages_are_drawn_from(
     found: Validity, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

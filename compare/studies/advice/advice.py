@@ -291,7 +291,7 @@ def advise(
     ('trace', 'not tested')
     """
     require_case(case)
-    plan = AdvicePlan(**({} if run is None else {"support": run.support}) | options)
+    plan = AdvicePlan.of(**({} if run is None else {"support": run.support}) | options)
     if run is not None:
         if run.support != plan.support:
             raise ValueError(f"support must be that of the run, {run.support}, got {plan.support}")

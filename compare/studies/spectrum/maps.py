@@ -376,7 +376,7 @@ def tilt_maps(
     >>> spectrum.overturned("3d").tolist()
     [[False, True], [False, False]]
     """
-    asked = SpectrumPlan(**options)
+    asked = SpectrumPlan.of(**options)
     sizes, levels = (
         np.linspace(*default) if given is None else require_increasing(name, given)
         for name, given, default in (
@@ -436,4 +436,4 @@ def tilt_maps(
 
 
 def _at_levels(run: Callable[..., Array], sizes: Array, unit: float, i: int, levels: Array) -> Array:
-    return run(sizes[i : i + 1], scales=unit * levels, workers=1)[0]
+    return run(sizes[i : i + 1], scales=unit * levels, workers=1).ravel()

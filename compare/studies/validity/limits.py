@@ -36,7 +36,7 @@ _NAMES = {
 CONTRASTS = tuple(_NAMES)
 _SHARE = 0.9
 FEWEST = 10  # of fewer motions nine in ten is none short of all
-# [b] in one period: less is the creep of a contact that never lets go
+# [b], or of alpha, in one period: less is the creep of a contact that never lets go
 SLIPPED = 1e-3
 # [weight times base radius]: a tenth of what would tip the cylinder about its rim
 SLIGHT = 0.1
@@ -112,7 +112,7 @@ def records(tables: Tables) -> Numbers:
     NAME_least and NAME_largest, of the median ratio to the recess model; NAME_05_least to NAME_95_largest, of
     what 5 % and 95 % of the records of a point do not exceed; NAME_within and NAME_beyond, the number of
     points where the median is known to be within the margin, and beyond it. NAME "halved" is the ring at half
-    the step against itself.
+    the step against itself; under a slab neither is there.
     """
     table, runs = contrasts(tables), tables["records"]
     numbers: Numbers = {
@@ -120,6 +120,8 @@ def records(tables: Tables) -> Numbers:
         "points": float(len(table[POINT].drop_duplicates())),
     }
     for (method, against), name in _NAMES.items():
+        if not {method, against} <= set(runs["method"]):  # under a slab there is no ring
+            continue
         own = table[(table["method"] == method) & (table["against"] == against)]
         for share in ("", "_05", "_95"):
             numbers[f"{name}{share}_least"] = float(own[f"ratio{share}"].min())
@@ -260,7 +262,9 @@ def needs(tables: Tables) -> pd.DataFrame:
 def friction(tables: Tables) -> Numbers:
     """Return the friction needed over tan(alpha), and where the engine slips with less than needed."""
     slip = tables["slip"]
-    share, slipped = column(slip, "share"), column(slip, "slip") > SLIPPED
+    share = column(slip, "share")
+    # slip is counted at the base; under a slab it shows as a tilt that errs, or as energy that ends the run
+    slipped = (slip[["slip", "tilt_rms"]] > SLIPPED).any(axis="columns") | (slip["outcome"] == "failed")
     slips_at, sticks = largest(share[slipped]), share[~slipped]
     sticks = sticks[~(sticks <= slips_at)]  # what slips at one release does not hold at all
     nearest = slip[share == slips_at]
@@ -328,8 +332,12 @@ def free_response(tables: Tables) -> Numbers:
 
 
 def _decided(table: pd.DataFrame) -> Numbers:
-    """Count the runs that confirm their model, those that contradict it, and all whose pass is resolved."""
-    resolved = table.assign(apart=models_apart(table))[table["resolved"].astype(bool)]
+    """Count the runs that confirm their model, those that contradict it, and all whose pass is resolved.
+
+    One that failed decides nothing: it has said so itself.
+    """
+    decides = table["resolved"].astype(bool) & (table["outcome"] != "failed")
+    resolved = table.assign(apart=models_apart(table))[decides]
     error = np.abs(column(resolved, "engine_turn") - column(resolved, "turn"))
     turn_off = error / np.abs(column(resolved, "turn"))
     period_off = np.abs(quotient(resolved, "engine_half_period", "half_period") - 1.0)
@@ -458,6 +466,6 @@ def limits_of(tables: Tables) -> dict[str, Numbers]:
     Parameters
     ----------
     tables : mapping of DataFrame
-        Of each part by its name, as `measure_all` returns them.
+        Of each part by its name, as `measure_all` returns them: without rings there is no limit of them.
     """
-    return {name: limit(tables) for name, limit in LIMITS.items()}
+    return {name: limit(tables) for name, limit in LIMITS.items() if name != rings.__name__ or name in tables}

@@ -15,6 +15,7 @@ from rockwobble.models import (
     GroundMotion,
     InitialState,
     Trace,
+    WobblingFrame,
     el_centro_1940,
     p695_far_field,
     synthetic_motions,
@@ -60,6 +61,8 @@ class Part:
         Rough computing time of a task [s], of the same inputs.
     engine : str, optional
         The engine that it runs; empty where it runs the reduced models alone.
+    walls : bool, optional
+        Whether it is about a support with walls, which takes no slab.
     """
 
     name: str
@@ -69,6 +72,7 @@ class Part:
     keys: tuple[str, ...]
     cost: Callable[..., float]
     engine: str = DEFAULT_ENGINE
+    walls: bool = False
 
 
 _RING = RingSettings(ring_inclination=0.0)
@@ -123,6 +127,8 @@ class Extent:
         Slenderness; walls; azimuth by which the problem is turned [rad]; [s].
     contact_tan_alphas, time_constants, dampings : tuple of float
         Of soft contact: slenderness, time constant at R = 6 m [s], damping ratio.
+    slab_mass_ratio : float, optional
+        Of a frame, see `column_of`; 0 is a cylinder alone.
     """
 
     name: str
@@ -147,6 +153,7 @@ class Extent:
     contact_tan_alphas: tuple[float, ...]
     time_constants: tuple[float, ...]
     dampings: tuple[float, ...]
+    slab_mass_ratio: float = 0.0
 
 
 # of a record: hardly any was ever measured above it [g]
@@ -223,7 +230,15 @@ AMPLE = 3.0  # friction, so that a squat cylinder uplifts and does not slip
 _SYNTHETIC_SEED = 1940
 
 
-def release_case(tan_alpha: float, release: float, spin: float, periods: float = 1.0) -> Case:
+def column_of(semidiagonal: float, tan_alpha: float, slab_mass_ratio: float) -> Cylinder:
+    """Return a cylinder alone, or the frame of one column under a slab that only translates."""
+    cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
+    return WobblingFrame(cylinder, slab_mass_ratio, columns=1) if slab_mass_ratio > 0.0 else cylinder
+
+
+def release_case(
+    tan_alpha: float, release: float, spin: float, periods: float = 1.0, *, slab_mass_ratio: float = 0.0
+) -> Case:
     """Return a free response.
 
     Parameters
@@ -235,8 +250,9 @@ def release_case(tan_alpha: float, release: float, spin: float, periods: float =
         Rolling rate over that of steady wobble at the tilt; below 1 the release is a tilt maximum.
     periods : float, optional
         Length, in times from tilt maximum to next maximum of the recess model.
+    slab_mass_ratio : float, optional
     """
-    cylinder = Cylinder(semidiagonal=REFERENCE_SIZE, tan_alpha=tan_alpha)
+    cylinder = column_of(REFERENCE_SIZE, tan_alpha, slab_mass_ratio)
     tilt = release * cylinder.alpha
     initial = InitialState(tilt=tilt, rolling_rate=spin * reduced.steady_wobble_rate(cylinder, tilt))
     period = reduced.free_response(cylinder, initial).period
@@ -276,15 +292,16 @@ def shaken_case(
     duration: float | None = None,
     vertical: bool = False,
     turn: float = 0.0,
+    slab_mass_ratio: float = 0.0,
 ) -> Case:
-    """Return a cylinder at rest under a motion by name.
+    """Return a cylinder or frame at rest under a motion by name.
 
     Its peak resultant is `intensity` times g tan(alpha), and it is turned by an azimuth [rad].
     """
     whole = motion_named(name)
     motion = whole if vertical else GroundMotion(whole.acceleration[:, :2], whole.time_step, whole.name)
     motion = motion.scaled(intensity * GRAVITY * tan_alpha / motion.peak)
-    cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
+    cylinder = column_of(semidiagonal, tan_alpha, slab_mass_ratio)
     length = motion.duration if duration is None else min(duration, motion.duration)
     label = f"{name}, tan α {tan_alpha:g}, R {semidiagonal:g} m, {intensity:g} g tan α"
     case = Case(cylinder, motion, duration=length, friction=AMPLE, name=label)
@@ -295,7 +312,8 @@ def needs_of(trace: Trace) -> dict[str, float]:
     """Return the needs of the recess model of ground and recess in a run.
 
     friction, least_normal [weights], moment, the restraining moment over weight and base radius; NaN where it
-    does not move or overturns.
+    does not move or overturns. In a frame of base or top, whichever asks for more, over the weight that it
+    carries.
     """
     needs = trace.assumptions
     if needs is None or trace.outcome != "stands" or not trace.peak_tilt > 0.0:

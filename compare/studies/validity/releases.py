@@ -20,7 +20,9 @@ _CYCLES = 10.0  # over which the flat-ground model may gather tilt
 _MAXIMUM = 1.0  # in the fourth column of `Trace.extrema`
 
 
-def measure_free_response(tan_alpha: float, releases: Sequence[float], spins: Sequence[float]) -> list[Row]:
+def measure_free_response(
+    tan_alpha: float, releases: Sequence[float], spins: Sequence[float], slab_mass_ratio: float = 0.0
+) -> list[Row]:
     """Return one row for each release and spin.
 
     The columns: tan_alpha, release, spin; period [s] and turn [rad] from tilt maximum to next maximum, exact
@@ -28,11 +30,11 @@ def measure_free_response(tan_alpha: float, releases: Sequence[float], spins: Se
     largest tilt of the flat-ground model in ten periods over the release; `needs_of` the recess model in one
     period.
     """
-    return [_row(tan_alpha, release, spin) for release in releases for spin in spins]
+    return [_row(tan_alpha, release, spin, slab_mass_ratio) for release in releases for spin in spins]
 
 
-def _row(tan_alpha: float, release: float, spin: float) -> Row:
-    case = release_case(tan_alpha, release, spin)
+def _row(tan_alpha: float, release: float, spin: float, slab_mass_ratio: float) -> Row:
+    case = release_case(tan_alpha, release, spin, slab_mass_ratio=slab_mass_ratio)
     assert case.initial is not None
     exact = reduced.free_response(case.cylinder, case.initial)
     flat = reduced.simulate(replace(case, duration=_CYCLES * exact.period), support="flat", rtol=_RTOL)
@@ -72,14 +74,17 @@ _VERIFIED_PERIODS = 2.2  # the second maximum, and a little more, so that it is 
 _FRICTION = 10.0  # whatever the motion needs: friction is another limit
 
 
-def measure_verification(tan_alpha: float, release: float, spin: float) -> list[Row]:
+def measure_verification(
+    tan_alpha: float, release: float, spin: float, slab_mass_ratio: float = 0.0
+) -> list[Row]:
     """Return a row for each support: what model and engine say of the first pass, and how far tilts differ.
 
     The columns: tan_alpha, release, spin, support; turn, engine_turn [rad], half_period, engine_half_period
     [s] to the first tilt minimum; tilt_rms over alpha; resolved, whether the contact of the engine resolves
     the pass; outcome.
     """
-    case = replace(release_case(tan_alpha, release, spin, _VERIFIED_PERIODS), friction=_FRICTION)
+    case = release_case(tan_alpha, release, spin, _VERIFIED_PERIODS, slab_mass_ratio=slab_mass_ratio)
+    case = replace(case, friction=_FRICTION)
     rows: list[Row] = []
     for support in SUPPORTS:
         trial = Run(DEFAULT_ENGINE, support)
@@ -115,17 +120,20 @@ VERIFICATION = Part(
 _SLIP_PERIODS = 1.1  # one pass: the friction of the next is the same
 
 
-def measure_slip(tan_alpha: float, release: float, spin: float, shares: Sequence[float]) -> list[Row]:
+def measure_slip(
+    tan_alpha: float, release: float, spin: float, shares: Sequence[float], slab_mass_ratio: float = 0.0
+) -> list[Row]:
     """Return a row for each friction, as a share of what the recess model needs.
 
     The columns: tan_alpha, release, spin, needed, share, friction, slip of the engine in a recess in one
     period [b], tilt_rms against the recess model over alpha, outcome. No row where the model loses contact:
     no friction is enough.
     """
-    needed = needs_of(reduced.simulate(release_case(tan_alpha, release, spin), rtol=_RTOL))["friction"]
+    period = release_case(tan_alpha, release, spin, slab_mass_ratio=slab_mass_ratio)
+    needed = needs_of(reduced.simulate(period, rtol=_RTOL))["friction"]
     if not math.isfinite(needed):
         return []
-    case = release_case(tan_alpha, release, spin, _SLIP_PERIODS)
+    case = release_case(tan_alpha, release, spin, _SLIP_PERIODS, slab_mass_ratio=slab_mass_ratio)
     recess = reduced.simulate(case, rtol=_RTOL)
     rows: list[Row] = []
     for share in shares:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -61,7 +62,11 @@ def _peaks_tasks(extent: Extent) -> Iterable[Inputs]:
 
 
 def measure_peaks(
-    motion: str, tan_alpha: float, semidiagonal: float, intensities: Sequence[float]
+    motion: str,
+    tan_alpha: float,
+    semidiagonal: float,
+    intensities: Sequence[float],
+    slab_mass_ratio: float = 0.0,
 ) -> list[Row]:
     """Return one row for each intensity.
 
@@ -70,21 +75,21 @@ def measure_peaks(
     model, and of the recess model with the vertical component (NaN where the record has none); `needs_of` the
     recess model.
     """
-    return [_row(motion, tan_alpha, semidiagonal, intensity) for intensity in intensities]
+    shaken = partial(shaken_case, motion, tan_alpha, semidiagonal, slab_mass_ratio=slab_mass_ratio)
+    vertical = motion_named(motion).has_vertical
+    return [_row(shaken, intensity, vertical) for intensity in intensities]
 
 
-def _row(motion: str, tan_alpha: float, size: float, intensity: float) -> Row:
-    case = shaken_case(motion, tan_alpha, size, intensity)
-    stronger = shaken_case(motion, tan_alpha, size, intensity * (1.0 + COPY))
+def _row(shaken: Callable[..., Case], intensity: float, vertical: bool) -> Row:
+    case, stronger = shaken(intensity), shaken(intensity * (1.0 + COPY))
     recess = reduced.simulate(case, rtol=_RTOL)
     found = {
         "recess": recess,
         "copy": reduced.simulate(stronger, rtol=_RTOL),
         "flat": reduced.simulate(case, support="flat", rtol=_RTOL),
     }
-    if motion_named(motion).has_vertical:
-        with_vertical = shaken_case(motion, tan_alpha, size, intensity, vertical=True)
-        found["vertical"] = reduced.simulate(with_vertical, rtol=_RTOL)
+    if vertical:
+        found["vertical"] = reduced.simulate(shaken(intensity, vertical=True), rtol=_RTOL)
     return {
         "intensity": intensity,
         "vertical": math.nan,
@@ -109,24 +114,35 @@ HALVED = "ring, half the step"
 
 
 def measure_records(
-    motion: str, tan_alpha: float, semidiagonal: float, intensity: float, time_step: float
+    motion: str,
+    tan_alpha: float,
+    semidiagonal: float,
+    intensity: float,
+    time_step: float,
+    slab_mass_ratio: float = 0.0,
 ) -> list[Row]:
     """Return a row for each method.
 
     The columns: motion, tan_alpha, semidiagonal [m], intensity, method, peak over alpha, outcome;
     contact_time with walls [s] and loss, see `loss_of`. The methods: the two reduced models, the perturbed
-    copy of the recess model under a record stronger by 1 %, the engine in a recess, on flat ground and in a
-    ring, and this at half its step.
+    copy of the recess model under a record stronger by 1 %, the engine in a recess, on flat ground and,
+    without a slab, in a ring, and this at half its step.
     """
-    case = shaken_case(motion, tan_alpha, semidiagonal, intensity)
-    stronger = shaken_case(motion, tan_alpha, semidiagonal, intensity * (1.0 + COPY))
+    shaken = partial(shaken_case, motion, tan_alpha, semidiagonal, slab_mass_ratio=slab_mass_ratio)
+    case, stronger = shaken(intensity), shaken(intensity * (1.0 + COPY))
+    walls = slab_mass_ratio == 0.0
     runs = {
         RECESS: (case, Run(None, "recess")),
         FLAT: (case, Run(None, "flat")),
         PERTURBED: (stronger, Run(None, "recess")),
-        **{support: (case, Run(DEFAULT_ENGINE, support, time_step)) for support in ALL_SUPPORTS},
-        HALVED: (case, Run(DEFAULT_ENGINE, "ring", 0.5 * time_step)),
+        **{
+            name: (case, Run(DEFAULT_ENGINE, name, time_step))
+            for name, support in ALL_SUPPORTS.items()
+            if walls or not support.walls
+        },
     }
+    if walls:
+        runs[HALVED] = case, Run(DEFAULT_ENGINE, "ring", 0.5 * time_step)
     rows: list[Row] = []
     for method, (problem, run) in runs.items():
         trace = simulate_run(problem, run)
@@ -164,13 +180,20 @@ _COLUMNS = (
 
 
 def measure_following(
-    tan_alpha: float, semidiagonal: float, intensity: float, support: str, duration: float
+    tan_alpha: float,
+    semidiagonal: float,
+    intensity: float,
+    support: str,
+    duration: float,
+    slab_mass_ratio: float = 0.0,
 ) -> list[Row]:
     """Return the summary of a run of the engine against the recess and, on flat ground, the flat model.
 
     The columns are tan_alpha, semidiagonal, intensity, duration and those of `SUMMARY_COLUMNS`.
     """
-    case = shaken_case(EL_CENTRO, tan_alpha, semidiagonal, intensity, duration=duration)
+    case = shaken_case(
+        EL_CENTRO, tan_alpha, semidiagonal, intensity, duration=duration, slab_mass_ratio=slab_mass_ratio
+    )
     summary = compare(case, runs=[Run(DEFAULT_ENGINE, support)], workers=1).summary[list(_COLUMNS)]
     return [{str(name): value for name, value in row.items()} for row in summary.to_dict("records")]
 
@@ -193,7 +216,9 @@ _RELEASE, _SPIN, _PASSES = 0.5, 0.1, 4
 _INTENSITY, _LENGTH = 2.0, 10.0
 
 
-def measure_contact(tan_alpha: float, time_constant: float, damping: float) -> list[Row]:
+def measure_contact(
+    tan_alpha: float, time_constant: float, damping: float, slab_mass_ratio: float = 0.0
+) -> list[Row]:
     """Return a row: what free response in a recess loses, and the peak tilt under El Centro.
 
     The columns: tan_alpha, time_constant [s] in which contact removes a normal velocity, damping ratio,
@@ -201,8 +226,11 @@ def measure_contact(tan_alpha: float, time_constant: float, damping: float) -> l
     the release, passes, peak and recess_peak under El Centro over alpha, free_outcome, outcome.
     """
     run = Run(DEFAULT_ENGINE, "recess", contact_time_constant=time_constant, contact_damping_ratio=damping)
-    free = simulate_run(release_case(tan_alpha, _RELEASE, _SPIN, _PASSES), run)
-    case = shaken_case(EL_CENTRO, tan_alpha, REFERENCE_SIZE, _INTENSITY, duration=_LENGTH)
+    release = release_case(tan_alpha, _RELEASE, _SPIN, _PASSES, slab_mass_ratio=slab_mass_ratio)
+    free = simulate_run(release, run)
+    case = shaken_case(
+        EL_CENTRO, tan_alpha, REFERENCE_SIZE, _INTENSITY, duration=_LENGTH, slab_mass_ratio=slab_mass_ratio
+    )
     shaken = simulate_run(case, run)
     lost = -float(free.energy_error[-1]) / float(free.energy[0])
     return [
@@ -344,4 +372,5 @@ RINGS = Part(
     measure=measure_rings,
     keys=("motion", "tan_alpha", "turn", "support", *_WALLS),
     cost=lambda support, length, **_: (0.4 if support_named(support).walls else 0.125) * length,
+    walls=True,
 )

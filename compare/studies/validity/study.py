@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import inspect
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pandas as pd
@@ -15,7 +15,7 @@ from ...runs.progress import ProgressCallback
 from ...storage.manifest import Number
 from ...storage.provenance import engine_makers, fingerprint, reduced_makers
 from ...storage.results import Results
-from ..plans import QuickPlan
+from ..plans import ValidityPlan
 from .limits import limits_of, records
 from .plan import (
     FULL,
@@ -23,6 +23,7 @@ from .plan import (
     Extent,
     Inputs,
     Part,
+    column_of,
     motion_named,
     record_names,
     release_case,
@@ -53,11 +54,11 @@ class Validity(Results, kind=KIND):
     Attributes
     ----------
     free_response, verification, ... : DataFrame
-        What each of `PARTS` measured.
+        What each of `PARTS` measured; with a slab every table ends with its slab_mass_ratio.
     limits : DataFrame
         Every number of every limit, see `limits_of`: limit, number, value.
 
-    Its facts are the extent and what the ground motions are.
+    Its facts are the extent, what the ground motions are and the mass of the slab over that of the column.
     """
 
     def headline(self) -> dict[str, Number]:
@@ -67,6 +68,7 @@ class Validity(Results, kind=KIND):
             f"peak {where} over that of the model, {what}": numbers[f"{name}_{end}"]
             for name, where in _PLACES.items()
             for end, what in _ENDS.items()
+            if f"{name}_{end}" in numbers  # no recess with clearance takes a slab
         }
 
     def _said(self) -> dict[str, str]:
@@ -77,13 +79,13 @@ class Validity(Results, kind=KIND):
 
 def measure_validity(
     folder: str | Path,
-    plan: QuickPlan,
+    plan: ValidityPlan,
     *,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
 ) -> Validity:
     """Measure the limits of the reduced model; the arguments and errors are those of `measure_all`."""
-    extent = QUICK if plan.quick else FULL
+    extent = replace(QUICK if plan.quick else FULL, slab_mass_ratio=plan.slab_mass_ratio)
     return validity_of(measure_all(extent, folder, workers=workers, progress=progress), extent)
 
 
@@ -94,7 +96,7 @@ def measure_all(
     workers: int | None = None,
     progress: ProgressCallback | None = None,
 ) -> dict[str, pd.DataFrame]:
-    """Measure every part, and return its table by its name.
+    """Measure every part, with a slab those without walls, and return its table by its name.
 
     Parameters
     ----------
@@ -114,7 +116,11 @@ def measure_all(
     IncompleteError
         If a process ended in a task; what was finished is kept.
     """
-    tasks: list[Task] = [(name, inputs) for name, part in PARTS.items() for inputs in part.tasks(extent)]
+    slab = {"slab_mass_ratio": extent.slab_mass_ratio} if extent.slab_mass_ratio > 0.0 else {}
+    parts = {name: part for name, part in PARTS.items() if not (slab and part.walls)}
+    tasks: list[Task] = [
+        (name, {**inputs, **slab}) for name, part in parts.items() for inputs in part.tasks(extent)
+    ]
     with run_tables(
         measure_task,
         tasks,
@@ -126,7 +132,7 @@ def measure_all(
         workers=workers,
         progress=progress,
     ) as found:
-        made: dict[str, list[pd.DataFrame]] = {name: [] for name in PARTS}
+        made: dict[str, list[pd.DataFrame]] = {name: [] for name in parts}
         for (name, _), table in zip(tasks, found, strict=True):
             made[name].append(table)
         return {name: pd.concat(own, ignore_index=True) for name, own in made.items()}
@@ -149,8 +155,15 @@ def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent) -> Validity:
             for number, value in numbers.items()
         ]
     )
-    facts = {"extent": extent.name, "records": source_of(record_names(extent.members))}
-    return Validity(tables={**tables, "limits": limits}, facts=facts)
+    facts = {
+        "extent": extent.name,
+        "records": source_of(record_names(extent.members)),
+        "slab_mass_ratio": extent.slab_mass_ratio,
+    }
+    found = {**tables, "limits": limits}
+    if extent.slab_mass_ratio > 0.0:
+        found = {name: table.assign(slab_mass_ratio=extent.slab_mass_ratio) for name, table in found.items()}
+    return Validity(tables=found, facts=facts)
 
 
 def task_name(task: Task) -> str:
@@ -161,7 +174,7 @@ def task_name(task: Task) -> str:
 
 def _makers(part: Part) -> dict[str, str]:
     """Versions and code on which a part depends."""
-    problems = [inspect.getsource(each) for each in (release_case, motion_named, shaken_case)]
+    problems = [inspect.getsource(each) for each in (column_of, release_case, motion_named, shaken_case)]
     own = Path(str(inspect.getsourcefile(part.measure))).read_bytes() + "".join(problems).encode()
     engine = engine_makers(part.engine) if part.engine else {}
     return {
