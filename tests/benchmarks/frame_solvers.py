@@ -335,10 +335,8 @@ def by_bullet(frame: Frame, step: float = 2e-4) -> Motion:
 
 def by_engine(frame: Frame, name: str, step: float | None = None, *, box: bool = False) -> Motion:
     """Solve by an engine of the product, with a `box` in the place of the plane that its slab is."""
-    with _BOXES[name]() if box else contextlib.nullcontext():
-        trace = simulate(
-            frame.case, engine=name, support=frame.support, time_step=step, sample_step=SAMPLE
-        )
+    with BOXES[name]() if box else contextlib.nullcontext():
+        trace = simulate(frame.case, engine=name, support=frame.support, time_step=step, sample_step=SAMPLE)
     count = len(trace.time)
     return Motion(tilt=trace.tilt[:, None], turned=np.zeros(count), load=np.full((count, 1), np.nan))
 
@@ -353,7 +351,7 @@ def _box_of_bullet() -> AbstractContextManager[object]:
             bullet.GEOM_BOX, halfExtents=[_WIDE, _WIDE, 0.5 * THICKNESS],
             collisionFramePosition=[0.0, 0.0, -0.5 * THICKNESS], physicsClientId=scene[0],
         )  # fmt: skip
-        with mock.patch.object(bullet, "createCollisionShape", lambda *_, **__: made):
+        with mock.patch.object(bullet, "createCollisionShape", return_value=made):
             return plane(bullet, *scene)
 
     return mock.patch.object(engine, "make_slab", box)
@@ -361,6 +359,7 @@ def _box_of_bullet() -> AbstractContextManager[object]:
 
 def _box_of_dart() -> AbstractContextManager[object]:
     import dartpy
+
     from rockwobble.multibody.engines import dart as engine
 
     plane = engine.make_scene
@@ -376,7 +375,7 @@ def _box_of_dart() -> AbstractContextManager[object]:
     return mock.patch.object(engine, "make_scene", box)
 
 
-_BOXES = {"pybullet": _box_of_bullet, "dart": _box_of_dart}
+BOXES = {"pybullet": _box_of_bullet, "dart": _box_of_dart}
 _WIDE = 30.0  # half of its width [m]
 
 

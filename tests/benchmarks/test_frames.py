@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from benchmarks.frame_solvers import Frame, by_bullet, by_mujoco, by_springs
+from benchmarks.frame_solvers import Frame, by_bullet, by_engine, by_mujoco, by_springs
 from benchmarks.frames import measured
 
 SHORT = 0.5  # [s]
@@ -20,6 +20,17 @@ def test_one_column_is_the_reduced_model(support: str) -> None:
     frame = Frame(columns=1, support=support, duration=SHORT)
     assert measured(frame, by_springs)[1] < SPRINGS
     assert measured(frame, lambda frame: by_mujoco(frame, impedance=0.995, contact_steps=2.0))[1] < MUJOCO
+
+
+def test_the_end_of_a_cylinder_is_an_octagon_against_a_box_of_dart() -> None:
+    pytest.importorskip("dartpy", reason="DART has no wheel for this Python")
+    frame = Frame(columns=1, duration=SHORT)
+    plane, box = (
+        measured(frame, lambda frame, box=box: by_engine(frame, "dart", 4e-4, box=box))[1]
+        for box in (False, True)
+    )
+    assert plane < 2e-6  # 2.1e-6 in 3 s
+    assert box > 1e-2
 
 
 @pytest.mark.parametrize("solve", [by_springs, by_mujoco, by_bullet])
