@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import contextlib
 import importlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from types import ModuleType
 from typing import TYPE_CHECKING, Annotated, Any
@@ -197,10 +197,10 @@ class _ExudynStepper:
             fall = [0.0, 0.0, -scene.gravity]
             system.AddLoad(items.LoadMassProportional(markerNumber=centre, loadVector=fall))
             if self._excited:
-                at_centre = system.AddMarker(items.MarkerBodyPosition(bodyNumber=made))
-                system.AddLoad(
-                    items.LoadForceVector(markerNumber=at_centre, loadVectorUserFunction=self._push(mass))
+                push = items.LoadMassProportional(
+                    markerNumber=centre, loadVectorUserFunction=self._excitation
                 )
+                system.AddLoad(push)
             return node, made
 
         def add_rim(plane: int, up: float) -> int:
@@ -239,13 +239,9 @@ class _ExudynStepper:
         system.Assemble()
         return system, sensors
 
-    def _push(self, mass: float) -> Callable[[object, float, object], list[float]]:
-        """Return the function by which Exudyn asks for the force on a mass: -a for each unit of it."""
-
-        def push(system: object, time: float, load: object) -> list[float]:
-            return [mass * each for each in self._forces[round(time / self._step)]]
-
-        return push
+    def _excitation(self, system: object, time: float, load: object) -> list[float]:
+        """Force for each unit of mass: -a."""
+        return self._forces[round(time / self._step)]
 
 
 def _simulation_settings(exudyn: ModuleType, settings: ExudynSettings) -> SimulationSettings:

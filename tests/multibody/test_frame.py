@@ -82,7 +82,7 @@ def test_el_centro_from_rest(size: float, tan_alpha: float, scale: float, name: 
     assert np.sqrt(np.mean((alone.tilt - model.tilt) ** 2) / np.mean(model.tilt**2)) > 0.1
 
 
-@pytest.mark.parametrize("name", ["mujoco", "pybullet"])
+@pytest.mark.parametrize("name", [name for name in ("mujoco", "pybullet") if name in ENGINES])
 def test_on_flat_ground_friction_creeps_less_the_more_of_the_slip_a_step_removes(name: str) -> None:
     frame = WobblingFrame(Cylinder(semidiagonal=6.0, tan_alpha=0.2), 1.0, columns=1)
     case = Case(frame, el_centro_1940().scaled(2.0), duration=8.0)
