@@ -35,16 +35,17 @@ _WEIGHTS: Array = np.hanning(2 * HALF_WINDOW + 3)[1:-1] / (HALF_WINDOW + 1.0)  #
 
 
 def force_of_steps(
-    poses: Steps, after: Steps, ground: Array, time_step: float, gravity: float, share: float = 0.0
+    poses: Steps, after: Steps, ground: Array, time_step: float, gravity: float, gain: float = 1.0
 ) -> Array:
-    """Return the force of the ground and of walls on the cylinder in weights, shape (3, n), world axes.
+    """Return the force on what is carried, in its weights, shape (3, n), world axes.
 
-    In a frame the weight is that of the cylinder and its `share` of the slab, which has twice the velocity.
+    The cylinder is, by the ground and by walls; in a frame with its share of the slab, or the slab alone by
+    the top. The velocity of its mass centre is `gain` times that of the cylinder.
 
     The velocities of `poses` are those of the step before each, those of `after` one step later;
     `ground` (n, 3) is the acceleration of the ground at the poses [m/s^2].
     """
-    change = (1.0 + 2.0 * share) / (1.0 + share) * (after.velocity.T - poses.velocity.T)
+    change = gain * (after.velocity.T - poses.velocity.T)
     force: Array = change / (time_step * gravity) + ground.T / gravity
     force[2] += 1.0
     return force

@@ -53,6 +53,8 @@ class Recorder:
         Whether the release is at rest in tilt.
     rounding : float
         Relative rounding error of the engine.
+    joined : bool
+        Whether a joint keeps the slab of a frame on the top; a column in contact may hop without it.
     """
 
     def __init__(
@@ -62,8 +64,11 @@ class Recorder:
         rolling_angle: float,
         starts_at_turn: bool,
         rounding: float = 2.0**-53,
+        *,
+        joined: bool = False,
     ) -> None:
         body, start = scene.body, scene.start
+        self._gains = body.gains if joined else body.gains[:1]
         self._scene, self._samples = scene, samples
         self.asked = float(samples[-1])  # end of the run that was asked for, before it was extended [s]
         self.off_grid = False  # whether it is no sample of a run that is extended
@@ -95,8 +100,8 @@ class Recorder:
         )
         self.looks = 0  # at the solver, and how often it had not converged
         self.unsolved = 0
-        self.grip_time = math.nan  # when more than friction held the rim, which only a joint does [s]
-        self.pull_time = math.nan  # when the ground held the rim down, which only a joint does [s]
+        # when more than friction held an end, and when it was held down, which only a joint does [s]
+        self.grip_time = self.pull_time = math.nan
         # a standing cylinder leans by less, in no direction
         sure = sure_tilt(body, rounding)
         self.floor = sure if start.standing else min(sure, 0.5 * lean)
@@ -194,15 +199,18 @@ class Recorder:
         within = state.tilt < math.atan(body.tan_alpha)
         self.fastest = max(self.fastest, float(np.abs(state.tilt_rate[within]).max(initial=0.0)))
         self._sample(time, rows)
-        force = force_of_steps(
-            poses, after, acceleration, self._scene.time_step, self._scene.gravity, body.slab_mass_ratio
-        )
-        self.forces.add(force)
+        # on the base, and on a slab that keeps to the top
+        ends = [
+            force_of_steps(poses, after, acceleration, self._scene.time_step, self._scene.gravity, gain)
+            for gain in self._gains
+        ]
+        self.forces.add(ends[0])
         # a wall may well push the cylinder down, by its friction or where the rim is below it
         if math.isnan(self.pull_time) and wall is None:
-            self.pull_time = first_pull(time, force[2])
+            self.pull_time = float(np.fmin.reduce([first_pull(time, force[2]) for force in ends]))
         if math.isnan(self.grip_time) and wall is None:
-            self.grip_time = first_grip(time, force, self._scene.friction)
+            friction = self._scene.friction
+            self.grip_time = float(np.fmin.reduce([first_grip(time, force, friction) for force in ends]))
         self._angle, self._twist, self._leans = float(angle[-1]), float(state.twist[-1]), bool(leans[-1])
         self._count += stop
 

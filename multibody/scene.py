@@ -50,6 +50,12 @@ class Body:
         return 1.0 + 4.0 * self.slab_mass_ratio
 
     @property
+    def gains(self) -> tuple[float, ...]:
+        """Velocity of what each end carries, the base first, over that of the mass centre [-]."""
+        slab = self.slab_mass_ratio
+        return (1.0,) if slab == 0.0 else (self.driven_mass / (1.0 + slab), 2.0)
+
+    @property
     def tan_alpha(self) -> float:
         """b/h [-]."""
         return self.base_radius / self.mass_centre_height

@@ -141,7 +141,12 @@ def _simulate(
     samples = _sample_times(case.length, require_positive("sample_step", sample_step, "s")) / scale.time
     release = InitialState(0.0) if case.initial is None else case.initial
     recorder = Recorder(
-        scene, samples, release.rolling_angle, release.tilt_rate == 0.0, backend.facts.rounding
+        scene,
+        samples,
+        release.rolling_angle,
+        release.tilt_rate == 0.0,
+        backend.facts.rounding,
+        joined=not backend.uplifts,
     )
     means = StepMeans(case.motion, scale, scene.time_step)
     try:

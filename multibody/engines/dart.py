@@ -17,6 +17,8 @@ Contact has no stiffness to choose: after a step the rim's lowest point rests or
   load: a base that slides across its load feels up to 41 % more.
 * Friction stops the point of the rim that a step starts on, and a rim that rolls on creeps. So the ground
   moves along itself, against the slip that the last step left at the rim of this pose.
+* The slab of a frame is a plane that looks down. What the ground does to the base it does to the top: it goes
+  beyond its own velocity in a step, and keeps what the step changed.
 * Rotation vectors below 1e-3 rad lose a sixth of their cube in each step. So the cylinder, which is round, is
   turned about its axis by one radian.
 """
@@ -88,6 +90,7 @@ class DartScene:
     cylinder : dartpy.dynamics.BodyNode
     joint : dartpy.dynamics.FreeJoint
         Its positions are a rotation vector and the position of the mass centre [m].
+    slab : dartpy.dynamics.TranslationalJoint, optional
     use : callable
         Takes the solver of contact.
     flat_solver, rim_solver : dartpy.constraint.BoxedLcpSolver
@@ -97,6 +100,7 @@ class DartScene:
     ground: TranslationalJoint
     cylinder: BodyNode
     joint: FreeJoint
+    slab: TranslationalJoint | None
     use: Callable[[BoxedLcpSolver], None]
     flat_solver: BoxedLcpSolver
     rim_solver: BoxedLcpSolver
@@ -120,10 +124,17 @@ def make_scene(scene: Scene, settings: DartSettings) -> DartScene:
         placed.createDynamicsAspect().setFrictionCoeff(scene.friction)
         return placed
 
-    ground = dynamics.Skeleton("ground")
-    slide, plane = ground.createTranslationalJointAndBodyNodePair()
-    collide(plane, dynamics.PlaneShape([0.0, 0.0, 1.0], 0.0))
-    ground.setMobile(False)
+    def add_plane(name: str, up: float, mass: float) -> TranslationalJoint:
+        skeleton = dynamics.Skeleton(name)
+        slide, plane = skeleton.createTranslationalJointAndBodyNodePair()
+        collide(plane, dynamics.PlaneShape([0.0, 0.0, up], 0.0))
+        skeleton.setMobile(mass > 0.0)
+        if mass > 0.0:
+            plane.setMass(mass)
+        world.addSkeleton(skeleton)
+        return slide
+
+    ground = add_plane("ground", 1.0, 0.0)
     cylinder = dynamics.Skeleton("cylinder")
     joint, body = cylinder.createFreeJointAndBodyNodePair()
     outline = collide(body, dynamics.CylinderShape(shape.base_radius, shape.height))
@@ -132,15 +143,16 @@ def make_scene(scene: Scene, settings: DartSettings) -> DartScene:
     outline.setRelativeTransform(place)
     inertia = np.diag([shape.transverse_inertia, shape.transverse_inertia, shape.axial_inertia])
     body.setInertia(dynamics.Inertia(1.0, np.zeros(3), inertia))
-    world.addSkeleton(ground)
     world.addSkeleton(cylinder)
+    share = shape.slab_mass_ratio
     options = dartpy.constraint.NsgsFrictionSolver.Options()
     options.tolerance, options.maxSweeps = settings.tolerance, settings.iterations
     return DartScene(
         world=world,
-        ground=slide,
+        ground=ground,
         cylinder=body,
         joint=joint,
+        slab=add_plane("slab", -1.0, share) if share > 0.0 else None,
         use=solver.setBoxedLcpSolver,
         flat_solver=solver.getBoxedLcpSolver(),
         rim_solver=dartpy.constraint.NsgsFrictionSolver(options),
@@ -181,7 +193,12 @@ _SIDE = 1e-3  # cosine of the tilt up to which the cylinder lies on its side
 _SPIN = 1.0  # [rad] about the axis of the cylinder
 
 _FACTS = EngineFacts(
-    title="DART", step_time=2.5e-5, release_error=2e-6, uplift_error=5e-6, smooth_uplift=True
+    title="DART",
+    step_time=2.5e-5,
+    release_error=2e-6,
+    uplift_error=5e-6,
+    smooth_uplift=True,
+    carries_slab=True,
 )
 
 
@@ -207,11 +224,14 @@ class _DartStepper(Leapfrog):
         start = scene.start
         position = start.position - [0.0, 0.0, settings.depth]
         velocity, spin = start.velocity, start.angular_velocity
+        self._slab_height, self._slab_velocity = 2.0 * float(position[2]), 2.0 * velocity
         self._put(start.quaternion, position, velocity, spin)
         if not start.standing:
             # leapfrog starts half a step back: a trial step shows the acceleration
-            self._dart.world.step()
+            self._step_on([0.0, 0.0, 0.0])
             after, spin_after = self._rates()
+            self._slab_height = 2.0 * float(position[2])
+            self._slab_velocity = 3.0 * velocity - 0.5 * self._slab_velocity
             self._put(start.quaternion, position, 1.5 * velocity - 0.5 * after, 1.5 * spin - 0.5 * spin_after)
 
     def advance(self, acceleration: Array) -> Steps:
@@ -231,7 +251,7 @@ class _DartStepper(Leapfrog):
         """Step; return rotation vector, position and heading of the scene after each step."""
         # local names, because this is a loop over steps in Python
         dart, body = self._dart, self._scene.body
-        step, get, pull = dart.world.step, dart.joint.getPositions, dart.world.setGravity
+        get, pull, slab = dart.joint.getPositions, dart.world.setGravity, dart.slab
         torque, move_ground = dart.cylinder.addExtTorque, dart.ground.setVelocities
         stiffness = -4.0 * self._stiffness
         rates, overshoot = dart.joint.getVelocities, self._settings.friction_damping - 1.0
@@ -250,6 +270,7 @@ class _DartStepper(Leapfrog):
         kept, landed, time_step, slowing = self._kept, _LANDED * target, self._step, 2.0 * _SLOWING * gravity
         far = _FAR * body.height
         rows: list[list[float]] = []
+        beyond = [0.0, 0.0, 0.0]
         row = get().tolist()
         for ax, ay, az in acceleration:
             x, y, z, away_x, away_y, height = row
@@ -270,6 +291,10 @@ class _DartStepper(Leapfrog):
                 kept = depth
             back = min(root(slowing * (kept - target)), (kept - target) / time_step)
             rise = gain * (depth - kept) + back - min(reduction * max(depth, 0.0), fastest)
+            if slab is not None:
+                top = depth + 2.0 * height - self._slab_height  # its depth in the slab
+                fall = gain * (top - kept) + back - min(reduction * max(top, 0.0), fastest)
+                beyond = [0.0, 0.0, -fall]
             kept = max(kept - back * time_step, target)
             slip_x = slip_y = 0.0
             if closed:
@@ -292,10 +317,15 @@ class _DartStepper(Leapfrog):
                 if self._open != (axis_z > _SIDE):
                     self._use_for(opening=axis_z > _SIDE)
                 # friction takes the rim to the velocity of the ground, here beyond zero by the overshoot
-                rate_x, rate_y, rate_z, slip_x, slip_y, _ = rates().tolist()
+                rate_x, rate_y, rate_z, speed_x, speed_y, _ = rates().tolist()
                 out, down = b * axis_z / lean - h, h * axis_z + b * lean
-                slip_x -= rate_y * down + rate_z * out * axis_y
-                slip_y += rate_x * down + rate_z * out * axis_x
+                roll_x = rate_y * down + rate_z * out * axis_y
+                roll_y = rate_x * down + rate_z * out * axis_x
+                slip_x, slip_y = speed_x - roll_x, speed_y + roll_y
+                if slab is not None:
+                    slab_x, slab_y, _ = self._slab_velocity.tolist()
+                    beyond[0] = overshoot * (slab_x - speed_x - roll_x)
+                    beyond[1] = overshoot * (slab_y - speed_y + roll_y)
             move_ground([-overshoot * slip_x, -overshoot * slip_y, rise])
             if excited:
                 pull([-ax * turn_x - ay * turn_y, ax * turn_y - ay * turn_x, -az - gravity])
@@ -303,11 +333,23 @@ class _DartStepper(Leapfrog):
                 # along the vertical plus the axis, proportional to the twist
                 pair = 0.5 * stiffness * math.atan2(k, w)
                 torque([pair * axis_x, pair * axis_y, pair * (2.0 - 2.0 * (i * i + j * j))])
-            step()
+            self._step_on(beyond)
             row = get().tolist()
             rows.append([*row, heading])
         self._kept = kept
         return rows
+
+    def _step_on(self, beyond: list[float]) -> None:
+        """Take a step, in which the slab has a velocity beyond its own; it keeps what the step changed."""
+        slab = self._dart.slab
+        if slab is None:
+            self._dart.world.step()
+            return
+        slab.setPositions([0.0, 0.0, self._slab_height])
+        slab.setVelocities(self._slab_velocity + beyond)
+        self._dart.world.step()
+        self._slab_velocity = slab.getVelocities() - beyond
+        self._slab_height += self._step * float(self._slab_velocity[2])
 
     def _use_for(self, *, opening: bool) -> None:
         """Take the solver for a base that is open, or about to open; or for one that stands."""
@@ -317,13 +359,11 @@ class _DartStepper(Leapfrog):
 
     def _turn(self, heading: float) -> None:
         """Turn the x axis of the scene into an azimuth [rad]: its vectors turn back."""
-        back = np.array([self._heading - heading])
-        self._heading = heading
+        angle, self._heading = self._heading - heading, heading
         row = self._dart.joint.getPositions()
         quaternion = quaternions(row[None, :3], _SPIN)[0]
-        position, velocity, spin, quaternion[1:] = (
-            about_vertical(each[None], back)[0] for each in (row[3:], *self._rates(), quaternion[1:])
-        )
+        vectors = np.stack([row[3:], *self._rates(), quaternion[1:], self._slab_velocity])
+        position, velocity, spin, quaternion[1:], self._slab_velocity = about_vertical(vectors, angle)
         self._put(quaternion, position, velocity, spin)
 
     def _rates(self) -> tuple[Array, Array]:

@@ -11,6 +11,8 @@ What it needs:
   that moves up by what the last two steps sank, and the rim starts it as deep as its load presses it.
 * Friction stops the point of the rim that a step starts on, and a rim that rolls on creeps. So the frame
   moves along the ground as well, against the slip that the last step left at the rim of this pose.
+* The slab of a frame is a half space that looks down, on three slides. What it is to the top the ground is to
+  the base: it has a frame of its own, which moves up by twice as much, and against the slip at the top.
 * A quaternion that is stepped by its rate grows, and with it the lean that it tells: it is brought back.
 * Its solver stops when what it leaves over of a step is 1e-6 of all momentum, and has no other tolerance to
   choose. That is a force, and the larger the smaller the step: the next step is given it.
@@ -81,7 +83,9 @@ _POINT_SIZE = 1e-9  # of b: a sphere this small reaches out of the rim by 1e-9 t
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class DrakeScene:
-    """Ground and cylinder, and what a step of them is solved by.
+    """Ground, cylinder and slab, if there is one, and what a step of them is solved by.
+
+    Vectors of the cylinder are followed by those of the slab, which has places and forces, and does not turn.
 
     Attributes
     ----------
@@ -89,10 +93,10 @@ class DrakeScene:
     diagram, root, context : pydrake.systems.framework.Diagram, Context, Context
         The diagram that holds the plant, its context, and that of the plant.
     applied : pydrake.systems.framework.FixedInputPortValue
-        Torque and force on the cylinder.
+        Torque and force.
     acceleration, contact : pydrake.systems.framework.OutputPort
     no_forces : pydrake.multibody.tree.MultibodyForces
-    gravity : ndarray, shape (6,)
+    gravity : ndarray, shape (6,) or (9,)
         Torque and force.
     """
 
@@ -107,13 +111,13 @@ class DrakeScene:
     gravity: Array
 
     def solve(self, state: Array, applied: Array) -> tuple[Array, Array]:
-        """Solve the step from a state: quaternion, position, angular velocity and velocity (13,).
+        """Solve the step from a state: quaternion, position, angular velocity and velocity.
 
         Returns
         -------
-        acceleration : ndarray, shape (6,)
-            Change of both velocities over the step.
-        left : ndarray, shape (6,)
+        acceleration : ndarray, shape (6,) or (9,)
+            Change of the velocities over the step.
+        left : ndarray, of the same shape
             Torque and force that the solver left unbalanced.
         """
         self.applied.GetMutableData().get_mutable_value().SetFromVector(applied)
@@ -134,12 +138,17 @@ def make_scene(scene: Scene, settings: DrakeSettings, points: int) -> DrakeScene
     from pydrake.geometry import AddContactMaterial, Cylinder, HalfSpace, ProximityProperties, Sphere
     from pydrake.math import RigidTransform
     from pydrake.multibody import plant as plants
-    from pydrake.multibody.tree import MultibodyForces, RotationalInertia, SpatialInertia
+    from pydrake.multibody.tree import (
+        MultibodyForces,
+        QuaternionFloatingJoint,
+        RotationalInertia,
+        SpatialInertia,
+    )
     from pydrake.systems.framework import DiagramBuilder
 
     shape = scene.body
     builder = DiagramBuilder()
-    plant, _ = plants.AddMultibodyPlantSceneGraph(builder, scene.time_step)
+    plant, graph = plants.AddMultibodyPlantSceneGraph(builder, scene.time_step)
     kinds = plants.DiscreteContactApproximation
     names = {"lagged": kinds.kLagged, "similar": kinds.kSimilar, "tamsi": kinds.kTamsi, "sap": kinds.kSap}
     plant.set_discrete_contact_approximation(names[settings.approximation])
@@ -154,7 +163,7 @@ def make_scene(scene: Scene, settings: DrakeSettings, points: int) -> DrakeScene
     cone = plants.CoulombFriction(scene.friction, scene.friction)
     AddContactMaterial(settings.dissipation, 2.0 * settings.contact_stiffness, cone, contact)
     middle: Any = np.array([0.0, 0.0, 0.5 * shape.height - shape.mass_centre_height])
-    size = _POINT_SIZE * shape.base_radius
+    size, share = _POINT_SIZE * shape.base_radius, shape.slab_mass_ratio
     with _quiet():
         plant.RegisterCollisionGeometry(plant.world_body(), RigidTransform(), HalfSpace(), "ground", contact)
         outline = Cylinder(shape.base_radius, shape.height)
@@ -165,23 +174,53 @@ def make_scene(scene: Scene, settings: DrakeSettings, points: int) -> DrakeScene
             place: Any = np.array([x, y, size - shape.mass_centre_height])
             name = f"point {index}"
             plant.RegisterCollisionGeometry(body, RigidTransform(place), Sphere(size), name, contact)
+            if share > 0.0:
+                name = f"top {name}"
+                plant.RegisterCollisionGeometry(body, RigidTransform(-place), Sphere(size), name, contact)
+        if share > 0.0:
+            # before the slides of the slab, whose coordinates then come last
+            joint = QuaternionFloatingJoint("cylinder", plant.world_frame(), body.body_frame())
+            plant.AddJoint(joint)
+            _add_slab(plant, graph, contact, share)
         plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -scene.gravity])
         plant.Finalize()
         diagram = builder.Build()
         root = diagram.CreateDefaultContext()
     context = plant.GetMyMutableContextFromRoot(root)
     model = plant.GetModelInstanceByName("DefaultModelInstance")
+    weights = np.array([0.0, 0.0, 0.0, 0.0, 0.0, -scene.gravity, 0.0, 0.0, -scene.gravity * share])
+    count = plant.num_velocities()
     return DrakeScene(
         plant=plant,
         diagram=diagram,
         root=root,
         context=context,
-        applied=plant.get_applied_generalized_force_input_port().FixValue(context, np.zeros(6)),
+        applied=plant.get_applied_generalized_force_input_port().FixValue(context, np.zeros(count)),
         acceleration=plant.get_generalized_acceleration_output_port(),
         contact=plant.get_generalized_contact_forces_output_port(model),
         no_forces=MultibodyForces(plant),
-        gravity=np.array([0.0, 0.0, 0.0, 0.0, 0.0, -scene.gravity]),
+        gravity=weights[:count],
     )
+
+
+def _add_slab(plant: Any, graph: Any, contact: Any, mass: float) -> None:
+    """Add a body on three slides, and a half space on it that looks down."""
+    from pydrake.geometry import CollisionFilterDeclaration, GeometrySet, HalfSpace
+    from pydrake.math import RigidTransform, RotationMatrix
+    from pydrake.multibody.tree import PrismaticJoint, SpatialInertia
+
+    parent = ground = plant.world_body()
+    axes: Any = np.eye(3)
+    for name, axis in zip("xyz", axes, strict=True):
+        inertia = SpatialInertia.SolidSphereWithMass(mass, 1.0) if name == "z" else SpatialInertia.Zero()
+        body = plant.AddRigidBody(f"slab {name}", inertia)
+        plant.AddJoint(PrismaticJoint(f"slab {name}", parent.body_frame(), body.body_frame(), axis))
+        parent = body
+    down = RigidTransform(RotationMatrix.MakeXRotation(math.pi))
+    slab = GeometrySet(plant.RegisterCollisionGeometry(parent, down, HalfSpace(), "slab", contact))
+    # contact of two half spaces is not known to Drake
+    apart = GeometrySet(plant.GetCollisionGeometriesForBody(ground))
+    graph.collision_filter_manager().Apply(CollisionFilterDeclaration().ExcludeBetween(slab, apart))
 
 
 @contextlib.contextmanager
@@ -201,7 +240,12 @@ _LEANS = 1e-8  # [rad] from which a lean has a direction; what stands leans by 1
 _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
 
 _FACTS = EngineFacts(
-    title="Drake", step_time=1.5e-4, release_error=4e-6, uplift_error=5e-6, smooth_uplift=True
+    title="Drake",
+    step_time=1.5e-4,
+    release_error=4e-6,
+    uplift_error=5e-6,
+    smooth_uplift=True,
+    carries_slab=True,
 )
 
 
@@ -222,26 +266,31 @@ class _DrakeStepper(Leapfrog):
         self._standing, self._rolling = make_scene(scene, settings, POINTS), make_scene(scene, settings, 0)
         self._last = self._standing  # what took the last step
         self._overshoot = settings.friction_damping - 1.0
-        self._left = np.zeros(6)  # what the solver left of the last step, torque and force
         self._warning = ""
         self._spun = 0.0  # angle about its axis that has been taken off the cylinder [rad]
         start = scene.start
         # quaternion and position: floats, since the loop over steps in Python reads each of them
         place = [*start.quaternion.tolist(), *(start.position - [0.0, 0.0, self._depth]).tolist()]
         velocity = np.concatenate([start.angular_velocity, start.velocity])
+        self._share = scene.body.slab_mass_ratio
+        if self._share > 0.0:
+            place += [0.0, 0.0, 2.0 * place[6]]
+            velocity = np.append(velocity, 2.0 * start.velocity)
+        self._left = np.zeros_like(velocity)  # what the solver left of the last step, torque and force
         self._place, self._velocity = place, velocity
         self._rim = _Rim.of(place, scene.body)
         self._sinks = math.nan
-        self._frame = np.zeros(3)  # velocity of the frame in which the ground keeps still in a step [m/s]
+        # velocity of the frame in which the ground keeps still in a step, and of that of the slab [m/s]
+        self._frame = np.zeros(len(velocity) - 3)
         if not start.standing:
             # leapfrog starts half a step back: a trial step shows the acceleration
-            self._advance_once(np.zeros(6))
+            self._advance_once(np.zeros_like(velocity))
             self._place, self._velocity = place, 1.5 * velocity - 0.5 * self._velocity
 
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
         rows = np.array([self._caught(*each) for each in acceleration.tolist()])
-        return self._steps_to(rows[:, 4:7], _spin(rows[:, :4], rows[:, 8]), rows[:, 7])
+        return self._steps_to(rows[:, 4:7], _spin(rows[:, :4], rows[:, -1]), rows[:, -2])
 
     def warnings(self) -> str:
         """Return what Drake raised where it could not go on."""
@@ -258,10 +307,10 @@ class _DrakeStepper(Leapfrog):
                 return self._one(ax, ay, az)
             except RuntimeError as error:
                 self._warning = str(error).partition("\n")[0]
-        return [math.nan] * 9
+        return [math.nan] * (len(self._place) + 2)
 
     def _one(self, ax: float, ay: float, az: float) -> list[float]:
-        """Take one step; return quaternion, position, heading of the scene, and what it has spun."""
+        """Take one step; return quaternion, positions, heading of the scene, and what it has spun."""
         if self._rim.lean < _FLAT:
             self._turn_point_below(ax, ay, az)
         before, step = self._rim, self._step
@@ -283,15 +332,24 @@ class _DrakeStepper(Leapfrog):
         ahead, self._sinks = 2.0 * sinks - self._sinks, sinks
         heave = ahead if math.isfinite(ahead) else 0.0
         # a base that lands would be set in motion by it
-        if not rolls:
-            return np.array([0.0, 0.0, heave])
-        slip_x, slip_y = after.slip(self._velocity.tolist())
-        return np.array([-self._overshoot * slip_x, -self._overshoot * slip_y, heave])
+        x = y = top_x = top_y = 0.0
+        if rolls:
+            velocity, overshoot = self._velocity.tolist(), self._overshoot
+            slip_x, slip_y = after.slip(velocity)
+            x, y = -overshoot * slip_x, -overshoot * slip_y
+            if self._share > 0.0:
+                # the highest point has twice the velocity of the mass centre, less that of the lowest
+                _, _, _, speed_x, speed_y, _, slab_x, slab_y, _ = velocity
+                top_x = x - overshoot * (slab_x - 2.0 * speed_x + slip_x)
+                top_y = y - overshoot * (slab_y - 2.0 * speed_y + slip_y)
+        return np.array([x, y, heave, top_x, top_y, 2.0 * heave][: len(self._frame)])
 
     def _force(self, ax: float, ay: float, az: float) -> Array:
-        """Return torque and force of a step: of the guide, and of an acceleration of the ground."""
+        """Return torque and forces of a step: of the guide, and of an acceleration of the ground."""
         c, s = math.cos(self._heading), math.sin(self._heading)
-        push = -c * ax - s * ay, s * ax - c * ay, -az
+        push = [-c * ax - s * ay, s * ax - c * ay, -az]
+        if self._share > 0.0:
+            push += [self._share * each for each in push]
         if not self._stiffness:
             return np.array([0.0, 0.0, 0.0, *push])
         w, x, y, z = self._place[:4]
@@ -342,11 +400,11 @@ class _DrakeStepper(Leapfrog):
         spun = 2.0 * math.atan2(place[3], place[0])
         place[:4] = _spin(place[None, :4], np.array([-spun]))[0]
         self._spun += spun
-        pairs = (self._velocity, self._left)
-        vectors = np.stack([place[1:4], place[4:], *np.reshape(pairs, (4, 3)), self._frame])
-        turned = about_vertical(vectors, angle)
-        self._place = [float(place[0]), *turned[:2].ravel().tolist()]
-        self._velocity, self._left, self._frame = turned[2:4].ravel(), turned[4:6].ravel(), turned[6]
+        states = np.concatenate([place[1:], self._velocity, self._left, self._frame])
+        turned = about_vertical(states.reshape(-1, 3), angle).ravel()
+        ends = len(self._velocity) * np.arange(1, 4)
+        back, self._velocity, self._left, self._frame = np.split(turned, ends)
+        self._place = [float(place[0]), *back.tolist()]
         self._rim = _Rim.of(self._place, self._scene.body)
 
 
@@ -381,7 +439,7 @@ class _Rim(NamedTuple):
 
     @classmethod
     def of(cls, place: Sequence[float], body: Body) -> _Rim:
-        w, x, y, z, _, _, height = place
+        w, x, y, z, _, _, height = place[:7]
         axis_x, axis_y, axis_z = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)
         lean, b, h = math.hypot(axis_x, axis_y), body.base_radius, body.mass_centre_height
         reach, down = b * axis_z / lean - h if lean else 0.0, b * lean + h * axis_z
@@ -393,7 +451,7 @@ class _Rim(NamedTuple):
 
     def slip(self, velocity: Sequence[float]) -> tuple[float, float]:
         """Return its velocity along the ground, from the same [m/s]."""
-        spin_x, spin_y, spin_z, x, y, _ = velocity
+        spin_x, spin_y, spin_z, x, y = velocity[:5]
         along_x, along_y = self.reach * self.axis_x, self.reach * self.axis_y
         return x - spin_y * self.down - spin_z * along_y, y + spin_x * self.down + spin_z * along_x
 

@@ -3,7 +3,8 @@
 The joint holds the lowest point of the rim on the ground and its material point at rest: three
 constraints, exact up to the integration. So it is a check of the flat-ground model that shares neither
 contact nor friction with the other engines. What it cannot do follows from the same: the rim neither
-leaves the ground nor slips, whatever force that takes, and a cylinder that stands has no lowest point.
+leaves the ground nor slips, whatever force that takes, and a cylinder that stands has no lowest point. The
+slab of a frame rolls on the rim of the top in the same way; its orientation is held.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import importlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from types import ModuleType
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
@@ -65,7 +66,7 @@ class ExudynSettings(EngineSettings):
         return {}
 
 
-_FACTS = EngineFacts(title="Exudyn", step_time=1.2e-5, order=2.0)
+_FACTS = EngineFacts(title="Exudyn", step_time=1.2e-5, order=2.0, carries_slab=True)
 
 
 class ExudynEngine(Declared):
@@ -181,32 +182,55 @@ class _ExudynStepper:
         body, start = scene.body, scene.start
         system = self._container.AddSystem()
         ground = system.AddObject(items.ObjectGround())
-        node = system.AddNode(
-            items.NodeRigidBodyEP(
-                referenceCoordinates=[*start.position, *start.quaternion],
-                initialCoordinates=[0.0] * 7,
-                initialVelocities=[*start.velocity, *_rates(start)],
+
+        def add_body(mass: float, inertia: list[float], pose: list[float], rates: list[float]) -> Any:
+            """Return the numbers of the node and the object of a rigid body under gravity and excitation."""
+            node = system.AddNode(
+                items.NodeRigidBodyEP(
+                    referenceCoordinates=pose, initialCoordinates=[0.0] * 7, initialVelocities=rates
+                )
             )
+            made = system.AddObject(
+                items.ObjectRigidBody(mass=mass, inertia=[*inertia, 0.0, 0.0, 0.0], nodeNumber=node)
+            )
+            centre = system.AddMarker(items.MarkerBodyMass(bodyNumber=made))
+            fall = [0.0, 0.0, -scene.gravity]
+            system.AddLoad(items.LoadMassProportional(markerNumber=centre, loadVector=fall))
+            if self._excited:
+                push = items.LoadMassProportional(
+                    markerNumber=centre, loadVectorUserFunction=self._excitation
+                )
+                system.AddLoad(push)
+            return node, made
+
+        def add_rim(plane: int, up: float) -> int:
+            """Let the base, or the top, roll on the plane of a body; return the marker of that body."""
+            place = [0.0, 0.0, -up * body.mass_centre_height]
+            rim = [
+                system.AddMarker(items.MarkerBodyRigid(bodyNumber=plane)),
+                system.AddMarker(items.MarkerBodyRigid(bodyNumber=cylinder, localPosition=place)),
+            ]
+            system.AddObject(
+                items.ObjectJointRollingDisc(
+                    markerNumbers=rim,
+                    discRadius=body.base_radius,
+                    discAxis=[0.0, 0.0, 1.0],
+                    planeNormal=[0.0, 0.0, up],
+                )
+            )
+            return int(rim[0])
+
+        inertia = [body.transverse_inertia, body.transverse_inertia, body.axial_inertia]
+        node, cylinder = add_body(
+            1.0, inertia, [*start.position, *start.quaternion], [*start.velocity, *_rates(start)]
         )
-        inertia = [body.transverse_inertia, body.transverse_inertia, body.axial_inertia, 0.0, 0.0, 0.0]
-        cylinder = system.AddObject(items.ObjectRigidBody(mass=1.0, inertia=inertia, nodeNumber=node))
-        centre = system.AddMarker(items.MarkerBodyMass(bodyNumber=cylinder))
-        system.AddLoad(items.LoadMassProportional(markerNumber=centre, loadVector=[0.0, 0.0, -scene.gravity]))
-        if self._excited:
-            at_centre = system.AddMarker(items.MarkerBodyPosition(bodyNumber=cylinder))
-            system.AddLoad(
-                items.LoadForceVector(markerNumber=at_centre, loadVectorUserFunction=self._excitation)
-            )
-        base = [0.0, 0.0, -body.mass_centre_height]
-        rim = [
-            system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground)),
-            system.AddMarker(items.MarkerBodyRigid(bodyNumber=cylinder, localPosition=base)),
-        ]
-        system.AddObject(
-            items.ObjectJointRollingDisc(
-                markerNumbers=rim, discRadius=body.base_radius, discAxis=[0.0, 0.0, 1.0]
-            )
-        )
+        still = add_rim(ground, 1.0)
+        share = body.slab_mass_ratio
+        if share > 0.0:
+            above = [0.0, 0.0, 2.0 * float(start.position[2]), 1.0, 0.0, 0.0, 0.0]
+            _, slab = add_body(share, [share] * 3, above, [*2.0 * start.velocity, 0.0, 0.0, 0.0, 0.0])
+            both = [still, add_rim(slab, -1.0)]
+            system.AddObject(items.ObjectJointGeneric(markerNumbers=both, constrainedAxes=[0, 0, 0, 1, 1, 1]))
         kinds = self._exudyn.OutputVariableType
         sensors = [
             system.AddSensor(items.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=kind))

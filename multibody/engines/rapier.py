@@ -10,6 +10,8 @@ size, and finer steps round more often: below 1e-4 s the error grows again. What
   is a disc, the lower part of the cylinder, on which the whole rolls until its side is on the ground.
 * The rim is kept at a depth of 1e-6 m, a tenth of what Rapier lets be: deeper than the curvature of its
   path, which no velocity shows, lifts it in a step. The depth is taken off the poses.
+* The slab of a frame is a half space that looks down, whose orientation is locked, on a disc at the top. It
+  stays over the origin, and its height is summed up as the poses are.
 """
 
 from __future__ import annotations
@@ -41,6 +43,7 @@ _FACTS = EngineFacts(
     release_error=5e-5,
     uplift_error=7e-4,
     rounding=2.0**-24,
+    carries_slab=True,
 )
 
 
@@ -99,16 +102,22 @@ class _RapierStepper(Leapfrog):
 
         super().__init__(scene, settings.guide_stiffness, settings.depth)
         self._rapier, self._settings = rapier3d, settings
-        self._world, self._cylinder = _build(rapier3d, scene, settings)
+        self._world, self._cylinder, self._slab = _build(rapier3d, scene, settings)
         # position [m] and quaternion, scalar first
         self._pose: tuple[float, float, float, float, float, float, float]
+        self._slab_height: float
         start = scene.start
         position, velocity, spin = start.position.copy(), start.velocity, start.angular_velocity
         position[2] -= settings.depth
         self._put(position, start.quaternion, velocity, spin)
+        self._put_slab(2.0 * float(position[2]), 2.0 * velocity)
         if not start.standing:
             # leapfrog starts half a step back: a trial step shows the acceleration
             after = np.array(self._loop([[0.0, 0.0, 0.0]])[0])
+            if self._slab is not None:
+                reached = self._slab.linvel
+                slab_after = np.array([reached.x, reached.y, reached.z])
+                self._put_slab(2.0 * float(position[2]), 3.0 * velocity - 0.5 * slab_after)
             velocity, spin = 1.5 * velocity - 0.5 * after[7:10], 1.5 * spin - 0.5 * after[10:]
             self._put(position, start.quaternion, velocity, spin)
 
@@ -134,6 +143,7 @@ class _RapierStepper(Leapfrog):
         kept, gain, fastest = self._settings.depth, self._settings.depth_gain, _FASTEST_RISE * time_step
         cosine, sine, root, stiffness = math.cos, math.sin, math.sqrt, -4.0 * self._stiffness
         x, y, z, w, i, j, k = self._pose
+        slab, above = self._slab, self._slab_height
         rows: list[list[float]] = []
         lean = 2.0 * root((i * i + j * j) * (w * w + k * k))
         for ax, ay, az in acceleration:
@@ -165,10 +175,17 @@ class _RapierStepper(Leapfrog):
             if b * lean > base:
                 rise = min(gain * (b * lean - base - kept), fastest)
                 z, base = z + rise, base + rise
+            if slab is not None:
+                above += time_step * slab.linvel.z
+                top = z + h * axis_z
+                if b * lean + top > above:
+                    above += min(gain * (b * lean + top - above - kept), fastest)
+                slab.translation = (0.0, 0.0, above)
             body.translation, body.rotation = (0.0, 0.0, base), rotation(w=w, x=i, y=j, z=k)
             rows.append([x, y, z, w, i, j, k, vx, vy, vz, ox, oy, oz])
         size = root(w * w + i * i + j * j + k * k)
         self._pose = x, y, z, w / size, i / size, j / size, k / size
+        self._slab_height = above
         return rows
 
     def _put(self, position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
@@ -180,9 +197,17 @@ class _RapierStepper(Leapfrog):
         body.rotation = self._rapier.Rotation3(w=w, x=i, y=j, z=k)
         body.linvel, body.angvel = tuple(velocity.tolist()), tuple(spin.tolist())
 
+    def _put_slab(self, height: float, velocity: Array) -> None:
+        self._slab_height = height
+        if self._slab is not None:
+            self._slab.translation, self._slab.linvel = (0.0, 0.0, height), tuple(velocity.tolist())
 
-def _build(rapier: ModuleType, scene: Scene, settings: RapierSettings) -> tuple[Any, Any]:
-    """Make ground and cylinder, the centre of the base at the origin; return world and cylinder."""
+
+def _build(rapier: ModuleType, scene: Scene, settings: RapierSettings) -> tuple[Any, Any, Any]:
+    """Make ground, cylinder and slab, the centre of the base at the origin; return world and bodies.
+
+    The slab is None where there is none.
+    """
     world, body = rapier.PhysicsWorld(gravity=(0.0, 0.0, -scene.gravity)), scene.body
     how = world.integration_parameters
     how.dt, how.max_ccd_substeps = scene.time_step, 0
@@ -194,16 +219,26 @@ def _build(rapier: ModuleType, scene: Scene, settings: RapierSettings) -> tuple[
     frequency = settings.contact_frequency * scene.unit_time
     softness = rapier.SpringCoefficients(frequency, settings.contact_damping_ratio)
     how.contact_softness = how.static_contact_softness = softness
-    ground = world.rigid_bodies.insert(rapier.RigidBody.fixed().build())
-    plane = rapier.Collider.halfspace((0.0, 0.0, 1.0)).friction(scene.friction)
-    world.colliders.insert_with_parent(plane.build(), ground, world.rigid_bodies)
+    bodies, colliders = world.rigid_bodies, world.colliders
+
+    def add_plane(kind: Any, up: float) -> Any:
+        handle = bodies.insert(kind.build())
+        plane = rapier.Collider.halfspace((0.0, 0.0, up)).density(0.0).friction(scene.friction)
+        colliders.insert_with_parent(plane.build(), handle, bodies)
+        return bodies[handle]
+
+    add_plane(rapier.RigidBody.fixed(), 1.0)
     inertia = body.transverse_inertia, body.transverse_inertia, body.axial_inertia
     centre = (0.0, 0.0, body.mass_centre_height)
     mass = rapier.MassProperties(local_com=centre, mass=1.0, principal_inertia=inertia)
     cylinder = rapier.RigidBody.dynamic().can_sleep(False).gyroscopic_forces(True).allow_fast_rotation(True)
-    handle = world.rigid_bodies.insert(cylinder.additional_mass_properties(mass).build())
-    half = _HALF_DISC * body.base_radius
-    disc = rapier.Collider.cylinder(half, body.base_radius).density(0.0).friction(scene.friction)
-    disc = disc.rotation((0.5 * math.pi, 0.0, 0.0)).translation((0.0, 0.0, half))
-    world.colliders.insert_with_parent(disc.build(), handle, world.rigid_bodies)
-    return world, world.rigid_bodies[handle]
+    handle = bodies.insert(cylinder.additional_mass_properties(mass).build())
+    half, share = _HALF_DISC * body.base_radius, body.slab_mass_ratio
+    for middle in [half, body.height - half] if share > 0.0 else [half]:
+        disc = rapier.Collider.cylinder(half, body.base_radius).density(0.0).friction(scene.friction)
+        disc = disc.rotation((0.5 * math.pi, 0.0, 0.0)).translation((0.0, 0.0, middle))
+        colliders.insert_with_parent(disc.build(), handle, bodies)
+    if share == 0.0:
+        return world, bodies[handle], None
+    kind = rapier.RigidBody.dynamic().can_sleep(False).locked_axes(rapier.LockedAxes.ROTATION_LOCKED)
+    return world, bodies[handle], add_plane(kind.additional_mass(share), -1.0)

@@ -1,5 +1,7 @@
 """Columns and a slab as bodies of their own: by springs at the points of the rims, by MuJoCo, by PyBullet.
 
+One column under a slab that can only translate besides by the engines of the product.
+
 They share the start and nothing else. The ends of columns give under a load as the springs do, as MuJoCo's
 contact is told to, and not at all in PyBullet. Engines have friction of velocities, so that a rim creeps; the
 springs have friction with memory: the elongation of a spring, at most friction times load.
@@ -7,8 +9,13 @@ springs have friction with memory: the elongation of a spring, at most friction 
 
 from __future__ import annotations
 
+import contextlib
 import math
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+from unittest import mock
 
 import numba
 import numpy as np
@@ -16,6 +23,7 @@ from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, WobblingFrame
+from rockwobble.multibody import simulate
 from rockwobble.multibody.scene import Body, scaled_body, starting_state
 
 Array = NDArray[np.float64]
@@ -105,13 +113,16 @@ class Frame:
         shape = np.array([square + self.thickness**2] * 2 + [2.0 * square])
         return np.asarray(self.inertia * self.slab_mass * shape / 12.0)
 
+    @property
+    def case(self) -> Case:
+        """The ideal frame, with one of its columns."""
+        release = InitialState(self.tilt * self.cylinder.alpha, rolling_rate=self.spin)
+        frame = WobblingFrame(self.cylinder, self.ratio, columns=1)
+        return Case(frame, self.motion, initial=release, duration=self.duration)
+
     def reference(self) -> Trace:
         """Return the reduced model of the ideal frame."""
-        release = InitialState(self.tilt * self.cylinder.alpha, rolling_rate=self.spin)
-        case = Case(
-            WobblingFrame(self.cylinder, self.ratio), self.motion, initial=release, duration=self.duration
-        )
-        return reduced.simulate(case, support=self.support, sample_step=SAMPLE, rtol=1e-10)
+        return reduced.simulate(self.case, support=self.support, sample_step=SAMPLE, rtol=1e-10)
 
     def ground(self, steps: int, step: float) -> Array:
         """Return the ground acceleration before and after each step (steps + 1, 3) [m/s^2]."""
@@ -320,6 +331,52 @@ def by_bullet(frame: Frame, step: float = 2e-4) -> Motion:
         bullet.stepSimulation()
     bullet.disconnect(client)
     return _motion(frame, np.array(axes), np.array(turns), np.array(load))
+
+
+def by_engine(frame: Frame, name: str, step: float | None = None, *, box: bool = False) -> Motion:
+    """Solve by an engine of the product, with a `box` in the place of the plane that its slab is."""
+    with BOXES[name]() if box else contextlib.nullcontext():
+        trace = simulate(frame.case, engine=name, support=frame.support, time_step=step, sample_step=SAMPLE)
+    count = len(trace.time)
+    return Motion(tilt=trace.tilt[:, None], turned=np.zeros(count), load=np.full((count, 1), np.nan))
+
+
+def _box_of_bullet() -> AbstractContextManager[object]:
+    from rockwobble.multibody.engines import pybullet as engine
+
+    plane = engine.make_slab
+
+    def box(bullet: ModuleType, *scene: Any) -> int:
+        made = bullet.createCollisionShape(
+            bullet.GEOM_BOX, halfExtents=[_WIDE, _WIDE, 0.5 * THICKNESS],
+            collisionFramePosition=[0.0, 0.0, -0.5 * THICKNESS], physicsClientId=scene[0],
+        )  # fmt: skip
+        with mock.patch.object(bullet, "createCollisionShape", return_value=made):
+            return plane(bullet, *scene)
+
+    return mock.patch.object(engine, "make_slab", box)
+
+
+def _box_of_dart() -> AbstractContextManager[object]:
+    import dartpy
+
+    from rockwobble.multibody.engines import dart as engine
+
+    plane = engine.make_scene
+
+    def box(scene: Any, settings: Any) -> engine.DartScene:
+        made = plane(scene, settings)
+        assert made.slab is not None
+        outline = made.slab.getChildBodyNode().getShapeNode(0)
+        outline.setShape(dartpy.dynamics.BoxShape([2.0 * _WIDE, 2.0 * _WIDE, THICKNESS]))
+        outline.setRelativeTranslation([0.0, 0.0, 0.5 * THICKNESS])
+        return made
+
+    return mock.patch.object(engine, "make_scene", box)
+
+
+BOXES = {"pybullet": _box_of_bullet, "dart": _box_of_dart}
+_WIDE = 30.0  # half of its width [m]
 
 
 def by_springs(frame: Frame) -> Motion:

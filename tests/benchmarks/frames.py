@@ -10,13 +10,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from rockwobble.models import el_centro_1940
+from rockwobble.multibody.engines.registry import find_engine, own_engines
 
 from .console import options_of
-from .frame_solvers import SAMPLE, Frame, Motion, by_bullet, by_mujoco, by_springs
+from .frame_solvers import BOXES, SAMPLE, Frame, Motion, by_bullet, by_engine, by_mujoco, by_springs
 
 APART = 0.01  # of alpha, by which columns that are out of step differ
 Row = tuple[str, Frame, Callable[[Frame], Motion]]
@@ -34,6 +36,17 @@ def one_column() -> Iterator[Row]:
             yield f"{support}, MuJoCo, step {step:g} s", frame, _mujoco(step, 0.995, 2.0)
         for give in (1e-3, 1e-4, 1e-5):
             yield f"{support}, springs, give {give:g} b", replace(frame, give=give), by_springs
+
+
+def engines() -> Iterator[Row]:
+    """The same in the engines of the product, at four times the default step and at the default."""
+    for name in own_engines():
+        for box in (False, True) if name in BOXES else (False,):
+            for support in find_engine(name).supports[:2]:
+                for step in (4e-4, 1e-4):
+                    solve = partial(by_engine, name=name, step=step, box=box)
+                    title = f"{support}, {name}{', box' if box else ''}, step {step:g} s"
+                    yield title, Frame(columns=1, support=support), solve
 
 
 def equal_columns() -> Iterator[Row]:
@@ -90,7 +103,13 @@ def shaken() -> Iterator[Row]:
         yield f"{columns} on a circle of 20 b, MuJoCo", frame, _mujoco(2e-4)
 
 
-TABLES = {"one": one_column, "equal": equal_columns, "imperfect": imperfect, "shaken": shaken}
+TABLES = {
+    "one": one_column,
+    "engines": engines,
+    "equal": equal_columns,
+    "imperfect": imperfect,
+    "shaken": shaken,
+}
 
 
 def measured(frame: Frame, solve: Callable[[Frame], Motion]) -> tuple[float, float, float, float, float]:

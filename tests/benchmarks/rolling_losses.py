@@ -1,9 +1,10 @@
 """Rolling resistance: error over tolerance, computing time, and the engines beside the models.
 
-`python tests/benchmarks rolling_losses` prints six tables: quantities that have a law, by it and by the
+`python tests/benchmarks rolling_losses` prints seven tables: quantities that have a law, by it and by the
 models; error of the models over the tolerance in free response; how random releases end in the models; their
 computing time over that of the models without it (runs in turns, medians of ratios); the rolling friction of
-engines against the models over step and coefficient of friction, and in a frame; when engines uplift.
+engines against the models over step and coefficient of friction, and in a frame; how often MuJoCo's contact
+is closed then; when engines uplift.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import numpy as np
 
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, WobblingFrame, el_centro_1940
+from rockwobble.multibody.simulation import open_scene
 from rockwobble.reduced.body import body_of
 from rockwobble.reduced.problem import make_problem
 from rockwobble.reduced.rolling import impact_ratio
@@ -34,6 +36,7 @@ ENGINES = {"mujoco": ((1.0, 20.0), (4e-4, 2e-4, 1e-4)), "pybullet": ((1.0, 4.0),
 GRIP = {"mujoco": 20.0, "pybullet": 4.0}  # friction that leaves the couple whole
 UPLIFTS = (("mujoco", 2e-4), ("mujoco", 1e-4), ("pybullet", 2e-4))
 _ROUNDS = 100  # of timed runs
+_WATCHED = 5000  # steps, half a second
 _PIER = Cylinder(semidiagonal=6.0, tan_alpha=1.0 / 3.0)
 
 
@@ -211,7 +214,7 @@ def engines() -> pd.DataFrame:
     frame = WobblingFrame(_PIER, 1.0, columns=1)
     for engine, friction in GRIP.items():
         case = _released(0.02, spin=0.5, friction=friction, duration=2.0, cylinder=frame)
-        cases.append((case, engine, 2e-4))
+        cases += [(case, engine, step) for step in (2e-4, 5e-5)]
     rows: list[tuple[object, ...]] = []
     for support in ("recess", "flat"):
         for case, engine, step in cases:
@@ -240,6 +243,26 @@ def engines() -> pd.DataFrame:
 def _apart(trial: Trace, reference: Trace) -> float:
     """Return the largest difference of two tilts [alpha]."""
     return float(np.abs(trial.tilt - reference.tilt).max()) / _PIER.alpha
+
+
+def contact_shares() -> pd.DataFrame:
+    """Return the share of steps in which an end of MuJoCo's column is in contact, after a release."""
+    import pandas as pd
+
+    rows = []
+    for body, cylinder, ends in (
+        ("cylinder", _PIER, 1),
+        ("frame", WobblingFrame(_PIER, 1.0, columns=1), 2),
+    ):
+        for share in (0.0, 0.004, 0.02):
+            case = _released(share, spin=0.5, friction=GRIP["mujoco"], duration=1.0, cylinder=cylinder)
+            with open_scene(case, "mujoco", "recess", {}) as stepper:
+                counts = []
+                for still in np.zeros((_WATCHED, 1, 3)):
+                    stepper.advance(still)
+                    counts.append(stepper.counts().contacts)
+            rows.append((body, share, float(np.mean(counts)) / ends))
+    return pd.DataFrame(rows, columns=["body", "delta_b", "in_contact"])
 
 
 def uplifts() -> pd.DataFrame:
@@ -287,6 +310,8 @@ def main(arguments: Sequence[str]) -> int:
     forms = {"support": "", "body": "", "delta_b": ".3f", "engine": "", "friction": ".0f", "step": ".0e"}
     forms |= {"tilt_error": ".1e", "effect": ".1e", "lost": ".4f", "engine_lost": ".4f", "account": ".1e"}
     show(engines(), "Rolling friction of engines against the models, tilt in alpha", forms)
+    forms = {"body": "", "delta_b": ".3f", "in_contact": ".3f"}
+    show(contact_shares(), "Steps in which an end of MuJoCo's column is in contact", forms)
     forms = {"engine": "", "step": ".0e", "after": ".1f", "without_loss": ".1f", "tilt_error": ".1e"}
     show(uplifts(), "Uplift of engines after the models [ms], delta/b 0.03, tilt in alpha", forms)
     return 0

@@ -52,6 +52,13 @@ def test_a_failure_while_writing_leaves_the_old_files_whole(tmp_path, monkeypatc
     assert (tmp_path / "a.csv").read_bytes() == b"old"
 
 
+def test_files_and_their_names_outlive_a_loss_of_power(tmp_path, monkeypatch):
+    forced = []
+    monkeypatch.setattr(os, "fsync", lambda descriptor: forced.append(os.fstat(descriptor).st_ino))
+    replace_files(tmp_path, {"a.csv": b"1"})
+    assert forced == [(tmp_path / "a.csv").stat().st_ino, tmp_path.stat().st_ino]
+
+
 def test_a_pipe_is_written_to_and_stays_a_pipe(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
