@@ -85,3 +85,11 @@ def test_newton_leans_on_its_own_contacts() -> None:
     for simulator, settings in cited:
         each = row(simulator, settings)
         assert f"{each.turn:.2f}° and {each.tilt:.3f}" in WORDS
+
+
+def test_every_turn_and_tilt_of_the_page_is_one_of_the_table() -> None:
+    table = known(PUBLISHED)
+    stated = {(f"{turn:.2f}", f"{tilt:.3f}") for turn, tilt in zip(table["turn"], table["tilt"], strict=True)}
+    found = re.findall(r"(\d+\.\d+)° and (\d\.\d+)", WORDS)
+    assert len(found) >= 9
+    assert set(found) <= stated
