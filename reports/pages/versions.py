@@ -38,7 +38,11 @@ def page_of(found: EngineVersions) -> Page:
         {**{str(name): value for name, value in row.items()}, "title": engine_facts(str(row["engine"])).title}
         for row in found.versions.to_dict("records")
     ]
-    values = {"rows": rows, "about": found.manifest, "moved": _moved(found.versions)}
+    earlier = [
+        {"title": engine_facts(name).title, **origin}
+        for name, origin in found.facts.get("earlier", {}).items()
+    ]
+    values = {"rows": rows, "about": found.manifest, "moved": _moved(found.versions), "earlier": earlier}
     return Page(name="versions", template="versions", values=values)
 
 

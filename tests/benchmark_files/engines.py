@@ -1,7 +1,8 @@
 """Results of the engines: each case that an engine can do, judged by check.py like anybody's.
 
 `results/NAME` holds one file a case and about.json: code, version, settings, time step, processor time of a
-step, what it cannot do and why, and the commit that ran each case.
+step, what it cannot do or was left out and why, until when the runs of each case could be extrapolated, and
+the commit that ran it.
 """
 
 from __future__ import annotations
@@ -39,12 +40,16 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
     old = json.loads(known.read_text()) if only and known.exists() else {}
     cannot: dict[str, str] = old.get("cannot", {})
     commits: dict[str, str] = old.get("commits", {})
+    left_out: dict[str, str] = old.get("left_out", {})
+    until: dict[str, float] = old.get("extrapolated_until", {})
     version, words = old.get("version", ""), variant.replace("-", " ")
     problems = {path: cases_of(path) for path in (folder / "cases").iterdir()}
     lengths = {path: sum(case.length for case, _ in cases.values()) for path, cases in problems.items()}
     for path in sorted(problems, key=lambda path: lengths[path]):
-        if (only and path.name not in only) or (variant == BEST and lengths[path] > _LONG):
+        if only and path.name not in only:
             continue
+        if variant == BEST and lengths[path] > _LONG:
+            left_out[path.name], problems[path] = f"its runs last over {_LONG:g} s", {}
         traces: dict[str, Trace] = {}
         for name, (case, support) in problems[path].items():
             start = time.process_time()  # not the wall: other work on the machine is none of an engine's
@@ -58,6 +63,8 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
                 costs.append((time.process_time() - start) / steps)
         if traces:
             commits[path.name] = commit()
+            if variant == BEST:
+                until[path.name] = min(_extrapolated_until(trace) for trace in traces.values())
             version = next(iter(traces.values())).version
             label = f"{engine} {version}, {words}"
             with tempfile.TemporaryDirectory() as scratch:
@@ -73,6 +80,8 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
             "time_step": _step_in_words(variant) if engine != REDUCED else "of its tolerance, 1e-8 relative",
             "seconds_a_step": statistics.median(costs) if costs else old.get("seconds_a_step"),
             "cannot": cannot,
+            "left_out": left_out,
+            "extrapolated_until": until,
             "machine": f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}",
             "commits": commits,
         }
@@ -82,6 +91,11 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
 def _step_in_words(variant: str) -> str:
     default = f"{REFERENCE_TIME_STEP:g} s at R = {REFERENCE_SEMIDIAGONAL:g} m, as sqrt(R)"
     return default if variant == DEFAULT else f"{default}; a half and a quarter of it; extrapolated"
+
+
+def _extrapolated_until(trace: Trace) -> float:
+    """Return the time [s] from which on a run is the finest of three: no halving brought it closer."""
+    return next((fact.duration for fact in trace.facts if fact.code == "extrapolated"), 0.0)
 
 
 def _default_step(case: Case) -> float:

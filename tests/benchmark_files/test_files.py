@@ -247,6 +247,12 @@ def test_the_scoreboard_tells_what_cannot_be_run_from_what_was_not() -> None:
 
     assert cells("exudyn")["Angle of turn and period in a recess"] == "cannot"  # it has flat ground alone
     assert cells("drake")["Energy over 100 passes"] == "not run"  # a step takes twenty times as long
+    about = json.loads((PUBLISHED / "results" / "rapier-extrapolated" / "about.json").read_text())
+    extrapolated = cells(f"rapier {about['version']}, extrapolated")
+    assert extrapolated["Energy over 100 passes"] == "left out"
+    until = about["extrapolated_until"]["near-upright-pass"]
+    assert f"extrapolated to {until:.2g} s" in extrapolated["Passes near the upright position at three spins"]
+    assert "not run" not in extrapolated.values()
 
 
 def test_one_size_of_five_does_not_make_scale_invariance(judge: Judge) -> None:

@@ -41,7 +41,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--engine", action="append", choices=tuple(SINCE), help="default: all of them")
     parser.add_argument("--version", action="append", help="of the one --engine; default: each minor release")
     parser.add_argument("--no-sweep", action="store_true", help="leave out the uplift sweep, a minute each")
-    parser.add_argument("--out", type=Path, help="folder for table, page and manifest")
+    parser.add_argument(
+        "--out", type=Path, help="folder for table, page and manifest; rows of other engines stay"
+    )
     parser.add_argument("--keep", type=Path, help="folder that keeps what is installed; default: none does")
     given = parser.parse_args(arguments)
     with tempfile.TemporaryDirectory() as place:
@@ -142,8 +144,18 @@ def made_table(rows: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
 
 
 def _write(table: pd.DataFrame, out: Path) -> None:
+    import pandas as pd
+
+    earlier: dict[str, dict[str, str]] = {}
+    before = EngineVersions.load(out) if (out / "manifest.json").exists() else None
+    if before is not None and before.manifest is not None:
+        kept = before.versions[~before.versions["engine"].isin(table["engine"])]
+        origin = {"date": before.manifest.date, "commit": before.manifest.commit}
+        known = before.facts.get("earlier", {})
+        earlier = {str(name): known.get(name, origin) for name in kept["engine"].unique()}
+        table = pd.concat([kept, table], ignore_index=True)
     command = "python tests/benchmarks engine_versions --out " + str(out)
-    found = EngineVersions(tables={"versions": table}, facts={}).made_by(command)
+    found = EngineVersions(tables={"versions": table}, facts={"earlier": earlier}).made_by(command)
     pages = page_of(found).files()
     found.save(out, pages=pages)
     print(f"Written to {out}: manifest.json, versions.csv, versions.parquet, {', '.join(pages)}")

@@ -3,6 +3,7 @@
 It needs numpy and the simulator alone, so that a simulator may have an environment of its own:
 
     python tests/benchmarks/rock_worlds.py physx best
+    python tests/benchmarks/rock_worlds.py physx best cost
 
 A simulator is a function of a step [s] and of whether its settings are the better ones; it returns a `World`.
 """
@@ -18,6 +19,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -28,6 +30,8 @@ TILT, SPIN = 0.5 * math.atan(0.5), 0.1  # tilt [rad] and rolling rate [rad/s] of
 INERTIA = np.array([(3 * B**2 + 4 * H**2) / 12, (3 * B**2 + 4 * H**2) / 12, B**2 / 2])  # of 1 kg
 DIRECTIONS, RAMP, LENGTH = 7, 0.02, 0.5  # of the uplift sweep; [s]
 NOTHING: Array = np.zeros(3)
+_DOWN = np.array([0.0, 0.0, -G])
+_BURST, _STEPS = 0.5, 5000  # [s] of the processor, and steps, that time a step
 # [rad] at the end of the sweep: 3.7e-3 at 0.51 g, none at 0.49 g
 STANDS, LEANS = 3e-4, 1e-3
 
@@ -44,6 +48,8 @@ class World:
         Takes a step under a gravity [m/s^2].
     lean : callable
         Returns the horizontal components of the axis.
+    stands : bool
+        Whether it can stand on its base.
     kept : object
         What must live as long as the world does.
     """
@@ -51,6 +57,7 @@ class World:
     put: Callable[[Array, Array, Array, Array], None]
     step: Callable[[Array], None]
     lean: Callable[[], tuple[float, float]]
+    stands: bool = True
     kept: object = None
 
 
@@ -229,10 +236,17 @@ def rapier(step: float, best: bool) -> World:
 
 
 def physx(step: float, best: bool, corners: int = 0) -> World:
-    """Temporal Gauss-Seidel, 10 iterations, angular damping of 0.05; better without damping and with 50."""
+    """Temporal Gauss-Seidel, 10 iterations, angular damping of 0.05.
+
+    Better without damping, with the 4 iterations that PhysX itself begins with, and with all contacts: the
+    persistent manifold keeps four of them, on which the base stands as on a square.
+    """
     import sapien
     from sapien import physx
 
+    scene_config = physx.get_scene_config()
+    scene_config.enable_pcm = not best
+    physx.set_scene_config(scene_config)
     system = physx.PhysxCpuSystem()
     system.set_timestep(step)
     material, half = physx.PhysxMaterial(1.0, 1.0, 0.0), math.sqrt(0.5)
@@ -252,7 +266,7 @@ def physx(step: float, best: bool, corners: int = 0) -> World:
     can.set_inertia(INERTIA)
     can.sleep_threshold = 0.0
     if best:
-        can.angular_damping, can.solver_position_iterations = 0.0, 50
+        can.angular_damping, can.solver_position_iterations = 0.0, 4
         plane.contact_offset = shape.contact_offset = 0.002
     scene = sapien.Scene([system])
     entities = [sapien.Entity(), sapien.Entity()]
@@ -286,7 +300,64 @@ def _prism(corners: int) -> str:
     return "\n".join([*points, *faces])
 
 
-def _newton(solver: str, **better: Any) -> Callable[[float, bool], World]:
+def prism(step: float, best: bool, corners: int) -> World:
+    """Pivots on one corner and lands on the next without bounce and slip: what a polygon itself loses."""
+    turns = math.tau * np.arange(corners) / corners
+    rim = np.column_stack([B * np.cos(turns), B * np.sin(turns), np.full(corners, -H)])
+    pose, spin, pivot = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3), 0  # spin about body axes
+
+    def about(corner: int) -> Array:
+        arm = rim[corner]
+        return np.diag(INERTIA) + arm @ arm * np.eye(3) - np.outer(arm, arm)
+
+    def rates(pose: Array, spin: Array, gravity: Array) -> tuple[Array, Array]:
+        inertia, torque = about(pivot), np.cross(-rim[pivot], _matrix(pose).T @ gravity)
+        (w, *xyz), change = pose, np.linalg.solve(inertia, torque - np.cross(spin, inertia @ spin))
+        return 0.5 * np.array([-np.dot(xyz, spin), *(w * spin + np.cross(xyz, spin))]), change
+
+    def put(position: Array, quaternion: Array, velocity: Array, angular: Array) -> None:
+        nonlocal pose, spin, pivot
+        pose, spin = quaternion, _matrix(quaternion).T @ angular
+        pivot = int((rim @ _matrix(pose)[2]).argmin())
+
+    def take(gravity: Array) -> None:
+        nonlocal pose, spin, pivot
+        turning, change = rates(pose, spin, gravity)
+        turning, change = rates(pose + 0.5 * step * turning, spin + 0.5 * step * change, gravity)
+        pose, spin = pose + step * turning, spin + step * change
+        pose /= np.linalg.norm(pose)
+        up = _matrix(pose)[2]
+        lowest = int((rim @ up).argmin())
+        if lowest == pivot:
+            return
+        # the angular momentum about the corner that lands is kept
+        momentum = INERTIA * spin + np.cross(rim[lowest], np.cross(spin, rim[pivot]))
+        edge, inertia = rim[pivot] - rim[lowest], about(lowest)
+        spin = np.linalg.solve(inertia, momentum)
+        if up @ np.cross(spin, edge) < 0.0:  # the corner before it cannot sink: both stay, as a hinge
+            spin = edge * (edge @ momentum) / (edge @ inertia @ edge)
+        pivot = lowest
+
+    def lean() -> tuple[float, float]:
+        return _lean(*pose)
+
+    return World(put=put, step=take, lean=lean, stands=False)
+
+
+def _matrix(quaternion: Array) -> Array:
+    w, x, y, z = quaternion
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def _newton(
+    solver: str, contact: Mapping[str, float] = MappingProxyType({}), cloth: bool = False, **better: Any
+) -> Callable[[float, bool], World]:
     def made(step: float, best: bool) -> World:
         import newton
         import warp
@@ -294,15 +365,23 @@ def _newton(solver: str, **better: Any) -> Callable[[float, bool], World]:
         warp.config.quiet = True
         kind = getattr(newton.solvers, f"Solver{solver}")
         builder = newton.ModelBuilder()
-        if hasattr(kind, "register_custom_attributes"):
-            kind.register_custom_attributes(builder)
-        builder.add_ground_plane(cfg=newton.ModelBuilder.ShapeConfig(mu=1.0))
-        config = newton.ModelBuilder.ShapeConfig(density=1.0 / (math.pi * B**2 * 2 * H), mu=1.0)
+        for each in {kind, newton.solvers.SolverStyle3D} if cloth else {kind}:
+            each.register_custom_attributes(builder)
+        given: dict[str, Any] = {"mu": 1.0, **(contact if best else {})}
+        builder.add_ground_plane(cfg=newton.ModelBuilder.ShapeConfig(**given))
+        config = newton.ModelBuilder.ShapeConfig(density=1.0 / (math.pi * B**2 * 2 * H), **given)
         body = builder.add_body()
         builder.add_shape_cylinder(body, radius=B, half_height=H, cfg=config)
+        if cloth:  # without particles such a solver is not made at all
+            newton.solvers.style3d.add_cloth_grid(
+                builder, pos=(0.0, 0.0, 99.0), rot=warp.quat_identity(), vel=(0.0, 0.0, 0.0),
+                dim_x=2, dim_y=2, cell_x=0.1, cell_y=0.1, mass=0.1
+            )  # fmt: skip
+        builder.color()
         model = builder.finalize(device="cpu")
         states, contacts, control = [model.state(), model.state()], model.contacts(), model.control()
-        engine = kind(model, **(better if best else {}))
+        settings = {"config": kind.Config()} if solver == "ImplicitMPM" else better if best else {}
+        engine, load = kind(model, **settings), _DOWN
 
         def put(position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
             pose, rates = [*position, *np.roll(quaternion, -1)], [*velocity, *spin]
@@ -313,7 +392,11 @@ def _newton(solver: str, **better: Any) -> Callable[[float, bool], World]:
                 state.joint_qd.assign(np.array(rates, dtype=np.float32))
 
         def take(gravity: Array) -> None:
-            model.set_gravity(tuple(gravity.tolist()))
+            nonlocal load
+            if not np.array_equal(gravity, load):
+                load = gravity
+                model.set_gravity(tuple(gravity.tolist()))
+                engine.notify_model_changed(newton.ModelFlags.MODEL_PROPERTIES)
             states[0].clear_forces()
             model.collide(states[0], contacts)
             engine.step(states[0], states[1], control, contacts, step)
@@ -329,6 +412,8 @@ def _newton(solver: str, **better: Any) -> Callable[[float, bool], World]:
     return made
 
 
+# springs and dampers of the contacts of a can of 1 kg: 1e-5 m under its weight
+_STIFF = MappingProxyType({"ke": 2.5e5, "kd": 100.0, "kf": 1e4})
 # package, step [s] of the settings it starts from and of the better ones, and the simulator
 WORLDS: Mapping[str, tuple[str, float, float, Callable[[float, bool], World]]] = {
     "mujoco": ("mujoco", 0.002, math.nan, mujoco),
@@ -339,36 +424,76 @@ WORLDS: Mapping[str, tuple[str, float, float, Callable[[float, bool], World]]] =
     "physx": ("sapien", 1 / 100, 1e-4, physx),
     "physx-32": ("sapien", 1 / 100, 1e-4, functools.partial(physx, corners=32)),
     "physx-64": ("sapien", 1 / 100, 1e-4, functools.partial(physx, corners=64)),
+    "prism-32": ("", 1e-4, math.nan, functools.partial(prism, corners=32)),
+    "prism-64": ("", 1e-4, math.nan, functools.partial(prism, corners=64)),
+    "prism-128": ("", 1e-4, math.nan, functools.partial(prism, corners=128)),
     "newton-xpbd": (
-        "newton",
+        "newton[sim]",
         1 / 500,
         1 / 1000,
         _newton("XPBD", iterations=20, rigid_contact_relaxation=1.0),
     ),
-    "newton-mujoco": ("newton", 1 / 500, 1 / 1000, _newton("MuJoCo")),
+    "newton-mujoco": ("newton[sim]", 1 / 500, 1 / 1000, _newton("MuJoCo")),
+    "newton-semi-implicit": (
+        "newton[sim]",
+        1 / 500,
+        1 / 2000,
+        _newton("SemiImplicit", _STIFF, angular_damping=0.0),
+    ),
+    "newton-featherstone": (
+        "newton[sim]",
+        1 / 500,
+        1 / 2000,
+        _newton("Featherstone", _STIFF, angular_damping=0.0),
+    ),
+    "newton-vbd": ("newton[sim]", 1 / 500, 1 / 1000, _newton("VBD", iterations=20)),
+    "newton-steel": ("newton[sim]", 1 / 500, 1 / 1000, _newton("Steel", iterations=30)),
+    "newton-kamino": ("newton[sim]", 1 / 500, math.nan, _newton("Kamino")),
+    "newton-style3d": ("newton[sim]", 1 / 500, math.nan, _newton("Style3D", cloth=True)),
+    "newton-mpm": ("newton[sim]", 1 / 500, math.nan, _newton("ImplicitMPM", cloth=True)),
 }
 
 
-def turned(world: World, step: float) -> dict[str, float]:
-    """Return the angle of turn [deg], the next largest tilt over the release, and microseconds a step."""
+def _released(world: World) -> None:
     axis = np.array([math.sin(TILT), 0.0, math.cos(TILT)])
     centre = np.array([B * (1 - axis[2]), 0.0, B * axis[0]]) + H * axis
     spin = SPIN * (np.array([0.0, 0.0, 1.0]) - axis)
     quaternion = np.array([math.cos(TILT / 2), 0.0, math.sin(TILT / 2), 0.0])
     world.put(centre, quaternion, np.cross(spin, centre - [B, 0.0, 0.0]), spin)
-    down, leans, started = np.array([0.0, 0.0, -G]), [], 0.0
-    for number in range(int(2.0 / step)):
-        if number == 1:  # the first step may compile
-            started = time.process_time()
-        world.step(down)
+
+
+def turned(world: World, step: float) -> dict[str, float]:
+    """Return the angle of turn [deg] and the next largest tilt over the release.
+
+    Raises
+    ------
+    RuntimeError
+        If the body stays where it is put.
+    """
+    _released(world)
+    leans = []
+    for _ in range(int(2.0 / step)):
+        world.step(_DOWN)
         leans.append(world.lean())
-    seconds = (time.process_time() - started) / (len(leans) - 1)
     lean = np.array(leans)
+    if not np.ptp(lean, axis=0).any():
+        raise RuntimeError("moves no rigid body")
     tilt = np.arcsin(np.minimum(np.hypot(*lean.T), 1.0))
     upright = int(tilt[: int(1.2 / step)].argmin())
     top = upright + int(tilt[upright:].argmax())
     azimuth = np.unwrap(np.arctan2(lean[:, 1], lean[:, 0]))
-    return {"turn": math.degrees(azimuth[top]), "tilt": tilt[top] / TILT, "microseconds": 1e6 * seconds}
+    return {"turn": math.degrees(azimuth[top]), "tilt": tilt[top] / TILT}
+
+
+def cost(world: World) -> float:
+    """Return microseconds of the processor a step, in the first steps after the release."""
+    _released(world)
+    world.step(_DOWN)  # which may compile
+    started, steps = time.process_time(), 0
+    while (spent := time.process_time() - started) < _BURST and steps < _STEPS:
+        world.step(_DOWN)
+        steps += 1
+    return 1e6 * spent / steps
 
 
 def misses(tilt: float, aside: float, share: float) -> list[str]:
@@ -396,14 +521,18 @@ def uplifts(made: Callable[[], World], step: float) -> list[str]:
     return wrong
 
 
-def printed(name: str, variant: str) -> None:
-    """Print what a simulator does, as JSON in the last line."""
+def printed(name: str, variant: str, what: str = "motion") -> None:
+    """Print what a simulator does, or what a step of it costs, as JSON in the last line."""
     package, default, better, simulator = WORLDS[name]
     best = variant == "best"
     step = better if best else default
-    found: dict[str, Any] = {"version": version(package), "time_step": step, "wrong": None}
-    found |= turned(simulator(step, best), step)
-    found["wrong"] = uplifts(lambda: simulator(step, best), step)
+    world = simulator(step, best)
+    if what == "cost":
+        print(json.dumps(cost(world)))
+        return
+    found: dict[str, Any] = {"version": package and version(package.partition("[")[0]), "time_step": step}
+    found |= turned(world, step)
+    found["wrong"] = uplifts(lambda: simulator(step, best), step) if world.stands else None
     print(json.dumps(found))
 
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from rockwobble.reports.pages import page_of, stored_page
 from rockwobble.reports.pages.versions import KIND, EngineVersions
 
+from . import engine_versions
 from .engine_versions import COLUMNS, made_table, minor_releases
 
 
@@ -43,3 +45,24 @@ def test_the_page_is_drawn_again_from_its_files(table: pd.DataFrame, tmp_path: P
     found.save(tmp_path, pages=pages)
     assert EngineVersions.load(tmp_path).versions.equals(table)
     assert set(stored_page(KIND, tmp_path).files()) == set(pages) == {"versions.md", "versions.html"}
+
+
+def test_rows_of_other_engines_stay_and_say_when_they_were_measured(
+    table: pd.DataFrame, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def row(engine: str, version: str, *_: object, **__: object) -> dict[str, Any]:
+        figures = {str(name): value for name, value in table.iloc[1].items()}
+        return figures | {"engine": engine, "version": version}
+
+    monkeypatch.setattr(engine_versions, "_row", row)
+    for engine in ("dart", "rapier", "dart"):
+        engine_versions.main(["--engine", engine, "--version", "9.0.0", "--out", str(tmp_path)])
+    found = EngineVersions.load(tmp_path)
+    assert found.manifest is not None
+    assert list(found.versions["engine"]) == ["rapier", "dart"]
+    assert found.facts["earlier"] == {
+        "rapier": {"date": found.manifest.date, "commit": found.manifest.commit}
+    }
+    assert (
+        f"Rapier (single precision) ({found.manifest.date}, commit" in (tmp_path / "versions.md").read_text()
+    )

@@ -2,7 +2,8 @@
 
 Default settings, and simulators that rockwobble does not drive, are in `rock_worlds`, each run in a process
 of its own. The best settings of an engine are those of rockwobble. PhysX and Newton are packages of their
-own: `--environment physx=/path/to/python`, or they are installed into a fresh one.
+own: `--environment physx=/path/to/python`, or they are installed into a fresh one (`pip install sapien`,
+`pip install 'newton[sim]'`). The times of a step are medians over rounds, each of which times them all.
 """
 
 from __future__ import annotations
@@ -10,12 +11,13 @@ from __future__ import annotations
 import datetime
 import json
 import math
+import statistics
 import subprocess
 import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -23,8 +25,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import multibody
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
-from rockwobble.multibody.engines.registry import find_engine, own_engines
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
+from rockwobble.multibody.engines.registry import engine_packages, find_engine, own_engines
 
 from . import rock_worlds as worlds
 from .console import options_of, show
@@ -34,8 +36,9 @@ if TYPE_CHECKING:
 
 _STEP = 1e-4  # [s] of the engines with the settings of rockwobble
 _CAN = Cylinder(semidiagonal=math.hypot(worlds.B, worlds.H), tan_alpha=worlds.B / worlds.H)
-_LONGEST = 600.0  # [s] of one simulator
+_LONGEST = 1200.0  # [s] of one simulator
 _INSTALL = 300.0  # [s]
+_ROUNDS = 3  # in which the steps of all simulators are timed
 # formulation and precision
 KNOWN: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
@@ -48,22 +51,33 @@ KNOWN: Mapping[str, tuple[str, str]] = MappingProxyType(
         "physx": ("temporal Gauss-Seidel", "single"),
         "physx-32": ("the same, a prism of 32 corners", "single"),
         "physx-64": ("the same, a prism of 64 corners", "single"),
+        "prism-32": ("exact, a prism of 32 corners", "double"),
+        "prism-64": ("exact, a prism of 64 corners", "double"),
+        "prism-128": ("exact, a prism of 128 corners", "double"),
         "newton-xpbd": ("position-based dynamics", "single"),
         "newton-mujoco": ("soft, convex optimisation", "single"),
+        "newton-semi-implicit": ("springs, semi-implicit Euler", "single"),
+        "newton-featherstone": ("springs, generalised coordinates", "single"),
+        "newton-vbd": ("augmented vertex block descent", "single"),
+        "newton-steel": ("projected Gauss-Seidel", "single"),
+        "newton-kamino": ("complementarity by proximal ADMM", "single"),
+        "newton-style3d": ("projective dynamics of cloth", "single"),
+        "newton-mpm": ("material points", "single"),
     }
 )
-_EXTRA = ("physx", "physx-32", "physx-64", "newton-xpbd", "newton-mujoco")
 _COLUMNS = ("simulator", "version", "formulation", "precision", "settings", "time_step", "turn", "tilt",
             "uplift", "microseconds", "remark")  # fmt: skip
 
 
-def driven(engine: str) -> dict[str, Any]:
-    """Return what an engine does with the settings of rockwobble, on flat ground."""
+def _released(engine: str) -> Trace:
     release = InitialState(worlds.TILT, rolling_rate=worlds.SPIN)
     case = Case(_CAN, initial=release, duration=2.0)
-    started = time.process_time()
-    trace = multibody.simulate(case, engine=engine, support="flat", time_step=_STEP, sample_step=0.001)
-    seconds = (time.process_time() - started) * _STEP / case.length
+    return multibody.simulate(case, engine=engine, support="flat", time_step=_STEP, sample_step=0.001)
+
+
+def driven(engine: str) -> dict[str, Any]:
+    """Return what an engine does with the settings of rockwobble, on flat ground."""
+    trace = _released(engine)
     upright = int(trace.tilt[:1200].argmin())
     top = upright + int(trace.tilt[upright:].argmax())
     found = {
@@ -71,7 +85,6 @@ def driven(engine: str) -> dict[str, Any]:
         "time_step": _STEP,
         "turn": math.degrees(float(trace.passes["angle_of_turn"].iloc[0])),
         "tilt": trace.tilt[top] / worlds.TILT,
-        "microseconds": 1e6 * seconds,
         "wrong": None,
     }
     if not find_engine(engine).uplifts:
@@ -90,19 +103,32 @@ def driven(engine: str) -> dict[str, Any]:
 
 def foreign(simulator: str, variant: str, python: str) -> dict[str, Any]:
     """Return what a simulator does in a process of its own."""
-    command = [python, "-W", "ignore", str(Path(worlds.__file__)), simulator, variant]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=_LONGEST, check=False)
+        return dict(_answer(python, simulator, variant))
     except subprocess.TimeoutExpired:
         return {"remark": f"not done within {_LONGEST:.0f} s"}
-    if done.returncode:
-        said = done.stderr.strip().splitlines() or ["crashes without a word"]
+    except subprocess.CalledProcessError as error:
+        said = error.stderr.strip().splitlines() or ["crashes without a word"]
         return {"remark": said[-1]}
-    return dict(json.loads(done.stdout.splitlines()[-1]))
+
+
+def cost(simulator: str, settings: str, python_of: Callable[[str], str]) -> float:
+    """Return microseconds of the processor that a step takes."""
+    if settings != "rockwobble":
+        return float(_answer(python_of(simulator), simulator, settings, "cost"))
+    started = time.process_time()
+    trace = _released(simulator)
+    return 1e6 * (time.process_time() - started) * _STEP / trace.case.length
+
+
+def _answer(python: str, *words: str) -> Any:
+    command = [python, "-W", "ignore", str(Path(worlds.__file__)), *words]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=_LONGEST, check=True)
+    return json.loads(done.stdout.splitlines()[-1])
 
 
 def environment(simulator: str, folder: Path) -> str:
-    """Install the package of a simulator into a fresh environment, and return its Python.
+    """Return the Python that has a simulator: this one, or of a fresh environment with its package.
 
     Raises
     ------
@@ -110,6 +136,8 @@ def environment(simulator: str, folder: Path) -> str:
         If it does not install.
     """
     package = worlds.WORLDS[simulator][0]
+    if simulator in own_engines() or not package:
+        return sys.executable
     place = folder / package
     python = str(place / "bin" / "python")
     if not place.exists():
@@ -165,27 +193,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = options_of("who_can_rock", "What each simulator makes of a can: its turn, its tilt, its uplift.")
     parser.add_argument("--simulator", action="append", choices=tuple(KNOWN), help="default: all")
     parser.add_argument("--environment", action="append", default=[], metavar="NAME=PYTHON",
-                        help="Python that has it; default: it is installed into a fresh one")  # fmt: skip
+                        help="Python that has physx or newton; default: a fresh one")  # fmt: skip
     parser.add_argument("--out", type=Path, help="folder for the table; rows of other simulators stay")
+    parser.add_argument("--times", action="store_true", help="of --out alone: time the rows that it has")
     given = parser.parse_args(arguments)
+    if given.times and given.out is None:
+        parser.error("--times needs --out")
     pythons = dict(each.split("=", 1) for each in given.environment)
-    rows: list[dict[str, Any]] = []
+    chosen = given.simulator or list(KNOWN)
     with tempfile.TemporaryDirectory() as scratch:
-        for simulator in given.simulator or KNOWN:
-            print(f"{simulator} ...", file=sys.stderr, flush=True)
-            if simulator in _EXTRA:
-                try:
-                    python = pythons.get(simulator) or environment(simulator, Path(scratch))
-                except RuntimeError as error:
-                    rows.append(_row(simulator, "default", {"remark": str(error)}))
-                    continue
-                rows += [
-                    _row(simulator, each, foreign(simulator, each, python)) for each in ("default", "best")
-                ]
-            elif simulator in own_engines():
-                if simulator in worlds.WORLDS:
-                    rows.append(_row(simulator, "default", foreign(simulator, "default", sys.executable)))
-                rows.append(_row(simulator, "rockwobble", driven(simulator)))
+
+        def python_of(simulator: str) -> str:
+            return pythons.get(simulator.partition("-")[0]) or environment(simulator, Path(scratch))
+
+        if given.times:
+            kept: Any = known(given.out).to_dict("records")
+            rows: list[dict[str, Any]] = [row for row in kept if row["simulator"] in chosen]
+        else:
+            rows = [row for simulator in chosen for row in _measured(simulator, python_of)]
+        _time(rows, python_of)
     table = _table(rows)
     show(table, "Who can rock", {"simulator": "", "settings": "", "turn": ".3f", "tilt": ".5f", "uplift": "",
                                  "microseconds": ".0f", "remark": ""})  # fmt: skip
@@ -194,23 +220,59 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
+def _measured(simulator: str, python_of: Callable[[str], str]) -> list[dict[str, Any]]:
+    """Return a row for each of the settings of a simulator; none of an engine that is not installed here."""
+    if simulator in engine_packages() and simulator not in own_engines():
+        return []
+    print(f"{simulator} ...", file=sys.stderr, flush=True)
+    rows = []
+    if simulator in worlds.WORLDS:
+        try:
+            python = python_of(simulator)
+        except RuntimeError as error:
+            return [_row(simulator, "default", {"remark": str(error)})]
+        steps = dict(zip(("default", "best"), worlds.WORLDS[simulator][1:3], strict=True))
+        variants = [name for name, step in steps.items() if math.isfinite(step)]
+        rows = [_row(simulator, each, foreign(simulator, each, python)) for each in variants]
+    if simulator in own_engines():
+        rows.append(_row(simulator, "rockwobble", driven(simulator)))
+    return rows
+
+
+def _time(rows: Sequence[dict[str, Any]], python_of: Callable[[str], str]) -> None:
+    """Time a step of each row that ran, in rounds, so that other work on the machine falls on all alike."""
+    ran = [row for row in rows if math.isfinite(row["turn"])]
+    rounds = []
+    for number in range(_ROUNDS):
+        print(f"times, round {number + 1} of {_ROUNDS} ...", file=sys.stderr, flush=True)
+        rounds.append([cost(row["simulator"], row["settings"], python_of) for row in ran])
+    for row, times in zip(ran, zip(*rounds, strict=True), strict=True):
+        row["microseconds"] = statistics.median(times)
+
+
 def _table(rows: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
     import pandas as pd
 
     return pd.DataFrame(rows, columns=list(_COLUMNS))
 
 
+def known(out: Path) -> pd.DataFrame:
+    """Return the table that a folder has."""
+    import pandas as pd
+
+    return pd.read_csv(out / "simulators.csv", dtype={"version": str}).fillna({"version": "", "remark": ""})
+
+
 def _write(table: pd.DataFrame, out: Path) -> None:
     import pandas as pd
 
     out.mkdir(parents=True, exist_ok=True)
-    file = out / "simulators.csv"
-    if file.exists():
-        known = pd.read_csv(file, dtype={"version": str}).fillna({"version": "", "remark": ""})
-        table = pd.concat([known[~known["simulator"].isin(table["simulator"])], table])
+    if (out / "simulators.csv").exists():
+        kept = known(out)
+        table = pd.concat([kept[~kept["simulator"].isin(table["simulator"])], table])
     order = {name: place for place, name in enumerate(KNOWN)}
     table = table.sort_values("simulator", key=lambda names: names.map(order), kind="stable")
-    table.to_csv(file, index=False)
+    table.to_csv(out / "simulators.csv", index=False)
     when = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
     command = "python tests/benchmarks who_can_rock --out reports/published/simulators"
     (out / "simulators.md").write_text(page(table, when, command), encoding="utf-8")

@@ -60,11 +60,14 @@ def cell(entry: dict[str, Any], case: str) -> str:
     """Return the verdict and the worst error, or why there is none."""
     one = entry["cases"].get(case)
     if one is None:
-        return "cannot" if case in entry.get("cannot", {}) else "not run"
+        known = (word for word in ("cannot", "left_out") if case in entry.get(word, {}))
+        return next(known, "not_run").replace("_", " ")
     worst = one["worst"]
     if worst is None or worst["error"] is None:
         return str(one["verdict"])
-    return f"{one['verdict']} ({worst['name']} {worst['error']:.1e} {worst['unit']})"
+    until = entry.get("extrapolated_until", {}).get(case)
+    limit = "" if until is None else f"; extrapolated to {until:.2g} s" if until else "; not extrapolated"
+    return f"{one['verdict']} ({worst['name']} {worst['error']:.1e} {worst['unit']}{limit})"
 
 
 def rows(found: list[dict[str, Any]]) -> list[list[str]]:
@@ -120,8 +123,11 @@ def main() -> None:
     (HERE / "scoreboard.json").write_text(json.dumps(found, indent=1) + "\n", "utf-8")
     words = (
         "Each cell has the verdict of check.py and, of all criteria of the case, the error that is largest "
-        'against its bound. "cannot": the code says that it has no such support or start; "not run": '
-        "nobody has. Single peaks and times mean what README.md says."
+        'against its bound. "cannot": the code says that it has no such support or start; "left out": its '
+        'runs last too long; "not run": nobody has. "extrapolated to": in one of the runs of the case '
+        "halving the step brought it no closer from then on, as in single precision; the rest, or all that "
+        'is "not extrapolated", is the run at the finest step. '
+        "Single peaks and times mean what README.md says."
     )
     text = ["# Scoreboard", words, markdown(table), "## What was run", markdown(made)]
     (HERE / "scoreboard.md").write_text("\n\n".join(text) + "\n", "utf-8")
