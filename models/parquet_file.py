@@ -16,15 +16,12 @@ if TYPE_CHECKING:
 METADATA = b"rockwobble"
 
 
-def pack(table: pd.DataFrame | Mapping[str, object], about: Mapping[str, object]) -> bytes:
-    """Return a table, or columns by name, as the bytes of a Parquet file with `about` in its metadata."""
+def pack(table: pd.DataFrame, about: Mapping[str, object]) -> bytes:
+    """Return a table as the bytes of a Parquet file with `about` in its metadata."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    if isinstance(table, Mapping):
-        packed = pa.table(dict(table))
-    else:
-        packed = pa.Table.from_pandas(table, preserve_index=False)
+    packed = pa.Table.from_pandas(table, preserve_index=False)
     metadata = {**(packed.schema.metadata or {}), METADATA: plain_json.dumps(about).encode()}
     split = [field.name for field in packed.schema if pa.types.is_floating(field.type)]
     buffer = io.BytesIO()

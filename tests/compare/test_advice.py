@@ -25,6 +25,7 @@ from rockwobble.compare.studies.advice.grades import (
     grade_intensity,
     grade_overturning,
     grade_share,
+    grade_trace,
     overall,
 )
 from rockwobble.compare.studies.advice.members import (
@@ -193,6 +194,8 @@ def test_engines_and_intensities_have_grades_and_the_worst_counts():
     assert grade_intensity(1.0, 1.0, SENSITIVE) == "satisfied"
     assert grade_intensity(1.0, 1.0, math.inf) == grade_intensity(0.1, 1.0, 1.0) == "caution"
     assert grade_intensity(math.nan, 1.0, math.nan) == "not tested"
+    assert grade_trace("statistics", tested=True) == "caution"
+    assert grade_trace("peak", tested=True) == grade_trace("trace", tested=True) == "satisfied"
     assert overall(["satisfied", "not satisfied", "caution", "not tested"]) == "not satisfied"
     assert overall(["not tested", "caution"]) == "caution"
     assert overall(["satisfied", "not tested"]) == overall([]) == "not tested"

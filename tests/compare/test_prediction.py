@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
 from rockwobble import reduced
 from rockwobble.compare.comparison.prediction import (
     close_pass,
+    early_rms,
     estimated_error,
     nudged,
     predict,
@@ -159,3 +162,9 @@ def test_a_chaotic_run_is_reproducible_until_its_neighbours_leave_it():
     swing = Case(slender, initial=InitialState(0.5 * slender.alpha, rolling_rate=1.0), duration=5.0)
     own, *copies = (reduced.simulate(each) for each in (swing, *nudged(swing)))
     assert reproducible_until(own, copies) == np.inf
+
+
+def test_what_is_early_is_the_first_second_at_six_metres(case):
+    size = math.sqrt(case.cylinder.semidiagonal / 6.0)
+    time = size * np.array([1.9, 2.0, 3.0, 3.005])
+    assert early_rms(case, time, np.array([9.0, 3.0, 4.0, 9.0]), 2.0 * size) == pytest.approx(math.sqrt(12.5))
