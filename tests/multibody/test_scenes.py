@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import mujoco
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import rockwobble.models
 from rockwobble.models import Cylinder, InitialState
 from rockwobble.multibody.engines.mujoco import MujocoEngine
-from rockwobble.multibody.engines.mujoco_scene import MujocoSettings, compile_scene
+from rockwobble.multibody.engines.mujoco_scene import MujocoSettings, _rim_acceleration, compile_scene
 from rockwobble.multibody.ring import RingSettings, take_ring, wall_feet, wall_orientations
 from rockwobble.multibody.scene import Scene, scaled_body, starting_state
 
@@ -166,3 +169,23 @@ def test_inertias_that_are_left_out_are_those_of_a_solid(length: float) -> None:
         length,
     )
     assert dataclasses.astuple(plain) == pytest.approx(dataclasses.astuple(stated), rel=ROUNDING)
+
+
+def test_the_acceleration_of_the_rim_is_that_of_its_lowest_point() -> None:
+    cylinder = Cylinder(semidiagonal=1.0, tan_alpha=0.4)
+    body = scaled_body(cylinder, 1.0)
+    start = starting_state(body, InitialState(0.2, tilt_rate=0.7, rolling_angle=0.5, rolling_rate=0.9), 1.0)
+    scene: Any = SimpleNamespace(body=body, start=start)
+    acceleration = np.array([0.3, -0.2, 0.6, 1.1, -0.8, 0.4])  # the last three in axes of the body
+    turned = Rotation.from_quat(start.quaternion, scalar_first=True)
+
+    def height(time: float) -> float:
+        turn = start.angular_velocity * time + 0.5 * turned.apply(acceleration[3:]) * time**2
+        axis = (Rotation.from_rotvec(turn) * turned).apply([0.0, 0.0, 1.0])
+        rise = start.velocity[2] * time + 0.5 * acceleration[2] * time**2
+        return float(rise - body.mass_centre_height * axis[2] - body.base_radius * np.hypot(*axis[:2]))
+
+    step = 1e-4
+    expected = (height(step) - 2.0 * height(0.0) + height(-step)) / step**2
+    found = _rim_acceleration(SimpleNamespace(qacc=acceleration), scene)
+    assert found == pytest.approx(expected, abs=1e-6)  # of second differences, of their step and rounding
