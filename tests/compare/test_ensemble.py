@@ -79,6 +79,7 @@ def test_synthetic_motions_repeat_with_their_seed_and_have_their_peak():
     assert not np.array_equal(first[2].acceleration, other[2].acceleration)
     assert [motion.peak for motion in first] == pytest.approx([4.0] * 3, abs=1e-9)
     assert first[0].duration == pytest.approx(5.0)
+    assert {motion.acceleration.shape for motion in first} == {(501, 2)}
 
 
 def test_a_ring_is_held_against_the_recess_model(monkeypatch):

@@ -276,3 +276,8 @@ def test_workers_follow_the_processors_of_this_process(monkeypatch, tmp_path):
     assert usable_cpus() == whole
     quota.write_text("50000 100000\n")
     assert usable_cpus() == 1
+
+
+def test_a_lost_task_is_told_in_one_line():
+    assert dask_backend._first_line(ValueError("worker died\nat length")) == "worker died"
+    assert dask_backend._first_line(KeyError()) == "KeyError"
