@@ -33,6 +33,7 @@ from rockwobble.compare.check import (
     subject,
     trajectories,
 )
+from rockwobble.compare.check.invariance import _holds
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, WobblingFrame
 from rockwobble.models.trace_source import Known
 from rockwobble.reduced.body import body_of
@@ -515,3 +516,7 @@ def test_quadratures_are_the_exact_solutions_of_the_package() -> None:
         reduced.steady_wobble_rate(CYLINDER, tilt), rel=ROUNDING
     )
     assert laws.tilt_inertia(SHAPE) == pytest.approx(9.0 + 36.0, rel=ROUNDING)
+
+
+def test_only_what_does_not_hold_has_a_note():
+    assert (_holds("kept", True, "why").note, _holds("kept", False, "why").note) == ("", "why")

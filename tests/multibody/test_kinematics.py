@@ -7,8 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from rockwobble.models import Cylinder, InitialState
+from rockwobble.multibody.engines.drake import _spin
 from rockwobble.multibody.kinematics import (
     Kinematics,
     Rim,
@@ -157,3 +159,11 @@ def test_the_angle_goes_on_over_chunks(edge: int) -> None:
 def _forward(at: Any) -> Any:
     """Positive momentum at every index."""
     return np.full(len(at), 1.0)
+
+
+def test_a_turn_about_its_axis_is_given_back_to_a_cylinder_of_drake() -> None:
+    turned = Rotation.from_rotvec([[0.3, -0.2, 0.5], [1.0, 0.4, -0.7]])
+    angle = np.array([0.8, -2.5])
+    expected = turned * Rotation.from_rotvec(angle[:, None] * [0.0, 0.0, 1.0])
+    found = _spin(turned.as_quat(scalar_first=True), angle)
+    assert found == pytest.approx(expected.as_quat(scalar_first=True), abs=1e-14)
