@@ -5,7 +5,7 @@
     python reports/published/remake.py --trim        # leave out what is not kept, without any run
     python reports/published/remake.py --age         # what has changed since in the code that they rest on
 
-An interrupted study resumes. Kept are pages, figures, headline numbers and tables of up to 300 kB; while all
+An interrupted study resumes. Kept are pages, figures, headline numbers and tables of up to 200 kB; while all
 tables of a study are, `rockwobble report reports/published/NAME` draws its pages again without any run.
 """
 
@@ -74,7 +74,7 @@ NOT_KEPT = ("*.html", "finished")
 # tables once more, as text
 SHEETS = ("counts.csv", "counts.json", "members.csv")
 # a table beyond this is made again by the command that the page names [bytes]
-LARGEST = 300_000
+LARGEST = 200_000
 # of a study that lacks one, and is drawn no more: what claims of other pages rest on
 STILL_KEPT = ("contrasts.parquet", "counts.parquet")
 # of the control no page is shown

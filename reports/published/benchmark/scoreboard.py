@@ -120,7 +120,8 @@ def main() -> None:
     """Write the three files."""
     found = entries()
     table, made = rows(found), makers(found)
-    (HERE / "scoreboard.json").write_text(json.dumps(found, indent=1) + "\n", "utf-8")
+    lines = ",\n ".join(map(json.dumps, found))
+    (HERE / "scoreboard.json").write_text(f"[\n {lines}\n]\n", "utf-8")
     words = (
         "Each cell has the verdict of check.py and, of all criteria of the case, the error that is largest "
         'against its bound. "cannot": the code says that it has no such support or start; "left out": its '
