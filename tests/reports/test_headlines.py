@@ -81,11 +81,13 @@ def test_validity() -> None:
 def test_comparison() -> None:
     rows = pd.read_csv(PUBLISHED / "compare" / "summary.csv")
     recess, flat = (
-        rows[(rows["support"] == support) & (rows["reference_support"] == support)]["agreement_time"]
+        rows[(rows["support"] == support) & (rows["reference_support"] == support)]["within_tolerance_until"]
         for support in ("recess", "flat")
     )
     said = re.findall(r"(\d+\.\d) s", headline("compare/report.md"))
-    assert said == [f"{each:.1f}" for own in (recess, flat) for each in (own.min(), own.max())]
+    # ends that read the same are said once
+    ends = [dict.fromkeys(f"{each:.1f}" for each in (own.min(), own.max())) for own in (recess, flat)]
+    assert said == [each for own in ends for each in own]
 
 
 def test_extremes() -> None:
