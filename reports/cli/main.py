@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import errno
 import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,7 +15,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
-from ..console import BAD_INPUT, INTERRUPTED, complain, forgive_output
+from ..console import BAD_INPUT, FAILED, INTERRUPTED, complain, forgive_output
 from .command import StrictCommand
 
 # heading in the help text: the module of its commands, and their names
@@ -110,6 +111,11 @@ def main(arguments: list[str] | None = None) -> None:
     except MemoryError:
         complain("the memory of this machine does not suffice: give fewer runs, or shorter ones")
         sys.exit(BAD_INPUT)
+    except OSError as error:
+        if error.errno != errno.ENOSPC:
+            raise
+        complain(f"the output cannot be printed: {error.strerror}; results that were written stay")
+        sys.exit(FAILED)
     except (typer.Abort, KeyboardInterrupt):
         complain("interrupted")
         sys.exit(INTERRUPTED)

@@ -427,8 +427,14 @@ def test_results_are_whole_where_the_output_cannot_be_printed(tmp_path):
     closed = subprocess.run(
         [*command, "closed"], cwd=tmp_path, stdout=writer, stderr=subprocess.PIPE, check=False
     )
-    assert b"Traceback" not in closed.stderr
-    for name in ("poor", "closed"):
+    with Path("/dev/full").open("wb") as device:
+        full = subprocess.run(
+            [*command, "full"], cwd=tmp_path, stdout=device, stderr=subprocess.PIPE, check=False
+        )
+    assert b"cannot be printed: No space left on device" in full.stderr
+    for ended in (closed, full):
+        assert (ended.returncode, b"Traceback" in ended.stderr) == (1, False)
+    for name in ("poor", "closed", "full"):
         assert Trace.load(tmp_path / name / "run.parquet").outcome == "stands"
 
 
