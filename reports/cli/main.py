@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import importlib
 import inspect
-import errno
 import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
