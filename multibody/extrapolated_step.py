@@ -33,11 +33,11 @@ from rockwobble.models.trace_source import Known
 
 from .auto_step import Attempt, Progress, closeness, common_count, part_of, shares, unknown_from
 from .guard import LARGEST_STEP
+from .scene import Array
 
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 
 EXTRAPOLATED = "extrapolated"
 FINEST = 1.75e-4  # [s] at the reference size: all three together cost one run at the default step

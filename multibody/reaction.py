@@ -22,9 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .protocol import Steps
-from .scene import Body
-
-Array = NDArray[np.float64]
+from .scene import Array, Body
 
 # Steps on each side of a sample. Under El Centro a quarter of MuJoCo's single steps are more than 1 % off the
 # reduced model's normal force, windows of 16 still 4 %, these none; longer ones blur the kinks of a record.

@@ -19,9 +19,9 @@ from rockwobble.models.support import SUPPORTS
 from .guard import EnergyWatch, energy_scale, first_breach
 from .kinematics import Kinematics, kinematics, rim, rolling_momentum, tilt_of, unwrap, unwrap_twist
 from .passes import RestWatch, TurningPoint, turning_points
-from .protocol import Array, Steps, Wall
+from .protocol import Steps, Wall
 from .reaction import ForceSamples, UpliftWatch, begun_at, first_grip, first_pull, force_of_steps, sure_tilt
-from .scene import Scene, Start
+from .scene import Array, Scene, Start
 
 Indices = NDArray[np.intp]
 

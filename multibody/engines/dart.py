@@ -32,8 +32,8 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from ..kinematics import about_vertical
-from ..protocol import Array, EngineFacts, SceneCounts, Steps
-from ..scene import Scene
+from ..protocol import EngineFacts, SceneCounts, Steps
+from ..scene import Array, Scene
 from ..settings import Count, EngineSettings, Positive, Share, Small, positive
 from .declared import Declared, Leapfrog, contact_counts
 

@@ -14,8 +14,8 @@ import numpy as np
 from rockwobble.models.support import SUPPORTS
 
 from ..kinematics import about_vertical, turning
-from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
-from ..scene import Scene
+from ..protocol import EngineFacts, SceneCounts, Settings, Stepper, Steps
+from ..scene import Array, Scene
 from ..settings import EngineSettings
 
 

@@ -32,8 +32,8 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import numpy as np
 
 from ..kinematics import about_vertical
-from ..protocol import Array, EngineFacts, SceneCounts, Steps
-from ..scene import Body, Scene
+from ..protocol import EngineFacts, SceneCounts, Steps
+from ..scene import Array, Body, Scene
 from ..settings import EngineSettings, NotNegative, Positive, one_of, positive
 from .declared import Declared, Leapfrog, contact_counts
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps, Wall
+from ..protocol import EngineFacts, SceneCounts, Settings, Stepper, Steps, Wall
 from ..ring import RingSettings, check_start, take_ring
-from ..scene import Scene
+from ..scene import Array, Scene
 from .declared import Declared
 from .mujoco_scene import MujocoSettings, compile_scene, set_start, to_world
 

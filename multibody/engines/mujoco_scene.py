@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from ..protocol import Array
 from ..ring import RingSettings, wall_feet, wall_orientations
-from ..scene import Scene, Start
+from ..scene import Array, Scene, Start
 from ..settings import Count, EngineSettings, Positive, one_of, positive
 
 if TYPE_CHECKING:

@@ -21,8 +21,8 @@ from typing import Annotated
 import numpy as np
 
 from ..kinematics import about_vertical
-from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
-from ..scene import Scene
+from ..protocol import EngineFacts, SceneCounts, Settings, Stepper, Steps
+from ..scene import Array, Scene
 from ..settings import Count, EngineSettings, Positive, Share, positive
 from .declared import Declared, Leapfrog, contact_counts
 

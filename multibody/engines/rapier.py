@@ -23,8 +23,8 @@ from typing import Any
 
 import numpy as np
 
-from ..protocol import Array, EngineFacts, SceneCounts, Steps
-from ..scene import Scene
+from ..protocol import EngineFacts, SceneCounts, Steps
+from ..scene import Array, Scene
 from ..settings import Count, EngineSettings, Positive, Share, Small
 from .declared import Declared, Leapfrog, contact_counts
 
