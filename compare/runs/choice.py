@@ -239,9 +239,9 @@ def require_runnable(case: Case, run: Run) -> None:
     """
     if run.engine is None:
         # loads the compiler, which who only imports this need not wait for
-        from rockwobble.reduced.problem import require_solvable
+        from rockwobble.reduced.problem import Problem
 
-        require_solvable(case, **run.settings, support=run.support)
+        Problem(case, **run.settings, support=run.support)
         return
     step = None if isinstance(run.time_step, str) else run.time_step
     settings = dict(run.settings)
