@@ -209,7 +209,7 @@ class Recorder:
         self.forces.add(ends[0])
         # a wall may well push the cylinder down, by its friction or where the rim is below it
         if math.isnan(self.pull_time) and wall is None:
-            self.pull_time = float(np.fmin.reduce([first_pull(time, force[2]) for force in ends]))
+            self.pull_time = float(np.fmin.reduce([first_pull(time, force) for force in ends]))
         if math.isnan(self.grip_time) and wall is None:
             friction = self._scene.friction
             self.grip_time = float(np.fmin.reduce([first_grip(time, force, friction) for force in ends]))
