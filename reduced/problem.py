@@ -133,7 +133,7 @@ class Problem:
         integrate, task, azimuth = self._set_up
         # a column of a table would have the time integration compiled for its stride
         task = task._replace(times=np.ascontiguousarray(times))
-        return integrate(self.body, self._options(record_steps), task), azimuth
+        return integrate(self.body, self._options._replace(record_steps=record_steps), task), azimuth
 
     def shaking(self, factor: float) -> SetUp:
         """Return the integration of a run from rest under ``motion.scaled(factor)``, for its peak only."""
@@ -149,7 +149,7 @@ class Problem:
 
     def solve_under(self, shaking: SetUp) -> IntegrationResult:
         """Return the result for this body under a motion of another size, for the peak only."""
-        return shaking.integrate(self.body, self._options(False), shaking.task)
+        return shaking.integrate(self.body, self._options, shaking.task)
 
     @property
     def free_twist(self) -> bool:
@@ -171,7 +171,8 @@ class Problem:
         motion = self.case.motion
         return 0.0 if motion is None else float(np.abs(motion.acceleration).max())
 
-    def _options(self, record_steps: bool) -> Options:
+    @cached_property
+    def _options(self) -> Options:
         case, restitution = self.case, self.rebound
         if case.rolling_resistance > 0.0:
             restitution = impact_ratio(self.body, restitution)
@@ -180,7 +181,7 @@ class Problem:
         if case.motion is not None:
             budget += _BUDGET_PER_SAMPLE * len(case.motion.acceleration)
         steps = int(min(budget, 2**62))
-        return Options(float(self.rtol), rest_tilt, restitution, case.length, steps, record_steps)
+        return Options(float(self.rtol), rest_tilt, restitution, case.length, steps, record_steps=False)
 
     @cached_property
     def _set_up(self) -> SetUp:
