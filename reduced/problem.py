@@ -91,14 +91,15 @@ class Problem:
             raise ValueError(f"rest_tilt must be from 0 (no rule) to 0.1 (of alpha), got {self.rest_tilt!r}")
         if plane is not None and not math.isfinite(plane):
             raise ValueError(f"plane must be a finite azimuth [rad], got {plane!r}")
-        if self.restitution != "momentum" and not (
-            isinstance(self.restitution, Real) and 0.0 <= self.restitution <= 1.0
-        ):
-            raise ValueError(f"restitution must be from 0 to 1 or 'momentum', got {quoted(self.restitution)}")
+        factor = self.restitution
+        if isinstance(factor, str):
+            known = factor == "momentum"
+        else:
+            known = isinstance(factor, Real) and 0.0 <= factor <= 1.0
+        if not known:
+            raise ValueError(f"restitution must be from 0 to 1 or 'momentum', got {quoted(factor)}")
         if plane is None and self.rebound != 1.0:
-            raise ValueError(
-                f"restitution belongs to planar motion, got {self.restitution!r} without a plane"
-            )
+            raise ValueError(f"restitution belongs to planar motion, got {factor!r} without a plane")
         if plane is not None and initial is not None:
             _require_in_plane(initial, plane)
 
@@ -114,7 +115,7 @@ class Problem:
     @cached_property
     def rebound(self) -> float:
         """Ratio of tilt rates at an impact."""
-        if self.restitution == "momentum":
+        if isinstance(self.restitution, str):
             return restitution_from_momentum(self.case.cylinder)
         return float(self.restitution)
 

@@ -137,16 +137,12 @@ class _PybulletStepper(Leapfrog):
     def __init__(self, pybullet: ModuleType, client: int, scene: Scene, settings: PybulletSettings) -> None:
         super().__init__(scene, settings.guide_stiffness)
         self._bullet, self._client, self._settings = pybullet, client, settings
-        self._gravity = scene.gravity
-        self._standing = scene.start.standing
+        self._standing = self._held = scene.start.standing
         self._ground, self._body = self._add_ground(), self._add_cylinder()
         self._slab = self._add_slab() if scene.body.slab_mass_ratio else None
         self._slab_velocity = 2.0 * scene.start.velocity  # in the axes of the scene [m/s]
         self._lengths = scene.body.base_radius, scene.body.mass_centre_height
-        self._iterations, self._unsolved = settings.iterations, False
-        self._overshoot = settings.friction_damping - 1.0
-        self._held = self._standing
-        self._friction = scene.friction
+        self._unsolved = False
         start = scene.start
         quaternion = np.roll(start.quaternion, -1)
         velocity, spin = start.velocity, start.angular_velocity
@@ -260,7 +256,7 @@ class _PybulletStepper(Leapfrog):
             headings.append(self._heading)
         done = len(headings)
         if done < len(acceleration):
-            pulls = about_vertical(-acceleration[done:] - [0.0, 0.0, self._gravity], -self._heading)
+            pulls = about_vertical(-acceleration[done:] - [0.0, 0.0, self._scene.gravity], -self._heading)
             poses += self._loop(pulls)
         heading = np.array(headings + [self._heading] * (len(acceleration) - done))
         rows = np.fromiter(poses, dtype=np.float64, count=len(poses)).reshape(-1, _POSE)
@@ -272,7 +268,9 @@ class _PybulletStepper(Leapfrog):
         place, (x, y, z, w) = bullet.getBasePositionAndOrientation(self._body, client)
         axis_x, axis_y = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x)
         lean = math.hypot(axis_x, axis_y)
-        load = math.hypot(acceleration[0], acceleration[1]) * h / (b * (self._gravity + acceleration[2]))
+        load = (
+            math.hypot(acceleration[0], acceleration[1]) * h / (b * (self._scene.gravity + acceleration[2]))
+        )
         if self._held and load < 1.0:
             return (*place, x, y, z, w)
         self._held = False
@@ -289,7 +287,7 @@ class _PybulletStepper(Leapfrog):
             self._let_go()
         self._slab_velocity = vectors[4]
         self._put(vectors[0], np.append(vectors[1], w), vectors[2], vectors[3])
-        pull = about_vertical(-acceleration[None] - [0.0, 0.0, self._gravity], -towards)[0]
+        pull = about_vertical(-acceleration[None] - [0.0, 0.0, self._scene.gravity], -towards)[0]
         bullet.setGravity(*pull.tolist(), client)
         bullet.stepSimulation(client)
         if self._slab is not None:
@@ -300,7 +298,7 @@ class _PybulletStepper(Leapfrog):
     def _slides(self, acceleration: Array) -> bool:
         """Whether friction does not hold a cylinder that stands."""
         push = math.hypot(acceleration[0], acceleration[1])
-        return push > self._friction * float(self._gravity + acceleration[2])
+        return push > self._scene.friction * float(self._scene.gravity + acceleration[2])
 
     def _let_go(self) -> None:
         """Go on with the cylinder in place of the point of its rim; its pose is still to be set."""
@@ -333,7 +331,8 @@ class _PybulletStepper(Leapfrog):
         last, report = self._steps(gravity[-1:])
         self._analyse(False)
         self._unsolved = any(
-            island["numIterationsUsed"] >= self._iterations and island["remainingResidual"] > _RESIDUAL
+            island["numIterationsUsed"] >= self._settings.iterations
+            and island["remainingResidual"] > _RESIDUAL
             for island in report
         )
         return poses + last
@@ -348,7 +347,7 @@ class _PybulletStepper(Leapfrog):
         step, pose, pull = bullet.stepSimulation, bullet.getBasePositionAndOrientation, bullet.setGravity
         torque, world, stiffness = bullet.applyExternalTorque, bullet.WORLD_FRAME, -2.0 * self._stiffness
         velocities, move = bullet.getBaseVelocity, bullet.resetBaseVelocity
-        ground, overshoot, (b, h) = self._ground, self._overshoot, self._lengths
+        ground, overshoot, (b, h) = self._ground, self._settings.friction_damping - 1.0, self._lengths
         slab, (slab_x, slab_y, slab_z) = self._slab, self._slab_velocity.tolist()
         atan2, sqrt = math.atan2, math.sqrt
         # numbers in one list, not tuples in one: those the garbage collector would go through again and again

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -253,3 +254,14 @@ def test_a_squat_cylinder_falls_flat_and_rests(engine: str, time_step: float | N
     assert np.isnan(run.rolling_angle[-1])
     assert run.energy[-1] == pytest.approx(0.0, abs=1e-8)
     assert run.peak_tilt == pytest.approx(0.2 * squat.alpha)
+
+
+def test_mujoco_has_its_reporter_and_clock_back_after_an_interrupt() -> None:
+    def told(done: float) -> None:
+        assert (mujoco.get_mju_user_warning(), mujoco.get_mjcb_time()) != before
+        raise KeyboardInterrupt
+
+    before = mujoco.get_mju_user_warning(), mujoco.get_mjcb_time()
+    with pytest.raises(KeyboardInterrupt):
+        multibody.simulate(Case(PIER, initial=RELEASE, duration=5.0), progress=told)
+    assert (mujoco.get_mju_user_warning(), mujoco.get_mjcb_time()) == before
