@@ -20,7 +20,6 @@ from ..pages.cases import describe
 from ..pages.table import number
 from . import options
 from .command import takes_options
-from .estimate import require_memory, time_needed
 from .options import settings
 from .problem import Problem, given_options, refuse
 
@@ -178,13 +177,11 @@ def view(
                 case = problem.case()
                 asked = rw.Run(engine or rw.multibody.DEFAULT_ENGINE, support, time_step)
                 (run,) = rr.with_settings(case, [asked], settings(setting))
-                require_memory([case], [run])
                 rr.require_runnable(case, run)
                 name = case.name
             rs.require_writable(out)
         if folder is None:
-            for line in (*describe(case), *time_needed([case], [run])):
-                print(line)
+            print(*describe(case), sep="\n")
             with user_input(), shown_progress() as progress:
                 comparison = rw.compare(case, runs=[run], progress=progress)
         show_and_save(comparison.of_case(name), out)

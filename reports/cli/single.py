@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -22,7 +21,6 @@ from ..console import FAILED, complain, interruptible, show_and_save, shown_prog
 from ..pages.cases import describe
 from . import options
 from .command import takes_options
-from .estimate import require_memory, time_needed
 from .options import settings
 from .problem import Problem, given_options, refuse_options_of_engines, restated
 from .suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
@@ -140,13 +138,12 @@ def compare(
             if setting:
                 runs = list(rr.with_settings(cases[0], runs, settings(setting)))
             rs.require_writable(out)
-            require_memory(cases, runs)
             for each in cases:
                 for run in runs:
                     rr.require_runnable(each, run)
             trajectories = external.read(cases)
         if suite is None:
-            print(*describe(cases[0]), *time_needed(cases, runs), sep="\n")
+            print(*describe(cases[0]), sep="\n")
         else:
             print(*describe_suite(suite, cases, runs), sep="\n")
         if engine == [options.ALL]:
@@ -253,10 +250,7 @@ def simulate(
             model = {"plane": plane, "restitution": restitution, "rest_tilt": rest_tilt}
             named = None if engine == options.NO_ENGINE else engine
             run = _with_settings(case, rw.Run(named, support, time_step), setting, model)
-            require_memory([case], [run])
             rr.require_runnable(case, run)
-        for line in time_needed([case], [run]):
-            print(line, file=sys.stderr)
         with user_input(), shown_progress() as progress:
             found = single_run(
                 case, run, answer=restated(context, "advise", also=("support",)), progress=progress
@@ -320,7 +314,6 @@ def advise(
         with user_input():
             case = problem.case()
             run = _run(case, engine, plan.support, time_step)
-            require_memory([case], [rw.Run(None, "recess"), *([] if run is None else [run])])
             rs.require_writable(out)
         with shown_progress("stages") as progress:
             found = rw.advise(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import datetime
 import json
-import sys
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -161,7 +160,7 @@ def check(
     ] = False,
     reason: Annotated[
         str | None,
-        typer.Option(help="Why the baselines change; kept in their file. Without it you are asked."),
+        typer.Option(help="Why the baselines change; kept in their file."),
     ] = None,
 ) -> None:
     """Check by physics that reduced models and engines are right, and still do what they did.
@@ -221,7 +220,7 @@ _SHOWN = 20
 
 
 def update(reason: str | None) -> None:
-    """Measure, print the changes, ask for a reason, and write the file.
+    """Measure, print the changes, and write the file.
 
     Raises
     ------
@@ -236,12 +235,9 @@ def update(reason: str | None) -> None:
         new = agreement.baseline_numbers(baseline_subjects())
     old = agreement.read_baseline()
     changed = agreement.baseline_changes(old, new)
-    _show(changed)
+    print(*_shown(changed), sep="\n")
     if not changed:
-        print("Nothing would change.")
         return
-    if reason is None and sys.stdin.isatty():
-        reason = input("Reason (empty: leave everything as it is): ")
     if not (reason or "").strip():
         raise ValueError("nothing was changed: a new baseline needs a --reason, got none")
     date = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
@@ -251,23 +247,15 @@ def update(reason: str | None) -> None:
     print(f"Written: {agreement.baseline_folder() / agreement.BASELINES}")
 
 
-def _show(changed: Sequence[tuple[str, str, float | None, float | None]]) -> None:
-    """Print the changes, the largest first, and what is new in one line."""
+def _shown(changed: Sequence[tuple[str, str, float | None, float | None]]) -> list[str]:
+    """Return the largest changes, and how many values are new or gone, a line each."""
     known = [
-        (group, what, before, after)
+        (abs(after - before), f"{group}, {what}: {before:.12g} -> {after:.12g} ({after - before:+.1e})")
         for group, what, before, after in changed
         if before is not None and after is not None
     ]
-    known.sort(key=lambda each: -abs(each[3] - each[2]))
-    for group, what, before, after in known[:_SHOWN]:
-        print(f"{group}, {what}: {before:.12g} -> {after:.12g} ({after - before:+.1e})")
-    if len(known) > _SHOWN:
-        print(f"... and {len(known) - _SHOWN} more values, which change by less")
-    for group in dict.fromkeys(each[0] for each in changed):
-        fresh = sum(each[2] is None for each in changed if each[0] == group)
-        gone = sum(each[3] is None for each in changed if each[0] == group)
-        if fresh or gone:
-            print(f"{group}: {fresh} new values, {gone} that are no longer there")
+    lines = [line for _, line in sorted(known, reverse=True)[:_SHOWN]]
+    return [*lines, f"{len(changed)} values change, of which {len(changed) - len(known)} are new or gone"]
 
 
 def certify(

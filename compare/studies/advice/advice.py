@@ -20,7 +20,7 @@ from ...metrics.pair import overturned, tolerance_of
 from ...metrics.statistics import Contrast, contrast
 from ...runs.choice import require_runnable
 from ...runs.execution import SAMPLE_STEP, Job, job_fingerprint, require_case, simulate_run
-from ...runs.progress import ProgressCallback, Stages
+from ...runs.progress import ProgressCallback, stages
 from ...storage.manifest import Number, Stored
 from ...storage.provenance import fingerprint
 from ...storage.results import Results
@@ -299,7 +299,7 @@ def advise(
     model, other = Run(None, support_named(plan.support).compared_with[-1]), Run(None, "flat")
     if model == other:
         other = Run(None, "recess")
-    stage = Stages(progress, [1.0] * (4 if run is None else 5)).stage
+    stage = stages(progress, [1.0] * (4 if run is None else 5))
     inputs = fingerprint(
         [*(job_fingerprint(Job(case=case, run=each)) for each in (model, run) if each), plan]
     )

@@ -21,7 +21,7 @@ from rockwobble.models import GroundMotion
 from rockwobble.models.number_checks import require_increasing
 
 from ...metrics.pair import overturned
-from ...runs.progress import ProgressCallback, Stages
+from ...runs.progress import ProgressCallback, stages
 from ..plans import SpectrumPlan
 from .search import lowest_on_grid, probe_below, run_searches, search_lowest
 
@@ -387,7 +387,7 @@ def tilt_maps(
     gravity, probes = asked.gravity, asked.probes
     unit = intensity_unit(tan_alpha, motion, gravity)
     peaks, lowest, below, start = {}, {}, {}, {}
-    stages = Stages(progress, [1.0, 4.0] * len(SERIES))
+    stage = stages(progress, [1.0, 4.0] * len(SERIES))
     for index, name in enumerate(SERIES):
         start[name] = uplift_of_series(name, motion, tan_alpha, gravity) / unit
         run = partial(
@@ -404,11 +404,11 @@ def tilt_maps(
         search = partial(
             search_lowest, levels, start=start[name], step=asked.search_step, alpha=math.atan(tan_alpha)
         )
-        with stages.stage(TITLES[name]):
+        with stage(TITLES[name]):
             peaks[name] = run(sizes, scales=unit * levels, workers=workers)
             at = partial(_at_levels, run, sizes, unit)
             found = run_searches([search(known) for known in peaks[name]], at, workers=workers)
-        with stages.stage(f"{TITLES[name]}: {probes} random intensities below each boundary"):
+        with stage(f"{TITLES[name]}: {probes} random intensities below each boundary"):
             probing = [
                 probe_below(start[name], levels[-1], each, probes=probes, seed=(index, i))
                 for i, each in enumerate(found)
