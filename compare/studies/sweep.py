@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ import pandas as pd
 from rockwobble.models import Case, GroundMotion, Run, Suite, Trace
 from rockwobble.models.diagnostic import joined
 from rockwobble.models.records.units import doubts_of
-from rockwobble.models.trace_file import run_to_plain
+from rockwobble.models.trace_file import case_to_plain, run_to_plain
 
 from ..metrics.pair import outcome_of
 from ..metrics.statistics import stated
@@ -105,20 +104,8 @@ def describe_suite(suite: Suite) -> dict[str, object]:
 
 def _described(case: Case) -> dict[str, object]:
     """Return the numbers that state a case; SI units and radians."""
-    cylinder, motion, initial = case.cylinder, case.motion, case.initial
-    return {
-        "semidiagonal": cylinder.semidiagonal,
-        "tan_alpha": cylinder.tan_alpha,
-        "alpha": cylinder.alpha,
-        "base_radius": cylinder.base_radius,
-        "height": 2.0 * cylinder.half_height,
-        "duration": case.length,
-        "gravity": case.gravity,
-        "friction": case.friction,
-        "rolling_resistance": case.rolling_resistance,
-        "motion": motion and described_motion(motion),
-        "initial": initial and dataclasses.asdict(initial),
-    }
+    motion = case.motion and described_motion(case.motion)
+    return case_to_plain(case) | {"motion": motion, "duration": case.length}
 
 
 def _row(job: Job, trace: Trace) -> dict[str, object]:

@@ -53,14 +53,14 @@ def show(store: Store, as_json: Json = False) -> None:
             dataclasses.asdict(made) | {"complete": True, "states": files}
             for made, files in zip(found, states, strict=True)
         ]
-        results += [{**dataclasses.asdict(each), "complete": False} for each in going]
+        results += [{**each, "complete": False} for each in going]
         print(plain_json.dumps({"folder": str(store), "results": results}, indent=2))
     else:
         for made, files in zip(found, states, strict=True):
             _print(store, made, files)
         for each in going:
-            far = f"{each.done} of {each.total} tasks"
-            print(f"{store}: {each.kind}, not finished: {far}; the same command resumes")
+            far = f"{each['done']} of {each['total']} tasks"
+            print(f"{store}: {each['kind']}, not finished: {far}; the same command resumes")
     if any(state != "whole" for files in states for state in files.values()):
         raise typer.Exit(1)
 

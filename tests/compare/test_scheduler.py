@@ -121,7 +121,7 @@ def test_what_was_finished_before_an_interruption_is_kept_and_counted(tmp_path):
     with pytest.raises(KeyboardInterrupt), table_cache(tmp_path) as cache:
         run_tasks(multiples, [1, 2, 3, 4], workers=1, cache=cache, progress=interrupt)
     (going,) = unfinished(tmp_path)
-    assert (going.kind, going.done, going.total) == ("study", 2, 4)
+    assert going == {"kind": "study", "done": 2, "total": 4}
     RAN.clear()
     with table_cache(tmp_path) as cache:
         run_tasks(counted, [1, 2, 3, 4], workers=1, cache=cache)
