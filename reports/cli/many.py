@@ -98,7 +98,7 @@ def fragility(
 def spectrum(
     record: Record,
     plan: SpectrumPlan,
-    tan_alpha: Annotated[float, options.TAN_ALPHA] = 0.1,
+    tan_alpha: Annotated[float, options.body(options.SLENDERNESS)] = 0.1,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-spectrum"),
 ) -> None:

@@ -14,6 +14,7 @@ import typer
 import rockwobble as rw
 import rockwobble.compare as rc
 import rockwobble.compare.storage as rs
+from rockwobble.compare.runs.plan import Plan, options_in
 
 from ..console import FAILED, complain, interruptible, shown_progress, user_input
 from . import options
@@ -24,39 +25,31 @@ if TYPE_CHECKING:
 
     from rockwobble.compare.check import Checks
 
-_subject = options.panel("Subject (default: the reduced models, and the engines that are installed)")
-_output = options.panel("Output for programs")
+_subject = options_in("Subject (default: the reduced models, and the engines that are installed)")
+_output = options_in("Output for programs")
 Subject = dict[str, Any]  # arguments of `rockwobble.check`
 _STEP = "Time step of the engine, in s. Default: its own choice."
 
 
 @dataclass(frozen=True, kw_only=True)
-class SubjectOptions:
+class SubjectOptions(Plan):
     """The options that name what is checked."""
 
-    engine: Annotated[str | None, _subject("Check one engine, the protocol of an engine included.")] = None
-    time_step: Annotated[float | None, _subject(_STEP)] = None
-    model: Annotated[
-        str | None,
-        _subject(
-            "Check a model: a function of a rockwobble.Case and a support that returns time, tilt, azimuth.",
-            metavar="MODULE:FUNCTION",
-        ),
-    ] = None
-    trajectory: Annotated[
-        Path | None,
-        _subject("Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite."),
-    ] = None
-    suite: Annotated[
-        str | None,
-        _subject("Compare the engine runs of a suite with the models: a TOML file, or one that ships."),
-    ] = None
-    support: Annotated[
-        str | None, _subject("What model or trajectory is of: recess or flat. Default: recess.")
-    ] = None
-    tolerance: Annotated[
-        float | None, _subject("How exact model or trajectory claims to be. Default: 0.001.")
-    ] = None
+    engine: str | None = _subject(None, "Check one engine, the protocol of an engine included.")
+    time_step: float | None = _subject(None, _STEP)
+    model: str | None = _subject(
+        None,
+        "Check a model, MODULE:FUNCTION: a function of a rockwobble.Case and a support that returns time, "
+        "tilt, azimuth.",
+    )
+    trajectory: Path | None = _subject(
+        None, "Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite."
+    )
+    suite: str | None = _subject(
+        None, "Compare the engine runs of a suite with the models: a TOML file, or one that ships."
+    )
+    support: str | None = _subject(None, "What model or trajectory is of: recess or flat. Default: recess.")
+    tolerance: float | None = _subject(None, "How exact model or trajectory claims to be. Default: 0.001.")
     workers: options.Workers = None
 
     def subject(self) -> Subject:
@@ -101,14 +94,12 @@ class SubjectOptions:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OutputOptions:
+class OutputOptions(Plan):
     """The options that name files for programs."""
 
-    json: Annotated[Path | None, _output("Write all results as JSON.")] = None
-    junit: Annotated[Path | None, _output("Write a JUnit report (XML).")] = None
-    markdown: Annotated[Path | None, _output("Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.")] = (
-        None
-    )
+    json: Path | None = _output(None, "Write all results as JSON.")
+    junit: Path | None = _output(None, "Write a JUnit report (XML).")
+    markdown: Path | None = _output(None, "Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.")
 
     def require_writable(self) -> None:
         """Refuse, by a ValueError, a file that cannot be written."""
