@@ -55,10 +55,9 @@ class CaseChunk:
         """Return the hash of all that the results depend on."""
         return fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in self.jobs])
 
-    def run(self) -> dict[str, object]:
-        """Return the columns of the results, one row for each run."""
-        rows = [_row(job, run_job(job)) for job in self.jobs]
-        return {name: [row[name] for row in rows] for name in rows[0]}
+    def run(self) -> pd.DataFrame:
+        """Return the table of the results, one row for each run."""
+        return pd.DataFrame([_row(job, run_job(job)) for job in self.jobs])
 
 
 def runnable_suite(plan: Suite | Iterable[Case]) -> Suite:
@@ -302,7 +301,7 @@ def sweep(
 
 def run_chunk(chunk: Chunk) -> pd.DataFrame:
     """Return the table of a chunk, one row for each run."""
-    return pd.DataFrame(chunk.run())
+    return chunk.run()
 
 
 def _motions(plan: Grid | Suite) -> dict[str, pd.DataFrame]:

@@ -42,7 +42,6 @@ def made_up(space: list[str], x: list[str], y: list[str]) -> TiltMaps:
         motion=GroundMotion([[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]], 0.1),
         gravity=9.81,
         support="recess",
-        rest_tilt=0.0,
         semidiagonals=np.arange(1.0, len(space) + 1.0),
         intensities=levels,
         peak_tilt=peaks,

@@ -113,7 +113,6 @@ _FACTS = (
     "tan_alpha",
     "gravity",
     "support",
-    "rest_tilt",
     "searched_from",
     "search_step",
     "probes",
@@ -136,8 +135,6 @@ class TiltMaps:
         [m/s^2]
     support : str
         Of the model in three dimensions, "recess" or "flat".
-    rest_tilt : float
-        As in `reduced.simulate`.
     semidiagonals : ndarray, shape (n_R,)
         Sizes R [m].
     intensities : ndarray, shape (n_I,)
@@ -169,7 +166,6 @@ class TiltMaps:
     motion: GroundMotion
     gravity: float
     support: str
-    rest_tilt: float
     semidiagonals: Array
     intensities: Array
     peak_tilt: Mapping[str, Array]
@@ -330,8 +326,6 @@ def tilt_maps(
     tan_alpha: float,
     motion: GroundMotion,
     *,
-    rtol: float = RTOL,
-    rest_tilt: float = reduced.REST_TILT,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
     **options: Any,
@@ -343,8 +337,6 @@ def tilt_maps(
     tan_alpha : float
         Slenderness b/h [-].
     motion : GroundMotion
-    rtol, rest_tilt
-        As in `reduced.simulate`.
     workers : int, optional
         Number of threads. It does not influence the result.
     progress : callable, optional
@@ -394,8 +386,7 @@ def tilt_maps(
             reduced.peak_tilts,
             tan_alpha=tan_alpha,
             motion=motion,
-            rtol=rtol,
-            rest_tilt=rest_tilt,
+            rtol=RTOL,
             gravity=gravity,
             slab_mass_ratio=asked.slab_mass_ratio,
             rolling_resistance=asked.rolling_resistance,
@@ -413,7 +404,7 @@ def tilt_maps(
                 probe_below(start[name], levels[-1], each, probes=probes, seed=(index, i))
                 for i, each in enumerate(found)
             ]
-            calm = partial(run, rest_tilt=max(rest_tilt, _CALM))
+            calm = partial(run, rest_tilt=_CALM)
             at = partial(_at_levels, calm, sizes, unit)
             lowest[name], below[name] = np.array(run_searches(probing, at, workers=workers)).T
     return TiltMaps(
@@ -421,7 +412,6 @@ def tilt_maps(
         motion=motion,
         gravity=gravity,
         support=asked.support,
-        rest_tilt=rest_tilt,
         slab_mass_ratio=asked.slab_mass_ratio,
         rolling_resistance=asked.rolling_resistance,
         semidiagonals=sizes,

@@ -228,7 +228,6 @@ def _single(spectrum: TiltMaps, series: str, i: int, scale: float) -> float:
             rolling_resistance=spectrum.rolling_resistance,
         ),
         rtol=CHECK_RTOL,
-        rest_tilt=spectrum.rest_tilt,
         sample_step=spectrum.motion.duration,
         **series_options(series, spectrum.support),
     )
