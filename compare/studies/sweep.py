@@ -13,8 +13,8 @@ import pandas as pd
 
 from rockwobble.models import Case, GroundMotion, Run, Suite, Trace
 from rockwobble.models.diagnostic import joined
+from rockwobble.models.plain_json import fields_of
 from rockwobble.models.records.units import doubts_of
-from rockwobble.models.trace_file import case_to_plain, run_to_plain
 
 from ..metrics.pair import outcome_of
 from ..metrics.statistics import stated
@@ -95,7 +95,7 @@ def describe_suite(suite: Suite) -> dict[str, object]:
         "runs": len(suite.cases) * len(suite.runs),
         "cases": {case.name: _described(case) for case in suite.cases},
         "runs of each": [
-            {"label": label, **run_to_plain(run)}
+            {"label": label, **fields_of(run)}
             for run, label in zip(suite.runs, run_labels(suite.runs), strict=True)
         ],
     }
@@ -104,7 +104,7 @@ def describe_suite(suite: Suite) -> dict[str, object]:
 def _described(case: Case) -> dict[str, object]:
     """Return the numbers that state a case; SI units and radians."""
     motion = case.motion and described_motion(case.motion)
-    return case_to_plain(case) | {"motion": motion, "duration": case.length}
+    return fields_of(case) | {"motion": motion, "duration": case.length}
 
 
 def _row(job: Job, trace: Trace) -> dict[str, object]:
