@@ -147,4 +147,4 @@ def test_a_single_size_has_a_band():
 
 def test_a_spectrum_shows_itself():
     maps = made_up(["ooXoOX"] * 3, ["......"] * 3, ["......"] * 3)
-    shows_itself(spectrum_of(maps), "6", "18")
+    shows_itself(spectrum_of(maps), "cells 18", "share that overturns in 3D ")

@@ -294,17 +294,6 @@ class OverturningSpectrum(Results, kind=KIND):
             "share that overturns in a plane and not in 3D": float(every["conservative"]),
         }
 
-    def _said(self) -> dict[str, str]:
-        maps = self.maps
-        sizes, levels = maps.semidiagonals, maps.intensities
-        return {
-            "record": maps.motion.name or "record",
-            "overturned": f"{int(maps.overturned(SPATIAL).sum())} of {len(sizes) * len(levels)} cells",
-            "sizes": f"{len(sizes)} from {sizes[0]:g} to {sizes[-1]:g} m",
-            "intensities": f"{len(levels)} from {levels[0]:g} to {levels[-1]:g}",
-            "tan alpha": f"{maps.tan_alpha:g}",
-        }
-
 
 def spectrum(
     tan_alpha: float,
