@@ -9,7 +9,6 @@ import pandas as pd
 
 from rockwobble.compare.studies.validity.limits import (
     CONTRASTS,
-    FEWEST,
     POINT,
     Tables,
     cells,
@@ -27,7 +26,7 @@ from .picture import Array, Axis, Layer, Line, Panel, Picture, Rule, group_lines
 
 _FREE_PANELS = 4
 _FAR = 1e3  # what infinite is drawn as: beyond every scale
-_STILL, _FEW = "no record uplifts it", f"fewer than {FEWEST} records left standing"
+_STILL, _FEW = "no record uplifts it", "too few records left standing"
 _MODERATE = 2.0  # friction over tan(alpha): twice that of uplift
 # column of the cells, level, name of the line where it is reached, style
 _LINES = (

@@ -69,9 +69,10 @@ def _strayed(records: Mapping[str, float]) -> list[str]:
     """What one record in twenty exceeds at the points, in words, of what enough records know it."""
     found = []
     for name, place in _PLACES.items():
-        least, largest = (records.get(f"{name}_95_{end}", math.nan) for end in ("least", "largest"))
-        if not math.isnan(least):
-            found.append(f"{number(least, '.2f')} to {number(largest, '.2f')} {place}")
+        ends = [records.get(f"{name}_95_{end}", math.nan) for end in ("least", "largest")]
+        if not math.isnan(ends[0]):
+            span = dict.fromkeys(number(end, ".2f") for end in ends)
+            found.append(f"{' to '.join(span)} {place}")
     return found
 
 
