@@ -5,9 +5,8 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from rockwobble.models import plain_json
 from rockwobble.models.parquet_file import pack, read
@@ -164,20 +163,11 @@ def open_table_cache(
     return open_cache(folder, kind, name=name, pack=packed, unpack=lambda _, content: read(content)[0])
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Unfinished:
-    """Tasks of a kind of results that has not come to its end: finished, and in all."""
-
-    kind: str
-    done: int
-    total: int
-
-
-def unfinished(folder: str | Path) -> list[Unfinished]:
-    """Return the results in a folder that have not come to their end."""
+def unfinished(folder: str | Path) -> list[dict[str, Any]]:
+    """Return kind, done and total tasks of the results in a folder that have not come to their end."""
     found = []
     for path in sorted(Path(folder).glob(f"{CACHE}/*/{_PLAN}")):
         plan = plain_json.loads(path.read_bytes())
         done = len(list(path.parent.glob("*.parquet")))
-        found.append(Unfinished(kind=plan["kind"], done=min(done, plan["total"]), total=plan["total"]))
+        found.append({**plan, "done": min(done, plan["total"])})
     return found

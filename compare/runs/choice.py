@@ -294,12 +294,8 @@ def all_runs(cases: Sequence[Case], supports: Sequence[str] | None = None) -> tu
         If there is none.
     """
     engines = [name for name in available_engines() if not _unable(name, cases)]
-    found = [
-        Run(name, support)
-        for support in (SUPPORTS if supports is None else supports)
-        for name in engines
-        if support in find_engine(name).supports
-    ]
+    asked = default_runs(engines, supports or SUPPORTS)
+    found = [run for run in asked if run.support in find_engine(str(run.engine)).supports]
     if not found:
         raise ValueError(
             f"no installed engine has the support {' or '.join(supports or SUPPORTS)} for this case"

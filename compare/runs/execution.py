@@ -350,26 +350,19 @@ def run_tables(
         except ClusterError as error:
             kept = "nothing is kept" if cache is None else f"{cache.count} {what} are kept in {folder}"
             raise IncompleteError(f"{error}; {kept}") from None
-        if lost is None:
-            _require_finished(tasks, found, what, label, tries)
-            yield [each for each in found if not isinstance(each, Lost)]
-        else:
-            pairs = zip(tasks, found, strict=True)
-            yield [lost(task) if isinstance(each, Lost) else each for task, each in pairs]
-
-
-def _require_finished(
-    tasks: Sequence[T],
-    found: Sequence[pd.DataFrame | Lost],
-    what: str,
-    label: Callable[[T], str],
-    tries: int,
-) -> None:
-    died = [(task, each.why) for task, each in zip(tasks, found, strict=True) if isinstance(each, Lost)]
-    if died:
-        first, why = died[0]
-        times = f" {tries} times" if tries > 1 else ""
-        raise IncompleteError(
-            f"{len(died)} of {len(tasks)} {what} ended their processes{times}, all others are finished; "
-            f"the last words of {label(first)}: {why}"
-        )
+        tables: list[pd.DataFrame] = []
+        died: list[str] = []
+        for task, each in zip(tasks, found, strict=True):
+            if not isinstance(each, Lost):
+                tables.append(each)
+            elif lost is not None:
+                tables.append(lost(task))
+            else:
+                died.append(f"{label(task)}: {each.why}")
+        if died:
+            times = f" {tries} times" if tries > 1 else ""
+            raise IncompleteError(
+                f"{len(died)} of {len(tasks)} {what} ended their processes{times}, all others are finished; "
+                f"the last words of {died[0]}"
+            )
+        yield tables

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields
+from functools import partial
 from numbers import Integral, Real
 from typing import Any, Self, TypeVar, get_type_hints
 
@@ -23,8 +25,8 @@ class Option:
         Under which help lists it.
     least, most : float
         Range of a number, both ends included.
-    above : float
-        A number must be larger.
+    above, below : float
+        A number must be larger, or smaller.
     choices : tuple of str
         Words, one of which a word is; where there are several words, each of them.
     form : str
@@ -39,6 +41,7 @@ class Option:
     least: float = -math.inf
     most: float = math.inf
     above: float = -math.inf
+    below: float = math.inf
     choices: tuple[str, ...] = ()
     form: str = ""
     flag: str = ""
@@ -48,12 +51,18 @@ class Option:
         low = f"at least {self.least:g}" if self.least > -math.inf else ""
         low = f"above {self.above:g}" if self.above > -math.inf else low
         high = f"at most {self.most:g}" if self.most < math.inf else ""
+        high = f"below {self.below:g}" if self.below < math.inf else high
         return " and ".join(part for part in (low, high) if part) or "finite"
 
 
 def option(default: T, text: str, *, group: str = "Method", **more: Any) -> T:
     """Return the field of a plan that is an option; `text` is its help, `more` are attributes of `Option`."""
     return field(default=default, metadata={_KEY: Option(help=text, group=group, **more)})
+
+
+def options_in(group: str) -> Callable[..., Any]:
+    """Return `option` for the options of one group."""
+    return partial(option, group=group)
 
 
 class Plan:
@@ -86,11 +95,11 @@ class Plan:
                 if wrong:
                     allowed = ", ".join(stated.choices)
                     raise ValueError(f"{name} must be one of {allowed}, got {quoted(wrong[0])}")
-            if kind not in (int, float):
+            whole = kind in (int, int | None)
+            if value is None or not (whole or kind in (float, float | None)):
                 continue
-            whole = kind is int
             number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)
-            if not (number and stated.least <= value <= stated.most and stated.above < value < math.inf):
+            if not (number and stated.least <= value <= stated.most and stated.above < value < stated.below):
                 what = "a whole number, " if whole else ""
                 raise ValueError(f"{name} must be {what}{stated.allowed()}, got {quoted(value)}")
 

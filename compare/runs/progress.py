@@ -1,17 +1,15 @@
-"""Events and progress of tasks, wherever they run: the share that is done, and the time to go."""
+"""Progress of tasks, wherever they run: the share that is done, and the time to go."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
-from typing import Generic, Literal, TypeAlias, TypeVar
+from typing import Literal
 
 from rockwobble.models.shown import Brief
-
-R = TypeVar("R")
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,24 +21,6 @@ class Lost:
 
 class IncompleteError(RuntimeError):
     """Some tasks are not finished: their processes died again and again, or the Dask cluster is gone."""
-
-
-@dataclass(frozen=True, slots=True)
-class Started:
-    """A task, by its place among all, has begun."""
-
-    place: int
-
-
-@dataclass(frozen=True, slots=True)
-class Finished(Generic[R]):
-    """A task, by its place among all, has ended."""
-
-    place: int
-    result: R | Lost
-
-
-Events: TypeAlias = Generator[Started | Finished[R], None, None]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -99,19 +79,16 @@ class Clock:
         found: int = 0,
         damaged: Sequence[str] = (),
     ) -> None:
-        self._tell = tell
-        self._damaged = tuple(damaged)
-        self._costs = costs
-        self._whole = sum(costs)
+        self._tell, self._damaged = tell, tuple(damaged)
+        self._whole, self._spent = sum(costs), 0.0
         self._found = self._done = found
-        self._spent = 0.0
+        self._total = found + len(costs)
         self._begun = time.monotonic()
 
-    def __call__(self, state: Literal["started", "finished"], label: str, index: int = -1) -> None:
-        """Tell of the start or the end of the task of this index."""
-        if state == "finished":
-            self._done += 1
-            self._spent += self._costs[index]
+    def __call__(self, state: Literal["started", "finished"], label: str, cost: float = 0.0) -> None:
+        """Tell of the start of a task, or of the end of one of this cost."""
+        self._done += state == "finished"
+        self._spent += cost
         share = self._spent / self._whole if self._whole > 0.0 else 0.0
         left = (time.monotonic() - self._begun) * (1.0 / share - 1.0) if share > 0.0 else math.nan
         if self._tell is not None:
@@ -120,7 +97,7 @@ class Clock:
                     label=label,
                     state=state,
                     done=self._done,
-                    total=self._found + len(self._costs),
+                    total=self._total,
                     found=self._found,
                     share=share,
                     left=left,
@@ -129,8 +106,8 @@ class Clock:
             )
 
 
-class Stages:
-    """Tells a callback of one stage after the other, each a with block.
+def stages(tell: ProgressCallback | None, costs: Sequence[float]) -> Stage:
+    """Return what tells a callback of one stage after the other, each a with block of its label.
 
     Parameters
     ----------
@@ -138,15 +115,12 @@ class Stages:
     costs : sequence of float
         Of the stages in their order, in any unit.
     """
-
-    def __init__(self, tell: ProgressCallback | None, costs: Sequence[float]) -> None:
-        self._clock = Clock(tell, costs)
-        self._done = 0
+    clock, following = Clock(tell, costs), iter(costs)
 
     @contextmanager
-    def stage(self, label: str) -> Iterator[None]:
-        """Tell of the start and the end of what is in the block."""
-        self._clock("started", label)
+    def stage(label: str) -> Iterator[None]:
+        clock("started", label)
         yield
-        self._clock("finished", label, self._done)
-        self._done += 1
+        clock("finished", label, next(following))
+
+    return stage

@@ -17,21 +17,22 @@ import sys
 import tempfile
 import threading
 import traceback
-from collections import deque
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import closing
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
 from typing import BinaryIO, TypeVar
 
 from rockwobble.models.cpus import usable_cpus
 
 from ..storage.provenance import reduced_makers
 from .cache import Cache
-from .dask_backend import on_cluster
-from .progress import Clock, Events, Finished, Lost, ProgressCallback, Started
+from .dask_backend import Backend, on_cluster
+from .progress import Clock, Lost, ProgressCallback
 
 T = TypeVar("T")
 Call = tuple[Callable[..., object], tuple[object, ...]]
+_LOOK = 0.5  # between two looks at what runs [s]
 _SERVE = "from rockwobble.compare.runs.scheduler import serve; serve()"
 
 
@@ -210,99 +211,84 @@ def run_tasks(
         results |= {index: result for index, result in found.items() if result is not None}
         damaged = [str(path) for path in cache.damaged]
     costs = [1.0 if cost is None else cost(task) for task in tasks]
-    order = sorted((index for index in range(len(tasks)) if index not in results), key=lambda i: -costs[i])
-    waiting = [tasks[index] for index in order]
-    known = [costs[i] if math.isfinite(costs[i]) else 0.0 for i in order]
-    tell = Clock(progress, known, len(results), damaged)
+    waiting = [index for index in reversed(range(len(tasks))) if index not in results]
+    waiting.sort(key=lambda index: costs[index])  # the longest are taken first, from the end
+    known = {index: costs[index] if math.isfinite(costs[index]) else 0.0 for index in waiting}
+    tell = Clock(progress, list(known.values()), len(results), damaged)
     # a number that is given holds even for one task: in a process of its own it can be ended in a long call
     count = min(usable_cpus(), len(waiting)) if workers is None else workers
     if scheduler is not None:
-        events = on_cluster(scheduler, function, waiting, tries, makers)
+        backend = on_cluster(scheduler, makers)
     elif count > 1:
-        events = _in_processes(function, waiting, min(count, len(waiting)), tries)
+        backend = _in_processes(max(1, min(count, len(waiting))))
     else:
-        events = _here(function, waiting)
-    with closing(events):
-        for event in events:
-            index = order[event.place]
-            if isinstance(event, Finished):
-                results[index] = event.result
-                if cache is not None and not isinstance(event.result, Lost):
-                    cache.keep(tasks[index], event.result)
-            tell("finished" if isinstance(event, Finished) else "started", label(tasks[index]), event.place)
+        backend = _here()
+    tried: Counter[int] = Counter()
+    running: dict[Future[R], int] = {}
+    with backend as (submit, capacity, losses):
+        while waiting or running:
+            for _ in range(min(len(waiting), capacity() - len(running))):
+                index = waiting.pop()
+                if not tried[index]:
+                    tell("started", label(tasks[index]))
+                tried[index] += 1
+                running[submit(function, tasks[index])] = index
+            for future in wait(running, timeout=_LOOK, return_when=FIRST_COMPLETED).done:
+                index = running.pop(future)
+                try:
+                    results[index] = future.result()
+                except losses as error:
+                    if tried[index] < tries:
+                        waiting.append(index)
+                        continue
+                    results[index] = Lost(str(error).partition("\n")[0] or type(error).__name__)
+                else:
+                    if cache is not None:
+                        cache.keep(tasks[index], future.result())
+                tell("finished", label(tasks[index]), known[index])
     return [results[index] for index in range(len(tasks))]
 
 
-def _here(function: Callable[[T], R], tasks: Sequence[T]) -> Events[R]:
-    for place, task in enumerate(tasks):
-        yield Started(place)
-        yield Finished(place, function(task))
+@contextmanager
+def _here() -> Iterator[Backend]:
+    def submit(function: Callable[[T], R], task: T) -> Future[R]:
+        done: Future[R] = Future()
+        done.set_result(function(task))
+        return done
+
+    yield submit, lambda: 1, ()
 
 
-@dataclass(frozen=True, slots=True)
-class _Raised:
-    error: BaseException
-
-
-def _in_processes(function: Callable[[T], R], tasks: Sequence[T], workers: int, tries: int) -> Events[R]:
-    """Give each process, which a thread waits for, one task after the other."""
-    waiting = deque(range(len(tasks)))
-    told: queue.SimpleQueue[Started | Finished[R | _Raised]] = queue.SimpleQueue()
-    pool: list[Worker] = []
+@contextmanager
+def _in_processes(count: int) -> Iterator[Backend]:
+    """Threads, each of which has its calls made by a process of its own."""
+    own, opened = threading.local(), list[Worker]()
     lock, stopped = threading.Lock(), threading.Event()
 
-    def opened() -> Worker:
-        with lock:
-            if stopped.is_set():
-                raise WorkerDiedError("the tasks were given up")
-            pool.append(Worker())
-            return pool[-1]
-
-    def one(worker: Worker | None, place: int) -> tuple[Worker | None, R | Lost | _Raised]:
-        last = Lost("")
-        for _ in range(tries):
-            try:
-                worker = worker or opened()
-                return worker, worker.call(function, tasks[place])
-            except WorkerDiedError as error:
-                worker, last = None, Lost(str(error))
-            except BaseException as error:  # what the task raised is for the caller
-                return worker, _Raised(error)
-        return worker, last
-
-    def work() -> None:
-        worker: Worker | None = None
-        while not stopped.is_set():
-            try:
-                place = waiting.popleft()
-            except IndexError:
-                break
-            told.put(Started(place))
-            worker, result = one(worker, place)
-            told.put(Finished(place, result))
-        if worker is not None:
-            worker.close()
-
-    threads = [threading.Thread(target=work, daemon=True) for _ in range(workers)]
-    for thread in threads:
-        thread.start()
-    left = len(tasks)
-    try:
-        while left:
-            event = told.get()
-            if isinstance(event, Started):
-                yield event
-                continue
-            if isinstance(event.result, _Raised):
-                raise event.result.error
-            left -= 1
-            yield Finished(event.place, event.result)
-    finally:
-        # left early, by an exception or Ctrl-C, no process outlives its tasks
-        if left:
+    def call(function: Callable[..., object], task: object) -> object:
+        if not hasattr(own, "worker"):
             with lock:
-                stopped.set()
-                for worker in pool:
-                    worker.kill()
-        for thread in threads:
-            thread.join()
+                if stopped.is_set():
+                    raise WorkerDiedError("the tasks were given up")
+                own.worker = Worker()
+                opened.append(own.worker)
+        worker: Worker = own.worker
+        try:
+            return worker.call(function, task)
+        except WorkerDiedError:
+            del own.worker
+            raise
+
+    pool = ThreadPoolExecutor(count)
+    try:
+        yield lambda *task: pool.submit(call, *task), lambda: count, (WorkerDiedError,)
+    except BaseException:  # by an error or Ctrl-C: no process outlives its tasks
+        with lock:
+            stopped.set()
+            for worker in opened:
+                worker.kill()
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)
+        for worker in opened:
+            worker.close()

@@ -34,7 +34,7 @@ from ..metrics.statistics import (
 from ..runs.choice import default_runs, require_runnable, run_labels, support_of
 from ..runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
 from ..runs.progress import ProgressCallback
-from ..storage.manifest import Number, Stored
+from ..storage.manifest import Number
 from ..storage.provenance import fingerprint
 from ..storage.results import Results
 from .plans import Copies
@@ -88,12 +88,6 @@ class Ensemble(Results, kind=KIND):
     def sheets(self) -> dict[str, bytes]:
         """Return the tables as CSV."""
         return {f"{name}.csv": table.to_csv(index=False).encode() for name, table in self.tables.items()}
-
-    @classmethod
-    def of_stored(cls, stored: Stored) -> Ensemble:
-        """Return the ensemble of the stored members: what is concluded from them is computed anew."""
-        found = ensemble_of(stored.table("members"), stored.manifest.about)
-        return dataclasses.replace(found, manifest=stored.manifest)
 
     def _said(self) -> dict[str, str]:
         runs = self.methods[["runs", "overturned", "failed"]].sum()

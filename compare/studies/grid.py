@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockwobble import reduced
@@ -46,11 +47,6 @@ class GridChunk:
     options: Mapping[str, object]  # of `reduced.peak_tilts`
 
     @property
-    def rows(self) -> int:
-        """Number of runs."""
-        return len(self.semidiagonals) * len(self.scales)
-
-    @property
     def name(self) -> str:
         """Description of the chunk."""
         where = f"tan alpha {self.tan_alpha:g}, R from {self.semidiagonals[0]:g} m, scale from"
@@ -70,8 +66,8 @@ class GridChunk:
             }
         )
 
-    def run(self) -> dict[str, object]:
-        """Return the columns of the results, one row for each run."""
+    def run(self) -> pd.DataFrame:
+        """Return the table of the results, one row for each run."""
         peaks = reduced.peak_tilts(
             self.semidiagonals,
             self.tan_alpha,
@@ -81,16 +77,18 @@ class GridChunk:
             **{**reduced.MODELS[self.model], **self.options},
         ).ravel()
         sizes, scales = np.meshgrid(self.semidiagonals, self.scales, indexing="ij")
-        return {
-            "motion": [self.label] * self.rows,
-            "model": [self.model] * self.rows,
-            "tan_alpha": np.full(self.rows, self.tan_alpha),
-            "semidiagonal": sizes.ravel(),
-            "scale": scales.ravel(),
-            "peak_tilt": peaks,
-            "peak_tilt_over_alpha": peaks / math.atan(self.tan_alpha),
-            "outcome": [outcome_of_peak(float(peak)) for peak in peaks],
-        }
+        return pd.DataFrame(
+            {
+                "motion": self.label,
+                "model": self.model,
+                "tan_alpha": self.tan_alpha,
+                "semidiagonal": sizes.ravel(),
+                "scale": scales.ravel(),
+                "peak_tilt": peaks,
+                "peak_tilt_over_alpha": peaks / math.atan(self.tan_alpha),
+                "outcome": [outcome_of_peak(float(peak)) for peak in peaks],
+            }
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
@@ -11,6 +12,24 @@ from ..runs.plan import Plan, option
 _ROLLING = (
     "Length of the couple against the rolling of the rim, in m, below every base radius; 0 loses nothing."
 )
+_PLANE = "Planar motion: azimuth of the vertical plane that holds it, in rad."
+_RESTITUTION = (
+    "Ratio of tilt rates at an impact of planar motion. Default: 1, as in the paper; momentum: from the "
+    "moment of momentum about the new pivot."
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModelPlan(Plan):
+    """Settings of a reduced model."""
+
+    plane: float | None = option(None, _PLANE, group="Reduced model", least=-math.tau, most=math.tau)
+    restitution: float | str | None = option(None, _RESTITUTION, group="Reduced model", form="restitution")
+    rest_tilt: float | None = option(
+        None,
+        "Rest threshold: tilt over alpha below which the base is closed; 0 leaves the rule out.",
+        group="Reduced model",
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -238,13 +257,5 @@ class GridPlan(Plan):
     slab_mass_ratio: float = option(
         0.0, "Mass of a rigid slab over that of the cylinders that carry it.", group="Cylinder", least=0.0
     )
-    plane: float | None = option(
-        None, "Planar motion: azimuth of the vertical plane that holds it, in rad.", group="Reduced models"
-    )
-    restitution: float | str | None = option(
-        None,
-        "Ratio of tilt rates at an impact of planar motion. Default: 1, as in the paper; momentum: from the "
-        "moment of momentum about the new pivot.",
-        group="Reduced models",
-        form="restitution",
-    )
+    plane: float | None = option(None, _PLANE, group="Reduced models", least=-math.tau, most=math.tau)
+    restitution: float | str | None = option(None, _RESTITUTION, group="Reduced models", form="restitution")

@@ -110,7 +110,7 @@ def scene_costs(
     rounds, steps : int
         Times that each scene is measured, and steps each time.
     stage : callable, optional
-        Of the label of a round: the block in which it runs, as that of `Stages`.
+        Of the label of a round: the block in which it runs, as of `stages`.
 
     Returns
     -------

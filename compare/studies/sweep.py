@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -56,10 +55,9 @@ class CaseChunk:
         """Return the hash of all that the results depend on."""
         return fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in self.jobs])
 
-    def run(self) -> dict[str, object]:
-        """Return the columns of the results, one row for each run."""
-        rows = [_row(job, run_job(job)) for job in self.jobs]
-        return {name: [row[name] for row in rows] for name in rows[0]}
+    def run(self) -> pd.DataFrame:
+        """Return the table of the results, one row for each run."""
+        return pd.DataFrame([_row(job, run_job(job)) for job in self.jobs])
 
 
 def runnable_suite(plan: Suite | Iterable[Case]) -> Suite:
@@ -105,20 +103,8 @@ def describe_suite(suite: Suite) -> dict[str, object]:
 
 def _described(case: Case) -> dict[str, object]:
     """Return the numbers that state a case; SI units and radians."""
-    cylinder, motion, initial = case.cylinder, case.motion, case.initial
-    return {
-        "semidiagonal": cylinder.semidiagonal,
-        "tan_alpha": cylinder.tan_alpha,
-        "alpha": cylinder.alpha,
-        "base_radius": cylinder.base_radius,
-        "height": 2.0 * cylinder.half_height,
-        "duration": case.length,
-        "gravity": case.gravity,
-        "friction": case.friction,
-        "rolling_resistance": case.rolling_resistance,
-        "motion": motion and described_motion(motion),
-        "initial": initial and dataclasses.asdict(initial),
-    }
+    motion = case.motion and described_motion(case.motion)
+    return fields_of(case) | {"motion": motion, "duration": case.length}
 
 
 def _row(job: Job, trace: Trace) -> dict[str, object]:
@@ -315,7 +301,7 @@ def sweep(
 
 def run_chunk(chunk: Chunk) -> pd.DataFrame:
     """Return the table of a chunk, one row for each run."""
-    return pd.DataFrame(chunk.run())
+    return chunk.run()
 
 
 def _motions(plan: Grid | Suite) -> dict[str, pd.DataFrame]:

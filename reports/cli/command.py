@@ -42,16 +42,24 @@ def takes_options(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def with_options(**given: Any) -> None:
         with user_input():
-            made = {
-                name: kind(**{each.name: given[each.name] for each in fields(kind)})
-                for name, kind in stated.items()
-            }
+            made = {name: _made(kind, given) for name, kind in stated.items()}
         others = {name: value for name, value in given.items() if name in own and name not in stated}
         command(**made, **others)
 
     with_options.__signature__ = inspect.Signature(list(parameters.values()))  # type: ignore[attr-defined]
     with_options.__annotations__ = {name: each.annotation for name, each in parameters.items()}
     return with_options
+
+
+def _made(kind: Any, given: Mapping[str, object]) -> object:
+    """Return the dataclass with the given options; a refusal names an option as it is typed."""
+    try:
+        return kind(**{each.name: given[each.name] for each in fields(kind)})
+    except ValueError as error:
+        name, _, why = str(error).partition(" ")
+        if (option := options_of(kind).get(name)) is None:
+            raise
+        raise ValueError(f"{option.flag or '--' + name.replace('_', '-')} {why}") from None
 
 
 def _parameters(kind: type) -> Iterator[inspect.Parameter]:

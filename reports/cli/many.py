@@ -20,7 +20,6 @@ from ..console import interruptible, save_with_page, show_and_save, shown_progre
 from ..pages.cases import describe, motion_warnings
 from . import options
 from .command import takes_options
-from .estimate import sweep_time
 from .problem import BODY, Body, Problem, Record, refuse, refuse_options_of_engines
 from .several import GridOptions, ManyMethods, ManyMotions, cylinders_of
 from .suite_choice import chosen_runs, refuse_problem_options, without_missing
@@ -99,7 +98,7 @@ def fragility(
 def spectrum(
     record: Record,
     plan: SpectrumPlan,
-    tan_alpha: Annotated[float, options.TAN_ALPHA] = 0.1,
+    tan_alpha: Annotated[float, options.body(options.SLENDERNESS)] = 0.1,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-spectrum"),
 ) -> None:
@@ -185,25 +184,22 @@ def ensemble(
             rs.require_writable(out)
             refuse_options_of_engines(context, engine)
             stated: rw.Case | rw.Suite | list[rw.Case]
+            given: rw.Suite | None = None
             if suite is not None:
                 ignored = _COPIES | _MOTIONS
                 refuse(context, ignored, f"does not go with a suite, got {suite}: its cases are the members")
                 refuse_problem_options(context, suite)
-                stated, source = rw.read_suite(suite), f"cases of {suite}"
-                runs = _runs(engine, support, time_step, stated)
-                print(f"Suite {suite}: {len(stated.cases)} members")
-                shaking = [each.motion for each in stated.cases]
+                stated = given = rw.read_suite(suite)
+                source, members = f"cases of {suite}", list(given.cases)
+                lines = [f"Suite {suite}: {len(members)} members"]
             else:
                 stated, source = _members(context, problem, copies, motions, peak)
-                shown = stated if isinstance(stated, rw.Case) else stated[0]
-                count = copies.copies if isinstance(stated, rw.Case) else len(stated)
-                runs = _runs(engine, support, time_step, None)
-                for line in describe(shown) if isinstance(stated, rw.Case) else describe(shown)[:1]:
-                    print(line)
-                print(f"Members: {count}, {source}")
-                shaking = [] if isinstance(stated, rw.Case) else [each.motion for each in stated]
-            for line in motion_warnings(shaking):
-                print(line)
+                # what describes one case holds of copies, but only its first line of motions that differ
+                members = [] if isinstance(stated, rw.Case) else stated
+                lines = describe(stated) if isinstance(stated, rw.Case) else describe(members[0])[:1]
+                lines += [f"Members: {len(members) or copies.copies}, {source}"]
+            runs = _runs(engine, support, time_step, given)
+            print(*lines, *motion_warnings(each.motion for each in members), sep="\n")
         with user_input(), shown_progress() as progress:
             found = rw.ensemble(
                 stated, runs=runs, progress=progress, resume=out, source=source, **dataclasses.asdict(copies)
@@ -294,10 +290,8 @@ def sweep(
             stated = {each.name for each in fields(GridOptions)}
             refuse(context, stated, f"does not go with a suite, got {suite}: the file states the problems")
             plan = _suite(suite, model)
-        how_long = sweep_time(plan)
         rs.require_writable(out)
-    for line in (*_echo(plan), how_long):
-        print(line)
+    print(*_echo(plan), sep="\n")
     shows: list[Callable[[], None]] = []
     with interruptible(out), user_input(), shown_progress("chunks") as progress:
         rw.sweep(

@@ -135,31 +135,14 @@ def whole(least: int, most: float = math.inf) -> Callable[[int | None], int | No
     return checked
 
 
-def _in_one_turn(plane: float | None) -> float | None:
-    if plane is None or abs(plane) <= math.tau:
-        return plane
-    raise typer.BadParameter(f"must be from -6.2832 to 6.2832 rad (90 deg is 1.5708), got {plane:g}")
+body, method, work, output = map(panel, ("Cylinder", "Method", "Work", "Output"))
 
-
-body, ground, method, reduced, work, output = map(
-    panel, ("Cylinder", "Ground motion", "Method", "Reduced model", "Work", "Output")
+SLENDERNESS = "Slenderness b/h, radius over half the height."
+UNITS = "g, m/s2 or cm/s2; required where the files do not say."
+RESAMPLE = (
+    "Take components of different time steps at the largest step that divides all; linear between samples, "
+    "which stay, so that none changes."
 )
-
-TAN_ALPHA = body("Slenderness b/h, radius over half the height.")
-SlabMassRatio = Annotated[
-    float | None,
-    body("Mass of a rigid slab over that of the cylinders that carry it. Default: a cylinder alone."),
-]
-Units = Annotated[str | None, ground("g, m/s2 or cm/s2; required where the files do not say.")]
-Resample = Annotated[
-    bool,
-    ground(
-        "Take components of different time steps at the largest step that divides all; linear between "
-        "samples, which stay, so that none changes.",
-        "--resample",
-    ),
-]
-Gravity = Annotated[float, ground("g, in m/s2.")]
 ALL, NO_ENGINE = "all", "none"  # in place of the names of engines
 
 
@@ -213,19 +196,6 @@ Settings = Annotated[
         "that has one of that name; may be repeated.",
         "--set",
         metavar="NAME=VALUE",
-    ),
-]
-Plane = Annotated[
-    float | None,
-    reduced("Planar motion: azimuth of the vertical plane that holds it, in rad.", callback=_in_one_turn),
-]
-Restitution = Annotated[
-    Any,  # a number, "momentum" or None: typer knows no type for that
-    reduced(
-        "Ratio of tilt rates at an impact of planar motion. Default: 1, as in the paper; momentum: from "
-        "the moment of momentum about the new pivot.",
-        parser=restitution,
-        metavar="FLOAT|momentum",
     ),
 ]
 SuiteName = Annotated[

@@ -7,48 +7,42 @@ import shlex
 from collections.abc import Collection
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
 import rockwobble as rw
+from rockwobble.compare.runs.plan import Plan, options_in
 
 from . import options
 
 # length of a free response where the user does not say [s]
 FREE_DURATION = 10.0
-_release = options.panel("Release")
+_cylinder, _ground, _release = map(options_in, ("Cylinder", "Ground motion", "Release"))
 SEMIDIAGONAL, TAN_ALPHA = 6.0, 0.2  # [m], [-]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Body:
+class Body(Plan):
     """The options that state a cylinder, or a slab on cylinders."""
 
-    semidiagonal: Annotated[float | None, options.body("R = sqrt(b^2 + h^2), in m. Default: 6.")] = None
-    tan_alpha: Annotated[float | None, options.TAN_ALPHA] = None
-    diameter: Annotated[float | None, options.body("2b, in m; with --height in place of the two above.")] = (
-        None
+    semidiagonal: float | None = _cylinder(None, "R = sqrt(b^2 + h^2), in m. Default: 6.")
+    tan_alpha: float | None = _cylinder(None, options.SLENDERNESS)
+    diameter: float | None = _cylinder(None, "2b, in m; with --height in place of the two above.", above=0.0)
+    height: float | None = _cylinder(None, "2h, in m.")
+    mass_centre_height: float | None = _cylinder(
+        None, "Of the mass centre above the base, in m; with --diameter and --height. Default: half of that."
     )
-    height: Annotated[float | None, options.body("2h, in m.")] = None
-    mass_centre_height: Annotated[
-        float | None,
-        options.body(
-            "Of the mass centre above the base, in m; with --diameter and --height. Default: half of that."
-        ),
-    ] = None
-    transverse_inertia: Annotated[
-        float | None,
-        options.body("I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder."),
-    ] = None
-    axial_inertia: Annotated[float | None, options.body("I2/m about the axis, in m2.")] = None
-    slab_mass_ratio: options.SlabMassRatio = None
-    columns: Annotated[
-        int | None,
-        options.body(
-            "Number of the cylinders under the slab: 3 or more, or 1 for a slab that cannot turn. Default: 3."
-        ),
-    ] = None
+    transverse_inertia: float | None = _cylinder(
+        None, "I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder."
+    )
+    axial_inertia: float | None = _cylinder(None, "I2/m about the axis, in m2.")
+    slab_mass_ratio: float | None = _cylinder(
+        None, "Mass of a rigid slab over that of the cylinders that carry it. Default: a cylinder alone."
+    )
+    columns: int | None = _cylinder(
+        None,
+        "Number of the cylinders under the slab: 3 or more, or 1 for a slab that cannot turn. Default: 3.",
+    )
 
     def cylinder(self) -> rw.Cylinder:
         """Return the cylinder, by semidiagonal and slenderness or by diameter and height, or the frame.
@@ -58,15 +52,10 @@ class Body:
         ValueError
             If an option is out of range, or two do not go together.
         """
-        inertias = {
-            "transverse_inertia": self.transverse_inertia,
-            "axial_inertia": self.axial_inertia,
-        }
+        inertias = {name: getattr(self, name) for name in ("transverse_inertia", "axial_inertia")}
         if self.diameter is not None and self.height is not None:
             if self.semidiagonal is not None or self.tan_alpha is not None:
                 raise ValueError("--diameter and --height stand in place of --semidiagonal and --tan-alpha")
-            if not self.diameter > 0.0:
-                raise ValueError(f"--diameter must be positive [m], got {self.diameter:g}")
             cylinder = rw.Cylinder.from_dimensions(
                 base_radius=0.5 * self.diameter,
                 height=self.height,
@@ -101,25 +90,28 @@ def under_slab(cylinder: rw.Cylinder, slab_mass_ratio: float | None, columns: in
     return rw.WobblingFrame(cylinder, slab_mass_ratio, 3 if columns is None else columns)
 
 
+def first_given(stated: Plan, *names: str) -> str:
+    """Return the first option of some that has a value, as it is typed; empty without one."""
+    return next((f"--{name.replace('_', '-')}" for name in names if getattr(stated, name)), "")
+
+
 @dataclass(frozen=True, kw_only=True)
-class Record:
+class Record(Plan):
     """The options that state a ground motion."""
 
-    record: Annotated[
-        Path | None, options.ground("Text or CSV of time, x, y and perhaps z, in place of the files below.")
-    ] = None
-    record_x: Annotated[
-        Path | None,
-        options.ground(
-            "East-west component: PEER AT2, two-column text or CSV, or zero beside the other (planar "
-            "motion). Default: El Centro 1940."
-        ),
-    ] = None
-    record_y: Annotated[Path | None, options.ground("North-south component, or zero.")] = None
-    record_z: Annotated[Path | None, options.ground("Vertical component, may be left out.")] = None
-    units: options.Units = None
-    resample: options.Resample = False
-    scale: Annotated[float, options.ground("Factor on all components.")] = 1.0
+    record: Path | None = _ground(
+        None, "Text or CSV of time, x, y and perhaps z, in place of the files below."
+    )
+    record_x: Path | None = _ground(
+        None,
+        "East-west component: PEER AT2, two-column text or CSV, or zero beside the other (planar motion). "
+        "Default: El Centro 1940.",
+    )
+    record_y: Path | None = _ground(None, "North-south component, or zero.")
+    record_z: Path | None = _ground(None, "Vertical component, may be left out.")
+    units: str | None = _ground(None, options.UNITS)
+    resample: bool = _ground(False, options.RESAMPLE, flag="--resample")
+    scale: float = _ground(1.0, "Factor on all components.", above=0.0)
 
     def motion(self, *, still: bool = False) -> rw.GroundMotion | None:
         """Return the ground motion; without a record El Centro, or None where the ground is then `still`.
@@ -131,8 +123,6 @@ class Record:
         """
         x, y, z, scale = self.record_x, self.record_y, self.record_z, self.scale
         whole = self.record
-        if not (math.isfinite(scale) and scale > 0.0):
-            raise ValueError(f"--scale must be positive and finite, got {scale:g}")
         if whole is not None:
             if any(path is not None for path in (x, y, z)):
                 raise ValueError("--record holds all components, got --record-x, -y or -z beside it")
@@ -140,7 +130,7 @@ class Record:
                 raise ValueError("--resample goes with --record-x and --record-y: --record has one time step")
             return rw.read_record(whole, units=self.units).scaled(scale)
         if x is None and y is None:
-            if lone := "--record-z" if z is not None else self._lone_option():
+            if lone := first_given(self, "record_z", "units", "resample"):
                 raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
             if not still:
                 return rw.el_centro_1940().scaled(scale)
@@ -155,28 +145,29 @@ class Record:
             )
         return rw.read_record(x, y, z, units=self.units, resample=self.resample).scaled(scale)
 
-    def _lone_option(self) -> str:
-        return "--units" if self.units is not None else "--resample" if self.resample else ""
-
 
 @dataclass(frozen=True, kw_only=True)
-class Release:
+class Release(Plan):
     """The options that state a release."""
 
-    release_tilt_deg: Annotated[
-        float | None, _release("Release at this tilt, in deg; without a record the ground is then still.")
-    ] = None
-    release_azimuth_deg: Annotated[
-        float, _release("Direction of the lean at release, in deg, counter-clockwise from x (east).")
-    ] = 0.0
-    rolling_rate: Annotated[float, _release("Rolling rate at release, in rad/s.")] = 0.0
-    duration: Annotated[
-        float | None,
-        _release(
-            "Length of the run, in s; what moves then is followed over still ground to its next maximum. "
-            "Default: that of the ground motion, 10 s without one."
-        ),
-    ] = None
+    release_tilt_deg: float | None = _release(
+        None,
+        "Release at this tilt, in deg; without a record the ground is then still.",
+        least=0.0,
+        below=90.0,
+    )
+    release_azimuth_deg: float = _release(
+        0.0,
+        "Direction of the lean at release, in deg, counter-clockwise from x (east).",
+        least=-360.0,
+        most=360.0,
+    )
+    rolling_rate: float = _release(0.0, "Rolling rate at release, in rad/s.")
+    duration: float | None = _release(
+        None,
+        "Length of the run, in s; what moves then is followed over still ground to its next maximum. "
+        "Default: that of the ground motion, 10 s without one.",
+    )
 
     def initial(self) -> rw.InitialState | None:
         """Return the state at release; None from rest.
@@ -187,18 +178,9 @@ class Release:
             If an option is out of range, or two do not go together.
         """
         if self.release_tilt_deg is None:
-            lone = "--rolling-rate" if self.rolling_rate else "--release-azimuth-deg"
-            if self.rolling_rate or self.release_azimuth_deg:
+            if lone := first_given(self, "rolling_rate", "release_azimuth_deg"):
                 raise ValueError(f"{lone} needs a release, give --release-tilt-deg [deg] as well")
             return None
-        if not abs(self.release_azimuth_deg) <= 360.0:
-            raise ValueError(
-                f"--release-azimuth-deg must be from -360 to 360 [deg], got {self.release_azimuth_deg:g}"
-            )
-        if not 0.0 <= self.release_tilt_deg < 90.0:
-            raise ValueError(
-                f"--release-tilt-deg must be at least 0 and below 90 [deg], got {self.release_tilt_deg:g}"
-            )
         return rw.InitialState(
             tilt=math.radians(self.release_tilt_deg),
             rolling_angle=math.radians(self.release_azimuth_deg),
@@ -210,21 +192,16 @@ class Release:
 class Problem(Release, Record, Body):
     """The options that state a problem."""
 
-    gravity: options.Gravity = 9.81
-    friction: Annotated[
-        float,
-        options.ground(
-            "Coefficient of cylinder and ground. The reduced models assume that it suffices and say where it "
-            "would not."
-        ),
-    ] = 1.0
-    rolling_resistance: Annotated[
-        float,
-        options.ground(
-            "Length of the couple against the rolling of the rim, in m, below the base radius; 0 loses "
-            "nothing."
-        ),
-    ] = 0.0
+    gravity: float = _ground(9.81, "g, in m/s2.")
+    friction: float = _ground(
+        1.0,
+        "Coefficient of cylinder and ground. The reduced models assume that it suffices and say where it "
+        "would not.",
+    )
+    rolling_resistance: float = _ground(
+        0.0,
+        "Length of the couple against the rolling of the rim, in m, below the base radius; 0 loses nothing.",
+    )
 
     def case(self) -> rw.Case:
         """Return the case that they state.

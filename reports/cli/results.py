@@ -20,7 +20,6 @@ from ..pages.cases import describe
 from ..pages.table import number
 from . import options
 from .command import takes_options
-from .estimate import require_memory, time_needed
 from .options import settings
 from .problem import Problem, given_options, refuse
 
@@ -54,14 +53,14 @@ def show(store: Store, as_json: Json = False) -> None:
             dataclasses.asdict(made) | {"complete": True, "states": files}
             for made, files in zip(found, states, strict=True)
         ]
-        results += [{**dataclasses.asdict(each), "complete": False} for each in going]
+        results += [{**each, "complete": False} for each in going]
         print(plain_json.dumps({"folder": str(store), "results": results}, indent=2))
     else:
         for made, files in zip(found, states, strict=True):
             _print(store, made, files)
         for each in going:
-            far = f"{each.done} of {each.total} tasks"
-            print(f"{store}: {each.kind}, not finished: {far}; the same command resumes")
+            far = f"{each['done']} of {each['total']} tasks"
+            print(f"{store}: {each['kind']}, not finished: {far}; the same command resumes")
     if any(state != "whole" for files in states for state in files.values()):
         raise typer.Exit(1)
 
@@ -178,13 +177,11 @@ def view(
                 case = problem.case()
                 asked = rw.Run(engine or rw.multibody.DEFAULT_ENGINE, support, time_step)
                 (run,) = rr.with_settings(case, [asked], settings(setting))
-                require_memory([case], [run])
                 rr.require_runnable(case, run)
                 name = case.name
             rs.require_writable(out)
         if folder is None:
-            for line in (*describe(case), *time_needed([case], [run])):
-                print(line)
+            print(*describe(case), sep="\n")
             with user_input(), shown_progress() as progress:
                 comparison = rw.compare(case, runs=[run], progress=progress)
         show_and_save(comparison.of_case(name), out)

@@ -10,37 +10,35 @@ from typing import Annotated
 import rockwobble as rw
 import rockwobble.compare as rc
 import rockwobble.compare.runs as rr
+from rockwobble.compare.runs.plan import Plan, option, options_in
 from rockwobble.compare.studies.plans import GridPlan
 
 from . import options
 from .options import settings
-from .problem import Body, under_slab
+from .problem import Body, first_given, under_slab
 
 DEFAULT_COUNT = 100  # of synthetic motions, where the user does not say
-_motions = options.panel("Many ground motions")
+_motions = options_in("Many ground motions")
 
 
 @dataclass(frozen=True, kw_only=True)
-class ManyMotions:
+class ManyMotions(Plan):
     """The options that name many ground motions."""
 
-    p695: Annotated[bool, _motions("The 22 far-field pairs of FEMA P-695 (extra records).", "--p695")] = False
-    records: Annotated[
-        Path | None,
-        _motions(
-            "A folder of records with a table records.csv: columns x and y (files), maybe z, name, units "
-            "and scale."
-        ),
-    ] = None
-    synthetic: Annotated[int | None, _motions("So many synthetic motions.", callback=options.whole(2))] = None
-    units: options.Units = None
-    resample: options.Resample = False
+    p695: bool = _motions(False, "The 22 far-field pairs of FEMA P-695 (extra records).", flag="--p695")
+    records: Path | None = _motions(
+        None,
+        "A folder of records with a table records.csv: columns x and y (files), maybe z, name, units and "
+        "scale.",
+    )
+    synthetic: int | None = _motions(None, "So many synthetic motions.", least=2)
+    units: str | None = option(None, options.UNITS, group="Ground motion")
+    resample: bool = option(False, options.RESAMPLE, group="Ground motion", flag="--resample")
 
     @property
     def given(self) -> str:
         """The option that names them; empty without one."""
-        named = {"--p695": self.p695, "--records": self.records, "--synthetic": self.synthetic is not None}
-        return next((name for name, value in named.items() if value), "")
+        return first_given(self, "p695", "records", "synthetic")
 
     def read(self, seed: int) -> tuple[list[rw.GroundMotion], str]:
         """Return the ground motions and what they are; synthetic ones where none are named.
@@ -56,8 +54,7 @@ class ManyMotions:
             raise ValueError(
                 "the motions are those of --p695, of --records or --synthetic, got more than one"
             )
-        lone = "--units" if self.units is not None else "--resample" if self.resample else ""
-        if lone and self.records is None:
+        if self.records is None and (lone := first_given(self, "units", "resample")):
             raise ValueError(f"{lone} belongs to --records")
         if self.p695:
             return recorded_far_field(), "far-field pairs of FEMA P-695"
@@ -153,23 +150,20 @@ class ManyMethods:
         return [*chosen, *runs]
 
 
-_motion = options.panel("Ground motion")
+_motion = options_in("Ground motion")
 
 
 @dataclass(frozen=True, kw_only=True)
 class GridOptions(GridPlan):
     """The options that state a grid."""
 
-    record_x: Annotated[
-        list[Path] | None,
-        _motion(
-            "East-west component, or zero; may be repeated for several records. Default: El Centro 1940."
-        ),
-    ] = None
-    record_y: Annotated[list[Path] | None, _motion("North-south component of each, or zero.")] = None
-    record_z: Annotated[list[Path] | None, _motion("Vertical component of each, or of none.")] = None
-    units: options.Units = None
-    resample: options.Resample = False
+    record_x: list[Path] | None = _motion(
+        None, "East-west component, or zero; may be repeated for several records. Default: El Centro 1940."
+    )
+    record_y: list[Path] | None = _motion(None, "North-south component of each, or zero.")
+    record_z: list[Path] | None = _motion(None, "Vertical component of each, or of none.")
+    units: str | None = _motion(None, options.UNITS)
+    resample: bool = _motion(False, options.RESAMPLE, flag="--resample")
 
     def grid(self, models: list[str] | None) -> rw.Grid:
         """Return the grid of these axes by some reduced models, the recess model without any.
@@ -188,8 +182,7 @@ class GridOptions(GridPlan):
     def _motions(self) -> list[rw.GroundMotion]:
         x, y, z = self.record_x or [], self.record_y or [], self.record_z or []
         if not x and not y:
-            named = {"--record-z": z, "--units": self.units, "--resample": self.resample}
-            if lone := next((name for name, value in named.items() if value), ""):
+            if lone := first_given(self, "record_z", "units", "resample"):
                 raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
             return [rw.el_centro_1940()]
         if len(x) != len(y) or len(z) not in (0, len(x)):

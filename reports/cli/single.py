@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,13 +15,13 @@ import rockwobble as rw
 import rockwobble.compare as rc
 import rockwobble.compare.runs as rr
 import rockwobble.compare.storage as rs
-from rockwobble.compare.studies.plans import AdvicePlan
+from rockwobble.compare.runs.plan import Plan, options_in
+from rockwobble.compare.studies.plans import AdvicePlan, ModelPlan
 
 from ..console import FAILED, complain, interruptible, show_and_save, shown_progress, user_input
 from ..pages.cases import describe
 from . import options
 from .command import takes_options
-from .estimate import require_memory, time_needed
 from .options import settings
 from .problem import Problem, given_options, refuse_options_of_engines, restated
 from .suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
@@ -30,31 +29,27 @@ from .suite_choice import chosen_runs, describe_suite, refuse_problem_options, w
 if TYPE_CHECKING:
     from rockwobble.models.case import TimeStep
 
-_external = options.panel("Trajectory of a shake table or another code")
+_external = options_in("Trajectory of a shake table or another code")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Trajectories:
+class Trajectories(Plan):
     """The options that name external trajectories."""
 
-    trajectory: Annotated[
-        list[Path] | None,
-        _external(
-            "CSV of time and: tilt and azimuth, or qw, qx, qy, qz, or x, y, z of the mass centre; from a "
-            "shake table or another code. What it does not hold is not compared; may be repeated."
-        ),
-    ] = None
-    trajectory_angles: Annotated[str | None, _external("deg or rad, where its header does not say.")] = None
-    trajectory_offset: Annotated[
-        float, _external("Added to its times, in s, so that 0 is the start of the run.")
-    ] = 0.0
-    trajectory_noise_deg: Annotated[
-        float | None,
-        _external(
-            "Tilt below which it counts as standing, in deg. Default: as its scatter asks for, at least 1e-4 "
-            "alpha."
-        ),
-    ] = None
+    trajectory: list[Path] | None = _external(
+        None,
+        "CSV of time and: tilt and azimuth, or qw, qx, qy, qz, or x, y, z of the mass centre; from a shake "
+        "table or another code. What it does not hold is not compared; may be repeated.",
+    )
+    trajectory_angles: str | None = _external(None, "deg or rad, where its header does not say.")
+    trajectory_offset: float = _external(0.0, "Added to its times, in s, so that 0 is the start of the run.")
+    trajectory_noise_deg: float | None = _external(
+        None,
+        "Tilt below which it counts as standing, in deg. Default: as its scatter asks for, at least 1e-4 "
+        "alpha.",
+        above=0.0,
+        below=90.0,
+    )
 
     def read(self, cases: Sequence[rw.Case]) -> list[rw.External]:
         """Return the trajectories, each of which has been read once for the only case.
@@ -64,21 +59,14 @@ class Trajectories:
         ValueError
             If an option is out of range or alone, there are more cases, or a file cannot be read.
         """
-        angles, offset, noise_deg = (
-            self.trajectory_angles,
-            self.trajectory_offset,
-            self.trajectory_noise_deg,
-        )
+        angles, offset = self.trajectory_angles, self.trajectory_offset
+        noise_deg = self.trajectory_noise_deg
         if not self.trajectory:
             if angles is not None or offset or noise_deg is not None:
                 raise ValueError("--trajectory-angles, -offset and -noise-deg need a --trajectory")
             return []
         if len(cases) > 1:
             raise ValueError(f"--trajectory belongs to one case, got a suite of {len(cases)}")
-        if noise_deg is not None and not 0.0 < noise_deg < 90.0:
-            raise ValueError(f"--trajectory-noise-deg must be above 0 and below 90 [deg], got {noise_deg:g}")
-        if not math.isfinite(offset):
-            raise ValueError(f"--trajectory-offset must be finite [s], got {offset:g}")
         noise = None if noise_deg is None else math.radians(noise_deg)
         found = [
             rw.External(path=path, angle_unit=angles, time_offset=offset, noise=noise)
@@ -140,13 +128,12 @@ def compare(
             if setting:
                 runs = list(rr.with_settings(cases[0], runs, settings(setting)))
             rs.require_writable(out)
-            require_memory(cases, runs)
             for each in cases:
                 for run in runs:
                     rr.require_runnable(each, run)
             trajectories = external.read(cases)
         if suite is None:
-            print(*describe(cases[0]), *time_needed(cases, runs), sep="\n")
+            print(*describe(cases[0]), sep="\n")
         else:
             print(*describe_suite(suite, cases, runs), sep="\n")
         if engine == [options.ALL]:
@@ -207,25 +194,17 @@ def _say_what_is_left_out(supports: list[str]) -> None:
         complain(reason)
 
 
-RestTilt = Annotated[
-    float | None,
-    options.reduced("Rest threshold: tilt over alpha below which the base is closed; 0 leaves the rule out."),
-]
-
-
 @takes_options
 def simulate(
     context: typer.Context,
     problem: Problem,
+    model: ModelPlan,
     engine: Annotated[
         str | None, options.method(f"{options.ENGINES}. Default: none, the reduced model.")
     ] = None,
     support: options.Support = "recess",
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
-    plane: options.Plane = None,
-    restitution: options.Restitution = None,
-    rest_tilt: RestTilt = None,
     out: options.Out = Path("rockwobble-simulate"),
 ) -> None:
     """Run the reduced model, or one engine, on one problem.
@@ -245,18 +224,14 @@ def simulate(
 
         with user_input():
             case = problem.case()
-            if plane is not None and problem.release_azimuth_deg:
+            if model.plane is not None and problem.release_azimuth_deg:
                 raise ValueError("--plane is the azimuth of the lean, got --release-azimuth-deg beside it")
-            if plane is not None and case.initial is not None:  # it leans in the plane that holds it
-                case = replace(case, initial=replace(case.initial, rolling_angle=plane))
+            if model.plane is not None and case.initial is not None:  # it leans in the plane that holds it
+                case = replace(case, initial=replace(case.initial, rolling_angle=model.plane))
             rs.require_writable(out)
-            model = {"plane": plane, "restitution": restitution, "rest_tilt": rest_tilt}
             named = None if engine == options.NO_ENGINE else engine
-            run = _with_settings(case, rw.Run(named, support, time_step), setting, model)
-            require_memory([case], [run])
+            run = _with_settings(case, rw.Run(named, support, time_step), setting, dataclasses.asdict(model))
             rr.require_runnable(case, run)
-        for line in time_needed([case], [run]):
-            print(line, file=sys.stderr)
         with user_input(), shown_progress() as progress:
             found = single_run(
                 case, run, answer=restated(context, "advise", also=("support",)), progress=progress
@@ -320,7 +295,6 @@ def advise(
         with user_input():
             case = problem.case()
             run = _run(case, engine, plan.support, time_step)
-            require_memory([case], [rw.Run(None, "recess"), *([] if run is None else [run])])
             rs.require_writable(out)
         with shown_progress("stages") as progress:
             found = rw.advise(

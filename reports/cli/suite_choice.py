@@ -14,7 +14,6 @@ import rockwobble.compare.runs as rr
 
 from ..console import complain
 from ..pages.cases import group_of, motion_warnings
-from .estimate import time_needed
 from .problem import PROBLEM, refuse
 
 if TYPE_CHECKING:
@@ -78,7 +77,7 @@ def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list
 
 
 def describe_suite(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> Iterator[str]:
-    """Yield the lines that echo what will run, and how long it may take."""
+    """Yield the lines that echo what will run."""
     from rockwobble.compare.runs.choice import run_labels
 
     groups = Counter(group_of(case.name) for case in cases)
@@ -87,4 +86,3 @@ def describe_suite(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) 
     yield f"Cases: {', '.join(counted)}"
     yield f"Runs: {', '.join(run_labels(runs))}"
     yield from motion_warnings(case.motion for case in cases)
-    yield from time_needed(cases, runs, always=True)

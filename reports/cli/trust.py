@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import datetime
 import json
-import sys
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -15,6 +14,7 @@ import typer
 import rockwobble as rw
 import rockwobble.compare as rc
 import rockwobble.compare.storage as rs
+from rockwobble.compare.runs.plan import Plan, options_in
 
 from ..console import FAILED, complain, interruptible, shown_progress, user_input
 from . import options
@@ -25,39 +25,31 @@ if TYPE_CHECKING:
 
     from rockwobble.compare.check import Checks
 
-_subject = options.panel("Subject (default: the reduced models, and the engines that are installed)")
-_output = options.panel("Output for programs")
+_subject = options_in("Subject (default: the reduced models, and the engines that are installed)")
+_output = options_in("Output for programs")
 Subject = dict[str, Any]  # arguments of `rockwobble.check`
 _STEP = "Time step of the engine, in s. Default: its own choice."
 
 
 @dataclass(frozen=True, kw_only=True)
-class SubjectOptions:
+class SubjectOptions(Plan):
     """The options that name what is checked."""
 
-    engine: Annotated[str | None, _subject("Check one engine, the protocol of an engine included.")] = None
-    time_step: Annotated[float | None, _subject(_STEP)] = None
-    model: Annotated[
-        str | None,
-        _subject(
-            "Check a model: a function of a rockwobble.Case and a support that returns time, tilt, azimuth.",
-            metavar="MODULE:FUNCTION",
-        ),
-    ] = None
-    trajectory: Annotated[
-        Path | None,
-        _subject("Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite."),
-    ] = None
-    suite: Annotated[
-        str | None,
-        _subject("Compare the engine runs of a suite with the models: a TOML file, or one that ships."),
-    ] = None
-    support: Annotated[
-        str | None, _subject("What model or trajectory is of: recess or flat. Default: recess.")
-    ] = None
-    tolerance: Annotated[
-        float | None, _subject("How exact model or trajectory claims to be. Default: 0.001.")
-    ] = None
+    engine: str | None = _subject(None, "Check one engine, the protocol of an engine included.")
+    time_step: float | None = _subject(None, _STEP)
+    model: str | None = _subject(
+        None,
+        "Check a model, MODULE:FUNCTION: a function of a rockwobble.Case and a support that returns time, "
+        "tilt, azimuth.",
+    )
+    trajectory: Path | None = _subject(
+        None, "Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite."
+    )
+    suite: str | None = _subject(
+        None, "Compare the engine runs of a suite with the models: a TOML file, or one that ships."
+    )
+    support: str | None = _subject(None, "What model or trajectory is of: recess or flat. Default: recess.")
+    tolerance: float | None = _subject(None, "How exact model or trajectory claims to be. Default: 0.001.")
     workers: options.Workers = None
 
     def subject(self) -> Subject:
@@ -102,14 +94,12 @@ class SubjectOptions:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OutputOptions:
+class OutputOptions(Plan):
     """The options that name files for programs."""
 
-    json: Annotated[Path | None, _output("Write all results as JSON.")] = None
-    junit: Annotated[Path | None, _output("Write a JUnit report (XML).")] = None
-    markdown: Annotated[Path | None, _output("Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.")] = (
-        None
-    )
+    json: Path | None = _output(None, "Write all results as JSON.")
+    junit: Path | None = _output(None, "Write a JUnit report (XML).")
+    markdown: Path | None = _output(None, "Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.")
 
     def require_writable(self) -> None:
         """Refuse, by a ValueError, a file that cannot be written."""
@@ -161,7 +151,7 @@ def check(
     ] = False,
     reason: Annotated[
         str | None,
-        typer.Option(help="Why the baselines change; kept in their file. Without it you are asked."),
+        typer.Option(help="Why the baselines change; kept in their file."),
     ] = None,
 ) -> None:
     """Check by physics that reduced models and engines are right, and still do what they did.
@@ -221,7 +211,7 @@ _SHOWN = 20
 
 
 def update(reason: str | None) -> None:
-    """Measure, print the changes, ask for a reason, and write the file.
+    """Measure, print the changes, and write the file.
 
     Raises
     ------
@@ -236,12 +226,9 @@ def update(reason: str | None) -> None:
         new = agreement.baseline_numbers(baseline_subjects())
     old = agreement.read_baseline()
     changed = agreement.baseline_changes(old, new)
-    _show(changed)
+    print(*_shown(changed), sep="\n")
     if not changed:
-        print("Nothing would change.")
         return
-    if reason is None and sys.stdin.isatty():
-        reason = input("Reason (empty: leave everything as it is): ")
     if not (reason or "").strip():
         raise ValueError("nothing was changed: a new baseline needs a --reason, got none")
     date = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
@@ -251,23 +238,15 @@ def update(reason: str | None) -> None:
     print(f"Written: {agreement.baseline_folder() / agreement.BASELINES}")
 
 
-def _show(changed: Sequence[tuple[str, str, float | None, float | None]]) -> None:
-    """Print the changes, the largest first, and what is new in one line."""
+def _shown(changed: Sequence[tuple[str, str, float | None, float | None]]) -> list[str]:
+    """Return the largest changes, and how many values are new or gone, a line each."""
     known = [
-        (group, what, before, after)
+        (abs(after - before), f"{group}, {what}: {before:.12g} -> {after:.12g} ({after - before:+.1e})")
         for group, what, before, after in changed
         if before is not None and after is not None
     ]
-    known.sort(key=lambda each: -abs(each[3] - each[2]))
-    for group, what, before, after in known[:_SHOWN]:
-        print(f"{group}, {what}: {before:.12g} -> {after:.12g} ({after - before:+.1e})")
-    if len(known) > _SHOWN:
-        print(f"... and {len(known) - _SHOWN} more values, which change by less")
-    for group in dict.fromkeys(each[0] for each in changed):
-        fresh = sum(each[2] is None for each in changed if each[0] == group)
-        gone = sum(each[3] is None for each in changed if each[0] == group)
-        if fresh or gone:
-            print(f"{group}: {fresh} new values, {gone} that are no longer there")
+    lines = [line for _, line in sorted(known, reverse=True)[:_SHOWN]]
+    return [*lines, f"{len(changed)} values change, of which {len(changed) - len(known)} are new or gone"]
 
 
 def certify(

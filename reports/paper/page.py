@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockwobble.compare.runs.progress import ProgressCallback, Stages
+from rockwobble.compare.runs.progress import ProgressCallback, stages
 from rockwobble.compare.storage.manifest import Number
 from rockwobble.compare.storage.provenance import code_digests, fingerprint, package_versions
 from rockwobble.compare.storage.results import Results
@@ -58,7 +58,7 @@ class Paper(Results, kind=KIND):
 
 def compute(grid: int, progress: ProgressCallback | None = None) -> Paper:
     """Run figures 3 to 6, the last on `grid` sizes and as many intensities."""
-    stage = Stages(progress, [1.0, 20.0, 40.0, 0.005 * grid * grid]).stage
+    stage = stages(progress, [1.0, 20.0, 40.0, 0.005 * grid * grid])
     with stage("figure 3"):
         curves = free.periods()
     with stage("figure 4"):

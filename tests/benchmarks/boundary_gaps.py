@@ -19,7 +19,7 @@ import numpy as np
 
 from rockwobble import reduced
 from rockwobble.compare.metrics.pair import overturned
-from rockwobble.compare.runs.progress import Stages
+from rockwobble.compare.runs.progress import stages
 from rockwobble.compare.studies.plans import PROBES, STEP
 from rockwobble.compare.studies.spectrum.maps import RTOL, intensity_unit, uplift_factor
 from rockwobble.compare.studies.spectrum.search import (
@@ -105,12 +105,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--probes", type=int, default=PROBES, help="below each boundary (%(default)s)")
     given = parser.parse_args(arguments)
     random, rows = np.random.default_rng(given.seed), []
-    stages = Stages(tell, [1.0] * given.scans)
+    stage = stages(tell, [1.0] * given.scans)
     for place in range(given.scans):
         size, tan_alpha = (
             math.exp(random.uniform(math.log(ends[0]), math.log(ends[1]))) for ends in (SIZES, SLENDERNESS)
         )
-        with stages.stage(f"R = {size:.3g} m, tan alpha = {tan_alpha:.3g}"):
+        with stage(f"R = {size:.3g} m, tan alpha = {tan_alpha:.3g}"):
             support = ("recess", "flat")[place % 2]
             rows.append(scan(size, tan_alpha, support, given.probes, given.seed + place))
     table = pd.DataFrame(rows)

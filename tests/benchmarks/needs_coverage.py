@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.compare.runs.progress import Stages
+from rockwobble.compare.runs.progress import stages
 from rockwobble.compare.studies.validity.limits import needs
 from rockwobble.compare.studies.validity.plan import AMPLE, GRAVITY, motion_named, record_names
 from rockwobble.compare.studies.validity.study import Validity
@@ -41,10 +41,10 @@ def coverage(
     The columns more: standing, friction_covered, moment_covered.
     """
     random, counts = np.random.default_rng(seed), []
-    stages = Stages(tell, [1.0] * len(stated))
+    stage = stages(tell, [1.0] * len(stated))
     for row in stated.to_dict("records"):
         found = []
-        with stages.stage(f"tan alpha {row['tan_alpha']:g}, {row['intensity']:g} g tan alpha"):
+        with stage(f"tan alpha {row['tan_alpha']:g}, {row['intensity']:g} g tan alpha"):
             for size in np.exp(random.uniform(math.log(sizes[0]), math.log(sizes[1]), draws)):
                 cylinder = Cylinder(semidiagonal=float(size), tan_alpha=row["tan_alpha"])
                 motion = motions[int(random.integers(len(motions)))]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rockwobble.compare.runs.progress import Stages
+from rockwobble.compare.runs.progress import stages
 from rockwobble.compare.studies.scene_cost import ROUNDS, STEPS, scene_costs
 
 from .console import options_of
@@ -74,7 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             given.engine,
             rounds=given.rounds,
             steps=given.steps,
-            stage=Stages(lambda at: print(at.state, at.label, file=sys.stderr), [1.0] * given.rounds).stage,
+            stage=stages(lambda at: print(at.state, at.label, file=sys.stderr), [1.0] * given.rounds),
         )
     except ValueError as error:
         parser.error(str(error))

@@ -451,7 +451,7 @@ def test_bad_numbers_are_refused():
 
 
 def test_advice_shows_itself(advice):
-    shows_itself(advice, "recess model", "grade ")
+    shows_itself(advice, "outcome as given ", "grade ")
 
 
 def test_a_prediction_of_an_engine_is_the_same_after_a_second_of_rest() -> None:

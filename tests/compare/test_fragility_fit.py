@@ -25,7 +25,6 @@ from rockwobble.compare.studies.fragility.fit import (
     Sample,
     bands,
     expanded_shares,
-    fit_curve,
     fit_curves,
     goodness,
     interval,
@@ -63,30 +62,9 @@ def test_a_hundred_random_sets_as_statsmodels_fits_them():
         assert found.dispersion[0] == pytest.approx(float(row["dispersion"]), abs=PRINTED)
 
 
-def test_the_curve_of_the_runs_and_those_of_the_resamples_are_one():
-    random = np.random.default_rng(7)
-    fitted = 0
-    for _ in range(300):
-        # as few levels and runs as occur, and levels without any run
-        x = np.log(np.sort(random.uniform(0.5, 12.0, random.integers(2, 12))))
-        n = random.integers(0, random.choice([4, 23]), len(x))
-        share = norm.cdf((x - x.mean() - random.normal(0.0, 0.5)) / random.uniform(0.02, 1.2))
-        k = random.binomial(n, share).astype(float)
-        if not n.any():
-            continue
-        one, many = (fit(x, n[None].astype(float), k[None]) for fit in (fit_curve, fit_curves))
-        assert one.kinds[0] == many.kinds[0]
-        if KINDS[one.kinds[0]] == FITTED:
-            fitted += 1
-            assert one.centre[0] == pytest.approx(many.centre[0], rel=1e-9, abs=1e-9 * many.dispersion[0])
-            assert one.dispersion[0] == pytest.approx(many.dispersion[0], rel=1e-9)
-    assert fitted > 150
-
-
 def test_a_share_that_is_the_same_at_every_level_has_no_curve():
-    for fit in (fit_curve, fit_curves):
-        found = fit(X[:2], np.array([[4.0, 12.0]]), np.array([[2.0, 6.0]]))
-        assert KINDS[found.kinds[0]] == FALLING
+    found = fit_curves(X[:2], np.array([[4.0, 12.0]]), np.array([[2.0, 6.0]]))
+    assert KINDS[found.kinds[0]] == FALLING
 
 
 def test_a_hundred_random_sets_are_roots_of_the_score():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rockwobble import multibody
-from rockwobble.compare.runs.progress import Progress, Stages
+from rockwobble.compare.runs.progress import Progress, stages
 from rockwobble.compare.studies.scene_cost import scene_costs
 
 ENGINES = multibody.available_engines()
@@ -14,7 +14,7 @@ ENGINES = multibody.available_engines()
 @pytest.mark.parametrize("engine", ENGINES)
 def test_every_scene_is_counted(engine: str) -> None:
     events: list[Progress] = []
-    table = scene_costs([engine], rounds=2, steps=20, stage=Stages(events.append, [1.0, 1.0]).stage)
+    table = scene_costs([engine], rounds=2, steps=20, stage=stages(events.append, [1.0, 1.0]))
     assert [each.label for each in events[::2]] == ["scenes, round 1 of 2", "scenes, round 2 of 2"]
     assert set(table["engine"]) == {engine}
     assert (table["degrees_of_freedom"] == 6).all()

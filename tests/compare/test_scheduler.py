@@ -9,6 +9,8 @@ import sys
 import tempfile
 import textwrap
 import time
+from concurrent.futures import Future
+from contextlib import nullcontext
 from pathlib import Path
 
 import pandas as pd
@@ -16,7 +18,7 @@ import pytest
 import scheduled
 from scheduled import die_once, killed, multiples, never_the_same, refuse, signalled
 
-from rockwobble.compare.runs import dask_backend
+from rockwobble.compare.runs import dask_backend, scheduler
 from rockwobble.compare.runs.cache import CACHE, open_table_cache, unfinished
 from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.progress import Lost, Progress
@@ -119,7 +121,7 @@ def test_what_was_finished_before_an_interruption_is_kept_and_counted(tmp_path):
     with pytest.raises(KeyboardInterrupt), table_cache(tmp_path) as cache:
         run_tasks(multiples, [1, 2, 3, 4], workers=1, cache=cache, progress=interrupt)
     (going,) = unfinished(tmp_path)
-    assert (going.kind, going.done, going.total) == ("study", 2, 4)
+    assert going == {"kind": "study", "done": 2, "total": 4}
     RAN.clear()
     with table_cache(tmp_path) as cache:
         run_tasks(counted, [1, 2, 3, 4], workers=1, cache=cache)
@@ -278,6 +280,15 @@ def test_workers_follow_the_processors_of_this_process(monkeypatch, tmp_path):
     assert usable_cpus() == 1
 
 
-def test_a_lost_task_is_told_in_one_line():
-    assert dask_backend._first_line(ValueError("worker died\nat length")) == "worker died"
-    assert dask_backend._first_line(KeyError()) == "KeyError"
+@pytest.mark.parametrize(
+    ("error", "words"), [(OSError("worker died\nat length"), "worker died"), (OSError(), "OSError")]
+)
+def test_a_lost_task_is_told_in_one_line(monkeypatch, error, words):
+    def lose(*_):
+        lost = Future()
+        lost.set_exception(error)
+        return lost
+
+    monkeypatch.setattr(scheduler, "on_cluster", lambda *_: nullcontext((lose, lambda: 1, (OSError,))))
+    (found,) = run_tasks(abs, [1], scheduler="tcp://here:1")
+    assert found.why == words

@@ -42,7 +42,6 @@ def made_up(space: list[str], x: list[str], y: list[str]) -> TiltMaps:
         motion=GroundMotion([[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]], 0.1),
         gravity=9.81,
         support="recess",
-        rest_tilt=0.0,
         semidiagonals=np.arange(1.0, len(space) + 1.0),
         intensities=levels,
         peak_tilt=peaks,
@@ -148,4 +147,4 @@ def test_a_single_size_has_a_band():
 
 def test_a_spectrum_shows_itself():
     maps = made_up(["ooXoOX"] * 3, ["......"] * 3, ["......"] * 3)
-    shows_itself(spectrum_of(maps), "6", "18")
+    shows_itself(spectrum_of(maps), "cells 18", "share that overturns in 3D ")

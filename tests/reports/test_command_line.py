@@ -90,7 +90,7 @@ BAD = {
     "nothing to resample": (["--resample"], "--resample belongs to a record"),
     "only z": (["--record-z", "good.csv"], "--record-z belongs to a record, give --record-x and --record-y"),
     "units of nothing": (["--units", "g"], "--units belongs to a record, give --record-x and --record-y"),
-    "no scale": (["--scale", "0"], "--scale must be positive and finite, got 0"),
+    "no scale": (["--scale", "0"], "--scale must be above 0, got 0"),
     "rate without release": (["--rolling-rate", "1"], "--rolling-rate needs a release"),
     "fallen release": (["--release-tilt-deg", "95"], "--release-tilt-deg must be at least 0 and below 90"),
     "negative duration": (["--duration", "-1"], "duration must be positive [s], got -1.0"),
@@ -138,7 +138,7 @@ def test_bad_input_gets_one_clear_line_before_anything_runs(folder, monkeypatch,
 
 def test_a_plane_in_degrees_is_refused(folder, capsys):
     assert call("simulate", "--plane", "90") == 2
-    assert "must be from -6.2832 to 6.2832 rad (90 deg is 1.5708), got 90" in capsys.readouterr().err
+    assert "--plane must be at least -6.28319 and at most 6.28319, got 90" in capsys.readouterr().err
 
 
 def test_time_step_of_a_reduced_model_is_refused(folder, capsys):
@@ -273,10 +273,9 @@ NOT_TOGETHER = {
     "a threshold twice": (["--rest-tilt", "0", "--set", "rest_tilt=1e-9"], "rest_tilt is given twice"),
     "a diameter alone": (["--diameter", "2"], "--diameter and --height go together"),
     "two sizes": (["--diameter", "2", "--height", "9", "--tan-alpha", "0.2"], "in place of --semidiagonal"),
-    "no diameter": (["--diameter", "0", "--height", "9"], "--diameter must be positive [m], got 0"),
+    "no diameter": (["--diameter", "0", "--height", "9"], "--diameter must be above 0, got 0"),
     "a mass centre without an outline": (["--mass-centre-height", "3"], "goes with --diameter and --height"),
     "a model that is gone": (["--model", "flat"], "No such option: --model"),
-    "more samples than memory": (["--duration", "1e9", "--scale", "0.1"], "give a shorter --duration"),
 }
 
 
@@ -351,7 +350,7 @@ def test_help_imports_nothing_heavy():
 
 
 def test_ctrl_c_stops_a_real_run_at_once_and_leaves_no_process(tmp_path):
-    # hours of free response, whose samples fit into a small memory: it would run for an hour
+    # hours of free response: it would run for an hour
     arguments = [
         "--release-tilt-deg",
         "5",

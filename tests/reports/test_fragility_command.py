@@ -198,7 +198,7 @@ def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsy
         (["--engine", "none", "--engine", "mujoco"], "'--engine': none stands alone, got none and mujoco"),
         (["--engine", "none", "--model", "none"], "a fragility needs at least one method, got none"),
         (["--levels", "0:2"], "'--levels': must be a number, a list"),
-        (["--synthetic", "1"], "'--synthetic': must be at least 2, got 1"),
+        (["--synthetic", "1"], "--synthetic must be a whole number, at least 2, got 1"),
         (["--workers", "0"], "'--workers': must be at least 1, got 0"),
         (["--restitution", "soft"], 'must be a number or "momentum"'),
     ],

@@ -197,7 +197,6 @@ def spectrum(space: list[float], x: list[float]) -> TiltMaps:
         motion=el_centro_1940(),
         gravity=9.81,
         support="recess",
-        rest_tilt=0.0,
         semidiagonals=np.linspace(1.0, 30.0, len(space)),
         intensities=intensities,
         peak_tilt=tilt,

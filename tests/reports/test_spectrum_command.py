@@ -93,11 +93,11 @@ def test_any_record_will_do(tmp_path: Path, monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--semidiagonal", "1:2:9999"], "semidiagonals must be at most 2000 numbers, got 9999"),
-        (["--intensity", "3,2"], "intensities must be positive, finite and increasing, got [3.0, 2.0]"),
+        (["--semidiagonal", "1:2:9999"], "--semidiagonal must be at most 2000 numbers, got 9999"),
+        (["--intensity", "3,2"], "--intensity must be positive, finite and increasing, got [3.0, 2.0]"),
         (["--support", "ring"], "support must be one of recess, flat, got 'ring'"),
-        (["--search-step", "inf"], "search_step must be at least 1e-05, got inf"),
-        (["--slab-mass-ratio", "-1"], "slab_mass_ratio must be at least 0, got -1"),
+        (["--search-step", "inf"], "--search-step must be at least 1e-05, got inf"),
+        (["--slab-mass-ratio", "-1"], "--slab-mass-ratio must be at least 0, got -1"),
         (["--tan-alpha", "0"], "tan_alpha must be positive"),
         (["--record-x", "x.csv"], "both horizontal components are needed"),
         (["--out", "taken"], "the output folder must be a folder"),

@@ -84,7 +84,7 @@ BAD = {
     ),
     "noise below zero": (
         ["--trajectory", "none.csv", "--trajectory-noise-deg", "-1"],
-        "--trajectory-noise-deg must be above 0 and below 90 [deg], got -1",
+        "--trajectory-noise-deg must be above 0 and below 90, got -1",
     ),
     "an option of a trajectory alone": (["--trajectory-offset", "1"], "need a --trajectory"),
     "a support of no engine": (

@@ -40,10 +40,6 @@ def call(*arguments: str) -> int:
         (["--chunk", "0"], "'--chunk': must be at least 1, got 0"),
         (["--gravity", "-1"], "gravity must be above 0, got -1"),
         (["--record-z", "up.at2"], "--record-z belongs to a record"),
-        (
-            ["--semidiagonal", "1:9:99999", "--scale", "1:9:99999"],
-            "the results take some 3,000 GB of memory, more than the",
-        ),
     ],
 )
 def test_bad_input_of_a_sweep_gets_one_clear_line(tmp_path, capsys, arguments, words):

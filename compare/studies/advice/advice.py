@@ -20,8 +20,8 @@ from ...metrics.pair import overturned, tolerance_of
 from ...metrics.statistics import Contrast, contrast
 from ...runs.choice import require_runnable
 from ...runs.execution import SAMPLE_STEP, Job, job_fingerprint, require_case, simulate_run
-from ...runs.progress import ProgressCallback, Stages
-from ...storage.manifest import Number, Stored
+from ...runs.progress import ProgressCallback, stages
+from ...storage.manifest import Number
 from ...storage.provenance import fingerprint
 from ...storage.results import Results
 from ..plans import AdvicePlan
@@ -107,13 +107,6 @@ class Advice(Results, kind=KIND):
     ('statistics', 'caution')
     """
 
-    @classmethod
-    def of_stored(cls, stored: Stored) -> Advice:
-        """Return the advice of what is stored: what is concluded from its runs is computed anew."""
-        names = ("members", "band", "scales", "lowest", "planar", "trace", "engine")
-        found = advice_of({name: stored.table(name) for name in names}, stored.manifest.about)
-        return dataclasses.replace(found, manifest=stored.manifest)
-
     def headline(self) -> dict[str, Number]:
         """Return outcome, grade, the shares that overturn, and the largest tilt as given."""
         return {
@@ -123,15 +116,6 @@ class Advice(Results, kind=KIND):
             **{f"overturning, {row['group']}": row["chance"] for row in self.groups.to_dict("records")},
             "largest tilt as given [deg]": math.degrees(self.peak * self.cylinder.alpha),
             "displacement of the top as given [m]": self.top(self.peak),
-        }
-
-    def _said(self) -> dict[str, str]:
-        return {
-            "case": self.facts["case"],
-            "run": self.facts["model"],
-            "outcome": self.response["outcome"],
-            "largest tilt": "overturns" if self.overturned else f"{self.peak:.3g} alpha",
-            "grade": overall(self.grades.values()),
         }
 
     @property
@@ -299,7 +283,7 @@ def advise(
     model, other = Run(None, support_named(plan.support).compared_with[-1]), Run(None, "flat")
     if model == other:
         other = Run(None, "recess")
-    stage = Stages(progress, [1.0] * (4 if run is None else 5)).stage
+    stage = stages(progress, [1.0] * (4 if run is None else 5))
     inputs = fingerprint(
         [*(job_fingerprint(Job(case=case, run=each)) for each in (model, run) if each), plan]
     )

@@ -1,11 +1,10 @@
 """Lognormal fragility curves by maximum likelihood, and their intervals by resampling the ground motions.
 
 P(demand > limit | intensity) = Phi((ln intensity - ln median)/dispersion): a probit regression on the
-logarithm of the intensity (J. W. Baker, Earthq. Spectra 31, 579-599, 2015). The curve of the runs as they
-are is the library's. For its band a library that takes milliseconds for each resample would take minutes:
-the log-likelihood is concave, so Newton's method with halved steps, on all of them in step, finds the same
-maxima. There is none where the counts are separated: where no run exceeds the limit, where all do, or where
-all do above an intensity and none below.
+logarithm of the intensity (J. W. Baker, Earthq. Spectra 31, 579-599, 2015). A library that takes milliseconds
+for each resample would take minutes for a band: the log-likelihood is concave, so Newton's method with halved
+steps, on all of them in step, finds the maxima. There is none where the counts are separated: where no run
+exceeds the limit, where all do, or where all do above an intensity and none below.
 
 In a resample every level of a motion goes with it, by every method. A bootstrap percentile interval of n
 motions is too short by the factor sqrt((n - 1)/n) and by the normal distribution in the place of Student's:
@@ -16,8 +15,6 @@ takes the coverage from 93 to 95 %.
 from __future__ import annotations
 
 import math
-import warnings
-from collections.abc import Callable
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -73,11 +70,6 @@ class Curves:
         return np.asarray(ndtr(z), dtype=np.float64)
 
 
-def fit_curve(x: Array, n: Array, k: Array) -> Curves:
-    """Fit the curve of one set of counts, of shapes (K,) and (1, K), by statsmodels."""
-    return _fit(x, n, k, _statsmodels)
-
-
 def fit_curves(x: Array, n: Array, k: Array) -> Curves:
     """Fit a curve to each of B sets of counts at the same intensities, by Newton's method on all at once.
 
@@ -88,10 +80,6 @@ def fit_curves(x: Array, n: Array, k: Array) -> Curves:
     n, k : ndarray, shape (B, K)
         Runs, and those that exceed the limit.
     """
-    return _fit(x, n, k, _newton)
-
-
-def _fit(x: Array, n: Array, k: Array, solve: Callable[[Array, Array, Array], tuple[Array, Array]]) -> Curves:
     order = np.argsort(x, kind="stable")
     x, n, k = x[order], n[:, order], k[:, order]
     # the highest intensity with a run that does not exceed the limit, the lowest with one that does, and back
@@ -111,7 +99,7 @@ def _fit(x: Array, n: Array, k: Array, solve: Callable[[Array, Array, Array], tu
     free = np.flatnonzero(kinds == KINDS.index(FITTED))
     if len(free):
         shift, spread = float(x.mean()), float(x.std())
-        a, b = solve((x - shift) / spread, n[free], k[free])
+        a, b = _newton((x - shift) / spread, n[free], k[free])
         rising = b > _LEVEL
         with np.errstate(divide="ignore", invalid="ignore"):
             centre[free] = np.where(rising, shift - spread * a / b, math.nan)
@@ -171,23 +159,6 @@ def goodness(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> 
     p = float(chi2.sf(deviance, degrees)) if degrees else math.nan
     largest = float(np.abs(k / n - expected / n).max())
     return {"deviance": deviance, "degrees": degrees, "p": p, "largest": largest}
-
-
-def _statsmodels(u: Array, n: Array, k: Array) -> tuple[Array, Array]:
-    """Return intercept and slope (1,) on the scale of u (K,)."""
-    from statsmodels.genmod.families import Binomial
-    from statsmodels.genmod.families.links import Probit
-    from statsmodels.genmod.generalized_linear_model import GLM
-    from statsmodels.tools.sm_exceptions import PerfectSeparationWarning
-
-    there = n[0] > 0.0
-    counts, design = np.stack([k[0], n[0] - k[0]], axis=1), np.stack([np.ones_like(u), u], axis=1)
-    model = GLM(counts[there], design[there], family=Binomial(link=Probit()))
-    # counts that are separated do not come here, and of a curve through two levels nothing is left for errors
-    with np.errstate(divide="ignore", invalid="ignore"), warnings.catch_warnings():
-        warnings.simplefilter("ignore", PerfectSeparationWarning)
-        a, b = model.fit(method="newton", tol=_TOLERANCE, maxiter=_ITERATIONS).params
-    return np.array([a]), np.array([b])
 
 
 def _newton(u: Array, n: Array, k: Array) -> tuple[Array, Array]:
@@ -290,10 +261,7 @@ class Sample:
 
     def curves(self, weights: Array | None = None) -> Curves:
         """Return the curve of each set of weights (B, R); without weights that of the motions as they are."""
-        if weights is None:
-            return fit_curve(*self.counts())
-        if weights.shape[0] * self.y.size <= _MOST_NUMBERS:
-            return fit_curves(*self.counts(weights))
+        weights = np.ones((1, len(self.y))) if weights is None else weights
         size = max(1, _MOST_NUMBERS // self.y.size)
         parts = [fit_curves(*self.counts(weights[i : i + size])) for i in range(0, len(weights), size)]
         names = [each.name for each in fields(Curves)]

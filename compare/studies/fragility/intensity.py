@@ -81,18 +81,13 @@ def intensity(
     >>> round(intensity("peak_acceleration", el_centro_1940(), pier), 3)
     1.432
     """
-    require_measure(name)
+    require_one_of("an intensity", name, MEASURES)
     require_positive("gravity", gravity, "m/s^2")
     require_positive("period", period, "s")
     found = _value(name, motion, cylinder, gravity, period)
     if not found > 0.0:
         raise ValueError(f"the motion {motion.name!r} has no {name}: a component is zero throughout")
     return found
-
-
-def require_measure(name: str) -> None:
-    """Refuse a measure that is not one of `MEASURES`."""
-    require_one_of("an intensity", name, MEASURES)
 
 
 def velocity(motion: GroundMotion, *, centred: bool = False) -> Array:

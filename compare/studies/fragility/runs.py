@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -11,13 +12,13 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace
+from rockwobble.models import Case, Cylinder, GroundMotion, Run
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.multibody.scene import default_step
 
 from ...metrics.pair import outcome_of, outcome_of_peak
 from ...runs.choice import require_runnable, run_labels
-from ...runs.execution import all_makers, engine_time, makers_of, run_tables, simulate_run
+from ...runs.execution import all_makers, case_inputs, engine_time, makers_of, run_tables, simulate_run
 from ...runs.progress import ProgressCallback
 from ...storage.provenance import fingerprint
 from ..plans import FragilityPlan
@@ -46,14 +47,11 @@ class Method:
     label : str
         Different for each method.
     run : Run or None
-        None for what is made of others.
-    of : tuple of str
-        Labels of the methods of which it is the worse, motion by motion.
+        None for the worse of both planes.
     """
 
     label: str
     run: Run | None
-    of: tuple[str, ...] = ()
 
     @property
     def support(self) -> str:
@@ -80,33 +78,30 @@ def methods_of(given: Iterable[str | Run], *, restitution: float | str = 1.0) ->
     """
     chosen: list[str | Run] = []
     for method in given:
-        if isinstance(method, str):
-            require_one_of("a reduced model", method, MODELS)
-        chosen += [plane for plane in _PLANES if method == WORSE_PLANE and plane not in chosen]
-        if method not in chosen or not isinstance(method, str):
+        if isinstance(method, Run):
             chosen.append(method)
+            continue
+        require_one_of("a reduced model", method, MODELS)
+        needed = (*_PLANES, method) if method == WORSE_PLANE else (method,)
+        chosen += [each for each in needed if each not in chosen]
     if not chosen:
         raise ValueError("a fragility needs at least one method, got none")
-    labels = iter(run_labels([method for method in chosen if isinstance(method, Run)]))
-    found = [_method(method, restitution, labels) for method in chosen]
     if restitution != 1.0 and not any(method in _PLANES for method in chosen):
         raise ValueError(f"restitution is of planar models, got {restitution!r} without one")
-    names = [method.label for method in found]
-    for name in names:
-        if names.count(name) > 1:
+    loss = {} if restitution == 1.0 else {"restitution": restitution}
+    planar = {name: Run(None, "recess", None, plane=azimuth, **loss) for name, azimuth in _PLANES.items()}
+    models = {"recess": Run(None, "recess"), "flat": Run(None, "flat"), **planar}
+    labels = iter(run_labels([method for method in chosen if isinstance(method, Run)]))
+    found = tuple(
+        Method(label=next(labels), run=method)
+        if isinstance(method, Run)
+        else Method(label=MODELS[method], run=models.get(method))
+        for method in chosen
+    )
+    for name, count in Counter(method.label for method in found).items():
+        if count > 1:
             raise ValueError(f"the methods must differ, got {name!r} twice")
-    return tuple(found)
-
-
-def _method(given: str | Run, restitution: float | str, labels: Iterable[str]) -> Method:
-    if isinstance(given, Run):
-        return Method(label=next(iter(labels)), run=given)
-    if given == WORSE_PLANE:
-        return Method(label=MODELS[given], run=None, of=tuple(MODELS[plane] for plane in _PLANES))
-    if given in _PLANES:
-        loss = {} if restitution == 1.0 else {"restitution": restitution}
-        return Method(label=MODELS[given], run=Run(None, "recess", None, plane=_PLANES[given], **loss))
-    return Method(label=MODELS[given], run=Run(None, given))
+    return found
 
 
 def own_model(method: Method, methods: Sequence[Method]) -> str:
@@ -116,14 +111,8 @@ def own_model(method: Method, methods: Sequence[Method]) -> str:
     """
     if method.run is None or method.run.engine is None:
         return ""
-    return next(
-        (
-            other.label
-            for other in methods
-            if other.run is not None and other.run.engine is None and other.support == method.support
-        ),
-        "",
-    )
+    reduced = [other for other in methods if other.run is not None and other.run.engine is None]
+    return next((other.label for other in reduced if other.support == method.support), "")
 
 
 # Computing time of a reduced run for each second of its motion, forces included or not, on one core [s]: a
@@ -136,10 +125,11 @@ _RTOL = 1e-7
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Shaking:
-    """A ground motion and the factors on it."""
+    """A cylinder under a ground motion as it is, the factors on the motion, and the place of the first."""
 
-    motion: GroundMotion
+    case: Case
     scales: tuple[float, ...]
+    step: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -148,25 +138,28 @@ class Task:
 
     Attributes
     ----------
-    cylinder : Cylinder
     name, label : str
         Of the cylinder and of the method.
     run : Run
     shakings : tuple of Shaking
-    gravity, friction, rolling_resistance : float
     contact : bool
         Whether it is asked if a reduced model keeps its contact: that takes its forces.
     """
 
-    cylinder: Cylinder
     name: str
     label: str
     run: Run
     shakings: tuple[Shaking, ...]
-    gravity: float
-    friction: float
-    rolling_resistance: float
     contact: bool
+
+    @property
+    def points(self) -> list[tuple[str, int]]:
+        """Name of the motion and place of the level of each run."""
+        return [
+            (shaking.case.name, shaking.step + place)
+            for shaking in self.shakings
+            for place in range(len(shaking.scales))
+        ]
 
     @property
     def title(self) -> str:
@@ -174,41 +167,30 @@ class Task:
         more = f" and {len(self.shakings) - 1} more" if len(self.shakings) > 1 else ""
         first = self.shakings[0]
         scale = f" × {first.scales[0]:.3g}" if len(first.scales) == 1 else ""
-        return f"{self.name}, {self.label}, {first.motion.name}{scale}{more}"
+        return f"{self.name}, {self.label}, {first.case.name}{scale}{more}"
 
     @property
     def cost(self) -> float:
         """Rough computing time [s]."""
-        if self.run.engine is not None:
-            return sum(
-                engine_time(Case(self.cylinder, each.motion, gravity=self.gravity), self.run)
-                * len(each.scales)
-                for each in self.shakings
-            )
-        length = sum(shaking.motion.duration * len(shaking.scales) for shaking in self.shakings)
-        return length * (_KERNEL_TIME if self._of_peaks else _SOLUTION_TIME)
+
+        def time(case: Case) -> float:
+            if self.run.engine is not None:
+                return engine_time(case, self.run)
+            return case.length * (_KERNEL_TIME if self._of_peaks else _SOLUTION_TIME)
+
+        return sum(time(shaking.case) * len(shaking.scales) for shaking in self.shakings)
 
     def key(self) -> str:
         """Return the hash of all that the results depend on; names are no part of it."""
         own = {"contact": self.contact, "rtol": _RTOL} if self.run.engine is None else {}
-        if self.rolling_resistance:
-            own["rolling_resistance"] = self.rolling_resistance
-        return fingerprint(
-            {
-                "cylinder": self.cylinder,
-                "shakings": [(s.motion.acceleration, s.motion.time_step, s.scales) for s in self.shakings],
-                "run": self.run,
-                "gravity": self.gravity,
-                "friction": self.friction,
-                "made with": makers_of(self.run),
-                **own,
-            }
-        )
+        shakings = [case_inputs(shaking.case) | {"scales": shaking.scales} for shaking in self.shakings]
+        made_with = makers_of(self.run)
+        return fingerprint({"shakings": shakings, "run": self.run, "made with": made_with, **own})
 
     @property
     def _of_peaks(self) -> bool:
         """Whether the batch kernel does, which knows homogeneous cylinders, a slab, and peaks alone."""
-        own = self.cylinder
+        own = self.shakings[0].case.cylinder
         homogeneous = (own.height, own.transverse_inertia, own.axial_inertia) == (None, None, None)
         return self.run.engine is None and homogeneous and not self.contact
 
@@ -216,55 +198,42 @@ class Task:
         """Return a row for each motion and factor, in their order."""
         if self._of_peaks:
             return [row for shaking in self.shakings for row in self._peaks(shaking)]
-        return [self._row(s.motion, scale) for s in self.shakings for scale in s.scales]
+        return [self._simulated(each.case, scale) for each in self.shakings for scale in each.scales]
 
     def _peaks(self, shaking: Shaking) -> list[Row]:
         from rockwobble import reduced
 
+        case, cylinder = shaking.case, shaking.case.cylinder
+        assert case.motion is not None
         peaks = reduced.peak_tilts(
-            [self.cylinder.semidiagonal],
-            self.cylinder.tan_alpha,
-            shaking.motion,
+            [cylinder.semidiagonal],
+            cylinder.tan_alpha,
+            case.motion,
             shaking.scales,
             workers=1,  # the processes share the cores already
-            gravity=self.gravity,
-            slab_mass_ratio=self.cylinder.slab_mass_ratio,
-            rolling_resistance=self.rolling_resistance,
+            gravity=case.gravity,
+            slab_mass_ratio=cylinder.slab_mass_ratio,
+            rolling_resistance=case.rolling_resistance,
             support=self.run.support,
             **{"rtol": _RTOL, **self.run.settings},
         )[0]
-        return [
-            {
-                "peak_tilt": float(peak) / self.cylinder.alpha,
-                "outcome": outcome_of_peak(float(peak)),
-                "contact_lost": math.nan,
-            }
-            for peak in peaks
-        ]
+        return [_row(peak / cylinder.alpha, outcome_of_peak(peak)) for peak in peaks.tolist()]
 
-    def _row(self, motion: GroundMotion, scale: float) -> Row:
-        case = Case(
-            self.cylinder,
-            motion.scaled(scale),
-            gravity=self.gravity,
-            friction=self.friction,
-            rolling_resistance=self.rolling_resistance,
-        )
+    def _simulated(self, case: Case, scale: float) -> Row:
+        assert case.motion is not None
         run = self.run
         if run.engine is None:
             run = Run(None, run.support, **{"rtol": _RTOL, **run.settings})
-        trace = simulate_run(case, run)
-        return {
-            "peak_tilt": trace.peak_tilt / self.cylinder.alpha,
-            "outcome": outcome_of(trace),
-            "contact_lost": self._lost(trace),
-        }
+        trace = simulate_run(replace(case, motion=case.motion.scaled(scale)), run)
+        lost = math.nan
+        if trace.outcome != "failed" and (self.contact or run.engine):
+            lost = float(any(fact.code in _LOST for fact in trace.diagnostics))
+        return _row(trace.peak_tilt / case.cylinder.alpha, outcome_of(trace), lost)
 
-    def _lost(self, trace: Trace) -> float:
-        """1 where contact was lost, 0 where it was not; NaN where nobody asked or the run failed."""
-        if trace.outcome == "failed" or not (self.contact or self.run.engine):
-            return math.nan
-        return float(any(fact.code in _LOST for fact in trace.diagnostics))
+
+def _row(peak_tilt: float, outcome: str, contact_lost: float = math.nan) -> Row:
+    """Row of a run; contact_lost is 1 or 0, NaN where nobody asked or the run failed."""
+    return {"peak_tilt": peak_tilt, "outcome": outcome, "contact_lost": contact_lost}
 
 
 def run_task(task: Task) -> pd.DataFrame:
@@ -319,34 +288,32 @@ class RunPlan:
                 f"step_factor is for engines at their default time step, got {asked.step_factor!r}"
             )
         for cylinder in self.cylinders.values():
-            for motion in self.motions:
-                self._intensity(motion, cylinder)
-            case = Case(
-                cylinder,
-                self.motions[0],
-                gravity=asked.gravity,
-                friction=asked.friction,
-                rolling_resistance=asked.rolling_resistance,
-            )
+            shakings = [self._shaking(cylinder, motion) for motion in self.motions]
             for method in self.methods:
                 if method.run is not None:
-                    require_runnable(case, self._stepped(method.run, cylinder))
-
-    def factors(self, cylinder: Cylinder, motion: GroundMotion) -> tuple[float, ...]:
-        """Return the factors on a motion, one for each level or those of the cloud."""
-        if self.options.levels is None:
-            return self.scales
-        own = self._intensity(motion, cylinder)
-        return tuple(float(level) / own for level in self.options.levels)
+                    require_runnable(shakings[0].case, self._stepped(method.run, cylinder))
 
     @property
     def scales(self) -> tuple[float, ...]:
         """Factors on the motions of a cloud."""
         return (1.0,) if self.options.scales is None else tuple(map(float, self.options.scales))
 
-    def _intensity(self, motion: GroundMotion, cylinder: Cylinder) -> float:
+    def factors(self, cylinder: Cylinder, motion: GroundMotion) -> tuple[float, ...]:
+        """Return the factors on a motion, one for each level or those of the cloud."""
         asked = self.options
-        return intensity(asked.measure, motion, cylinder, gravity=asked.gravity, period=asked.period)
+        own = intensity(asked.measure, motion, cylinder, gravity=asked.gravity, period=asked.period)
+        return self.scales if asked.levels is None else tuple(float(level) / own for level in asked.levels)
+
+    def _shaking(self, cylinder: Cylinder, motion: GroundMotion) -> Shaking:
+        case = Case(
+            cylinder,
+            motion,
+            gravity=self.options.gravity,
+            friction=self.options.friction,
+            rolling_resistance=self.options.rolling_resistance,
+            name=motion.name,
+        )
+        return Shaking(case=case, scales=self.factors(cylinder, motion))
 
     @cached_property
     def points(self) -> pd.DataFrame:
@@ -366,28 +333,23 @@ class RunPlan:
 
     def tasks(self) -> Iterator[Task]:
         """Yield the runs: engines singly, reduced models some motions together."""
+        contact = CONTACT_LOST in (self.options.limits or ())
         for name, cylinder in self.cylinders.items():
-            shakings = [Shaking(motion=m, scales=self.factors(cylinder, m)) for m in self.motions]
-            single = [Shaking(motion=s.motion, scales=(scale,)) for s in shakings for scale in s.scales]
+            shakings = [self._shaking(cylinder, motion) for motion in self.motions]
+            single = [
+                replace(shaking, scales=(scale,), step=step)
+                for shaking in shakings
+                for step, scale in enumerate(shaking.scales)
+            ]
             for method in self.methods:
                 if method.run is None:
                     continue
                 run = self._stepped(method.run, cylinder)
-                singles = [
-                    Task(
-                        cylinder=cylinder,
-                        name=name,
-                        label=method.label,
-                        run=run,
-                        shakings=(shaking,),
-                        gravity=self.options.gravity,
-                        friction=self.options.friction,
-                        rolling_resistance=self.options.rolling_resistance,
-                        contact=CONTACT_LOST in (self.options.limits or ()),
-                    )
+                tasks = [
+                    Task(name=name, label=method.label, run=run, shakings=(shaking,), contact=contact)
                     for shaking in (shakings if run.engine is None else single)
                 ]
-                yield from singles if run.engine else _together(singles)
+                yield from tasks if run.engine else _together(tasks)
 
     def _stepped(self, run: Run, cylinder: Cylinder) -> Run:
         if run.engine is None or run.time_step is not None or self.options.step_factor == 1.0:
@@ -466,7 +428,7 @@ def run_plan(
         key=Task.key,
         label=lambda task: task.title,
         folder=folder,
-        lost=_lost,
+        lost=lambda task: pd.DataFrame([_row(math.nan, "failed")] * len(task.points)),
         cost=lambda task: task.cost,
         tries=_TRIES,
         makers=partial(all_makers, tuple(method.run for method in plan.methods if method.run is not None)),
@@ -474,41 +436,30 @@ def run_plan(
         scheduler=scheduler,
         progress=progress,
     ) as found:
-        tables = [_labelled(task, each, plan) for task, each in zip(tasks, found, strict=True)]
+        tables = [_labelled(task, each) for task, each in zip(tasks, found, strict=True)]
     table = pd.concat(tables, ignore_index=True)
-    return pd.concat([table, *(worse(table, m) for m in plan.methods if m.of)], ignore_index=True)
+    worse = [worse_plane(table)] if any(method.run is None for method in plan.methods) else []
+    return pd.concat([table, *worse], ignore_index=True)
 
 
-def worse(runs: pd.DataFrame, method: Method) -> pd.DataFrame:
-    """Return the rows of a method that is the worse of others: the larger tilt, overturned where one is."""
-    parts = [runs[runs["method"] == label].set_index(KEYS) for label in method.of]
+def _labelled(task: Task, table: pd.DataFrame) -> pd.DataFrame:
+    motions, steps = zip(*task.points, strict=True)
+    whole = table.assign(cylinder=task.name, motion=motions, step=steps, method=task.label)
+    return whole[[*KEYS, "method", "peak_tilt", "outcome", "contact_lost"]]
+
+
+def worse_plane(runs: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of the worse plane: the larger tilt of both, overturned where one is."""
+    parts = [runs[runs["method"] == MODELS[name]].set_index(KEYS) for name in _PLANES]
     of = {name: pd.concat([part[name] for part in parts], axis=1) for name in parts[0]}
     ends = [(of["outcome"] == name).any(axis=1) for name in ("failed", "overturned")]
     return (
         parts[0]
         .assign(
-            method=method.label,
+            method=MODELS[WORSE_PLANE],
             peak_tilt=of["peak_tilt"].max(axis=1, skipna=False),  # NaN where one failed
             outcome=np.select(ends, ["failed", "overturned"], parts[0]["outcome"]),
             contact_lost=of["contact_lost"].max(axis=1, skipna=False),
         )
         .reset_index()
-    )
-
-
-def _labelled(task: Task, table: pd.DataFrame, plan: RunPlan) -> pd.DataFrame:
-    steps = {shaking.motion.name: plan.factors(task.cylinder, shaking.motion) for shaking in task.shakings}
-    places = [(s.motion.name, steps[s.motion.name].index(scale)) for s in task.shakings for scale in s.scales]
-    return table.assign(
-        cylinder=task.name,
-        motion=[name for name, _ in places],
-        step=[step for _, step in places],
-        method=task.label,
-    )[[*KEYS, "method", "peak_tilt", "outcome", "contact_lost"]]
-
-
-def _lost(task: Task) -> pd.DataFrame:
-    count = sum(len(shaking.scales) for shaking in task.shakings)
-    return pd.DataFrame(
-        {"peak_tilt": [np.nan] * count, "outcome": ["failed"] * count, "contact_lost": [np.nan] * count}
     )

@@ -300,7 +300,6 @@ def _described(method: Method, methods: Sequence[Method]) -> dict[str, object]:
         "engine": method.run.engine if method.run is not None else None,
         "own_model": own_model(method, methods),
         "run": None if method.run is None else fields_of(method.run),
-        "of": list(method.of),
     }
 
 

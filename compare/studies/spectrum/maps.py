@@ -21,7 +21,7 @@ from rockwobble.models import GroundMotion
 from rockwobble.models.number_checks import require_increasing
 
 from ...metrics.pair import overturned
-from ...runs.progress import ProgressCallback, Stages
+from ...runs.progress import ProgressCallback, stages
 from ..plans import SpectrumPlan
 from .search import lowest_on_grid, probe_below, run_searches, search_lowest
 
@@ -113,7 +113,6 @@ _FACTS = (
     "tan_alpha",
     "gravity",
     "support",
-    "rest_tilt",
     "searched_from",
     "search_step",
     "probes",
@@ -136,8 +135,6 @@ class TiltMaps:
         [m/s^2]
     support : str
         Of the model in three dimensions, "recess" or "flat".
-    rest_tilt : float
-        As in `reduced.simulate`.
     semidiagonals : ndarray, shape (n_R,)
         Sizes R [m].
     intensities : ndarray, shape (n_I,)
@@ -169,7 +166,6 @@ class TiltMaps:
     motion: GroundMotion
     gravity: float
     support: str
-    rest_tilt: float
     semidiagonals: Array
     intensities: Array
     peak_tilt: Mapping[str, Array]
@@ -330,8 +326,6 @@ def tilt_maps(
     tan_alpha: float,
     motion: GroundMotion,
     *,
-    rtol: float = RTOL,
-    rest_tilt: float = reduced.REST_TILT,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
     **options: Any,
@@ -343,8 +337,6 @@ def tilt_maps(
     tan_alpha : float
         Slenderness b/h [-].
     motion : GroundMotion
-    rtol, rest_tilt
-        As in `reduced.simulate`.
     workers : int, optional
         Number of threads. It does not influence the result.
     progress : callable, optional
@@ -387,15 +379,14 @@ def tilt_maps(
     gravity, probes = asked.gravity, asked.probes
     unit = intensity_unit(tan_alpha, motion, gravity)
     peaks, lowest, below, start = {}, {}, {}, {}
-    stages = Stages(progress, [1.0, 4.0] * len(SERIES))
+    stage = stages(progress, [1.0, 4.0] * len(SERIES))
     for index, name in enumerate(SERIES):
         start[name] = uplift_of_series(name, motion, tan_alpha, gravity) / unit
         run = partial(
             reduced.peak_tilts,
             tan_alpha=tan_alpha,
             motion=motion,
-            rtol=rtol,
-            rest_tilt=rest_tilt,
+            rtol=RTOL,
             gravity=gravity,
             slab_mass_ratio=asked.slab_mass_ratio,
             rolling_resistance=asked.rolling_resistance,
@@ -404,16 +395,16 @@ def tilt_maps(
         search = partial(
             search_lowest, levels, start=start[name], step=asked.search_step, alpha=math.atan(tan_alpha)
         )
-        with stages.stage(TITLES[name]):
+        with stage(TITLES[name]):
             peaks[name] = run(sizes, scales=unit * levels, workers=workers)
             at = partial(_at_levels, run, sizes, unit)
             found = run_searches([search(known) for known in peaks[name]], at, workers=workers)
-        with stages.stage(f"{TITLES[name]}: {probes} random intensities below each boundary"):
+        with stage(f"{TITLES[name]}: {probes} random intensities below each boundary"):
             probing = [
                 probe_below(start[name], levels[-1], each, probes=probes, seed=(index, i))
                 for i, each in enumerate(found)
             ]
-            calm = partial(run, rest_tilt=max(rest_tilt, _CALM))
+            calm = partial(run, rest_tilt=_CALM)
             at = partial(_at_levels, calm, sizes, unit)
             lowest[name], below[name] = np.array(run_searches(probing, at, workers=workers)).T
     return TiltMaps(
@@ -421,7 +412,6 @@ def tilt_maps(
         motion=motion,
         gravity=gravity,
         support=asked.support,
-        rest_tilt=rest_tilt,
         slab_mass_ratio=asked.slab_mass_ratio,
         rolling_resistance=asked.rolling_resistance,
         semidiagonals=sizes,

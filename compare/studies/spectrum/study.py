@@ -42,22 +42,6 @@ Array = NDArray[np.float64]
 _BANDS = 6
 _ROUND = (1.0, 2.0, 5.0, 10.0)
 
-CONTRAST_COLUMNS: dict[str, str] = {
-    "smallest": "smallest size of the band [m]",
-    "largest": "largest size of the band [m]",
-    "cells": "cells of the band, those with a failed run left out",
-    "overturned": "share of cells in which the 3D model overturns",
-    "planar_overturned": "share in which at least one planar run overturns",
-    "unconservative": "share in which the 3D model overturns and neither planar run does",
-    "conservative": "share in which at least one planar run overturns and the 3D model does not",
-    "larger_tilt": "share in which the 3D model tilts more than both planar runs",
-    "lower_edge": "share of sizes whose lowest found to overturn is lower in 3D than in both planes",
-    "higher_edge": "share of sizes whose lowest found to overturn is higher in 3D than in a plane",
-    "lowest": "median of the lowest overturning intensity found in 3D [g tan alpha], inf: most stand",
-    "planar_x_lowest": "the same of the planar east-west runs",
-    "planar_y_lowest": "the same of the planar north-south runs",
-}
-
 
 def planar_contrast(spectrum: TiltMaps) -> pd.DataFrame:
     """Return the differences of 3D and planar runs, one row for each band of sizes and a last one for all.
@@ -69,8 +53,14 @@ def planar_contrast(spectrum: TiltMaps) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        The columns of `CONTRAST_COLUMNS`; bands without a size have no row. A size on an edge belongs to the
-        band above, the last edge to the last band.
+        smallest, largest: sizes of the band [m]; cells, those with a failed run left out, and the shares of
+        them in which 3D overturns (overturned), a planar run does (planar_overturned), 3D and no planar run
+        (unconservative), a planar run and not 3D (conservative), and 3D tilts more than both planar runs
+        (larger_tilt); lower_edge and higher_edge, the shares of sizes whose lowest found to overturn is lower
+        in 3D than in both planes, or higher than in one; lowest, planar_x_lowest and planar_y_lowest, the
+        medians of these lowest intensities [g tan alpha], infinite where most stand.
+        Bands without a size have no row. A size on an edge belongs to the band above, the last edge to the
+        last band.
     """
     sizes = spectrum.semidiagonals
     edges = size_bands(sizes)
@@ -78,7 +68,7 @@ def planar_contrast(spectrum: TiltMaps) -> pd.DataFrame:
     band[sizes == edges[-1]] = len(edges) - 2
     groups = [np.flatnonzero(band == i) for i in range(len(edges) - 1)]
     rows = [_row(spectrum, group) for group in groups if len(group)]
-    return pd.DataFrame([*rows, _row(spectrum, np.arange(len(sizes)))], columns=list(CONTRAST_COLUMNS))
+    return pd.DataFrame([*rows, _row(spectrum, np.arange(len(sizes)))])
 
 
 def edge_difference(spectrum: TiltMaps) -> Array:
@@ -238,7 +228,6 @@ def _single(spectrum: TiltMaps, series: str, i: int, scale: float) -> float:
             rolling_resistance=spectrum.rolling_resistance,
         ),
         rtol=CHECK_RTOL,
-        rest_tilt=spectrum.rest_tilt,
         sample_step=spectrum.motion.duration,
         **series_options(series, spectrum.support),
     )
@@ -275,7 +264,7 @@ class OverturningSpectrum(Results, kind=KIND):
     gaps : DataFrame
         Gaps in the overturning region, see `safe_gaps`.
     contrast : DataFrame
-        Planar analysis beside three dimensions by bands of sizes, the columns of `CONTRAST_COLUMNS`.
+        Planar analysis beside three dimensions by bands of sizes, see `planar_contrast`.
     checked : DataFrame
         Cells that were run again, see `check_cells`.
     record : DataFrame
@@ -303,17 +292,6 @@ class OverturningSpectrum(Results, kind=KIND):
             "share that overturns in 3D": float(every["overturned"]),
             "share that overturns in 3D and in neither plane": float(every["unconservative"]),
             "share that overturns in a plane and not in 3D": float(every["conservative"]),
-        }
-
-    def _said(self) -> dict[str, str]:
-        maps = self.maps
-        sizes, levels = maps.semidiagonals, maps.intensities
-        return {
-            "record": maps.motion.name or "record",
-            "overturned": f"{int(maps.overturned(SPATIAL).sum())} of {len(sizes) * len(levels)} cells",
-            "sizes": f"{len(sizes)} from {sizes[0]:g} to {sizes[-1]:g} m",
-            "intensities": f"{len(levels)} from {levels[0]:g} to {levels[-1]:g}",
-            "tan alpha": f"{maps.tan_alpha:g}",
         }
 
 

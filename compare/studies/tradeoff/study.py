@@ -12,7 +12,7 @@ import pandas as pd
 
 from rockwobble.models import Case
 
-from ...runs.progress import ProgressCallback, Stage, Stages
+from ...runs.progress import ProgressCallback, Stage, stages
 from ...storage.manifest import Number
 from ...storage.results import Results
 from ..plans import QuickPlan
@@ -74,7 +74,7 @@ def measure_tradeoff(plan: QuickPlan, *, progress: ProgressCallback | None = Non
     scene_rounds = 3 if quick else 9
     asked = list(problems(quick=quick))
     rounds = [*((each.name, len(_visits(each))) for each in asked), ("scenes", scene_rounds)]
-    stage = Stages(progress, [_COSTS[name] for name, count in rounds for _ in range(count)]).stage
+    stage = stages(progress, [_COSTS[name] for name, count in rounds for _ in range(count)])
     points = [_points(each, methods_for(each, quick=quick), stage) for each in asked]
     scenes = scene_costs(rounds=scene_rounds, steps=500 if quick else 2000, stage=stage)
     tables = {

@@ -201,17 +201,6 @@ def _changes(table: pd.DataFrame, name: str) -> Array:
     )
 
 
-def single_peaks(tables: Tables) -> Numbers:
-    """Return the least and the largest median change of the peak by flat ground, over all cells."""
-    table = cells(tables)
-    return {
-        "cells": float(len(table)),
-        "members": float(table["members"].max()),
-        "flat_least": float(table["flat_ratio"].min()),
-        "flat_largest": float(table["flat_ratio"].max()),
-    }
-
-
 def vertical(tables: Tables) -> Numbers:
     """Return the change of the peak by the vertical component of El Centro, beside a record 1 % stronger.
 
@@ -286,7 +275,6 @@ def contact(tables: Tables) -> Numbers:
     lost = moving[normal <= 0.0]
     held, lost_from = limit_of(tan_alpha, normal > 0.0)
     return {
-        "held_up_to": held,
         "lost_from": lost_from,
         "lost_intensity": float(lost["intensity"].min()),
         "least_held": float(moving["least_normal"][tan_alpha <= held].min()),
@@ -302,12 +290,11 @@ def restraining_moment(tables: Tables) -> Numbers:
     """Return the restraining moment over weight and base radius."""
     moving = tables["peaks"].dropna(subset="moment")
     needed = column(moving, "moment")
-    slight, heavy = limit_of(column(moving, "tan_alpha"), needed <= SLIGHT)
+    slight, _ = limit_of(column(moving, "tan_alpha"), needed <= SLIGHT)
     return {
         "free_response": largest(column(tables["free_response"], "moment")),
         "shaken": largest(needed),
         "slight_up_to": slight,
-        "heavy_from": heavy,
     }
 
 
@@ -317,11 +304,10 @@ def free_response(tables: Tables) -> Numbers:
     off = np.abs(column(table, "flat_turn") - column(table, "turn"))
     turns = np.abs(quotient(table, "flat_turn", "turn") - 1.0)
     periods = np.abs(quotient(table, "flat_period", "period") - 1.0)
-    alike, apart = limit_of(column(table, "tan_alpha"), (turns <= ALIKE) & (periods <= ALIKE))
+    alike, _ = limit_of(column(table, "tan_alpha"), (turns <= ALIKE) & (periods <= ALIKE))
     worst = table.iloc[int(np.nanargmax(off))]
     return {
         "alike_up_to": alike,
-        "apart_from": apart,
         "turn_largest": largest(turns),
         "turn_largest_deg": math.degrees(largest(off)),
         **{f"worst_{name}": float(worst[name]) for name in RELEASE},
@@ -454,7 +440,7 @@ def damping(tables: Tables) -> pd.DataFrame:
 LIMITS: Mapping[str, Callable[[Tables], Numbers]] = {
     limit.__name__: limit
     for limit in (
-        *(records, single_peaks, traces, free_response, friction, contact),
+        *(records, traces, free_response, friction, contact),
         *(restraining_moment, rings, soft_contact, vertical),
     )
 }

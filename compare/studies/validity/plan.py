@@ -49,8 +49,6 @@ class Part:
     ----------
     name : str
         Of its table.
-    title : str
-        For whoever watches it run.
     tasks : callable
         Returns the inputs of each task of an extent.
     measure : callable
@@ -66,7 +64,6 @@ class Part:
     """
 
     name: str
-    title: str
     tasks: Callable[[Extent], Iterable[Inputs]]
     measure: Callable[..., list[Row]]
     keys: tuple[str, ...]

@@ -61,7 +61,6 @@ def next_maximum(trace: Trace) -> tuple[float, float]:
 
 FREE_RESPONSE = Part(
     name="free_response",
-    title="free response, recess against flat ground",
     tasks=lambda extent: grid(tan_alpha=extent.tan_alphas, releases=[extent.releases], spins=[extent.spins]),
     measure=measure_free_response,
     keys=("tan_alpha",),
@@ -109,7 +108,6 @@ def measure_verification(
 
 VERIFICATION = Part(
     name="verification",
-    title="free response in the engine",
     tasks=lambda extent: named(RELEASE, extent.engine_points),
     measure=measure_verification,
     keys=RELEASE,
@@ -153,7 +151,6 @@ def measure_slip(
 
 SLIP = Part(
     name="slip",
-    title="the friction at which the engine slips",
     tasks=lambda extent: named(RELEASE, extent.slip_points, shares=extent.slip_shares),
     measure=measure_slip,
     keys=RELEASE,

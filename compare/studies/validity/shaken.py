@@ -100,7 +100,6 @@ def _row(shaken: Callable[..., Case], intensity: float, vertical: bool) -> Row:
 
 PEAKS = Part(
     name="peaks",
-    title="peak tilt over records",
     tasks=_peaks_tasks,
     measure=measure_peaks,
     keys=("motion", "tan_alpha", "semidiagonal"),
@@ -160,7 +159,6 @@ def measure_records(
 
 RECORDS = Part(
     name="records",
-    title="peak tilt over records in the engine",
     tasks=lambda extent: [
         {"motion": motion, **point}
         for point in named(POINT, extent.record_points, time_step=extent.record_step)
@@ -200,7 +198,6 @@ def measure_following(
 
 FOLLOWING = Part(
     name="following",
-    title="traces under El Centro in the engine",
     tasks=lambda extent: [
         {**point, "support": support}
         for point in named(POINT, extent.trace_points, duration=extent.trace_length)
@@ -248,7 +245,6 @@ def measure_contact(
 
 CONTACT = Part(
     name="contact",
-    title="contact that gives, in the engine",
     tasks=lambda extent: grid(
         tan_alpha=extent.contact_tan_alphas, time_constant=extent.time_constants, damping=extent.dampings
     ),
@@ -336,7 +332,7 @@ def losses(trace: Trace) -> Row:
 
     outcome; first_contact with a wall (inf where there is none) and contact_time [s]; passes; loss of energy,
     see `loss_of`; rolled_out and at_end, distance from O of the place on which the cylinder would come down,
-    largest and last [b]; residual displacement of the base [b]; twist at the end [rad]; peak [alpha].
+    largest and last [b]; twist at the end [rad]; peak [alpha].
     """
     out = _rolled_out(trace)
     return {
@@ -347,7 +343,6 @@ def losses(trace: Trace) -> Row:
         "loss": loss_of(trace),
         "rolled_out": float(out.max(initial=0.0)),
         "at_end": float(out[-1]) if len(out) else 0.0,
-        "residual": trace.residual_displacement / trace.case.cylinder.base_radius,
         "twist": trace.residual_twist,
         "peak": trace.peak_tilt / trace.case.cylinder.alpha,
     }
@@ -367,7 +362,6 @@ def _rolled_out(trace: Trace) -> FloatArray:
 
 RINGS = Part(
     name="rings",
-    title="a recess with clearance in the engine",
     tasks=_rings_tasks,
     measure=measure_rings,
     keys=("motion", "tan_alpha", "turn", "support", *_WALLS),

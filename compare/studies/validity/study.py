@@ -126,7 +126,7 @@ def measure_all(
         tasks,
         kind=KIND,
         key=task_name,
-        label=lambda task: PARTS[task[0]].title,
+        label=lambda task: task[0].replace("_", " "),
         folder=folder,
         cost=lambda task: PARTS[task[0]].cost(**task[1]),
         workers=workers,
