@@ -33,7 +33,6 @@ from ..comparison.prediction import (
     time_scale,
 )
 from ..comparison.summary import SUMMARY_COLUMNS, summary_row
-from ..external.verdict import numbers_of
 from ..metrics.pair import landings, rms
 from ..runs.choice import at_step, own_model, require_runnable, support_of
 from ..runs.execution import Job, simulate_all
@@ -140,7 +139,7 @@ def _stated(
     row = summary_row(job.case, str(model.run), model, job.label, trace, prediction=prediction)
     for column, most in bounds.given().items():
         unit, meaning = SUMMARY_COLUMNS[column]
-        value = abs(numbers_of(row)[column])
+        value = abs(row[column])
         if column == "agreement_time":
             # the shorter the worse: what is missing may be nothing
             missing = max(0.0, most - value) if row["diverged"] else 0.0

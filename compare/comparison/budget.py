@@ -20,7 +20,6 @@ import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 import pandas as pd
@@ -65,21 +64,6 @@ _UNCERTAIN = 0.1
 _IMPACT = Run(None, "recess", plane=0.0, restitution="momentum")
 Simulate = Callable[[list[Job]], list[Trace]]
 Key = tuple[str, str]
-BUDGET_COLUMNS = (
-    "whole_rms",
-    "model_form_rms",
-    "numerics_rms",
-    "unexplained_rms",
-    "unexplained_share",
-    "limit_error",
-    "step_order",
-    "finest_step",
-    "not_split",
-)
-# of a row without a budget
-NO_BUDGET: Mapping[str, float | str] = MappingProxyType(
-    {**dict.fromkeys(BUDGET_COLUMNS, math.nan), "not_split": ""}
-)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
