@@ -334,7 +334,7 @@ def subject_of(certificate: Certificate) -> Subject:
     given = certificate["method"]
     if given["engine"] is None:
         return models()
-    return engine(given["engine"], given["time_step"], reference=None, **given["settings"])
+    return engine(given["engine"], given["time_step"], **given["settings"])
 
 
 def models(module: ModuleType = reduced) -> Subject:
@@ -415,11 +415,13 @@ def claims_of(results: Iterable[Result]) -> tuple[list[dict[str, object]], list[
             claims.append(
                 {
                     "quantity": result.name,
+                    "domain": "the problems of this check",
                     "bound": result.bound,
                     "measured": result.value,
                     "unit": result.unit,
                     "evidence": f"rockwobble check --only {result.group}: {result.reason}",
                     "status": "cross-validated" if result.group == _BETWEEN else "verified",
+                    "data_sha256": "",  # of an experiment
                 }
             )
     return claims, open_points

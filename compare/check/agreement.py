@@ -345,11 +345,8 @@ def baseline_folder() -> Path:
 
 
 def read_baseline() -> Baseline:
-    """Return the baselines that are kept; empty if there is no file."""
-    place = baseline_folder() / BASELINES
-    if not place.is_file():
-        return Baseline(values={})
-    content = json.loads(place.read_text(encoding="utf-8"))
+    """Return the baselines that are kept."""
+    content = json.loads((baseline_folder() / BASELINES).read_text(encoding="utf-8"))
     return Baseline(values=content["values"], reasons=tuple(content["reasons"]))
 
 

@@ -242,7 +242,7 @@ def force_at_rest(subject: Subject, support: str) -> Iterator[Result]:
         # of a contact point that is known to rounding and put right in a step, in the mean of a sample
         most = subject.rounding * PIER.base_radius * _MEAN / (GRAVITY * found.time_step**2)
         bound = dataclasses.replace(bound, most=bound.most + most)
-    yield at_most("contact force at rest", largest(off), bound, "contact force")
+    yield at_most("contact force at rest", largest(off), bound)
 
 
 def falls(subject: Subject, support: str) -> Iterator[Result]:
@@ -251,9 +251,7 @@ def falls(subject: Subject, support: str) -> Iterator[Result]:
     found = subject.simulate(Case(PIER, initial=start, duration=4.0, friction=5.0), support)
     ends = found.outcome == "overturned" and found.tilt[-1] == found.peak_tilt == 0.5 * math.pi
     right = ends and bool((np.diff(found.time) > 0.0).all())
-    yield at_most(
-        "end of a fall", float(not right), subject.within(0.0, "at pi/2", ""), "", f"{found.outcome}"
-    )
+    yield at_most("end of a fall", float(not right), subject.within(0.0, "at pi/2"), note=found.outcome)
 
 
 def landing(subject: Subject, support: str) -> Iterator[Result]:

@@ -148,9 +148,7 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
     )
 
 
-def engine(
-    name: str, time_step: TimeStep | None = None, *, reference: Simulate | None = None, **settings: object
-) -> Subject:
+def engine(name: str, time_step: TimeStep | None = None, **settings: object) -> Subject:
     """Return an engine with its settings.
 
     Parameters
@@ -158,8 +156,6 @@ def engine(
     name : str
     time_step : float, "auto" or "extrapolated", optional
         [s]
-    reference : callable, optional
-        The independent model that it is compared with. Default: `reduced.simulate`.
     **settings
         Of the engine.
 
@@ -192,8 +188,8 @@ def engine(
             for times in (_STEPS if tolerance == ENGINE_TOLERANCE else _COARSE_STEPS)
         ),
         order=facts.order,
-        at_step=lambda step: engine(name, step, reference=reference, **settings),
-        reference=reference or reduced.simulate,
+        at_step=lambda step: engine(name, step, **settings),
+        reference=reduced.simulate,
         run=Run(name, found.supports[0], time_step, **settings),
         uplifts=found.uplifts,
         carries_slab=facts.carries_slab,

@@ -225,14 +225,6 @@ def test_a_check_finds_a_fault_of_its_kind(right: Subject, measure: Any, support
     assert [result for result in measure(fault(right), support) if result.failed]
 
 
-def test_a_cause_is_named_where_it_stands_alone(right: Subject) -> None:
-    def causes(fault: Callable[[Subject], Subject]) -> list[str]:
-        return [result.cause for result in lagrange.residual(fault(right), "recess") if result.failed]
-
-    assert causes(field("tilt_rate", lambda rate: 1.001 * rate)) == ["tilt rate"]
-    assert set(causes(heavy)) == {""}
-
-
 def test_a_subject_that_raises_fails_its_checks_and_the_others_run(right: Subject) -> None:
     def source(case: Case, *_: Any, **__: Any) -> Trace:
         raise ZeroDivisionError("division by zero")
