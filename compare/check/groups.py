@@ -101,10 +101,6 @@ class Check:
                     yield not_run(f"{name}, {support}", words)
 
 
-def _of_rest(measure: Measure) -> Check:
-    return Check(measure=measure, supports=MODELS, options=("rest_tilt",))
-
-
 GROUPS: Mapping[str, tuple[Check, ...]] = {
     "equations": (Check(measure=lagrange.residual, supports=("recess",), options=("rtol",)),),
     "exact": (
@@ -132,14 +128,8 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
         Check(measure=invariance.frame, knows=("rolling_angle",)),
         Check(measure=invariance.scale),
         Check(measure=invariance.statement),
-        _of_rest(invariance.falling_ground),
-        _of_rest(invariance.after_rest),
-        Check(measure=invariance.backwards, supports=("recess",), options=("rtol",)),
     ),
-    "order": (
-        Check(measure=agreement.order_by_tolerance, options=("rtol",)),
-        Check(measure=agreement.order_by_time_step, options=("stepper",), reference=True),
-    ),
+    "order": (Check(measure=agreement.order, options=("stepper",), reference=True),),
     "trace": (
         Check(measure=laws.place, supports=("recess",), knows=("twist", "contact_point", "centre_of_mass")),
         Check(measure=laws.slip, options=("stepper",)),

@@ -66,11 +66,11 @@ class Subject(Brief):
     rounding : float
         Relative rounding error of the arithmetic of an engine.
     steps : tuple of float
-        Accuracy parameters (tolerance or time step) of the check of the order, the coarsest first.
+        Time steps of the check of the order, the coarsest first [s].
     order : float
-        Order of the error in that parameter.
+        Order of the error in the time step.
     at_step : callable, optional
-        Returns the subject at another accuracy parameter.
+        Returns the subject at another time step.
     reference : callable, optional
         The independent model that it is compared with, called as `reduced.simulate`.
     run : Run, optional
@@ -142,8 +142,6 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
         options=frozenset({"rtol", "rest_tilt", "restitution", "plane", "rolling_resistance"}),
         tolerance=MODEL_TOLERANCE,
         repeatability=MODEL_TOLERANCE,
-        steps=(1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10),
-        at_step=lambda rtol: reduced_model(module, rtol=rtol),
         carries_slab=True,
     )
 

@@ -49,7 +49,7 @@ def test_four_times_the_size_in_twice_the_time_to_the_last_bit(model):
 
 
 @pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("change", ["size", "gravity", "rotation", "shift"])
+@pytest.mark.parametrize("change", ["size", "gravity", "falling ground", "rotation", "shift"])
 def test_other_changes_of_scale_and_frame_cost_no_more_than_rounding(model, change):
     until = 15.0
     plain = reduced.simulate(Case(PIER, EL_CENTRO, duration=until), **reduced.MODELS[model])
@@ -58,6 +58,9 @@ def test_other_changes_of_scale_and_frame_cost_no_more_than_rounding(model, chan
         cylinder, step = Cylinder(semidiagonal=6.0 * 3.0, tan_alpha=0.2), 0.01 * math.sqrt(3.0)
     elif change == "gravity":
         acceleration, gravity, step = acceleration * 0.7, 9.81 * 0.7, 0.01 / math.sqrt(0.7)
+    elif change == "falling ground":  # takes the weight that gravity has more
+        gravity = 9.81 / 0.7
+        acceleration = np.column_stack([acceleration, np.full(len(acceleration), 9.81 - gravity)])
     elif change == "rotation":
         acceleration = EL_CENTRO.rotated(2.0).acceleration
     else:
