@@ -58,24 +58,7 @@ ROCKING = Case(
 STANDING = Case(PIER, polyline(SHOCK_TIMES, SHOCK[:, :2], 0.5), duration=4.0, name="from rest")
 _SAMPLE = 0.05  # [s]
 _TURN = 1.234  # [rad]
-
-
-@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class Change:
-    """The same motion, stated in another way.
-
-    Parameters
-    ----------
-    case : Case
-    slower : float
-        By how much its time runs slower.
-    expected : callable, optional
-        Returns the lean that is expected from that of the first statement. Default: the same.
-    """
-
-    case: Case
-    slower: float = 1.0
-    expected: Callable[[Lean], Lean] = lambda lean: lean
+_TURNED = np.exp(1j * _TURN)
 
 
 def frame(subject: Subject, support: str) -> Iterator[Result]:
@@ -88,39 +71,21 @@ def frame(subject: Subject, support: str) -> Iterator[Result]:
             mirrored = dataclasses.replace(
                 start, rolling_angle=-start.rolling_angle, rolling_rate=-start.rolling_rate
             )
+        rotated = dataclasses.replace(case, motion=motion.rotated(_TURN), initial=turned)
         flipped = GroundMotion(motion.acceleration * [1.0, -1.0], motion.time_step)
-        yield from _compared(
-            subject,
-            support,
-            case,
-            {
-                "rotated": Change(
-                    case=dataclasses.replace(case, motion=motion.rotated(_TURN), initial=turned),
-                    expected=lambda lean: np.exp(1j * _TURN) * lean,
-                ),
-                "mirror image": Change(
-                    case=dataclasses.replace(case, motion=flipped, initial=mirrored), expected=np.conj
-                ),
-            },
-        )
+        mirror = dataclasses.replace(case, motion=flipped, initial=mirrored)
+        yield _same(subject, support, case, "rotated", rotated, expected=lambda lean: _TURNED * lean)
+        yield _same(subject, support, case, "mirror image", mirror, expected=np.conj)
 
 
 def scale(subject: Subject, support: str) -> Iterator[Result]:
     """A hundredth of the size moves ten times as fast (Froude); 0.7 of the gravity slower by sqrt(0.7)."""
+    small, slower = dataclasses.replace(PIER, semidiagonal=PIER.semidiagonal / 100.0), math.sqrt(1.0 / 0.7)
     for case in _cases(subject):
-        small = dataclasses.replace(PIER, semidiagonal=PIER.semidiagonal / 100.0)
-        yield from _compared(
-            subject,
-            support,
-            case,
-            {
-                "a hundredth of the size": Change(case=_paced(case, 0.1, cylinder=small), slower=0.1),
-                "0.7 of the gravity": Change(
-                    case=_paced(case, math.sqrt(1.0 / 0.7), 0.7, gravity=0.7 * GRAVITY),
-                    slower=math.sqrt(1.0 / 0.7),
-                ),
-            },
-        )
+        little = _paced(case, 0.1, cylinder=small)
+        lighter = _paced(case, slower, 0.7, gravity=0.7 * GRAVITY)
+        yield _same(subject, support, case, "a hundredth of the size", little, slower=0.1)
+        yield _same(subject, support, case, "0.7 of the gravity", lighter, slower=slower)
 
 
 def statement(subject: Subject, support: str) -> Iterator[Result]:
@@ -128,11 +93,11 @@ def statement(subject: Subject, support: str) -> Iterator[Result]:
     for case in _cases(subject):
         motion = _motion(case)
         still = GroundMotion(np.vstack([motion.acceleration, np.zeros((3, 2))]), motion.time_step)
-        changes = {"sampled five times as densely": refined(motion, 5), "still ground in the record": still}
-        others = {
-            words: Change(case=dataclasses.replace(case, motion=each)) for words, each in changes.items()
-        }
-        yield from _compared(subject, support, case, others)
+        for words, other in (
+            ("sampled five times as densely", refined(motion, 5)),
+            ("still ground in the record", still),
+        ):
+            yield _same(subject, support, case, words, dataclasses.replace(case, motion=other))
 
 
 def _cases(subject: Subject) -> tuple[Case, ...]:
@@ -162,15 +127,24 @@ def _paced(
     )
 
 
-def _compared(subject: Subject, support: str, case: Case, changes: dict[str, Change]) -> Iterator[Result]:
+def _same(
+    subject: Subject,
+    support: str,
+    case: Case,
+    words: str,
+    other: Case,
+    *,
+    slower: float = 1.0,
+    expected: Callable[[Lean], Lean] = lambda lean: lean,
+) -> Result:
+    """Compare a case with the same motion stated in another way, `slower` and leaning as `expected`."""
     plain = subject.simulate(case, support, sample_step=_SAMPLE)
-    bound = Bound(subject.repeatability, "rounding, magnified by the passes", "alpha")
+    found = subject.simulate(other, support, sample_step=slower * _SAMPLE)
     moved = float(np.ptp(plain.tilt)) > 0.05 * PIER.alpha
-    for words, change in changes.items():
-        found = subject.simulate(change.case, support, sample_step=change.slower * _SAMPLE)
-        own = _on(plain.time, found.time / change.slower, lean(found))
-        off = largest(np.abs(own - change.expected(lean(plain)))) if moved else math.nan
-        yield at_most(f"{words}, {case.name}", off, bound)
+    own = _on(plain.time, found.time / slower, lean(found))
+    off = largest(np.abs(own - expected(lean(plain)))) if moved else math.nan
+    bound = Bound(subject.repeatability, "rounding, magnified by the passes", "alpha")
+    return at_most(f"{words}, {case.name}", off, bound)
 
 
 def _on(time: NDArray[np.float64], own: NDArray[np.float64], values: Lean) -> Lean:

@@ -41,7 +41,7 @@ from rockwobble.models.cylinder import PIER
 from rockwobble.models.support import SUPPORTS
 
 from ..metrics.pair import energy_loss
-from .measurement import GRAVITY, RELEASE, Result, at_most, largest, released, worst_of
+from .measurement import GRAVITY, RELEASE, Result, at_most, largest, released, why, worst_of
 from .subject import Subject
 
 Array = NDArray[Any]  # of float, or of complex within a complex step
@@ -246,29 +246,23 @@ def residual(subject: Subject, support: str) -> Iterator[Result]:
     d/dt dT/dq' = d(T - V)/dq for the tilt, in g (b + h), and for the rolling angle; theta' in p; the contact
     force over the weight is the acceleration of the mass centre and that of ground and gravity.
     """
-    errors: dict[str, dict[str, float]] = {name: {} for name in NAMES}
-    for place, cylinder in CYLINDERS.items():
-        found = _residuals(subject, support, cylinder)
-        if found is None:
-            yield at_most(f"short motions reach their end, {place}", math.nan, subject.within(0.0, "all do"))
-            return
-        for name, value in zip(NAMES, found, strict=True):
-            errors[name][place] = value
+    errors = {place: _residuals(subject, support, cylinder) for place, cylinder in CYLINDERS.items()}
     bound = subject.within(1.0, _REASON, "of g (b + h), p and weights")
-    yield from (worst_of(name, error, bound) for name, error in errors.items())
+    for at, name in enumerate(NAMES):
+        yield worst_of(name, {place: found[at] for place, found in errors.items()}, bound)
 
 
-def _residuals(subject: Subject, support: str, cylinder: Cylinder) -> list[float] | None:
+def _residuals(subject: Subject, support: str, cylinder: Cylinder) -> list[float]:
     shape = shape_of(cylinder)
     p = math.sqrt(GRAVITY * cylinder.semidiagonal / (shape.I1 + shape.h**2 + shape.b**2))
     step, inner = _SAMPLE / p, slice(REACH, -REACH)
-    errors: list[list[float]] = [[0.0] for _ in NAMES]
+    errors = []
     for initial, motion in _starts(p, step):
         found = subject.simulate(
             Case(cylinder, motion, initial=initial), support, sample_step=step, rtol=1e-13, rest_tilt=0.0
         )
         if found.outcome == "failed":
-            return None
+            raise RuntimeError(f"a short motion failed: {why(found)}")
         # one that fell down ends between two samples, and may go on falling when the motion is over
         even = len(found.time) - (found.outcome == "overturned")
         for piece in range(min((even - 1) // _PIECE, _PIECES)):
@@ -286,18 +280,15 @@ def _residuals(subject: Subject, support: str, cylinder: Cylinder) -> list[float
             carried = (1.0 + 2.0 * shape.slab) / (1.0 + shape.slab)
             force = carried * curve(found.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
             scale = GRAVITY * (shape.b + shape.h)
-            for each, value in zip(
-                errors,
-                (
+            errors.append(
+                [
                     largest(by_tilt) / scale,
                     largest(by_turn) / scale,
                     largest(rates[0] - found.tilt_rate[cut][inner]) / p,
                     largest(force / GRAVITY - found.contact_force[cut][inner]),
-                ),
-                strict=True,
-            ):
-                each.append(value)
-    return [largest(np.array(each)) for each in errors]
+                ]
+            )
+    return [largest(each) for each in np.array(errors).T]
 
 
 def _starts(p: float, step: float) -> Iterator[tuple[InitialState, GroundMotion]]:
