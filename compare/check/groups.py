@@ -118,10 +118,8 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
     "rest": (
         Check(measure=laws.stands, supports=MODELS, from_rest=True),
         Check(measure=laws.uplift, knows=("uplift_time",), from_rest=True),
-        Check(measure=laws.after_uplift, options=("rtol",)),
         Check(measure=laws.force_at_rest, knows=("contact_force",), from_rest=True),
         Check(measure=laws.falls, knows=("outcome",)),
-        Check(measure=laws.landing, supports=("planar",), options=("restitution",)),
         Check(measure=laws.static_loads, supports=(), options=("stepper",), from_rest=True),
     ),
     "invariance": (
