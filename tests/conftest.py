@@ -19,11 +19,11 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     given = getattr(session.config, "workerinput", None)
     if given is None:
         return
-    from rockwobble.reduced import MODELS
+    from rockwobble.reduced.kernels import INTEGRATORS
     from rockwobble.reduced.simulation import make_ready
 
     worker, count = int(given["workerid"].removeprefix("gw")), given["workercount"]
-    for place, model in enumerate(MODELS):  # to and fro: what comes first takes longest
+    for place, model in enumerate(INTEGRATORS):  # to and fro: what comes first takes longest
         turn = place % (2 * count)
         if worker == min(turn, 2 * count - 1 - turn):
             make_ready(model)

@@ -96,10 +96,10 @@ _MAPS = (
 
 
 def map_pictures(tables: Tables) -> list[Picture]:
-    """Return the maps: of peaks over records, of what a recess must supply, and of free response."""
+    """Return the maps in which anything is known: of peaks over records, of needs, and of free response."""
     table, free = cells(tables), tables["free_response"]
     table = table.assign(flat_percent=100.0 * (table["flat_ratio"] - 1.0))
-    found = [_shaken(table, *given) for given in _MAPS]
+    found = [_shaken(table, *given) for given in _MAPS if table[given[3]].notna().any()]
     for name, what in (("turn", "Angle of turn"), ("period", "Period")):
         off = 100.0 * (free[f"flat_{name}"] / free[name] - 1.0)
         found.append(_free(f"free-{name}", what, free.assign(off=off)))

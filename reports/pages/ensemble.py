@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rockwobble.compare import Ensemble
 from rockwobble.compare.metrics.statistics import (
+    FEWEST,
     MARGIN,
     POWER,
     SIGNIFICANCE,
@@ -53,6 +54,7 @@ def ensemble_values(found: Ensemble) -> dict[str, object]:
         "margin": MARGIN,
         "power": POWER,
         "significance": SIGNIFICANCE,
+        "stated_from": FEWEST,
         "fewest": least_significant_count(),
         "unseen": largest_share_unseen(int(contrasts["count"].min())) if rows else 1.0,
     }

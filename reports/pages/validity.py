@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
@@ -16,11 +17,19 @@ from rockwobble.models.support import SUPPORTS
 
 from ..figures.validity import METHODS, pictures, walled
 from .page import Page
+from .table import number
 
 _NEEDS = {
     "friction": "friction over tan α",
     "moment": "κ of the recess over weight × b",
     "motions": "motions counted",
+}
+
+_PLACES = {
+    "recess": "in an ideal recess",
+    "ring": "in a recess with clearance",
+    "flat": "on flat ground",
+    "copy": "by a record 1 % stronger alone",
 }
 
 
@@ -30,6 +39,7 @@ def page_of(found: Validity) -> Page:
     values: dict[str, object] = {
         "limits": limits_of(tables),
         "margin": MARGIN,
+        "strayed": _strayed(limits_of(tables)["records"]),
         "contrasts": _contrasts(contrasts(tables)),
         "summary": _summary(cells(tables)),
         **_needs(needs(tables)),
@@ -50,7 +60,19 @@ def page_of(found: Validity) -> Page:
     }
     if not slab:
         values |= {"rings": _rings(tables["rings"]), "worst": _worst(tables["rings"])}
-    return Page(name="validity", template="validity", values=values, pictures=pictures(found))
+    drawn = pictures(found)
+    values["drawn"] = {picture.name for picture in drawn}
+    return Page(name="validity", template="validity", values=values, pictures=drawn)
+
+
+def _strayed(records: Mapping[str, float]) -> list[str]:
+    """What one record in twenty exceeds at the points, in words, of what enough records know it."""
+    found = []
+    for name, place in _PLACES.items():
+        least, largest = (records.get(f"{name}_95_{end}", math.nan) for end in ("least", "largest"))
+        if not math.isnan(least):
+            found.append(f"{number(least, '.2f')} to {number(largest, '.2f')} {place}")
+    return found
 
 
 def _contrasts(table: pd.DataFrame) -> list[dict[str, object]]:
