@@ -211,31 +211,28 @@ def run_checks(
                     yield dataclasses.replace(result, group=group, subject=subject.label)
 
 
-COLUMNS = tuple(Result.__dataclass_fields__)
-
-
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Checks:
     """Results of checks.
 
     Attributes
     ----------
-    tables : mapping of str to DataFrame
-        "results": one row for each `Result`, its fields as columns.
+    results : list of Result
+        In the order in which they were made.
     facts : mapping
         Subjects, versions of the packages.
     """
 
-    tables: Mapping[str, pd.DataFrame]
+    results: list[Result]
     facts: Mapping[str, Any]
 
     @property
-    def results(self) -> list[Result]:
-        """The results, in the order in which they were made."""
-        return [
-            Result(**dict(zip(COLUMNS, row, strict=True)))
-            for row in self.tables["results"].itertuples(index=False)
-        ]
+    def tables(self) -> Mapping[str, pd.DataFrame]:
+        """Table "results": one row for each result, its fields as columns."""
+        import pandas as pd
+
+        rows, columns = [asdict(each) for each in self.results], list(Result.__dataclass_fields__)
+        return {"results": pd.DataFrame(rows, columns=columns).astype({"value": float, "bound": float})}
 
     @property
     def failures(self) -> list[Result]:
@@ -249,8 +246,8 @@ class Checks:
 
     def headline(self) -> Mapping[str, int]:
         """Return the number of checks by their outcome."""
-        counts = Counter(self.tables["results"]["outcome"])
-        return {name: int(counts[name]) for name in ("FAILED", "passed", "no baseline", "not run")}
+        counts = Counter(each.outcome for each in self.results)
+        return {name: counts[name] for name in ("FAILED", "passed", "no baseline", "not run")}
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{count} {outcome}" for outcome, count in self.headline().items() if count)
@@ -326,8 +323,8 @@ def check(
     results = list[Result]()
     if suite is not None:
         runs = SuiteRuns(workers=workers, progress=progress)
-        results = [*_of_suite(runs, read_suite(suite) if not isinstance(suite, Suite) else suite)]
-        return _summed(results)
+        found = _of_suite(runs, read_suite(suite) if not isinstance(suite, Suite) else suite)
+        return _summed([*found])
     if engine is not None:
         chosen = [subjects.engine(engine, time_step, **settings)]
     elif model is not None:
@@ -368,14 +365,9 @@ def _of_suite(runs: SuiteRuns, suite: Suite) -> Iterator[Result]:
         for run, label in zip(chosen, labels, strict=True)
     ]
     for result in check_suite(runs, jobs, suite.bounds):
-        yield Result(**{**asdict(result), "group": "agreement"})
+        yield dataclasses.replace(result, group="agreement")
 
 
-def _summed(results: Sequence[Result]) -> Checks:
-    import pandas as pd
-
-    rows = [asdict(result) for result in results]
-    table = pd.DataFrame(rows, columns=COLUMNS).astype({"value": float, "bound": float})
+def _summed(results: list[Result]) -> Checks:
     labels = dict.fromkeys(result.subject for result in results if result.subject)
-    facts = {"subjects": list(labels), "versions": package_versions()}
-    return Checks(tables={"results": table}, facts=facts)
+    return Checks(results=results, facts={"subjects": list(labels), "versions": package_versions()})

@@ -63,7 +63,10 @@ def test_the_headline_says_what_the_records_show(found: Validity) -> None:
     same = many.assign(peak=many["peak"].where(many["method"] != "recess", many["motion"].map(model)))
     document = changed(found, "records", same)
     assert "**In an ideal recess the engine has the model's peak tilt: over 40 records" in document
-    assert "one record in twenty exceeds the model's by a factor of more than\n" in document.split("## What must hold")[0]
+    assert (
+        "one record in twenty exceeds the model's by a factor of more than\n"
+        in document.split("## What must hold")[0]
+    )
     off = same.assign(peak=same["peak"].where(same["method"] != "recess", 1.2 * same["peak"]))
     assert "**The reduced model is not established even in an ideal recess" in changed(found, "records", off)
 
