@@ -85,11 +85,11 @@ def fields(subject: Subject, support: str) -> Iterator[Result]:
         return largest(getattr(found, name)[cut] - getattr(model, name)[cut]) if whole else math.nan
 
     for name, (unit, size, times) in _FIELDS.items():
-        yield at_most(name, apart(name) / size, subject.within(times, "contact at its step", unit), name)
+        yield at_most(name, apart(name) / size, subject.within(times, "contact at its step", unit))
     rate, force = (subject.within(times, "means over 60 steps") for times in _SWINGS[support])
-    yield at_most("rolling_rate", apart("rolling_rate"), rate, "rolling_rate")
+    yield at_most("rolling_rate", apart("rolling_rate"), rate)
     # without the half window at either end
-    yield at_most("contact force", apart("contact_force", slice(2, -2)), force, "contact_force")
+    yield at_most("contact force", apart("contact_force", slice(2, -2)), force)
     if "energy_error" in subject.knows:
         work = -(found.centre_of_mass - found.centre_of_mass[0]) @ GROUND
         left = largest(found.energy - found.energy[0] - work - found.energy_error)
