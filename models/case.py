@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from types import MappingProxyType
 from typing import Any, Literal
 
@@ -264,11 +265,7 @@ class Run:
 
     def __reduce__(self) -> tuple[object, ...]:
         # a mapping proxy does not pickle, and runs travel to worker processes
-        return _restore_run, (self.engine, self.support, self.time_step, dict(self.settings))
-
-
-def _restore_run(engine: str | None, support: str, time_step: TimeStep, settings: dict[str, Any]) -> Run:
-    return Run(engine, support, time_step, **settings)
+        return partial(Run, **self.settings), (self.engine, self.support, self.time_step)
 
 
 @dataclass(frozen=True, slots=True, repr=False)

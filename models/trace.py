@@ -4,22 +4,45 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from . import trace_file
+from . import plain_json, trace_file
 from .case import Case, Run
 from .cylinder import WobblingFrame
 from .diagnostic import Assumptions, Diagnostic, joined
 from .shown import Shown, line
-from .trace_source import Array, Known, Late, Source, friction_of, no_passes
+from .trace_source import Array, Known, Source, friction_of, no_passes
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+class Late:
+    """A sampled quantity that may cost something: the source computes it when it is first asked for."""
+
+    def __init__(self, width: int) -> None:
+        self._width = width
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    @overload
+    def __get__(self, trace: None, owner: type) -> Late: ...
+    @overload
+    def __get__(self, trace: Trace, owner: type) -> Array: ...
+    def __get__(self, trace: Trace | None, owner: type) -> Array | Late:
+        if trace is None:
+            return self
+        found = trace.late.get(self._name)
+        count = len(trace.time)
+        return (
+            np.full(count if self._width == 1 else (count, self._width), math.nan) if found is None else found
+        )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -275,22 +298,16 @@ class Trace(Shown):
 
     def to_plain(self) -> dict[str, object]:
         """Return all of it but its case and samples, for JSON."""
-        numbers = {name: getattr(self, name) for name in trace_file.NUMBERS}
-        return {
-            "run": trace_file.run_to_plain(self.run),
-            **numbers,
-            "settings": dict(self.settings),
-            "facts": self.facts,
-            "assumptions": self.assumptions,
-            "rest_intervals": self.rest_intervals,
-            "extrema": self.extrema,
-            "passes": {name: self.passes[name].to_numpy() for name in self.passes.columns},
-        }
+        given = plain_json.fields_of(self)
+        for name in ("case", "source", *trace_file.FIELDS):
+            del given[name]
+        return {**given, "assumptions": self.assumptions, "passes": self.passes.to_dict("list")}
 
     @classmethod
     def from_plain(cls, facts: Mapping[str, Any], samples: pd.DataFrame, case: Case) -> Trace:
         """Return the trace of what `to_plain` and `to_frame` gave, and its case."""
-        return cls(case=case, **trace_file.restored(facts, samples))
+        given, names = trace_file.restored(facts, samples), {field.name for field in fields(cls)}
+        return cls(case=case, **{name: value for name, value in given.items() if name in names})
 
     def save(self, path: str | Path) -> None:
         """Write the motion to a Parquet file, from which `load` returns it with the same bits.

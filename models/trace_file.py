@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -64,25 +63,13 @@ VECTORS = {
     "top_contact_force": ("top_force_x", "top_force_y", "top_force_z"),
 }
 OF_FRAMES = VECTORS["top_contact_force"]  # columns that only the trace of a frame has
-_FIELDS = ("time", "tilt", "tilt_rate", "rolling_angle", "twist", "contact_point", "centre_of_mass")
-_LATE = (
-    *("rolling_rate", "energy", "contact_force", "top_contact_force", "restraining_moment"),
-    *("energy_lost", "energy_error", "slip", "wall_contact", "wall_impulse"),
-)
-NUMBERS = (
-    *("version", "outcome", "rests", "peak_tilt", "uplift_time", "uplift_direction", "time_step"),
-    *("wall_time", "step_count", "contact_resolution", "residual_displacement", "error_estimate"),
-    *("settled_until", "followed_until"),
-)
+# of a trace, which samples hold; what else they hold is of its source
+FIELDS = ("time", "tilt", "tilt_rate", "rolling_angle", "twist", "contact_point", "centre_of_mass")
 
 
 def restored(facts: Mapping[str, Any], samples: pd.DataFrame) -> dict[str, Any]:
     """Return the arguments of a trace, but its case, of what `Trace.to_plain` and its samples hold."""
     import pandas as pd
-
-    def array(name: str) -> Array:
-        columns = VECTORS.get(name)
-        return samples[name].to_numpy() if columns is None else samples[list(columns)].to_numpy()
 
     if "rest_intervals" not in facts:  # of up to 0.2: "rest" is an outcome, and rests are the intervals
         word = facts["outcome"]
@@ -93,23 +80,26 @@ def restored(facts: Mapping[str, Any], samples: pd.DataFrame) -> dict[str, Any]:
             "followed_until": math.nan,
         }
         facts["outcome"] = "stands" if word in ("rest", "completed") else word
-    held = facts["assumptions"]
+    # a file of another version lacks what it did not know
+    found: dict[str, Array] = {name: samples[name].to_numpy() for name in samples.columns}
+    for name, columns in VECTORS.items():
+        if columns[0] in found:
+            found[name] = samples[list(columns)].to_numpy()
+    held, run = facts["assumptions"], facts["run"]
     passes = {
         name: np.array(column, dtype=bool if name == "resolved" else float)
         for name, column in facts["passes"].items()
     }
     return {
-        "run": run_from_plain(facts["run"]),
-        **{name: array(name) for name in _FIELDS},
-        **{name: facts[name] for name in NUMBERS},
-        "settings": facts["settings"],
+        **facts,
+        **{name: found[name] for name in FIELDS},
+        "run": Run(run["engine"], run["support"], run["time_step"], **run["settings"]),
         "facts": _diagnostics(facts["facts"]),
         "rest_intervals": np.array(facts["rest_intervals"], dtype=float).reshape(-1, 2),
         "extrema": np.array(facts["extrema"], dtype=float).reshape(-1, 4),
         "passes": pd.DataFrame(passes),
         "source": Known(
-            # a file of another version lacks what it did not know
-            {name: array(name) for name in _LATE if set(VECTORS.get(name, (name,))) <= set(samples.columns)},
+            found,
             None if held is None else Assumptions(**held | {"breaches": _diagnostics(held["breaches"])}),
         ),
     }
@@ -119,29 +109,8 @@ def _diagnostics(given: Iterable[Mapping[str, Any]]) -> tuple[Diagnostic, ...]:
     return tuple(Diagnostic(**each) for each in given)
 
 
-def run_to_plain(run: Run) -> dict[str, object]:
-    """Return a run for JSON."""
-    return {
-        "engine": run.engine,
-        "support": run.support,
-        "time_step": run.time_step,
-        "settings": dict(run.settings),
-    }
-
-
-def run_from_plain(given: Mapping[str, Any]) -> Run:
-    """Return the run that `run_to_plain` was given."""
-    return Run(given["engine"], given["support"], given["time_step"], **given["settings"])
-
-
-def case_to_plain(case: Case) -> dict[str, object]:
-    """Return a case for JSON, with the samples of its motion."""
-    fields = {field.name: getattr(case, field.name) for field in dataclasses.fields(case)}
-    return {**fields, "motion": case.motion and dataclasses.asdict(case.motion)}
-
-
 def case_from_plain(given: Mapping[str, Any]) -> Case:
-    """Return the case that `case_to_plain` was given."""
+    """Return the case of its fields, as JSON gives them back."""
     motion, initial = given["motion"], given["initial"]
     fields = {
         "cylinder": cylinder_of(given["cylinder"]),
@@ -153,7 +122,7 @@ def case_from_plain(given: Mapping[str, Any]) -> Case:
 
 def packed(samples: pd.DataFrame, facts: Mapping[str, object], case: Case) -> bytes:
     """Return a trace as the bytes of a Parquet file."""
-    return pack(samples, {"case": case_to_plain(case), "trace": facts})
+    return pack(samples, {"case": case, "trace": facts})
 
 
 def unpacked(path: str | Path) -> tuple[dict[str, Any], pd.DataFrame, Case]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol, overload
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,43 +53,6 @@ def no_passes() -> pd.DataFrame:
 
     table = pd.DataFrame({name: np.empty(0) for name in ("time", "minimum_tilt", "angle_of_turn")})
     return table.assign(resolved=np.empty(0, dtype=bool))
-
-
-class HasLate(Protocol):
-    """The part of a trace that its late quantities need."""
-
-    @property
-    def time(self) -> Array:
-        """Samples (n,) [s]."""
-        ...
-
-    @property
-    def late(self) -> Mapping[str, Array]:
-        """The quantities that the source gave."""
-        ...
-
-
-class Late:
-    """A sampled quantity that may cost something: the source computes it when it is first asked for."""
-
-    def __init__(self, width: int) -> None:
-        self._width = width
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._name = name
-
-    @overload
-    def __get__(self, trace: None, owner: type) -> Late: ...
-    @overload
-    def __get__(self, trace: HasLate, owner: type) -> Array: ...
-    def __get__(self, trace: HasLate | None, owner: type) -> Array | Late:
-        if trace is None:
-            return self
-        found = trace.late.get(self._name)
-        count = len(trace.time)
-        return (
-            np.full(count if self._width == 1 else (count, self._width), math.nan) if found is None else found
-        )
 
 
 def friction_of(force: Array) -> Array:

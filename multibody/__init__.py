@@ -11,7 +11,6 @@ from .engines.registry import (
     available_engines,
     engine_names,
 )
-from .ensemble import simulate_many
 from .simulation import simulate
 
 __all__ = [
@@ -21,7 +20,6 @@ __all__ = [
     "available_engines",
     "engine_names",
     "simulate",
-    "simulate_many",
 ]
 
 

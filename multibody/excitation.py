@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockwobble.models import GroundMotion
 
-from .scene import Scale
-
-Array = NDArray[np.float64]
+from .scene import Array, Scale
 
 
 class StepMeans:

@@ -23,7 +23,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,16 +33,17 @@ from rockwobble.models.trace_source import Known
 
 from .auto_step import Attempt, Progress, closeness, common_count, part_of, shares, unknown_from
 from .guard import LARGEST_STEP
+from .scene import Array
 
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 
 EXTRAPOLATED = "extrapolated"
 FINEST = 1.75e-4  # [s] at the reference size: all three together cost one run at the default step
 _RUNS = 3
 _FIRST_OR_SECOND = 1.5  # order between the two
+_SAMPLED = ("tilt", "tilt_rate", "rolling_angle", "twist", "contact_point", "centre_of_mass")
 _LATE = ("rolling_rate", "energy", "energy_error", "energy_lost")
 _OF_NO_ACCOUNT = 1e-6  # of alpha: where runs are that close, their orders mix, and it makes no difference
 _ONE_TURN = math.pi  # [rad] two rolling angles further apart went past upright on different sides
@@ -143,21 +144,18 @@ def _merged(pair: Sequence[Trace], order: int, good: int) -> Trace:
     apart = np.abs(pair[0].rolling_angle[:good] - fine.rolling_angle[:good]) > _ONE_TURN
     kept = (to_zero_step([run.tilt[:good] for run in pair], order) < 0.0) | apart
 
-    def sampled(name: str) -> Array:
-        return _samples([getattr(run, name) for run in pair], order, good, kept)
-
+    sampled: dict[str, Any] = {
+        name: _samples([getattr(run, name) for run in pair], order, good, kept)
+        for name in (*_SAMPLED, *_LATE)
+    }
+    late = {name: sampled.pop(name) for name in _LATE}
     end = float(fine.time[good - 1])
     extrema = [run.extrema[run.extrema[:, 0] <= end] for run in pair]
     peaks_alike = whole and pair[0].outcome == fine.outcome
     return replace(
         fine,
-        tilt=sampled("tilt"),
-        tilt_rate=sampled("tilt_rate"),
-        rolling_angle=sampled("rolling_angle"),
-        twist=sampled("twist"),
-        contact_point=sampled("contact_point"),
-        centre_of_mass=sampled("centre_of_mass"),
-        source=Known({**fine.late, **{name: sampled(name) for name in _LATE}}, fine.assumptions),
+        **sampled,
+        source=Known({**fine.late, **late}, fine.assumptions),
         passes=_passes([run.passes for run in pair], order, end),
         extrema=np.vstack([_rows(extrema, order), fine.extrema[len(extrema[-1]) :]]),
         peak_tilt=_number(pair, "peak_tilt", order) if peaks_alike else fine.peak_tilt,

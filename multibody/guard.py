@@ -19,13 +19,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .kinematics import Kinematics, mean_velocity
 from .protocol import Steps, Wall
-from .scene import Body
-
-Array = NDArray[np.float64]
+from .scene import Array, Body
 
 ENERGY_GAIN = 0.02  # of the largest energy of the motion so far
 # of the energy at which the cylinder stands on its rim in balance: a base that is just about to open has no

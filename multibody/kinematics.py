@@ -15,9 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .protocol import Steps
-from .scene import Body
-
-Array = NDArray[np.float64]
+from .scene import Array, Body
 
 
 @dataclass(frozen=True, slots=True, eq=False)

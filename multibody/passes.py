@@ -6,11 +6,14 @@ import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from .scene import Array
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,25 +24,6 @@ class TurningPoint:
     tilt: float
     rolling_angle: float
     is_maximum: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Pass:
-    """A tilt minimum between two maxima.
-
-    Attributes
-    ----------
-    time : float
-        Of the minimum [s].
-    minimum_tilt : float
-        [rad]
-    angle_of_turn : float
-        Change of the rolling angle from maximum to maximum [rad].
-    """
-
-    time: float
-    minimum_tilt: float
-    angle_of_turn: float
 
 
 def turning_points(time: Array, tilt: Array, rolling_angle: Array) -> list[TurningPoint]:
@@ -79,12 +63,20 @@ def true_swings(points: list[TurningPoint], threshold: float) -> list[TurningPoi
 
 def passes_between(
     points: list[TurningPoint], threshold: float, rests: Sequence[tuple[float, float]] = ()
-) -> list[Pass]:
-    """Return the passes, without swings smaller than `threshold` [rad].
+) -> pd.DataFrame:
+    """Return the passes, tilt minima between two maxima, without swings smaller than `threshold` [rad].
 
     A pass belongs to one motion: both its maxima lie on the same side of every rest, of which `rests` holds
     start and end [s].
+
+    Returns
+    -------
+    DataFrame
+        time of the minimum [s], minimum_tilt [rad], and angle_of_turn, the change of the rolling angle from
+        maximum to maximum [rad].
     """
+    import pandas as pd
+
     motions: list[list[TurningPoint]] = [[] for _ in range(len(rests) + 1)]
     ends = [end for _, end in rests]
     for point in points:
@@ -92,15 +84,13 @@ def passes_between(
         # what happens in a rest is no swing of either motion
         if number == len(rests) or point.time < rests[number][0]:
             motions[number].append(point)
-    return [found for motion in motions for found in _passes(true_swings(motion, threshold))]
-
-
-def _passes(kept: list[TurningPoint]) -> list[Pass]:
-    return [
-        Pass(low.time, low.tilt, after.rolling_angle - before.rolling_angle)
+    rows = [
+        (low.time, low.tilt, after.rolling_angle - before.rolling_angle)
+        for kept in (true_swings(motion, threshold) for motion in motions)
         for before, low, after in zip(kept, kept[1:], kept[2:], strict=False)
         if before.is_maximum and not low.is_maximum
     ]
+    return pd.DataFrame(rows, columns=["time", "minimum_tilt", "angle_of_turn"], dtype=float)
 
 
 def _vertex(values: Array) -> tuple[float, float]:

@@ -49,7 +49,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models.shown import Brief
 
-from .scene import Scene
+from .scene import Array, Scene
 
 Settings = Mapping[str, Any]
 
@@ -104,8 +104,6 @@ class EngineFacts(Brief):
     alternatives: Mapping[str, Settings] = field(default_factory=lambda: _NOTHING)
     standing_alternatives: Mapping[str, Settings] = field(default_factory=lambda: _NOTHING)
 
-
-Array = NDArray[np.float64]
 
 MEMBERS = ("supports", "uplifts", "facts", "version", "settings", "open")  # of an Engine
 

@@ -18,13 +18,13 @@ excitation, which bends at every sample of a record.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
 from .protocol import Steps
-from .scene import Body
-
-Array = NDArray[np.float64]
+from .scene import Array, Body
 
 # Steps on each side of a sample. Under El Centro a quarter of MuJoCo's single steps are more than 1 % off the
 # reduced model's normal force, windows of 16 still 4 %, these none; longer ones blur the kinks of a record.
@@ -51,17 +51,12 @@ def force_of_steps(
     return force
 
 
-def first_pull(time: Array, normal: Array) -> float:
-    """Return when the ground first pulled at the cylinder [s], from `normal` (n,) [weights]; NaN if never.
+def first_pull(time: Array, force: Array) -> float:
+    """Return when the ground first pulled at the cylinder [s], from `force` (3, n) [weights]; NaN if never.
 
     Contact does not pull, but a joint in its place does.
     """
-    if not normal.min() < -_PULL:
-        return float("nan")
-    # not in single steps: where an engine pushes the rim out of the ground, the next step takes that back
-    mean = np.convolve(normal, np.full(HALF_WINDOW, 1.0 / HALF_WINDOW), mode="same")
-    pulled = np.flatnonzero(mean < -_PULL)
-    return float(time[pulled[0]]) if len(pulled) else float("nan")
+    return _first(time, force, lambda part: part[2] < -_PULL)
 
 
 def first_grip(time: Array, force: Array, friction: float) -> float:
@@ -75,12 +70,18 @@ def first_grip(time: Array, force: Array, friction: float) -> float:
         over: NDArray[np.bool_] = np.hypot(part[0], part[1]) > available + _GRIP
         return over
 
-    if not exceeds(force).any():
+    return _first(time, force, exceeds)
+
+
+def _first(time: Array, force: Array, breaks: Callable[[Array], NDArray[np.bool_]]) -> float:
+    """Return when a force (3, n) first `breaks` a rule, in the mean over a window [s]; NaN if never."""
+    if not breaks(force).any():
         return float("nan")
+    # not in single steps: where an engine pushes the rim out of the ground, the next step takes that back
     kernel = np.full(HALF_WINDOW, 1.0 / HALF_WINDOW)
     mean = np.array([np.convolve(component, kernel, mode="same") for component in force])
-    held = np.flatnonzero(exceeds(mean))
-    return float(time[held[0]]) if len(held) else float("nan")
+    found = np.flatnonzero(breaks(mean))
+    return float(time[found[0]]) if len(found) else float("nan")
 
 
 class ForceSamples:

@@ -9,21 +9,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import replace
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.models.plain_json import fields_of
 from rockwobble.models.support import SUPPORTS
 
 from .guard import EnergyWatch, energy_scale, first_breach
 from .kinematics import Kinematics, kinematics, rim, rolling_momentum, tilt_of, unwrap, unwrap_twist
 from .passes import RestWatch, TurningPoint, turning_points
-from .protocol import Array, Steps, Wall
+from .protocol import Steps, Wall
 from .reaction import ForceSamples, UpliftWatch, begun_at, first_grip, first_pull, force_of_steps, sure_tilt
-from .scene import Scene, Start
+from .scene import Array, Scene, Start
 
 Indices = NDArray[np.intp]
+T = TypeVar("T", Steps, Kinematics, Wall)
 
 OVERTURNED = 0.5 * math.pi - 1e-3  # [rad] contact of the side may stop the fall a little before pi/2
 
@@ -163,9 +166,8 @@ class Recorder:
             # whatever the engine did after the end, the side on the ground included, is no part of the run
             inside = slice(stop)
             time, gained, acceleration = time[inside], gained[inside], acceleration[inside]
-            poses, after = _rows(poses, inside), _rows(after, inside)
-            state = Kinematics(*(getattr(state, field.name)[inside] for field in fields(state)))
-            wall = wall and Wall(wall.touching[inside], wall.force[inside], wall.depth[inside])
+            poses, after, state = _rows(poses, inside), _rows(after, inside), _rows(state, inside)
+            wall = wall and _rows(wall, inside)
         if self._watch is not None and self.uplift is None:
             self.uplift = self._watch.watch(time, state.tilt, poses, after, acceleration)
         leans = state.tilt > self.floor
@@ -207,7 +209,7 @@ class Recorder:
         self.forces.add(ends[0])
         # a wall may well push the cylinder down, by its friction or where the rim is below it
         if math.isnan(self.pull_time) and wall is None:
-            self.pull_time = float(np.fmin.reduce([first_pull(time, force[2]) for force in ends]))
+            self.pull_time = float(np.fmin.reduce([first_pull(time, force) for force in ends]))
         if math.isnan(self.grip_time) and wall is None:
             friction = self._scene.friction
             self.grip_time = float(np.fmin.reduce([first_grip(time, force, friction) for force in ends]))
@@ -324,10 +326,12 @@ def _after(last: Array, rows: Array) -> Array:
     return joined.T
 
 
-def _rows(steps: Steps, part: slice | Indices) -> Steps:
-    return Steps(
-        steps.position[part], steps.quaternion[part], steps.velocity[part], steps.angular_velocity[part]
-    )
+def _rows(values: T, part: slice | Indices) -> T:
+    """Return the same of a part of the steps."""
+    arrays: dict[str, Any] = {
+        name: each[part] for name, each in fields_of(values).items() if isinstance(each, np.ndarray)
+    }
+    return replace(values, **arrays)
 
 
 class WallWatch:

@@ -51,8 +51,8 @@ from rockwobble.models import Cylinder
 from rockwobble.models.support import SUPPORTS
 
 from .kinematics import axis_of
-from .protocol import Array, Settings
-from .scene import Scene
+from .protocol import Settings
+from .scene import Array, Scene
 from .settings import EngineSettings, positive, whole
 
 _ROUNDING = 1e-12  # [b] of a tilt that comes back from a quaternion

@@ -27,6 +27,8 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, InitialState
 
+Array = NDArray[np.float64]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
@@ -80,9 +82,6 @@ def scaled_body(cylinder: Cylinder, length: float) -> Body:
         axial_inertia=0.5 * radius**2 if axial is None else axial / length**2,
         slab_mass_ratio=cylinder.slab_mass_ratio,
     )
-
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,14 +9,13 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockwobble.models import Case, Diagnostic, InitialState, Run, Trace
 from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_positive
 from rockwobble.models.trace_source import Known
 
-from .auto_step import AUTO, STEP_TOLERANCE, find_step
+from .auto_step import AUTO, STEP_TOLERANCE, Progress, find_step
 from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, engine_for
 from .excitation import StepMeans
 from .extrapolated_step import EXTRAPOLATED, FINEST, extrapolate, require_finest
@@ -24,13 +23,21 @@ from .guard import check_time_step
 from .passes import passes_between, true_swings
 from .protocol import Engine, Settings
 from .recorder import COLUMNS, Recorder
-from .scene import REFERENCE_GRAVITY, Scale, Scene, default_step, froude_scale, scaled_body, starting_state
-from .stepping import Progress, run_steps
+from .scene import (
+    REFERENCE_GRAVITY,
+    Array,
+    Scale,
+    Scene,
+    default_step,
+    froude_scale,
+    scaled_body,
+    starting_state,
+)
+from .stepping import run_steps
 
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 
 STEP_SETTINGS = {"step_tolerance": AUTO, "finest_step": EXTRAPOLATED}  # settings of the ways to a step
 _SWING = 1e-9  # [rad] smallest difference of two turning points that is not rounding
@@ -101,8 +108,8 @@ def simulate(
     run = Run(engine, support, time_step, **settings)
     unit_time = froude_scale(case.cylinder.semidiagonal, case.gravity).time
 
-    def attempt(step: float, tell: Progress) -> Trace:
-        return _simulate(case, run, engine, step, sample_step, tell, settings)
+    def attempt(step: float, tell: Progress | None) -> Trace:
+        return _simulate(case, run, step, sample_step, tell, settings)
 
     if time_step == AUTO:
         given = settings.pop("step_tolerance", STEP_TOLERANCE)
@@ -115,29 +122,24 @@ def simulate(
     for name, way in STEP_SETTINGS.items():
         if name in settings:
             raise ValueError(f'{name} goes with time_step="{way}", got time_step={time_step!r}')
-    return _simulate(
-        case, run, engine, None if time_step is None else float(time_step), sample_step, progress, settings
-    )
+    if time_step is None:
+        time_step = default_step(case.cylinder.semidiagonal, case.gravity)
+    return attempt(float(time_step), progress)
 
 
 def _simulate(
     case: Case,
     run: Run,
-    engine: str,
-    time_step: float | None,
+    step: float,
     sample_step: float,
     progress: Progress | None,
     settings: Settings,
 ) -> Trace:
-    """Run with one time step [s]; None is the default."""
+    """Run with one time step [s]."""
     started = clock.perf_counter()
-    backend = engine_for(case, engine, run.support)
-    size = case.cylinder.semidiagonal, case.gravity
-    scale = froude_scale(*size)
-    step = default_step(*size) if time_step is None else require_positive("time_step", time_step, "s")
-    check_time_step(step, scale.time)
-    scene = make_scene(case, run.support, step, scale)
-    resolved = backend.settings(settings, scene)
+    assert run.engine is not None
+    scale = froude_scale(case.cylinder.semidiagonal, case.gravity)
+    backend, scene, resolved = _stated(case, run.engine, run.support, settings, step)
     samples = _sample_times(case.length, require_positive("sample_step", sample_step, "s")) / scale.time
     release = InitialState(0.0) if case.initial is None else case.initial
     recorder = Recorder(
@@ -154,7 +156,7 @@ def _simulate(
     except ImportError as error:
         reason = " ".join(str(error).split())
         raise EngineNotInstalledError(
-            f"engine {engine!r} is installed and does not load: {reason}"
+            f"engine {run.engine!r} is installed and does not load: {reason}"
         ) from error
     return _trace(
         recorder,
@@ -189,11 +191,13 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         "contact_force": forces,
         "energy": table["energy"] * scale.energy,
         "energy_error": table["energy_error"] * scale.energy,
-        "energy_lost": _energy_lost(table["energy_error"], scene) * scale.energy,
         "slip": table["slip"] * scale.length,
         "wall_contact": table["wall_contact"] * scale.time,
         "wall_impulse": table["wall_impulse"] * scale.length / scale.time,
     }
+    if scene.rolling_resistance > 0.0:
+        # all that contact took, of which the part of the couple is not known alone
+        sampled["energy_lost"] = -sampled["energy_error"]
     return Trace(
         time=table["time"] * scale.time,
         tilt=table["tilt"],
@@ -217,14 +221,6 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         residual_displacement=float(np.hypot(table["base_x"][-1], table["base_y"][-1])) * scale.length,
         **method,
     )
-
-
-def _energy_lost(error: Array, scene: Scene) -> Array:
-    """Return what the start and the ground supplied and the energy lacks; unknown without a couple of loss.
-
-    All that contact took is in it, of which the couple's part is not known alone.
-    """
-    return -error if scene.rolling_resistance > 0.0 else np.full(len(error), math.nan)
 
 
 def _extrema(recorder: Recorder, scene: Scene, scale: Scale) -> Array:
@@ -262,42 +258,16 @@ def _peak(recorder: Recorder, outcome: str, rows: Array) -> float:
 
 
 def _passes(recorder: Recorder, resolution: float, scale: Scale) -> pd.DataFrame:
-    import pandas as pd
-
     start = recorder.uplift[0] if recorder.uplift is not None else math.inf
     points = [point for point in recorder.points if start <= point.time <= recorder.end]
     passes = passes_between(points, _SWING, recorder.rests.rests())
-    return pd.DataFrame(
-        {
-            "time": np.array([item.time for item in passes], dtype=float) * scale.time,
-            "minimum_tilt": np.array([item.minimum_tilt for item in passes], dtype=float),
-            "angle_of_turn": np.array([item.angle_of_turn for item in passes], dtype=float),
-            "resolved": np.array([item.minimum_tilt > resolution for item in passes], dtype=bool),
-        }
-    )
+    return passes.assign(time=passes["time"] * scale.time, resolved=passes["minimum_tilt"] > resolution)
 
 
 def _sample_times(end: float, sample_step: float) -> Array:
     """Multiples of the sample step, and the exact end."""
     times: Array = sample_step * np.arange(math.floor(end / sample_step + 1e-9) + 1, dtype=float)
     return times if math.isclose(times[-1], end, rel_tol=1e-9) else np.append(times, end)
-
-
-def make_scene(case: Case, support: str, step: float, scale: Scale) -> Scene:
-    """Return the scene of a case, in the units of the reference size; `step` is the user's [s]."""
-    body = scaled_body(case.cylinder, scale.length)
-    motion = case.motion
-    return Scene(
-        body=body,
-        start=starting_state(body, case.initial, scale.time),
-        support=support,
-        friction=case.friction,
-        time_step=step / scale.time,
-        gravity=REFERENCE_GRAVITY,
-        components="" if motion is None else "xyz" if motion.has_vertical else "xy",
-        unit_time=scale.time,
-        rolling_resistance=case.rolling_resistance / scale.length,
-    )
 
 
 def resolved_settings(
@@ -308,10 +278,10 @@ def resolved_settings(
     Raises
     ------
     ValueError
-        If the engine is unknown, cannot run the case, or a setting is unknown or out of range.
+        If the engine is unknown, cannot run the case, the time step is out of range, or a setting is
+        unknown or out of range.
     """
-    backend, scene = _stated(case, engine, support, time_step)
-    return backend.settings(settings, scene)
+    return _stated(case, engine, support, settings, time_step)[-1]
 
 
 @contextlib.contextmanager
@@ -328,16 +298,33 @@ def open_scene(case: Case, engine: str, support: str, settings: Settings) -> Ite
     ValueError
         As `simulate` does.
     """
-    backend, scene = _stated(case, engine, support)
-    with backend.open(scene, backend.settings(settings, scene)) as stepper:
+    backend, scene, resolved = _stated(case, engine, support, settings)
+    with backend.open(scene, resolved) as stepper:
         yield stepper
 
 
-def _stated(case: Case, engine: str, support: str, time_step: float | None = None) -> tuple[Engine, Scene]:
+def _stated(
+    case: Case, engine: str, support: str, settings: Settings, time_step: float | None = None
+) -> tuple[Engine, Scene, Mapping[str, object]]:
+    """Return the engine, the scene of a case at the reference size, and every setting."""
     backend = engine_for(case, engine, support)
     size = case.cylinder.semidiagonal, case.gravity
+    scale = froude_scale(*size)
     step = default_step(*size) if time_step is None else time_step
-    return backend, make_scene(case, support, step, froude_scale(*size))
+    check_time_step(step, scale.time)
+    body, motion = scaled_body(case.cylinder, scale.length), case.motion
+    scene = Scene(
+        body=body,
+        start=starting_state(body, case.initial, scale.time),
+        support=support,
+        friction=case.friction,
+        time_step=step / scale.time,
+        gravity=REFERENCE_GRAVITY,
+        components="" if motion is None else "xyz" if motion.has_vertical else "xy",
+        unit_time=scale.time,
+        rolling_resistance=case.rolling_resistance / scale.length,
+    )
+    return backend, scene, backend.settings(settings, scene)
 
 
 def diagnostics(

@@ -10,19 +10,16 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .auto_step import Progress
 from .excitation import StepMeans
 from .passes import TurningPoint, true_swings
 from .protocol import Engine, Stepper
 from .recorder import Recorder
-from .scene import Body, Scene
-
-Array = NDArray[np.float64]
-Progress = Callable[[float], None]
+from .scene import Array, Body, Scene
 
 _CHUNK = 10_000  # steps between two looks at the run: a second of the reference scene, 3 MB of states
 _CHUNK_BEYOND = 2_000  # the same after the end, where most swings turn back within a second

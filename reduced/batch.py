@@ -15,7 +15,7 @@ from rockwobble.models.cpus import in_threads, usable_cpus
 from rockwobble.models.number_checks import quoted
 
 from .integration.result import OVERTURNED, IntegrationResult
-from .problem import REST_TILT, make_problem
+from .problem import REST_TILT, Problem
 from .simulation import make_ready
 
 # Tasks for each thread, so that all end at about the same time. The sizes of one task share the preparation
@@ -87,7 +87,7 @@ def peak_tilts(
     sizes, factors = _axis("semidiagonals", semidiagonals), _axis("scales", scales)
     cylinders = (Cylinder(semidiagonal=float(size), tan_alpha=tan_alpha) for size in sizes)
     bodies = [
-        make_problem(
+        Problem(
             Case(
                 WobblingFrame(cylinder, slab_mass_ratio),
                 motion,

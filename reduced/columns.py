@@ -8,22 +8,21 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import GroundMotion
+from rockwobble.models import Case, GroundMotion
 
 # A motion is in one plane if it leaves it by no more than a few roundings of its peak.
 _PLANE_TOLERANCE = 32.0 * float(np.finfo(float).eps)
 
 
-def ground_at(
-    motion: GroundMotion | None, duration: float, times: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def ground_at(case: Case, times: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the ground acceleration (n, 3) [m/s^2] at `times` (n,) [s]; zero outside record and run."""
+    motion = case.motion
     record = three_columns(motion)
     if motion is None:
         return np.zeros((len(times), 3))
     at = np.arange(len(record)) * motion.time_step
     # the last instant of a run may round beyond the last sample
-    inside = times <= min(motion.duration, duration) * (1.0 + 1e-12)
+    inside = times <= min(motion.duration, case.length) * (1.0 + 1e-12)
     return np.column_stack([np.where(inside, np.interp(times, at, column), 0.0) for column in record.T])
 
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
-from dataclasses import dataclass, fields
+from dataclasses import KW_ONLY, dataclass, fields, replace
 from functools import cached_property
 from numbers import Real
 from typing import Any, NamedTuple
@@ -12,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, InitialState
 from rockwobble.models.number_checks import quoted
 from rockwobble.models.support import SUPPORTS as FACTS
 
@@ -58,30 +57,71 @@ class SetUp(NamedTuple):
     azimuth: float  # from which the angles of the result count [rad]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Problem:
-    """One run of a reduced model, solved as often as something new is asked of it."""
+    """One run of a reduced model, solved as often as something new is asked of it; options as of `simulate`.
 
-    model: str
-    cylinder: Cylinder
-    motion: GroundMotion | None
-    initial: InitialState | None
-    duration: float
-    gravity: float
-    rtol: float
-    rest_tilt: float
-    plane: float
-    restitution: float
-    rolling_resistance: float
+    Raises
+    ------
+    ValueError
+        If an option is out of range.
+    """
 
-    def __reduce__(self) -> tuple[object, ...]:
+    case: Case
+    _: KW_ONLY
+    support: str = "recess"
+    plane: float | None = None
+    restitution: float | str = 1.0
+    rtol: float = 1e-8
+    rest_tilt: float = REST_TILT
+
+    def __post_init__(self) -> None:
+        plane, initial = self.plane, self.case.initial
+        if self.support not in SUPPORTS:
+            raise ValueError(
+                f"support must be one of {', '.join(SUPPORTS)} for a reduced model, got {self.support!r}"
+            )
+        for name in ("rtol", "rest_tilt", "plane"):
+            value = getattr(self, name)
+            if not (isinstance(value, Real) or (name == "plane" and value is None)):
+                raise ValueError(f"{name} must be a number, got {quoted(value)}")
+        if not 1e-13 <= self.rtol <= 1e-2:
+            raise ValueError(f"rtol must be from 1e-13 to 1e-2, got {self.rtol!r}")
+        if not 0.0 <= self.rest_tilt <= LARGEST_REST_TILT:
+            raise ValueError(f"rest_tilt must be from 0 (no rule) to 0.1 (of alpha), got {self.rest_tilt!r}")
+        if plane is not None and not math.isfinite(plane):
+            raise ValueError(f"plane must be a finite azimuth [rad], got {plane!r}")
+        if self.restitution != "momentum" and not (
+            isinstance(self.restitution, Real) and 0.0 <= self.restitution <= 1.0
+        ):
+            raise ValueError(f"restitution must be from 0 to 1 or 'momentum', got {quoted(self.restitution)}")
+        if plane is None and self.rebound != 1.0:
+            raise ValueError(
+                f"restitution belongs to planar motion, got {self.restitution!r} without a plane"
+            )
+        if plane is not None and initial is not None:
+            _require_in_plane(initial, plane)
+
+    def __getstate__(self) -> dict[str, Any]:
         # what is derived stays behind: compiled code that travels is compiled again where it arrives
-        return _restored, ({field.name: getattr(self, field.name) for field in fields(self)},)
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    @property
+    def model(self) -> str:
+        """The model that was asked for: planar, recess or flat."""
+        return self.support if self.plane is None else "planar"
+
+    @cached_property
+    def rebound(self) -> float:
+        """Ratio of tilt rates at an impact."""
+        if self.restitution == "momentum":
+            return restitution_from_momentum(self.case.cylinder)
+        return float(self.restitution)
 
     @cached_property
     def body(self) -> Body:
         """The constants of the equations."""
-        return body_of(self.cylinder, self.gravity, self.rolling_resistance)
+        return body_of(self.case.cylinder, self.case.gravity, self.case.rolling_resistance)
 
     def solve(
         self,
@@ -93,13 +133,14 @@ class Problem:
         integrate, task, azimuth = self._set_up
         # a column of a table would have the time integration compiled for its stride
         task = task._replace(times=np.ascontiguousarray(times))
-        return integrate(self.body, self._options(record_steps), task), azimuth
+        return integrate(self.body, self._options._replace(record_steps=record_steps), task), azimuth
 
     def shaking(self, factor: float) -> SetUp:
         """Return the integration of a run from rest under ``motion.scaled(factor)``, for its peak only."""
-        assert self.motion is not None
-        if self.model == "planar" or not is_spatial(self.motion) or not math.isfinite(factor * self._peak):
-            scaled = dataclasses.replace(self, motion=self.motion.scaled(factor))
+        motion = self.case.motion
+        assert motion is not None
+        if self.plane is not None or not is_spatial(motion) or not math.isfinite(factor * self._peak):
+            scaled = replace(self, case=replace(self.case, motion=motion.scaled(factor)))
             return scaled._set_up._replace(task=scaled._set_up.task._replace(later=scaled._later))
         # far from planar, so that the plane need not be looked for: a third of the time of a short run
         task = self._set_up.task
@@ -108,12 +149,12 @@ class Problem:
 
     def solve_under(self, shaking: SetUp) -> IntegrationResult:
         """Return the result for this body under a motion of another size, for the peak only."""
-        return shaking.integrate(self.body, self._options(False), shaking.task)
+        return shaking.integrate(self.body, self._options, shaking.task)
 
     @property
     def free_twist(self) -> bool:
         """Whether the model has a twist: on flat ground, but not where it is planar by choice."""
-        return self.model in SUPPORTS and not FACTS[self.model].guided
+        return self.plane is None and not FACTS[self.support].guided
 
     def is_planar(self) -> bool:
         """Return whether the run stays in one vertical plane."""
@@ -123,18 +164,24 @@ class Problem:
     def kernel(self) -> str:
         """The name of the compiled model that solves it."""
         model = "planar" if self.is_planar() else self.model
-        return f"resisted {model}" if self.rolling_resistance > 0.0 else model
+        return f"resisted {model}" if self.case.rolling_resistance > 0.0 else model
 
     @cached_property
     def _peak(self) -> float:
-        return 0.0 if self.motion is None else float(np.abs(self.motion.acceleration).max())
+        motion = self.case.motion
+        return 0.0 if motion is None else float(np.abs(motion.acceleration).max())
 
-    def _options(self, record_steps: bool) -> Options:
-        restitution = self.restitution
-        if self.rolling_resistance > 0.0:
+    @cached_property
+    def _options(self) -> Options:
+        case, restitution = self.case, self.rebound
+        if case.rolling_resistance > 0.0:
             restitution = impact_ratio(self.body, restitution)
-        rest_tilt = max(self.rest_tilt, _LEAST_WITH_LOSS if restitution < 1.0 else 0.0)
-        return Options(self.rtol, rest_tilt, restitution, self.duration, self._step_budget(), record_steps)
+        rest_tilt = max(float(self.rest_tilt), _LEAST_WITH_LOSS if restitution < 1.0 else 0.0)
+        budget = _BUDGET + _BUDGET_PER_TIME * case.length * self.body.p
+        if case.motion is not None:
+            budget += _BUDGET_PER_SAMPLE * len(case.motion.acceleration)
+        steps = int(min(budget, 2**62))
+        return Options(float(self.rtol), rest_tilt, restitution, case.length, steps, record_steps=False)
 
     @cached_property
     def _set_up(self) -> SetUp:
@@ -142,8 +189,9 @@ class Problem:
 
         Rounding would otherwise choose on which side such motion passes upright.
         """
-        azimuth, record = self._plane or Plane(0.0, three_columns(self.motion))
-        time_step = 1.0 if self.motion is None else self.motion.time_step
+        motion = self.case.motion
+        azimuth, record = self._plane or Plane(0.0, three_columns(motion))
+        time_step = 1.0 if motion is None else motion.time_step
         task = Task(record, time_step, self._start(azimuth), np.empty(0), np.empty((0, 2)))
         return SetUp(kernels.INTEGRATORS[self.kernel], task, azimuth)
 
@@ -158,14 +206,9 @@ class Problem:
         lightest = np.minimum(np.minimum.accumulate(record[::-1, 2])[::-1], 0.0)
         return np.column_stack([strongest, lightest])
 
-    def _step_budget(self) -> int:
-        samples = 0 if self.motion is None else len(self.motion.acceleration)
-        times = self.duration * self.body.p
-        return int(min(_BUDGET + _BUDGET_PER_SAMPLE * samples + _BUDGET_PER_TIME * times, 2**62))
-
     def _start(self, azimuth: float) -> tuple[float, ...]:
         """State at time zero; psi' = -phi', so neither twist nor twist rate."""
-        initial, body, size = self.initial, self.body, kernels.SIZES[self.kernel]
+        initial, body, size = self.case.initial, self.body, kernels.SIZES[self.kernel]
         if initial is None or initial.tilt == 0.0:
             return (0.0,) * size
         start = float(initial.tilt), float(initial.tilt_rate)
@@ -182,90 +225,22 @@ class Problem:
     @cached_property
     def _plane(self) -> Plane | None:
         """The vertical plane that the motion stays in, if there is one."""
-        record = three_columns(self.motion)
-        if self.model == "planar":
-            azimuth = self.plane
-        elif self.initial is not None and self.initial.tilt > 0.0:
-            azimuth = self.initial.rolling_angle
-            if self.initial.rolling_rate != 0.0 or not stays_in_plane(record, azimuth):
+        motion, initial = self.case.motion, self.case.initial
+        record = three_columns(motion)
+        if self.plane is not None:
+            azimuth = float(self.plane)
+        elif initial is not None and initial.tilt > 0.0:
+            azimuth = initial.rolling_angle
+            if initial.rolling_rate != 0.0 or not stays_in_plane(record, azimuth):
                 return None
         else:
-            shaken = plane_of_shaking(self.motion)
+            shaken = plane_of_shaking(motion)
             if shaken is None:
                 return None
             azimuth = shaken
         x, y = record[:, 0], record[:, 1]
         along = x * math.cos(azimuth) + y * math.sin(azimuth)
         return Plane(azimuth, np.column_stack([along, np.zeros_like(along), record[:, 2]]))
-
-
-def _restored(given: dict[str, Any]) -> Problem:
-    return Problem(**given)
-
-
-def make_problem(
-    case: Case,
-    *,
-    support: str,
-    plane: float | None,
-    restitution: float | str,
-    rtol: float,
-    rest_tilt: float,
-) -> Problem:
-    """Check the options of a run and put them together; see `simulate`."""
-    if support not in SUPPORTS:
-        raise ValueError(f"support must be one of {', '.join(SUPPORTS)} for a reduced model, got {support!r}")
-    for name, value in (("rtol", rtol), ("rest_tilt", rest_tilt), ("plane", 0.0 if plane is None else plane)):
-        if not isinstance(value, Real):
-            raise ValueError(f"{name} must be a number, got {quoted(value)}")  # noqa: TRY004 (bad input)
-    if not 1e-13 <= rtol <= 1e-2:
-        raise ValueError(f"rtol must be from 1e-13 to 1e-2, got {rtol!r}")
-    if not 0.0 <= rest_tilt <= LARGEST_REST_TILT:
-        raise ValueError(f"rest_tilt must be from 0 (no rule) to 0.1 (of alpha), got {rest_tilt!r}")
-    if plane is not None and not math.isfinite(plane):
-        raise ValueError(f"plane must be a finite azimuth [rad], got {plane!r}")
-    if isinstance(restitution, str) and restitution == "momentum":
-        factor = restitution_from_momentum(case.cylinder)
-    elif not isinstance(restitution, Real) or not 0.0 <= restitution <= 1.0:
-        raise ValueError(f"restitution must be from 0 to 1 or 'momentum', got {quoted(restitution)}")
-    else:
-        factor = float(restitution)
-    if plane is None and factor != 1.0:
-        raise ValueError(f"restitution belongs to planar motion, got {restitution!r} without a plane")
-    if plane is not None and case.initial is not None:
-        _require_in_plane(case.initial, plane)
-    return Problem(
-        model=support if plane is None else "planar",
-        cylinder=case.cylinder,
-        motion=case.motion,
-        initial=case.initial,
-        duration=case.length,
-        gravity=case.gravity,
-        rtol=float(rtol),
-        rest_tilt=float(rest_tilt),
-        plane=0.0 if plane is None else float(plane),
-        restitution=factor,
-        rolling_resistance=case.rolling_resistance,
-    )
-
-
-def require_solvable(
-    case: Case,
-    *,
-    support: str = "recess",
-    plane: float | None = None,
-    restitution: float | str = 1.0,
-    rtol: float = 1e-8,
-    rest_tilt: float = REST_TILT,
-) -> None:
-    """Check the options of a run without running it.
-
-    Raises
-    ------
-    ValueError
-        As `simulate` does.
-    """
-    make_problem(case, support=support, plane=plane, restitution=restitution, rtol=rtol, rest_tilt=rest_tilt)
 
 
 def _require_in_plane(initial: InitialState, plane: float) -> None:

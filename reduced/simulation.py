@@ -6,7 +6,7 @@ import importlib.metadata
 import math
 import sys
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
@@ -19,7 +19,7 @@ from rockwobble.models.number_checks import require_positive
 from . import kernels
 from ._compile import in_memory, on_disk
 from .integration.result import COMPLETED, OVER_BUDGET, OVERTURNED, REST, IntegrationResult
-from .problem import REST_TILT, Problem, make_problem
+from .problem import REST_TILT, Problem
 from .solution import Solution, six_columns
 
 _OUTCOMES = {REST: "stands", COMPLETED: "stands", OVERTURNED: "overturned"}
@@ -81,22 +81,18 @@ def simulate(
     >>> trace.outcome, round(float(np.degrees(trace.passes.angle_of_turn[0])), 2)
     ('stands', 182.98)
     """
-    problem = make_problem(
+    problem = Problem(
         case, support=support, plane=plane, restitution=restitution, rtol=rtol, rest_tilt=rest_tilt
     )
     require_positive("sample_step", sample_step, "s")
     make_ready(problem.kernel)
-    times = sample_times(problem.duration, sample_step)
+    times = sample_times(case.length, sample_step)
     started = time.perf_counter()
     result, azimuth = problem.solve(times)
-    if result.end > problem.duration:  # it overturns later
+    if result.end > case.length:  # it overturns later
         times = sample_times(result.end, sample_step)
         result, azimuth = problem.solve(times)
-    wall_time = time.perf_counter() - started
-    given: dict[str, Any] = {} if plane is None else {"plane": plane}
-    given |= {} if restitution == 1.0 else {"restitution": restitution}
-    settings = {"rtol": rtol, "rest_tilt": rest_tilt, "plane": plane, "restitution": problem.restitution}
-    return _trace(problem, result, azimuth, times, case, Run(None, support, **given), settings, wall_time)
+    return _trace(problem, result, azimuth, times, time.perf_counter() - started)
 
 
 def make_ready(model: str) -> None:
@@ -123,11 +119,11 @@ def _trace(
     result: IntegrationResult,
     azimuth: float,
     times: NDArray[np.float64],
-    case: Case,
-    run: Run,
-    settings: Mapping[str, object],
     wall_time: float,
 ) -> Trace:
+    case = problem.case
+    given: dict[str, Any] = {} if problem.plane is None else {"plane": problem.plane}
+    given |= {} if problem.restitution == 1.0 else {"restitution": problem.restitution}
     reached = result.reached
     times, states, moving = times[:reached], result.samples[:reached], result.moving[:reached]
     overturned = result.status == OVERTURNED
@@ -143,7 +139,6 @@ def _trace(
     extrema[:, 2] += azimuth
     solution = Solution(
         problem=problem,
-        friction=case.friction,
         time=times,
         states=full,
         roll_out=states[:, 6:8] if states.shape[1] >= 8 else np.zeros((len(states), 2)),
@@ -154,7 +149,7 @@ def _trace(
     )
     return Trace(
         case=case,
-        run=run,
+        run=Run(None, problem.support, **given),
         version=_version(),
         time=times,
         tilt=full[:, 0],
@@ -174,7 +169,12 @@ def _trace(
         rests=result.status == REST,
         rest_intervals=result.rests,
         extrema=extrema,
-        settings=settings,
+        settings={
+            "rtol": problem.rtol,
+            "rest_tilt": problem.rest_tilt,
+            "plane": problem.plane,
+            "restitution": problem.rebound,
+        },
         wall_time=wall_time,
         step_count=result.step_count,
         residual_displacement=solution.residual_displacement(),

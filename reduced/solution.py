@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Assumptions, Diagnostic
 from rockwobble.models.shown import Brief
-from rockwobble.models.trace_source import friction_of
+from rockwobble.models.trace_source import Array, friction_of
 
 from . import forces, kernels
 from .columns import ground_at, in_plane
@@ -22,7 +22,6 @@ from .problem import Problem
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 # variables of a state: those of them that stand in the six columns
 _WIDTHS = {size: min(kernels.SIZES[name.split()[-1]], 6) for name, size in kernels.SIZES.items()}
 # Parts of a step at which the demands are looked at: between two of them they are close to a parabola. A run
@@ -48,8 +47,6 @@ class Solution(Brief):
     Attributes
     ----------
     problem : Problem
-    friction : float
-        Coefficient with which the friction demand is compared.
     time : ndarray, shape (n,)
         [s]
     states : ndarray, shape (n, 6)
@@ -65,7 +62,6 @@ class Solution(Brief):
     """
 
     problem: Problem
-    friction: float
     time: Array
     states: Array
     roll_out: Array
@@ -89,23 +85,23 @@ class Solution(Brief):
         """Return the energy that impacts took before each sample (n,), per unit mass [m^2/s^2]."""
         problem = self.problem
         landings = self.extrema[self.extrema[:, 1] == 0.0, 0]
-        if problem.restitution == 1.0 or not len(landings):
+        if problem.rebound == 1.0 or not len(landings):
             return np.zeros(len(self.time))
         result, _ = problem.solve(landings)  # before they rebound
         rate = result.samples[: result.reached, 1]
-        lost = 0.5 * problem.body.A * (1.0 - problem.restitution**2) * rate * rate
+        lost = 0.5 * problem.body.A * (1.0 - problem.rebound**2) * rate * rate
         before = np.searchsorted(landings[: len(lost)], self.time)
         return np.concatenate([[0.0], np.cumsum(lost)])[before]
 
     def contact_point(self, moving: NDArray[np.bool_]) -> Array:
         """Return the contact point (n, 2) relative to O [m]; NaN at rest."""
         phi = np.where(moving, self.states[:, 2], math.nan)
-        b = self.problem.cylinder.base_radius
+        b = self.problem.case.cylinder.base_radius
         return self.roll_out + b * np.column_stack([np.cos(phi), np.sin(phi)])
 
     def centre_of_mass(self) -> Array:
         """Return the mass centre (n, 3) relative to O [m]: equations (8) and (10)."""
-        b, h = self.problem.cylinder.base_radius, self.problem.cylinder.mass_centre_height
+        b, h = self.problem.body.b, self.problem.body.h
         theta, phi = self.states[:, 0], self.states[:, 2]
         s, c = np.sin(theta), np.cos(theta)
         radius = s * (h + b * np.tan(0.5 * theta))
@@ -117,7 +113,7 @@ class Solution(Brief):
         if not len(self.states):
             return math.nan
         theta, phi = self.states[-1, 0], self.states[-1, 2]
-        inward = self.problem.cylinder.base_radius * 2.0 * math.sin(0.5 * theta) ** 2
+        inward = self.problem.case.cylinder.base_radius * 2.0 * math.sin(0.5 * theta) ** 2
         x, y = self.roll_out[-1]
         return math.hypot(x + inward * math.cos(phi), y + inward * math.sin(phi))
 
@@ -156,7 +152,7 @@ class Solution(Brief):
         landings = self.extrema[self.extrema[:, 1] == 0.0, 0]
         jumps = np.concatenate([[self.uplift_time], self.rest_intervals[:, 1], landings])
         jumps = jumps[np.isfinite(jumps) & (jumps > 0.0) & (jumps < until)]
-        return review(self._demands_at, np.unique(steps[steps <= until]), jumps, self.friction)
+        return review(self._demands_at, np.unique(steps[steps <= until]), jumps, self.problem.case.friction)
 
     def _demands_at(self, times: Array) -> Demands:
         result, azimuth = self.problem.solve(times)
@@ -172,13 +168,13 @@ class Solution(Brief):
     def _derive(self, times: Array, states: Array) -> tuple[Array, Array | None]:
         """Return the derived quantities (n, 6), and in a frame the force on the slab (n, 3)."""
         problem = self.problem
-        ground = ground_at(problem.motion, problem.duration, times)
-        if problem.model == "planar":
+        ground = ground_at(problem.case, times)
+        if problem.plane is not None:
             ground = in_plane(ground, problem.plane)
         derived = forces.derived_quantities(
             problem.body, np.ascontiguousarray(states), ground, problem.free_twist
         )
-        if problem.cylinder.slab_mass_ratio == 0.0:
+        if problem.case.cylinder.slab_mass_ratio == 0.0:
             return derived, None
         base = derived[:, forces.FORCE_X : forces.FORCE_Z + 1]
         return derived, forces.top_force(problem.body, base, ground)

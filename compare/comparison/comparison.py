@@ -13,7 +13,8 @@ import pandas as pd
 
 from rockwobble.models import Case, Trace, plain_json
 from rockwobble.models.number_checks import require_one_of
-from rockwobble.models.trace_file import case_from_plain, case_to_plain
+from rockwobble.models.plain_json import fields_of
+from rockwobble.models.trace_file import case_from_plain
 
 from ..external.verdict import lists_in_words, lists_of_file
 from ..metrics.pair import first_unresolved_pass, start_of
@@ -234,7 +235,7 @@ def comparison_of(
         "inputs": fingerprint([case_inputs(case) for case in cases.values()]),
         "versions": dict(versions),
         "until": until,
-        "cases": {name: case_to_plain(case) | {"motion": _header(case)} for name, case in cases.items()},
+        "cases": {name: fields_of(case) | {"motion": _header(case)} for name, case in cases.items()},
         "traces": {_SEPARATOR.join(key): trace.to_plain() for key, trace in traces.items()},
         "budgets": {
             _SEPARATOR.join(key): {"covered": each.covered, "steps": each.steps, "order": each.order}

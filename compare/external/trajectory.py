@@ -334,10 +334,8 @@ def _passes(poses: Poses, start: float) -> pd.DataFrame:
     )
     guesses = poses.time[~poses.followed]
     near = 1.5 * float(np.median(np.diff(poses.time)))
-    names = ("time", "minimum_tilt", "angle_of_turn")
-    table = {name: np.array([getattr(item, name) for item in found], dtype=float) for name in names}
-    resolved = [not bool((np.abs(guesses - item.time) < near).any()) for item in found]
-    return pd.DataFrame({**table, "resolved": np.array(resolved, dtype=bool)})
+    away = np.abs(found["time"].to_numpy()[:, None] - guesses) >= near
+    return found.assign(resolved=np.asarray(away.all(axis=1)))
 
 
 def _places(

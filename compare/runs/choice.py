@@ -16,8 +16,7 @@ from rockwobble.multibody.engines.registry import (
     stand_in,
     standard_engines,
 )
-from rockwobble.multibody.guard import check_time_step
-from rockwobble.multibody.scene import default_step, froude_scale
+from rockwobble.multibody.scene import default_step
 from rockwobble.multibody.simulation import STEP_SETTINGS, resolved_settings
 
 _LEAN = 1e-3  # of alpha: a tilt that fits into any ring
@@ -240,13 +239,11 @@ def require_runnable(case: Case, run: Run) -> None:
     """
     if run.engine is None:
         # loads the compiler, which who only imports this need not wait for
-        from rockwobble.reduced.problem import require_solvable
+        from rockwobble.reduced.problem import Problem
 
-        require_solvable(case, **run.settings, support=run.support)
+        Problem(case, **run.settings, support=run.support)
         return
     step = None if isinstance(run.time_step, str) else run.time_step
-    if step is not None:
-        check_time_step(step, froude_scale(case.cylinder.semidiagonal, case.gravity).time)
     settings = dict(run.settings)
     for name in step_settings(run):
         settings.pop(name, None)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 from rockwobble.models import Case, Run, Trace
-from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, case_to_plain, packed
+from rockwobble.models.plain_json import fields_of
+from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, packed
 
 from ..comparison.prediction import nudged, reproducible_until
 from ..runs.choice import own_model
@@ -97,7 +98,7 @@ def single_run(
 def single_run_of(trace: Trace, until: float = math.inf, answer: str = "") -> SingleRun:
     """Return the results of a trace that is reproducible until a time of the run [s]."""
     job = Job(case=trace.case, run=trace.run)
-    case, motion = case_to_plain(trace.case), trace.case.motion
+    case, motion = fields_of(trace.case), trace.case.motion
     left_out = ("rest_intervals", "extrema", "passes")
     facts = {
         "inputs": job_fingerprint(job),

@@ -14,8 +14,8 @@ import pandas as pd
 
 from rockwobble.models import Case, GroundMotion, Run, Suite, Trace
 from rockwobble.models.diagnostic import joined
+from rockwobble.models.plain_json import fields_of
 from rockwobble.models.records.units import doubts_of
-from rockwobble.models.trace_file import run_to_plain
 
 from ..metrics.pair import outcome_of
 from ..metrics.statistics import stated
@@ -97,7 +97,7 @@ def describe_suite(suite: Suite) -> dict[str, object]:
         "runs": len(suite.cases) * len(suite.runs),
         "cases": {case.name: _described(case) for case in suite.cases},
         "runs of each": [
-            {"label": label, **run_to_plain(run)}
+            {"label": label, **fields_of(run)}
             for run, label in zip(suite.runs, run_labels(suite.runs), strict=True)
         ],
     }

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 
-from ..bounds import Bounds
 from ..case import Case, InitialState, Run, Suite
 from ..cylinder import Cylinder, cylinder_of
 from ..ground_motion import GroundMotion
@@ -17,7 +16,7 @@ from ..records.files import ZERO, el_centro_1940, read_record
 from ..records.p695 import p695_far_field
 from ..synthetic import MOST_STILL, SAMPLES_PER_PERIOD, pulse
 from .errors import KeyedError, located
-from .tables import BoundsTable, CaseTable, CylinderTable, MotionTable, ReleaseTable, RunTable, SuiteTable
+from .tables import CaseTable, CylinderTable, MotionTable, ReleaseTable, RunTable, SuiteTable
 
 # a slip in three ranges must not fill the memory
 _MOST_CASES = 10_000
@@ -49,12 +48,7 @@ def build_suite(table: SuiteTable, folder: Path) -> Suite:
         first[entry.name] = index
         cases += _cases(entry, f"cases[{index}]", folder)
     runs = [run for index, entry in enumerate(table.runs) for run in _runs(entry, f"runs[{index}]")]
-    return Suite(cases, runs, None if table.bounds is None else _bounds(table.bounds))
-
-
-def _bounds(table: BoundsTable) -> Bounds:
-    with located("bounds"):
-        return Bounds(**{name: value for name, value in table if value is not None})
+    return Suite(cases, runs, table.bounds)
 
 
 def _runs(table: RunTable, path: str) -> Iterator[Run]:

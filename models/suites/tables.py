@@ -14,13 +14,22 @@ A number is one, a list, or a range; each becomes the tuple of its values.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import fields
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+import numpy as np
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    model_validator,
+)
 
-from ..bounds import REFERENCES
+from ..bounds import Bounds
 from ..case import WAYS_TO_A_STEP, TimeStep
 from ..records.units import UNITS
 from ..synthetic import PULSES
@@ -126,13 +135,21 @@ def _range(given: Mapping[str, object]) -> tuple[float, ...]:
     if spacing not in ("linear", "log"):
         raise KeyedError("spacing", f"must be linear or log, got {shown(spacing)}")
     if "step" in given:
-        return _stepped(low, high, numbers["step"], spacing)
-    return _counted(low, high, int(numbers["count"]), spacing)
+        if spacing == "log":
+            raise KeyedError("spacing", "log must go with count, got step")
+        count = _steps_in(low, high, numbers["step"]) + 1
+    else:
+        count = int(numbers["count"])
+        if not 2 <= count <= _MOST:
+            raise KeyedError("count", f"must be from 2 to {_MOST}, got {count}")
+    if spacing == "log" and low <= 0.0:
+        raise KeyedError("from", f"must be positive where spacing is log, got {low:g}")
+    spaced = np.geomspace if spacing == "log" else np.linspace
+    # 0.3 and not 0.30000000000000004
+    return tuple(float(f"{value:.12g}") for value in spaced(low, high, count))
 
 
-def _stepped(low: float, high: float, step: float, spacing: str) -> tuple[float, ...]:
-    if spacing == "log":
-        raise KeyedError("spacing", "log must go with count, got step")
+def _steps_in(low: float, high: float, step: float) -> int:
     if step <= 0.0:
         raise KeyedError("step", f"must be positive, got {step:g}")
     intervals = (high - low) / step
@@ -140,22 +157,7 @@ def _stepped(low: float, high: float, step: float, spacing: str) -> tuple[float,
         raise KeyedError("step", f"must give at most {_MOST} values, got {intervals:.3g}")
     if abs(intervals - round(intervals)) > _ROUNDING * intervals:
         raise KeyedError("step", f"must divide the range from {low:g} to {high:g}, got {step:g}")
-    return _tidy(low + step * index for index in range(round(intervals) + 1))
-
-
-def _counted(low: float, high: float, count: int, spacing: str) -> tuple[float, ...]:
-    if not 2 <= count <= _MOST:
-        raise KeyedError("count", f"must be from 2 to {_MOST}, got {count}")
-    if spacing == "linear":
-        return _tidy(low + (high - low) * index / (count - 1) for index in range(count))
-    if low <= 0.0:
-        raise KeyedError("from", f"must be positive where spacing is log, got {low:g}")
-    return _tidy(low * (high / low) ** (index / (count - 1)) for index in range(count))
-
-
-def _tidy(values: Iterable[float]) -> tuple[float, ...]:
-    # 0.3 and not 0.30000000000000004
-    return tuple(float(f"{value:.12g}") for value in values)
+    return round(intervals)
 
 
 def _values(check: Check) -> BeforeValidator:
@@ -343,7 +345,6 @@ def _one_positive(given: object) -> float:
     return expanded(given, positive)[0]
 
 
-Positive = Annotated[float, BeforeValidator(_one_positive)]
 Texts = Annotated[list[str], BeforeValidator(_texts), Field(min_length=1)]
 
 
@@ -363,20 +364,20 @@ class RunTable(_Table):
         return self
 
 
-class BoundsTable(_Table):
+def _bounds(given: object) -> object:
     """Bounds on columns of the summary, which tests ask of every run."""
-
-    tilt_rms: Positive | None = None
-    tilt_rms_relative: Positive | None = None
-    peak_tilt_difference: Positive | None = None
-    contact_rms: Positive | None = None
-    turn_difference: Positive | None = None
-    uplift_time_difference: Positive | None = None
-    residual_displacement: Positive | None = None
-    residual_twist: Positive | None = None
-    energy_loss: Positive | None = None
-    agreement_time: Positive | None = None
-    reference: Annotated[str, _known(*REFERENCES)] | None = None
+    if not isinstance(given, dict):
+        return given
+    names = [field.name for field in fields(Bounds)]
+    values: dict[str, Any] = {}
+    for key, value in given.items():
+        if key not in names:
+            raise KeyedError(key, nearest(key, names))
+        try:
+            values[key] = value if key == "reference" else _one_positive(value)
+        except ValueError as error:
+            raise KeyedError(key, str(error)) from None
+    return Bounds(**values)
 
 
 class SuiteTable(_Table):
@@ -384,7 +385,7 @@ class SuiteTable(_Table):
 
     cases: list[CaseTable] = Field(min_length=1)
     runs: list[RunTable] = Field(default_factory=list)
-    bounds: BoundsTable | None = None
+    bounds: Annotated[Bounds | None, BeforeValidator(_bounds)] = None
 
 
 # by their keys, "" for the whole file
@@ -396,6 +397,5 @@ TABLES: Mapping[str, type[BaseModel]] = MappingProxyType(
         "motion": MotionTable,
         "release": ReleaseTable,
         "runs": RunTable,
-        "bounds": BoundsTable,
     }
 )

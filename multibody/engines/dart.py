@@ -25,24 +25,20 @@ Contact has no stiffness to choose: after a step the rim's lowest point rests or
 
 from __future__ import annotations
 
-import contextlib
 import math
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from ..kinematics import about_vertical
-from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
-from ..scene import Scene
+from ..protocol import EngineFacts, SceneCounts, Steps
+from ..scene import Array, Scene
 from ..settings import Count, EngineSettings, Positive, Share, Small, positive
 from .declared import Declared, Leapfrog, contact_counts
 
 if TYPE_CHECKING:
-    from dartpy.constraint import BoxedLcpSolver
-    from dartpy.dynamics import BodyNode, FreeJoint, Shape, ShapeNode, TranslationalJoint
-    from dartpy.simulation import World
+    from dartpy.dynamics import BodyNode, Shape, ShapeNode, TranslationalJoint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,86 +73,6 @@ class DartSettings(EngineSettings):
     friction_damping: Annotated[float, positive(most=2.0)] = 1.8
     tolerance: Small = 1e-12
     iterations: Count = 1000
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class DartScene:
-    """A ground that may have a velocity, though it does not move, and a cylinder on it.
-
-    Attributes
-    ----------
-    world : dartpy.simulation.World
-    ground : dartpy.dynamics.TranslationalJoint
-    cylinder : dartpy.dynamics.BodyNode
-    joint : dartpy.dynamics.FreeJoint
-        Its positions are a rotation vector and the position of the mass centre [m].
-    slab : dartpy.dynamics.TranslationalJoint, optional
-    use : callable
-        Takes the solver of contact.
-    flat_solver, rim_solver : dartpy.constraint.BoxedLcpSolver
-    """
-
-    world: World
-    ground: TranslationalJoint
-    cylinder: BodyNode
-    joint: FreeJoint
-    slab: TranslationalJoint | None
-    use: Callable[[BoxedLcpSolver], None]
-    flat_solver: BoxedLcpSolver
-    rim_solver: BoxedLcpSolver
-
-
-def make_scene(scene: Scene, settings: DartSettings) -> DartScene:
-    """Make ground and cylinder, the mass centre at the origin."""
-    import dartpy
-
-    shape, dynamics = scene.body, dartpy.dynamics
-    world = dartpy.simulation.World()
-    world.setTimeStep(scene.time_step)
-    world.setGravity([0.0, 0.0, -scene.gravity])
-    solver = world.getConstraintSolver()
-    # its own detector and FCL's find one contact under a flat base, and Bullet's rounds the rim
-    solver.setCollisionDetector(dartpy.collision.OdeCollisionDetector())
-
-    def collide(node: BodyNode, outline: Shape) -> ShapeNode:
-        placed = node.createShapeNode(outline)
-        placed.createCollisionAspect()
-        placed.createDynamicsAspect().setFrictionCoeff(scene.friction)
-        return placed
-
-    def add_plane(name: str, up: float, mass: float) -> TranslationalJoint:
-        skeleton = dynamics.Skeleton(name)
-        slide, plane = skeleton.createTranslationalJointAndBodyNodePair()
-        collide(plane, dynamics.PlaneShape([0.0, 0.0, up], 0.0))
-        skeleton.setMobile(mass > 0.0)
-        if mass > 0.0:
-            plane.setMass(mass)
-        world.addSkeleton(skeleton)
-        return slide
-
-    ground = add_plane("ground", 1.0, 0.0)
-    cylinder = dynamics.Skeleton("cylinder")
-    joint, body = cylinder.createFreeJointAndBodyNodePair()
-    outline = collide(body, dynamics.CylinderShape(shape.base_radius, shape.height))
-    place = dartpy.math.Isometry3()
-    place.set_translation([0.0, 0.0, 0.5 * shape.height - shape.mass_centre_height])
-    outline.setRelativeTransform(place)
-    inertia = np.diag([shape.transverse_inertia, shape.transverse_inertia, shape.axial_inertia])
-    body.setInertia(dynamics.Inertia(1.0, np.zeros(3), inertia))
-    world.addSkeleton(cylinder)
-    share = shape.slab_mass_ratio
-    options = dartpy.constraint.NsgsFrictionSolver.Options()
-    options.tolerance, options.maxSweeps = settings.tolerance, settings.iterations
-    return DartScene(
-        world=world,
-        ground=ground,
-        cylinder=body,
-        joint=joint,
-        slab=add_plane("slab", -1.0, share) if share > 0.0 else None,
-        use=solver.setBoxedLcpSolver,
-        flat_solver=solver.getBoxedLcpSolver(),
-        rim_solver=dartpy.constraint.NsgsFrictionSolver(options),
-    )
 
 
 def rotation_vector(quaternion: Array, spin: float) -> Array:
@@ -202,22 +118,11 @@ _FACTS = EngineFacts(
 )
 
 
-class DartEngine(Declared):
-    """DART 6: free joint, ground plane, contact found by ODE."""
-
-    package, settings_type, facts = "dartpy", DartSettings, _FACTS
-
-    @contextlib.contextmanager
-    def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
-        """Open the scene at its start; Python frees it when nothing refers to it any more."""
-        yield _DartStepper(scene, DartSettings(**settings))
-
-
 class _DartStepper(Leapfrog):
     def __init__(self, scene: Scene, settings: DartSettings) -> None:
         super().__init__(scene, settings.guide_stiffness, settings.depth)
         self._settings = settings
-        self._dart: DartScene = make_scene(scene, settings)
+        self._build(scene, settings)
         self._kept = settings.depth  # depth at which the rim is kept just now [m]
         self._open = False
         self._lost = False
@@ -234,6 +139,53 @@ class _DartStepper(Leapfrog):
             self._slab_velocity = 3.0 * velocity - 0.5 * self._slab_velocity
             self._put(start.quaternion, position, 1.5 * velocity - 0.5 * after, 1.5 * spin - 0.5 * spin_after)
 
+    def _build(self, scene: Scene, settings: DartSettings) -> None:
+        """Make ground, cylinder and slab: the mass centre at the origin, planes that may have a velocity."""
+        import dartpy
+
+        shape, dynamics = scene.body, dartpy.dynamics
+        self._world = world = dartpy.simulation.World()
+        world.setTimeStep(scene.time_step)
+        world.setGravity([0.0, 0.0, -scene.gravity])
+        solver = world.getConstraintSolver()
+        # its own detector and FCL's find one contact under a flat base, and Bullet's rounds the rim
+        solver.setCollisionDetector(dartpy.collision.OdeCollisionDetector())
+
+        def collide(node: BodyNode, outline: Shape) -> ShapeNode:
+            placed = node.createShapeNode(outline)
+            placed.createCollisionAspect()
+            placed.createDynamicsAspect().setFrictionCoeff(scene.friction)
+            return placed
+
+        def add_plane(name: str, up: float, mass: float) -> TranslationalJoint:
+            skeleton = dynamics.Skeleton(name)
+            slide, plane = skeleton.createTranslationalJointAndBodyNodePair()
+            collide(plane, dynamics.PlaneShape([0.0, 0.0, up], 0.0))
+            skeleton.setMobile(mass > 0.0)
+            if mass > 0.0:
+                plane.setMass(mass)
+            world.addSkeleton(skeleton)
+            return slide
+
+        self._ground = add_plane("ground", 1.0, 0.0)
+        cylinder = dynamics.Skeleton("cylinder")
+        # the positions of the joint are a rotation vector and the position of the mass centre [m]
+        self._joint, self._cylinder = cylinder.createFreeJointAndBodyNodePair()
+        outline = collide(self._cylinder, dynamics.CylinderShape(shape.base_radius, shape.height))
+        place = dartpy.math.Isometry3()
+        place.set_translation([0.0, 0.0, 0.5 * shape.height - shape.mass_centre_height])
+        outline.setRelativeTransform(place)
+        inertia = np.diag([shape.transverse_inertia, shape.transverse_inertia, shape.axial_inertia])
+        self._cylinder.setInertia(dynamics.Inertia(1.0, np.zeros(3), inertia))
+        world.addSkeleton(cylinder)
+        share = shape.slab_mass_ratio
+        self._slab = add_plane("slab", -1.0, share) if share > 0.0 else None
+        options = dartpy.constraint.NsgsFrictionSolver.Options()
+        options.tolerance, options.maxSweeps = settings.tolerance, settings.iterations
+        self._use = solver.setBoxedLcpSolver
+        self._flat_solver = solver.getBoxedLcpSolver()
+        self._rim_solver = dartpy.constraint.NsgsFrictionSolver(options)
+
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
         rows = np.array(self._loop(acceleration.tolist()))
@@ -245,16 +197,16 @@ class _DartStepper(Leapfrog):
 
     def counts(self) -> SceneCounts:
         """Return the counts of the last step."""
-        return contact_counts(self._dart.world.getLastCollisionResult().getNumContacts())
+        return contact_counts(self._world.getLastCollisionResult().getNumContacts())
 
     def _loop(self, acceleration: list[list[float]]) -> list[list[float]]:
         """Step; return rotation vector, position and heading of the scene after each step."""
         # local names, because this is a loop over steps in Python
-        dart, body = self._dart, self._scene.body
-        get, pull, slab = dart.joint.getPositions, dart.world.setGravity, dart.slab
-        torque, move_ground = dart.cylinder.addExtTorque, dart.ground.setVelocities
+        body = self._scene.body
+        get, pull, slab = self._joint.getPositions, self._world.setGravity, self._slab
+        torque, move_ground = self._cylinder.addExtTorque, self._ground.setVelocities
         stiffness = -4.0 * self._stiffness
-        rates, overshoot = dart.joint.getVelocities, self._settings.friction_damping - 1.0
+        rates, overshoot = self._joint.getVelocities, self._settings.friction_damping - 1.0
         cosine, sine, root = math.cos, math.sin, math.sqrt
         b, h, arm = body.base_radius, body.mass_centre_height, body.mass_centre_height / body.base_radius
         excited, gravity, heading = bool(self._scene.components), self._scene.gravity, self._heading
@@ -341,13 +293,13 @@ class _DartStepper(Leapfrog):
 
     def _step_on(self, beyond: list[float]) -> None:
         """Take a step, in which the slab has a velocity beyond its own; it keeps what the step changed."""
-        slab = self._dart.slab
+        slab = self._slab
         if slab is None:
-            self._dart.world.step()
+            self._world.step()
             return
         slab.setPositions([0.0, 0.0, self._slab_height])
         slab.setVelocities(self._slab_velocity + beyond)
-        self._dart.world.step()
+        self._world.step()
         self._slab_velocity = slab.getVelocities() - beyond
         self._slab_height += self._step * float(self._slab_velocity[2])
 
@@ -355,21 +307,28 @@ class _DartStepper(Leapfrog):
         """Take the solver for a base that is open, or about to open; or for one that stands."""
         if opening != self._open:
             self._open = opening
-            self._dart.use(self._dart.rim_solver if opening else self._dart.flat_solver)
+            self._use(self._rim_solver if opening else self._flat_solver)
 
     def _turn(self, heading: float) -> None:
         """Turn the x axis of the scene into an azimuth [rad]: its vectors turn back."""
         angle, self._heading = self._heading - heading, heading
-        row = self._dart.joint.getPositions()
+        row = self._joint.getPositions()
         quaternion = quaternions(row[None, :3], _SPIN)[0]
         vectors = np.stack([row[3:], *self._rates(), quaternion[1:], self._slab_velocity])
         position, velocity, spin, quaternion[1:], self._slab_velocity = about_vertical(vectors, angle)
         self._put(quaternion, position, velocity, spin)
 
     def _rates(self) -> tuple[Array, Array]:
-        return self._dart.cylinder.getLinearVelocity(), self._dart.cylinder.getAngularVelocity()
+        return self._cylinder.getLinearVelocity(), self._cylinder.getAngularVelocity()
 
     def _put(self, quaternion: Array, position: Array, velocity: Array, spin: Array) -> None:
-        self._dart.joint.setPositions(np.concatenate([rotation_vector(quaternion, _SPIN), position]))
-        self._dart.joint.setLinearVelocity(velocity)
-        self._dart.joint.setAngularVelocity(spin)
+        self._joint.setPositions(np.concatenate([rotation_vector(quaternion, _SPIN), position]))
+        self._joint.setLinearVelocity(velocity)
+        self._joint.setAngularVelocity(spin)
+
+
+class DartEngine(Declared):
+    """DART 6: free joint, ground plane, contact found by ODE."""
+
+    package, settings_type, facts = "dartpy", DartSettings, _FACTS
+    stepper_type = _DartStepper

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import contextlib
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from functools import cache
 from importlib.metadata import version
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from rockwobble.models.support import SUPPORTS
 
 from ..kinematics import about_vertical, turning
-from ..protocol import Array, EngineFacts, SceneCounts, Settings, Steps
-from ..scene import Scene
+from ..protocol import EngineFacts, SceneCounts, Settings, Stepper, Steps
+from ..scene import Array, Scene
 from ..settings import EngineSettings
 
 
@@ -27,6 +28,8 @@ class Declared:
         That is installed, whose version counts.
     settings_type : type
         Of its settings, which says what each is for.
+    stepper_type : type
+        Of its open scene, made from a scene and settings.
     facts : EngineFacts
         Measured by halving the step.
     supports : tuple of str
@@ -36,6 +39,7 @@ class Declared:
 
     package: ClassVar[str]
     settings_type: ClassVar[type[EngineSettings]]
+    stepper_type: ClassVar[type[Any]]
     facts: EngineFacts
     supports: tuple[str, ...] = ("recess", "flat")
     uplifts: bool = True
@@ -47,6 +51,11 @@ class Declared:
     def settings(self, given: Settings, scene: Scene) -> Mapping[str, object]:
         """Return every setting; see the type of the settings."""
         return asdict(self.settings_type.resolve(given, scene.time_step * scene.unit_time))
+
+    @contextlib.contextmanager
+    def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
+        """Open the scene at its start; Python frees it when nothing refers to it any more."""
+        yield self.stepper_type(scene, self.settings_type(**settings))
 
 
 @cache  # to read it takes as long as a hundred steps

@@ -32,8 +32,8 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import numpy as np
 
 from ..kinematics import about_vertical
-from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
-from ..scene import Body, Scene
+from ..protocol import EngineFacts, SceneCounts, Steps
+from ..scene import Array, Body, Scene
 from ..settings import EngineSettings, NotNegative, Positive, one_of, positive
 from .declared import Declared, Leapfrog, contact_counts
 
@@ -249,17 +249,6 @@ _FACTS = EngineFacts(
 )
 
 
-class DrakeEngine(Declared):
-    """Drake: multibody plant in discrete time, half space, cylinder with points on its rim."""
-
-    package, settings_type, facts = "drake", DrakeSettings, _FACTS  # its points of the rim carry a flat base
-
-    @contextlib.contextmanager
-    def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
-        """Open the scene at its start; Python frees it when nothing refers to it any more."""
-        yield _DrakeStepper(scene, DrakeSettings(**settings))
-
-
 class _DrakeStepper(Leapfrog):
     def __init__(self, scene: Scene, settings: DrakeSettings) -> None:
         super().__init__(scene, settings.guide_stiffness, scene.gravity / settings.contact_stiffness)
@@ -458,3 +447,10 @@ class _Rim(NamedTuple):
     def goes_on_to(self, after: _Rim) -> bool:
         """Return whether it stays on its side of upright."""
         return self.axis_x * after.axis_x + self.axis_y * after.axis_y > 0.0
+
+
+class DrakeEngine(Declared):
+    """Drake: multibody plant in discrete time, half space, cylinder with points on its rim."""
+
+    package, settings_type, facts = "drake", DrakeSettings, _FACTS  # its points of the rim carry a flat base
+    stepper_type = _DrakeStepper

@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 
 from ..kinematics import axis_of
-from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
-from ..scene import Scene, Start
+from ..protocol import EngineFacts, SceneCounts, Settings, Stepper, Steps
+from ..scene import Array, Scene, Start
 from ..settings import Count, EngineSettings, Small, one_of, positive
 from .declared import Declared
 

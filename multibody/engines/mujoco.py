@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps, Wall
+from ..protocol import EngineFacts, SceneCounts, Settings, Stepper, Steps, Wall
 from ..ring import RingSettings, check_start, take_ring
-from ..scene import Scene
+from ..scene import Array, Scene
 from .declared import Declared
 from .mujoco_scene import MujocoSettings, compile_scene, set_start, to_world
 
@@ -80,24 +80,24 @@ class MujocoEngine(Declared):
         """Open the scene at its start."""
         from mujoco import rollout
 
-        with self.together(), rollout.Rollout(nthread=0) as runner:
+        with _quiet(), rollout.Rollout(nthread=0) as runner:
             others, ring = take_ring(settings, scene.support, scene.body.tan_alpha)
             yield _MujocoStepper(scene, MujocoSettings(**others), ring, runner)
 
-    @contextlib.contextmanager
-    def together(self) -> Iterator[None]:
-        """Let several runs go side by side in threads: rollouts leave the interpreter free."""
-        import mujoco
 
-        reporter, clock = mujoco.get_mju_user_warning(), mujoco.get_mjcb_time()
-        # warnings are counted in the data; the engine would also write them to a file where the user works
-        mujoco.set_mju_user_warning(lambda message: None)
-        mujoco.set_mjcb_time(_stopped_clock())
-        try:
-            yield
-        finally:
-            mujoco.set_mju_user_warning(reporter)
-            mujoco.set_mjcb_time(clock)
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep the engine from writing its warnings to a file where the user works, and from reading clocks."""
+    import mujoco
+
+    reporter, clock = mujoco.get_mju_user_warning(), mujoco.get_mjcb_time()
+    mujoco.set_mju_user_warning(lambda message: None)  # warnings are counted in the data
+    mujoco.set_mjcb_time(_stopped_clock())
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(reporter)
+        mujoco.set_mjcb_time(clock)
 
 
 class _MujocoStepper:

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from ..protocol import Array
 from ..ring import RingSettings, wall_feet, wall_orientations
-from ..scene import Scene, Start
+from ..scene import Array, Scene, Start
 from ..settings import Count, EngineSettings, Positive, one_of, positive
 
 if TYPE_CHECKING:
@@ -129,13 +128,12 @@ def compile_scene(
 def _set_options(spec: mujoco.MjSpec, scene: Scene, settings: MujocoSettings) -> None:
     import mujoco
 
-    cones = {"elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC, "pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL}
     option = spec.option
     option.timestep = scene.time_step
     option.gravity = [0.0, 0.0, -scene.gravity]
     # by name: not every version has each
     option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{settings.integrator.upper()}")
-    option.cone = cones[settings.cone]
+    option.cone = getattr(mujoco.mjtCone, f"mjCONE_{settings.cone.upper()}")
     option.tolerance = settings.tolerance
     option.iterations = settings.iterations
     # a state that is not finite must reach the guard, not be replaced by the initial one

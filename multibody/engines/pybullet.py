@@ -10,7 +10,6 @@ turned: the lowest point runs about the rim faster than a step could follow.
 from __future__ import annotations
 
 import contextlib
-import functools
 import math
 import os
 import sys
@@ -22,8 +21,8 @@ from typing import Annotated
 import numpy as np
 
 from ..kinematics import about_vertical
-from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
-from ..scene import Scene
+from ..protocol import EngineFacts, SceneCounts, Settings, Stepper, Steps
+from ..scene import Array, Scene
 from ..settings import Count, EngineSettings, Positive, Share, positive
 from .declared import Declared, Leapfrog, contact_counts
 
@@ -74,103 +73,6 @@ def _friction_of_each(pair: float) -> float:
     2 to 5 % less friction than that; one that holds is not concerned.
     """
     return math.sqrt(pair)
-
-
-def make_ground(bullet: ModuleType, client: int, scene: Scene, settings: PybulletSettings) -> int:
-    """Set the parameters of the engine and make the ground; return its number."""
-    bullet.setPhysicsEngineParameter(
-        fixedTimeStep=scene.time_step,
-        numSubSteps=0,
-        numSolverIterations=settings.iterations,
-        solverResidualThreshold=settings.solver_residual,
-        contactSlop=settings.contact_slop,
-        contactERP=settings.contact_erp,
-        physicsClientId=client,
-    )
-    bullet.setGravity(0.0, 0.0, -scene.gravity, client)
-    plane = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=client)
-    ground = bullet.createMultiBody(0.0, plane, physicsClientId=client)
-    bullet.changeDynamics(
-        ground,
-        -1,
-        lateralFriction=_friction_of_each(scene.friction),
-        restitution=0.0,
-        collisionMargin=settings.collision_margin,
-        physicsClientId=client,
-    )
-    return int(ground)
-
-
-def make_cylinder(
-    bullet: ModuleType, client: int, scene: Scene, settings: PybulletSettings, *, standing: bool
-) -> int:
-    """Make the cylinder, or the point on its rim from which it rises; return its number.
-
-    Under a slab it rises between two points, the other being the mirror of the first.
-    """
-    shape = scene.body
-    if standing:
-        size = _POINT_SIZE * shape.base_radius
-        point = [shape.base_radius, 0.0, size - shape.mass_centre_height]
-        points = [point, [-x for x in point]] if shape.slab_mass_ratio > 0.0 else [point]
-        outline = bullet.createCollisionShapeArray(
-            [bullet.GEOM_SPHERE] * len(points),
-            radii=[size] * len(points),
-            collisionFramePositions=points,
-            physicsClientId=client,
-        )
-    else:
-        above = 0.5 * shape.height - shape.mass_centre_height
-        # a shape with a frame becomes a compound, which costs time: only where the outline needs it
-        frame = {"collisionFramePosition": [0.0, 0.0, above]} if above else {}
-        outline = bullet.createCollisionShape(
-            bullet.GEOM_CYLINDER,
-            radius=shape.base_radius,
-            height=shape.height,
-            physicsClientId=client,
-            **frame,
-        )
-    body = bullet.createMultiBody(1.0, outline, physicsClientId=client)
-    transverse, axial = shape.transverse_inertia, shape.axial_inertia
-    bullet.changeDynamics(
-        body,
-        -1,
-        lateralFriction=_friction_of_each(scene.friction),
-        # the pair has that of each body times the friction of the other
-        rollingFriction=scene.rolling_resistance / _friction_of_each(max(scene.friction, _LEAST)),
-        restitution=0.0,
-        collisionMargin=settings.collision_margin,
-        localInertiaDiagonal=[transverse, transverse, axial],
-        linearDamping=0.0,
-        angularDamping=0.0,
-        activationState=bullet.ACTIVATION_STATE_DISABLE_SLEEPING,
-        physicsClientId=client,
-    )
-    return int(body)
-
-
-def make_slab(bullet: ModuleType, client: int, scene: Scene, settings: PybulletSettings) -> int:
-    """Make a slab that can only translate, a plane that looks down; return its number."""
-    plane = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=client)
-    slab = bullet.createMultiBody(
-        scene.body.slab_mass_ratio,
-        plane,
-        basePosition=[0.0, 0.0, 2.0 * float(scene.start.position[2])],
-        baseOrientation=_DOWNWARDS,
-        physicsClientId=client,
-    )
-    bullet.changeDynamics(
-        slab,
-        -1,
-        lateralFriction=_friction_of_each(scene.friction),
-        restitution=0.0,
-        collisionMargin=settings.collision_margin,
-        localInertiaDiagonal=[0.0, 0.0, 0.0],  # which Bullet takes for infinite
-        linearDamping=0.0,
-        activationState=bullet.ACTIVATION_STATE_DISABLE_SLEEPING,
-        physicsClientId=client,
-    )
-    return int(slab)
 
 
 @contextlib.contextmanager
@@ -234,13 +136,11 @@ class PybulletEngine(Declared):
 class _PybulletStepper(Leapfrog):
     def __init__(self, pybullet: ModuleType, client: int, scene: Scene, settings: PybulletSettings) -> None:
         super().__init__(scene, settings.guide_stiffness)
-        self._bullet, self._client = pybullet, client
+        self._bullet, self._client, self._settings = pybullet, client, settings
         self._gravity = scene.gravity
         self._standing = scene.start.standing
-        self._ground = make_ground(pybullet, client, scene, settings)
-        self._make = functools.partial(make_cylinder, pybullet, client, scene, settings)
-        self._body = self._make(standing=self._standing)
-        self._slab = make_slab(pybullet, client, scene, settings) if scene.body.slab_mass_ratio else None
+        self._ground, self._body = self._add_ground(), self._add_cylinder()
+        self._slab = self._add_slab() if scene.body.slab_mass_ratio else None
         self._slab_velocity = 2.0 * scene.start.velocity  # in the axes of the scene [m/s]
         self._lengths = scene.body.base_radius, scene.body.mass_centre_height
         self._iterations, self._unsolved = settings.iterations, False
@@ -259,9 +159,91 @@ class _PybulletStepper(Leapfrog):
             if self._slab is not None:
                 slab_after = np.array(pybullet.getBaseVelocity(self._slab, client)[0])
                 self._slab_velocity = 1.5 * self._slab_velocity - 0.5 * slab_after
-                place = [0.0, 0.0, 2.0 * float(start.position[2])]
-                pybullet.resetBasePositionAndOrientation(self._slab, place, _DOWNWARDS, client)
+                self._put_slab(self._slab)
             self._put(start.position, quaternion, velocity, spin)
+
+    def _add_ground(self) -> int:
+        """Set the parameters of the engine and make the ground; return its number."""
+        bullet, client, scene, settings = self._bullet, self._client, self._scene, self._settings
+        bullet.setPhysicsEngineParameter(
+            fixedTimeStep=scene.time_step,
+            numSubSteps=0,
+            numSolverIterations=settings.iterations,
+            solverResidualThreshold=settings.solver_residual,
+            contactSlop=settings.contact_slop,
+            contactERP=settings.contact_erp,
+            physicsClientId=client,
+        )
+        bullet.setGravity(0.0, 0.0, -scene.gravity, client)
+        plane = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=client)
+        return self._add_body(0.0, plane)
+
+    def _add_cylinder(self) -> int:
+        """Make the cylinder, or while it stands the point on its rim from which it rises; return its number.
+
+        Under a slab it rises between two points, the other being the mirror of the first.
+        """
+        bullet, client, scene = self._bullet, self._client, self._scene
+        shape, friction = scene.body, max(scene.friction, _LEAST)
+        if self._standing:
+            size = _POINT_SIZE * shape.base_radius
+            point = [shape.base_radius, 0.0, size - shape.mass_centre_height]
+            points = [point, [-x for x in point]] if shape.slab_mass_ratio > 0.0 else [point]
+            outline = bullet.createCollisionShapeArray(
+                [bullet.GEOM_SPHERE] * len(points),
+                radii=[size] * len(points),
+                collisionFramePositions=points,
+                physicsClientId=client,
+            )
+        else:
+            above = 0.5 * shape.height - shape.mass_centre_height
+            # a shape with a frame becomes a compound, which costs time: only where the outline needs it
+            frame = {"collisionFramePosition": [0.0, 0.0, above]} if above else {}
+            outline = bullet.createCollisionShape(
+                bullet.GEOM_CYLINDER,
+                radius=shape.base_radius,
+                height=shape.height,
+                physicsClientId=client,
+                **frame,
+            )
+        return self._add_body(
+            1.0,
+            outline,
+            # the pair has that of each body times the friction of the other
+            rollingFriction=scene.rolling_resistance / _friction_of_each(friction),
+            localInertiaDiagonal=[shape.transverse_inertia, shape.transverse_inertia, shape.axial_inertia],
+        )
+
+    def _add_slab(self) -> int:
+        """Make a slab that can only translate, a plane that looks down; return its number."""
+        plane = self._bullet.createCollisionShape(self._bullet.GEOM_PLANE, physicsClientId=self._client)
+        # Bullet takes an inertia of none for infinite
+        slab = self._add_body(self._scene.body.slab_mass_ratio, plane, localInertiaDiagonal=[0.0, 0.0, 0.0])
+        self._put_slab(slab)
+        return slab
+
+    def _add_body(self, mass: float, shape: int, **dynamics: object) -> int:
+        """Make a body that nothing damps, restores or puts to sleep; return its number."""
+        bullet, client = self._bullet, self._client
+        body = bullet.createMultiBody(mass, shape, physicsClientId=client)
+        bullet.changeDynamics(
+            body,
+            -1,
+            lateralFriction=_friction_of_each(self._scene.friction),
+            restitution=0.0,
+            linearDamping=0.0,
+            angularDamping=0.0,
+            collisionMargin=self._settings.collision_margin,
+            activationState=bullet.ACTIVATION_STATE_DISABLE_SLEEPING,
+            physicsClientId=client,
+            **dynamics,
+        )
+        return int(body)
+
+    def _put_slab(self, slab: int) -> None:
+        """Put the slab on the top of the cylinder at its start, looking down."""
+        place = [0.0, 0.0, 2.0 * float(self._scene.start.position[2])]
+        self._bullet.resetBasePositionAndOrientation(slab, place, _DOWNWARDS, self._client)
 
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
@@ -323,8 +305,8 @@ class _PybulletStepper(Leapfrog):
     def _let_go(self) -> None:
         """Go on with the cylinder in place of the point of its rim; its pose is still to be set."""
         self._bullet.removeBody(self._body, self._client)
-        self._body = self._make(standing=False)
         self._standing = False
+        self._body = self._add_cylinder()
 
     def _put(self, position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
         """Give the body a pose, with the scalar last as Bullet has it, and velocities."""

@@ -16,17 +16,15 @@ size, and finer steps round more often: below 1e-4 s the error grows again. What
 
 from __future__ import annotations
 
-import contextlib
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from ..protocol import Array, EngineFacts, SceneCounts, Settings, Stepper, Steps
-from ..scene import Scene
+from ..protocol import EngineFacts, SceneCounts, Steps
+from ..scene import Array, Scene
 from ..settings import Count, EngineSettings, Positive, Share, Small
 from .declared import Declared, Leapfrog, contact_counts
 
@@ -83,17 +81,6 @@ class RapierSettings(EngineSettings):
     def defaults(time_step: float) -> dict[str, float]:
         """Return the defaults that depend on the time step [s]."""
         return {"contact_frequency": 0.1 / time_step, "guide_stiffness": (_GUIDE / time_step) ** 2 / 4.0}
-
-
-class RapierEngine(Declared):
-    """Rapier: rigid body, half space, Coulomb friction."""
-
-    package, settings_type, facts = "rapier3d", RapierSettings, _FACTS
-
-    @contextlib.contextmanager
-    def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
-        """Open the scene at its start; Python frees it when nothing refers to it any more."""
-        yield _RapierStepper(scene, RapierSettings(**settings))
 
 
 class _RapierStepper(Leapfrog):
@@ -242,3 +229,10 @@ def _build(rapier: ModuleType, scene: Scene, settings: RapierSettings) -> tuple[
         return world, bodies[handle], None
     kind = rapier.RigidBody.dynamic().can_sleep(False).locked_axes(rapier.LockedAxes.ROTATION_LOCKED)
     return world, bodies[handle], add_plane(kind.additional_mass(share), -1.0)
+
+
+class RapierEngine(Declared):
+    """Rapier: rigid body, half space, Coulomb friction."""
+
+    package, settings_type, facts = "rapier3d", RapierSettings, _FACTS
+    stepper_type = _RapierStepper

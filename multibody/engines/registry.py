@@ -13,10 +13,10 @@ import importlib.util
 import platform
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, cast
 
 from rockwobble.models import Case, WobblingFrame
 from rockwobble.models.support import SUPPORTS
@@ -39,27 +39,18 @@ class BrokenEngineError(ValueError):
     """An engine that another package declares and that does not load."""
 
 
-class _Libraries(NamedTuple):
-    """Libraries of the system that a wheel for Linux does not bring."""
-
-    names: tuple[str, ...]
-    remedy: str
-
-
-_NONE = _Libraries((), "")
-
-
 @dataclass(frozen=True, slots=True)
 class _Entry:
     package: str
     remedy: str
     module: str = ""  # to import, where it is not called as the package
     standard: bool = True  # comes with every installation of this package, where it has a wheel
-    libraries: _Libraries = _NONE
+    # of the system, which a wheel for Linux does not bring, by the package that has them
+    libraries: Mapping[str, str] = field(default_factory=dict)
 
 
 # what draws, and is linked even where nothing is drawn; a container without a screen has none of it
-_GRAPHICS = _Libraries(("libGL.so.1", "libX11.so.6"), "apt install libgl1 libx11-6")
+_GRAPHICS = {"libgl1": "libGL.so.1", "libx11-6": "libX11.so.6"}
 # of PyBullet; elsewhere DART takes its place in a default run
 _WHEEL = sys.version_info < (3, 12) and sys.platform == "linux" and platform.machine() == "x86_64"
 _ENGINES: Mapping[str, _Entry] = MappingProxyType(
@@ -81,7 +72,7 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
             "pip install 'drake>=1.51'",
             module="pydrake",
             standard=False,
-            libraries=_Libraries(("libglib-2.0.so.0",), "apt install libglib2.0-0"),
+            libraries={"libglib2.0-0": "libglib-2.0.so.0"},
         ),
         "exudyn": _Entry(
             "exudyn",
@@ -121,7 +112,7 @@ def stand_in(name: str) -> str | None:
 
 def own_engines() -> tuple[str, ...]:
     """Return the names of our engines whose packages are installed here, without importing them."""
-    return tuple(name for name, entry in _ENGINES.items() if not _lack(entry))
+    return tuple(name for name in _ENGINES if not engine_lack(name))
 
 
 def available_engines() -> tuple[str, ...]:
@@ -140,8 +131,16 @@ def available_engines() -> tuple[str, ...]:
 
 
 def engine_lack(name: str) -> str:
-    """Return what one of our engines lacks here and how to get it, to follow its name; empty if nothing."""
-    return _lack(_ENGINES[name])
+    """Return what an engine lacks here and how to get it, to follow its name; empty if nothing."""
+    entry = _ENGINES.get(name)
+    if entry is None:  # what another package declares is installed
+        return ""
+    if importlib.util.find_spec(entry.module or entry.package) is None:
+        return f"is not installed here: {entry.remedy}"
+    missing = [library for library in entry.libraries.values() if not _has_library(library)]
+    if not missing:
+        return ""
+    return f"needs {' and '.join(missing)} of the system: apt install {' '.join(entry.libraries)}"
 
 
 def find_engine(name: str) -> Engine:
@@ -217,14 +216,6 @@ def engine_packages() -> dict[str, str]:
     return {name: entry.package for name, entry in _ENGINES.items()}
 
 
-def _lack(entry: _Entry) -> str:
-    """What an engine lacks here, to follow its name, and how to get it; nothing where it is here."""
-    if importlib.util.find_spec(entry.module or entry.package) is None:
-        return f"is not installed here: {entry.remedy}"
-    missing = [name for name in entry.libraries.names if not _has_library(name)]
-    return f"needs {' and '.join(missing)} of the system: {entry.libraries.remedy}" if missing else ""
-
-
 @cache
 def _has_library(name: str) -> bool:
     """Whether a library of the system can be loaded; elsewhere than on Linux, wheels bring what they need."""
@@ -235,7 +226,7 @@ def _has_library(name: str) -> bool:
 
 
 def _require_installed(name: str) -> None:
-    lack = _lack(_ENGINES[name]) if name in _ENGINES else ""  # what another package declares is installed
+    lack = engine_lack(name)
     if lack:
         raise EngineNotInstalledError(f"engine {name!r} {lack}")
 

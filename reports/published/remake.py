@@ -12,11 +12,13 @@ tables of a study are, `rockwobble report reports/published/NAME` draws its page
 from __future__ import annotations
 
 import json
+import re
 import shlex
 import shutil
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -80,6 +82,15 @@ STILL_KEPT = ("contrasts.parquet", "counts.parquet")
 # of the control no page is shown
 CONTROLS = {"fragility/half-step": (*STILL_KEPT, MANIFEST)}
 
+# what `compact` looks for in an SVG
+_DRAWN = b'<g id="figure_1">'  # as matplotlib begins, which has its name no more once it is compact
+_LEADING = re.compile(rb"(?<!\d)0(?=\.[1-9])")
+_PATH, _SEGMENT = re.compile(rb'(?<= d=")[^"]+'), re.compile(rb"([MLQCz])([^MLQCz]*)")
+_PLACE, _LONG_NUMBER = re.compile(rb'(?: [xy]="|translate\()[^")]+'), re.compile(rb"(\.\d)\d+")
+_NOTHING = re.compile(rb'\n *<!--.*?-->|(?<=\n) +| transform="rotate\(-0 [^"]*"')
+_STATED, _NAME = re.compile(rb' style="([^"]*)"'), re.compile(rb' id="([^"]*)"')
+_LINK = re.compile(rb'#([^")]+)[")]')
+
 
 def trim(folder: Path, *, only: tuple[str, ...] | None = None) -> None:
     """Remove from the results in `folder` what is not kept; of a control all but `only`."""
@@ -111,6 +122,58 @@ def _drop(folder: Path, names: Sequence[str]) -> None:
     manifest.write_text(json.dumps(stated, indent=1) + "\n")
 
 
+def compact_all() -> None:
+    """Write the figures that matplotlib has drawn in half their room."""
+    for path in HERE.rglob("*.svg"):
+        drawn = path.read_bytes()
+        if _DRAWN in drawn:
+            path.write_bytes(compact(drawn))
+
+
+def compact(drawn: bytes) -> bytes:
+    """Return an SVG of matplotlib in half its room: styles once, short paths, only names that are used."""
+    drawn = _NOTHING.sub(b"", _PATH.sub(_short, drawn)).replace(b"<use xlink:href", b"<use href")
+    drawn = _PLACE.sub(lambda place: _LONG_NUMBER.sub(rb"\1", place[0]), drawn)
+    repeated = [style for style, count in Counter(_STATED.findall(drawn)).items() if count > 2]
+    classes = {style: b"s%d" % number for number, style in enumerate(repeated)}
+    links, named = dict.fromkeys(_LINK.findall(drawn)), {*_NAME.findall(drawn)}
+    names = {name: b"n%d" % number for number, name in enumerate(filter(named.__contains__, links))}
+    drawn = _NAME.sub(lambda name: b' id="%s"' % names[name[1]] if name[1] in names else b"", drawn)
+    drawn = _LINK.sub(lambda link: link[0].replace(link[1], names.get(link[1], link[1])), drawn)
+    drawn = _STATED.sub(lambda one: b' class="%s"' % classes[one[1]] if one[1] in classes else one[0], drawn)
+    rules = b"".join(b"\n.%s{%s}" % (name, style) for style, name in classes.items())
+    return _ungrouped(drawn.replace(b"</style>", rules + b"</style>", 1))
+
+
+def _ungrouped(drawn: bytes) -> bytes:
+    """Return an SVG of one tag a line without the groups that say nothing of what is in them."""
+    kept, bare = [], []
+    for line in drawn.split(b"\n"):
+        if line.startswith((b"<g>", b"<g ")) and not line.endswith(b"/>"):
+            bare.append(line == b"<g>")
+        if line not in (b"<g>", b"<g/>") and not (line == b"</g>" and bare.pop()):
+            kept.append(line)
+    return b"\n".join(kept)
+
+
+def _short(path: re.Match[bytes]) -> bytes:
+    """Return a path of segments relative to their start, in tenths of a point: an eighth of a pixel."""
+    found, here, last = b"", (0, 0), b""
+    for letter, numbers in _SEGMENT.findall(path[0]):
+        tenths = [round(10.0 * float(number)) for number in numbers.split()]
+        places = list(zip(tenths[::2], tenths[1::2], strict=True))
+        x, y = (0, 0) if letter == b"M" else here
+        offsets = b" ".join(b"%s %s" % (_tenths(to_x - x), _tenths(to_y - y)) for to_x, to_y in places)
+        told = b" " if letter == last != b"M" else letter if letter == b"M" else letter.lower()
+        found += told + offsets
+        here, last = places[-1] if places else here, letter
+    return found.replace(b" -", b"-")
+
+
+def _tenths(count: int) -> bytes:
+    return _LEADING.sub(b"", b"%.1f" % (0.1 * count)).removesuffix(b".0") or b"0"
+
+
 def changes_since() -> dict[str, dict[str, int]]:
     """Return for each folder of results how many commits have changed each package since it was made."""
     found = {}
@@ -132,6 +195,7 @@ def main() -> int:
     if "--trim" in sys.argv:
         for folder in STUDIES:
             trim(HERE / folder, only=CONTROLS.get(folder))
+        compact_all()
         return 0
     if "--age" in sys.argv:
         for folder, changes in changes_since().items():
@@ -158,6 +222,7 @@ def main() -> int:
         words = [*shlex.split(command), "--out", folder]
         subprocess.run([sys.executable, "-m", "rockwobble", *words], cwd=HERE, check=True)
         trim(HERE / folder, only=CONTROLS.get(folder))
+        compact_all()
         print(f"=== {folder}: {time.monotonic() - begin:.0f} s", flush=True)
     (HERE / "certificates").mkdir(exist_ok=True)
     for name, command in CERTIFICATES.items():

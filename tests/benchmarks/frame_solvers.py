@@ -13,7 +13,6 @@ import contextlib
 import math
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from types import ModuleType
 from typing import Any
 from unittest import mock
 
@@ -344,17 +343,18 @@ def by_engine(frame: Frame, name: str, step: float | None = None, *, box: bool =
 def _box_of_bullet() -> AbstractContextManager[object]:
     from rockwobble.multibody.engines import pybullet as engine
 
-    plane = engine.make_slab
+    plane = engine._PybulletStepper._add_slab
 
-    def box(bullet: ModuleType, *scene: Any) -> int:
+    def box(stepper: engine._PybulletStepper) -> int:
+        bullet, client = stepper._bullet, stepper._client
         made = bullet.createCollisionShape(
             bullet.GEOM_BOX, halfExtents=[_WIDE, _WIDE, 0.5 * THICKNESS],
-            collisionFramePosition=[0.0, 0.0, -0.5 * THICKNESS], physicsClientId=scene[0],
+            collisionFramePosition=[0.0, 0.0, -0.5 * THICKNESS], physicsClientId=client,
         )  # fmt: skip
         with mock.patch.object(bullet, "createCollisionShape", return_value=made):
-            return plane(bullet, *scene)
+            return plane(stepper)
 
-    return mock.patch.object(engine, "make_slab", box)
+    return mock.patch.object(engine._PybulletStepper, "_add_slab", box)
 
 
 def _box_of_dart() -> AbstractContextManager[object]:
@@ -362,17 +362,16 @@ def _box_of_dart() -> AbstractContextManager[object]:
 
     from rockwobble.multibody.engines import dart as engine
 
-    plane = engine.make_scene
+    plane = engine._DartStepper._build
 
-    def box(scene: Any, settings: Any) -> engine.DartScene:
-        made = plane(scene, settings)
-        assert made.slab is not None
-        outline = made.slab.getChildBodyNode().getShapeNode(0)
+    def box(stepper: engine._DartStepper, scene: Any, settings: Any) -> None:
+        plane(stepper, scene, settings)
+        assert stepper._slab is not None
+        outline = stepper._slab.getChildBodyNode().getShapeNode(0)
         outline.setShape(dartpy.dynamics.BoxShape([2.0 * _WIDE, 2.0 * _WIDE, THICKNESS]))
         outline.setRelativeTranslation([0.0, 0.0, 0.5 * THICKNESS])
-        return made
 
-    return mock.patch.object(engine, "make_scene", box)
+    return mock.patch.object(engine._DartStepper, "_build", box)
 
 
 BOXES = {"pybullet": _box_of_bullet, "dart": _box_of_dart}

@@ -21,7 +21,7 @@ from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, WobblingFrame, el_centro_1940
 from rockwobble.multibody.simulation import open_scene
 from rockwobble.reduced.body import body_of
-from rockwobble.reduced.problem import make_problem
+from rockwobble.reduced.problem import Problem
 from rockwobble.reduced.rolling import impact_ratio
 from rockwobble.reduced.simulation import make_ready
 
@@ -148,7 +148,7 @@ def times(rounds: int = _ROUNDS) -> pd.DataFrame:
             given = {"support": "recess", "plane": None, "restitution": 1.0, "rest_tilt": 1e-8} | dict(
                 options
             )
-            problems.append(make_problem(case, rtol=1e-8, **given))
+            problems.append(Problem(case, rtol=1e-8, **given))
             make_ready(problems[-1].kernel)
         ratios = []
         for _ in range(rounds):

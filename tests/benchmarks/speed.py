@@ -23,7 +23,6 @@ from rockwobble.compare.studies.tradeoff.methods import SOLVERS, TOLERANCE_SCALE
 from rockwobble.models import Case, Cylinder, WobblingFrame, el_centro_1940
 from rockwobble.reduced.body import body_of
 from rockwobble.reduced.problem import Problem as ReducedProblem
-from rockwobble.reduced.problem import make_problem
 from rockwobble.reduced.simulation import make_ready
 from rockwobble.reduced.solution import Solution
 
@@ -243,7 +242,7 @@ def frame_ratios(rounds: int = 200) -> pd.DataFrame:
         given = {"support": "recess", "plane": None, "restitution": 1.0, "rest_tilt": 1e-8} | dict(options)
         for name, cylinder in (("of its columns", pier), ("of its p", larger)):
             cases = (Case(body, motion, duration=20.0) for body in (cylinder, frame))
-            problems = [make_problem(case, rtol=1e-8, **given) for case in cases]
+            problems = [ReducedProblem(case, rtol=1e-8, **given) for case in cases]
             rows.append((model, name, *_step_ratio(problems, rounds)))
     return pd.DataFrame(rows, columns=list(FRAME_FORMS))
 

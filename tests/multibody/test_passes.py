@@ -42,7 +42,7 @@ def test_a_pass_lies_between_two_maxima() -> None:
         point(3.0, 0.11, 3.7, True),
         point(4.0, 0.03, 5.0, False),
     ]
-    (found,) = passes_between(points, 1e-9)
+    (found,) = passes_between(points, 1e-9).itertuples()
     assert (found.time, found.minimum_tilt) == (2.0, 0.02)
     assert found.angle_of_turn == pytest.approx(3.2)
 
@@ -57,6 +57,6 @@ def test_swings_of_rounding_are_no_passes() -> None:
         point(2.2, 0.02 - 1e-12, 2.2, False),
         point(3.0, 0.11, 3.7, True),
     ]
-    (found,) = passes_between(points, 1e-9)
+    (found,) = passes_between(points, 1e-9).itertuples()
     assert found.time == 2.2
     assert found.angle_of_turn == pytest.approx(3.0)

@@ -11,7 +11,6 @@ import pytest
 from rockwobble.models import Cylinder, InitialState
 from rockwobble.multibody.engines.mujoco_scene import MujocoSettings, compile_scene
 from rockwobble.multibody.kinematics import axis_of
-from rockwobble.multibody.protocol import Array
 from rockwobble.multibody.ring import (
     RingSettings,
     clearance_needed,
@@ -19,7 +18,7 @@ from rockwobble.multibody.ring import (
     wall_feet,
     wall_orientations,
 )
-from rockwobble.multibody.scene import Scene, scaled_body, starting_state
+from rockwobble.multibody.scene import Array, Scene, scaled_body, starting_state
 
 ROUNDING = 1e-12  # of quantities of the order of b or of 1
 # clearance by which the engine is tried on both sides; a pose is good to 1e-15 m

@@ -89,8 +89,10 @@ def _constants() -> list[Mutation]:
     ]
     # through the whole cylinder every term keeps its place: only scales of time and length tell
     size = _around(
-        "problem.py",
-        "make_problem(case, **options)",
+        "simulation.py",
+        "simulate(case, **options)",
+        "import dataclasses\n"
+        "from rockwobble.models import Cylinder\n"
         "size = 1.01 * case.cylinder.semidiagonal\n"
         "other = Cylinder(semidiagonal=size, tan_alpha=case.cylinder.tan_alpha)\n"
         "return without_fault(dataclasses.replace(case, cylinder=other), **options)",

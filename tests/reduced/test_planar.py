@@ -65,7 +65,7 @@ def test_each_impact_takes_its_share_of_energy(restitution):
         restitution=restitution,
         rtol=1e-11,
     )
-    factor = response.source.problem.restitution
+    factor = response.source.problem.rebound
     maxima = response.extrema[response.extrema[:, 3] > 0.0][:, 1]
     # at a maximum all energy is potential: p^2 [cos(theta - alpha) - cos(alpha)]
     potential = np.cos(maxima - PIER.alpha) - math.cos(PIER.alpha)

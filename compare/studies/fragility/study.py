@@ -12,8 +12,8 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.models import Cylinder, GroundMotion, Run
+from rockwobble.models.plain_json import fields_of
 from rockwobble.models.records.units import doubts_of
-from rockwobble.models.trace_file import run_to_plain
 
 from ...metrics.statistics import FEWEST
 from ...runs.progress import ProgressCallback
@@ -299,7 +299,7 @@ def _described(method: Method, methods: Sequence[Method]) -> dict[str, object]:
         "support": method.support,
         "engine": method.run.engine if method.run is not None else None,
         "own_model": own_model(method, methods),
-        "run": None if method.run is None else run_to_plain(method.run),
+        "run": None if method.run is None else fields_of(method.run),
         "of": list(method.of),
     }
 
