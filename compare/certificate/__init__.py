@@ -1,26 +1,11 @@
 """Certificate of an installation: claims with their evidence, and a fingerprint to verify it by."""
 
-from .certificate import (
-    CLAIMING,
-    Claim,
-    certify,
-    claims_of,
-    models,
-    read_certificate,
-    verify,
-    write_certificate,
-)
-from .verdict import Certificate, FingerprintVerdict
-
-__all__ = [
-    "CLAIMING",
-    "Certificate",
-    "Claim",
-    "FingerprintVerdict",
-    "certify",
-    "claims_of",
-    "models",
-    "read_certificate",
-    "verify",
-    "write_certificate",
-]
+from .certificate import CLAIMING as CLAIMING
+from .certificate import certify as certify
+from .certificate import claims_of as claims_of
+from .certificate import models as models
+from .certificate import read_certificate as read_certificate
+from .certificate import verify as verify
+from .certificate import write_certificate as write_certificate
+from .verdict import Certificate as Certificate
+from .verdict import FingerprintVerdict as FingerprintVerdict

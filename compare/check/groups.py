@@ -61,8 +61,6 @@ class Check:
         Whether it starts from a cylinder that stands.
     slab : bool
         Whether it is for subjects that know a wobbling frame.
-    extra : bool
-        Whether it runs for an engine that is an extra where no engine is named.
     """
 
     measure: Measure
@@ -73,7 +71,6 @@ class Check:
     files: bool = False
     from_rest: bool = False
     slab: bool = False
-    extra: bool = False
 
     def applies(self, subject: Subject) -> bool:
         """Return whether it is a question to this subject at all."""
@@ -85,17 +82,14 @@ class Check:
             and (subject.carries_slab or not self.slab)
         )
 
-    def run(self, subject: Subject, *, brief: bool = False) -> Iterator[Result]:
-        """Yield its results, the name of each with its support; an exception is a result, too.
-
-        Of a `brief` run, those of the first support alone.
-        """
+    def run(self, subject: Subject) -> Iterator[Result]:
+        """Yield its results, the name of each with its support; an exception is a result, too."""
         name = self.measure.__name__.replace("_", " ")
         if lacks := [field for field in self.knows if field not in subject.knows]:
             yield not_run(name, f"{subject.label} does not return {', '.join(lacks)}")
             return
         supports = [each for each in self.supports or subject.supports[:1] if each in subject.supports]
-        for support in supports[:1] if brief else supports:
+        for support in supports:
             try:
                 for result in self.measure(subject, support):
                     yield dataclasses.replace(result, name=f"{result.name}, {support}")
@@ -105,10 +99,6 @@ class Check:
                     yield at_most(f"{name}, {support}", math.nan, _ENDS, note=words)
                 else:
                     yield not_run(f"{name}, {support}", words)
-
-
-def _of_rest(measure: Measure) -> Check:
-    return Check(measure=measure, supports=MODELS, options=("rest_tilt",))
 
 
 GROUPS: Mapping[str, tuple[Check, ...]] = {
@@ -128,31 +118,23 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
     "rest": (
         Check(measure=laws.stands, supports=MODELS, from_rest=True),
         Check(measure=laws.uplift, knows=("uplift_time",), from_rest=True),
-        Check(measure=laws.after_uplift, options=("rtol",)),
         Check(measure=laws.force_at_rest, knows=("contact_force",), from_rest=True),
         Check(measure=laws.falls, knows=("outcome",)),
-        Check(measure=laws.landing, supports=("planar",), options=("restitution",)),
         Check(measure=laws.static_loads, supports=(), options=("stepper",), from_rest=True),
     ),
     "invariance": (
         Check(measure=invariance.frame, knows=("rolling_angle",)),
         Check(measure=invariance.scale),
         Check(measure=invariance.statement),
-        _of_rest(invariance.falling_ground),
-        _of_rest(invariance.after_rest),
-        Check(measure=invariance.backwards, supports=("recess",), options=("rtol",)),
     ),
-    "order": (
-        Check(measure=agreement.order_by_tolerance, options=("rtol",)),
-        Check(measure=agreement.order_by_time_step, options=("stepper",), reference=True),
-    ),
+    "order": (Check(measure=agreement.order, options=("stepper",), reference=True),),
     "trace": (
         Check(measure=laws.place, supports=("recess",), knows=("twist", "contact_point", "centre_of_mass")),
         Check(measure=laws.slip, options=("stepper",)),
         Check(measure=laws.turning, knows=("extrema", "passes")),
     ),
     "agreement": (
-        Check(measure=agreement.fields, knows=("twist", "centre_of_mass"), reference=True, extra=True),
+        Check(measure=agreement.fields, knows=("twist", "centre_of_mass"), reference=True),
         Check(measure=agreement.release, reference=True),
         Check(measure=agreement.frame, reference=True, slab=True),
         Check(measure=agreement.ramp, reference=True, from_rest=True),
@@ -174,6 +156,10 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
         Check(measure=agreement.kept_numbers, supports=(*BOTH, "ring"), options=("stepper",)),
     ),
 }
+# of an engine that nobody has named: what a version of it may change, in a few seconds
+_OF_ENGINES = {name: GROUPS[name] for name in ("exact", "conserved", "agreement", "baseline")}
+# of one that is an extra: every field, on its first support
+_OF_EXTRAS = {"agreement": (dataclasses.replace(GROUPS["agreement"][0], supports=()),)}
 TITLES = {
     "equations": "equations of motion",
     "exact": "exact solutions",
@@ -189,7 +175,10 @@ TITLES = {
 
 
 def run_checks(
-    subject: Subject, groups: Sequence[str] | None = None, *, extra: bool = False
+    subject: Subject,
+    groups: Sequence[str] | None = None,
+    *,
+    checks: Mapping[str, tuple[Check, ...]] = GROUPS,
 ) -> Iterator[Result]:
     """Yield the results of the groups, in their order, as they are made.
 
@@ -201,8 +190,8 @@ def run_checks(
     subject : Subject
     groups : sequence of str, optional
         Some of `GROUPS`. Default: all.
-    extra : bool, optional
-        Only the checks of an engine that is an extra and that nobody has named.
+    checks : mapping, optional
+        The checks of each group. Default: all.
 
     Returns
     -------
@@ -215,18 +204,11 @@ def run_checks(
     """
     for group in groups or ():
         require_one_of("a group", group, tuple(GROUPS))
-    for group, checks in GROUPS.items():
-        if groups is not None and group not in groups:
-            continue
-        for check in checks:
-            if check.applies(subject) and (check.extra or not extra):
-                for result in check.run(subject, brief=extra):
+    for group, chosen in checks.items():
+        for check in chosen if groups is None or group in groups else ():
+            if check.applies(subject):
+                for result in check.run(subject):
                     yield dataclasses.replace(result, group=group, subject=subject.label)
-
-
-# of an engine that nobody has named: what a version of it may change, in a few seconds
-COLUMNS = tuple(Result.__dataclass_fields__)
-_OF_ENGINES = ("exact", "conserved", "agreement", "baseline")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -235,22 +217,22 @@ class Checks:
 
     Attributes
     ----------
-    tables : mapping of str to DataFrame
-        "results": one row for each `Result`, its fields as columns.
+    results : list of Result
+        In the order in which they were made.
     facts : mapping
         Subjects, versions of the packages.
     """
 
-    tables: Mapping[str, pd.DataFrame]
+    results: list[Result]
     facts: Mapping[str, Any]
 
     @property
-    def results(self) -> list[Result]:
-        """The results, in the order in which they were made."""
-        return [
-            Result(**dict(zip(COLUMNS, row, strict=True)))
-            for row in self.tables["results"].itertuples(index=False)
-        ]
+    def tables(self) -> Mapping[str, pd.DataFrame]:
+        """Table "results": one row for each result, its fields as columns."""
+        import pandas as pd
+
+        rows, columns = [asdict(each) for each in self.results], list(Result.__dataclass_fields__)
+        return {"results": pd.DataFrame(rows, columns=columns).astype({"value": float, "bound": float})}
 
     @property
     def failures(self) -> list[Result]:
@@ -264,8 +246,8 @@ class Checks:
 
     def headline(self) -> Mapping[str, int]:
         """Return the number of checks by their outcome."""
-        counts = Counter(self.tables["results"]["outcome"])
-        return {name: int(counts[name]) for name in ("FAILED", "passed", "no baseline", "not run")}
+        counts = Counter(each.outcome for each in self.results)
+        return {name: counts[name] for name in ("FAILED", "passed", "no baseline", "not run")}
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{count} {outcome}" for outcome, count in self.headline().items() if count)
@@ -285,7 +267,6 @@ def check(
     only: Sequence[str] | None = None,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
-    announce: Callable[[str], None] | None = None,
     **settings: object,
 ) -> Checks:
     """Check a reduced model, an engine, somebody's model or a trajectory by physics.
@@ -312,8 +293,8 @@ def check(
         Some of `rockwobble.compare.check.GROUPS`. Default: all.
     workers : int, optional
         Number of processes for the runs of a suite. Default: one for each core.
-    progress, announce : callable, optional
-        Called at the start and end of each run of the suite; called with the name of each group before it.
+    progress : callable, optional
+        Called at the start and end of each run of the suite.
     **settings
         Of the engine.
 
@@ -342,10 +323,10 @@ def check(
     results = list[Result]()
     if suite is not None:
         runs = SuiteRuns(workers=workers, progress=progress)
-        results = [*_of_suite(runs, read_suite(suite) if not isinstance(suite, Suite) else suite)]
-        return _summed(results)
+        found = _of_suite(runs, read_suite(suite) if not isinstance(suite, Suite) else suite)
+        return _summed([*found])
     if engine is not None:
-        chosen = [subjects.engine(engine, time_step, reference=None, **settings)]
+        chosen = [subjects.engine(engine, time_step, **settings)]
     elif model is not None:
         function = subjects.load_model(model) if isinstance(model, str) else model
         chosen = [subjects.external_model(function, support=support, tolerance=tolerance)]
@@ -358,13 +339,11 @@ def check(
         missing = [name for name in standard_engines() if name not in available_engines()]
         results = [not_run(f"checks of {name}", engine_lack(name)) for name in missing]
     for group in (each for each in GROUPS if only is None or each in only):
-        if announce is not None:
-            announce(group)
         for each in chosen:
-            extra = each.label in own_engines() and each.label not in standard_engines()
-            if engine is None and each.run is not None and not extra and group not in _OF_ENGINES:
-                continue
-            results += run_checks(each, [group], extra=extra and engine is None)
+            checks: Mapping[str, tuple[Check, ...]] = GROUPS
+            if engine is None and each.run is not None:
+                checks = _OF_ENGINES if each.label in standard_engines() else _OF_EXTRAS
+            results += run_checks(each, [group], checks=checks)
     return _summed(results)
 
 
@@ -386,14 +365,9 @@ def _of_suite(runs: SuiteRuns, suite: Suite) -> Iterator[Result]:
         for run, label in zip(chosen, labels, strict=True)
     ]
     for result in check_suite(runs, jobs, suite.bounds):
-        yield Result(**{**asdict(result), "group": "agreement"})
+        yield dataclasses.replace(result, group="agreement")
 
 
-def _summed(results: Sequence[Result]) -> Checks:
-    import pandas as pd
-
-    rows = [asdict(result) for result in results]
-    table = pd.DataFrame(rows, columns=COLUMNS).astype({"value": float, "bound": float})
+def _summed(results: list[Result]) -> Checks:
     labels = dict.fromkeys(result.subject for result in results if result.subject)
-    facts = {"subjects": list(labels), "versions": package_versions()}
-    return Checks(tables={"results": table}, facts=facts)
+    return Checks(results=results, facts={"subjects": list(labels), "versions": package_versions()})

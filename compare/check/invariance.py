@@ -38,7 +38,6 @@ from .measurement import (
     RELEASE,
     SHOCK,
     SHOCK_TIMES,
-    THRESHOLD,
     Bound,
     Result,
     at_most,
@@ -58,26 +57,8 @@ ROCKING = Case(
 # without its vertical component, which only some models have
 STANDING = Case(PIER, polyline(SHOCK_TIMES, SHOCK[:, :2], 0.5), duration=4.0, name="from rest")
 _SAMPLE = 0.05  # [s]
-REST = 1e-2  # rest threshold over alpha of a foreshock
 _TURN = 1.234  # [rad]
-
-
-@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class Change:
-    """The same motion, stated in another way.
-
-    Parameters
-    ----------
-    case : Case
-    slower : float
-        By how much its time runs slower.
-    expected : callable, optional
-        Returns the lean that is expected from that of the first statement. Default: the same.
-    """
-
-    case: Case
-    slower: float = 1.0
-    expected: Callable[[Lean], Lean] = lambda lean: lean
+_TURNED = np.exp(1j * _TURN)
 
 
 def frame(subject: Subject, support: str) -> Iterator[Result]:
@@ -90,39 +71,21 @@ def frame(subject: Subject, support: str) -> Iterator[Result]:
             mirrored = dataclasses.replace(
                 start, rolling_angle=-start.rolling_angle, rolling_rate=-start.rolling_rate
             )
+        rotated = dataclasses.replace(case, motion=motion.rotated(_TURN), initial=turned)
         flipped = GroundMotion(motion.acceleration * [1.0, -1.0], motion.time_step)
-        yield from _compared(
-            subject,
-            support,
-            case,
-            {
-                "rotated": Change(
-                    case=dataclasses.replace(case, motion=motion.rotated(_TURN), initial=turned),
-                    expected=lambda lean: np.exp(1j * _TURN) * lean,
-                ),
-                "mirror image": Change(
-                    case=dataclasses.replace(case, motion=flipped, initial=mirrored), expected=np.conj
-                ),
-            },
-        )
+        mirror = dataclasses.replace(case, motion=flipped, initial=mirrored)
+        yield _same(subject, support, case, "rotated", rotated, expected=lambda lean: _TURNED * lean)
+        yield _same(subject, support, case, "mirror image", mirror, expected=np.conj)
 
 
 def scale(subject: Subject, support: str) -> Iterator[Result]:
     """A hundredth of the size moves ten times as fast (Froude); 0.7 of the gravity slower by sqrt(0.7)."""
+    small, slower = dataclasses.replace(PIER, semidiagonal=PIER.semidiagonal / 100.0), math.sqrt(1.0 / 0.7)
     for case in _cases(subject):
-        small = dataclasses.replace(PIER, semidiagonal=PIER.semidiagonal / 100.0)
-        yield from _compared(
-            subject,
-            support,
-            case,
-            {
-                "a hundredth of the size": Change(case=_paced(case, 0.1, cylinder=small), slower=0.1),
-                "0.7 of the gravity": Change(
-                    case=_paced(case, math.sqrt(1.0 / 0.7), 0.7, gravity=0.7 * GRAVITY),
-                    slower=math.sqrt(1.0 / 0.7),
-                ),
-            },
-        )
+        little = _paced(case, 0.1, cylinder=small)
+        lighter = _paced(case, slower, 0.7, gravity=0.7 * GRAVITY)
+        yield _same(subject, support, case, "a hundredth of the size", little, slower=0.1)
+        yield _same(subject, support, case, "0.7 of the gravity", lighter, slower=slower)
 
 
 def statement(subject: Subject, support: str) -> Iterator[Result]:
@@ -130,60 +93,11 @@ def statement(subject: Subject, support: str) -> Iterator[Result]:
     for case in _cases(subject):
         motion = _motion(case)
         still = GroundMotion(np.vstack([motion.acceleration, np.zeros((3, 2))]), motion.time_step)
-        changes = {"sampled five times as densely": refined(motion, 5), "still ground in the record": still}
-        others = {
-            words: Change(case=dataclasses.replace(case, motion=each)) for words, each in changes.items()
-        }
-        yield from _compared(subject, support, case, others)
-
-
-def falling_ground(subject: Subject, support: str) -> Iterator[Result]:
-    """Ground that falls with 0.3 g all the time is a gravity of 0.7 g, at uplift and in motion."""
-    samples = np.vstack([0.4 * SHOCK[:-1], SHOCK]) * [0.8, 0.8, 0.0]
-    times = 0.5 * np.arange(len(samples))
-    lighter = Case(PIER, polyline(times, samples, 0.25), duration=times[-1], gravity=0.7 * GRAVITY)
-    fall = polyline(times, samples - [0.0, 0.0, 0.3 * GRAVITY], 0.25)
-    falling = Case(PIER, fall, duration=times[-1])
-    yield from _compared(
-        subject, support, lighter, {"ground that falls with 0.3 g": Change(case=falling)}, rest_tilt=REST
-    )
-
-
-def after_rest(subject: Subject, support: str) -> Iterator[Result]:
-    """A main shock after two weak ones and rest moves the cylinder as the main shock alone."""
-    across = [1.0, 0.0, 0.0] if support == "planar" else [0.6, -0.8, 0.0]
-    weak = 1.1 * THRESHOLD * np.array([[0.0, 0.0, 0.0], across, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
-    values = np.vstack([weak[:-1], weak, SHOCK[1:]])
-    times = [0.0, 0.5, 1.0, 2.0, 2.5, 3.0, 4.0, 4.5, 5.0, 5.5, 6.0]
-    options = {"sample_step": _SAMPLE, "rest_tilt": REST}
-    both = subject.simulate(Case(PIER, polyline(times, values, 0.25), duration=8.0), support, **options)
-    alone = subject.simulate(Case(PIER, polyline(SHOCK_TIMES, SHOCK, 0.5), duration=4.0), support, **options)
-    begin = round(4.0 / _SAMPLE)
-    settled = both.tilt[begin] == 0.0 < both.tilt[:begin].max() < REST * PIER.alpha
-    off = largest(both.tilt[begin:] - alone.tilt) / PIER.alpha if settled else math.nan
-    bound = Bound(subject.repeatability, "rounding of its steps", "alpha")
-    yield at_most("a main shock after weak ones and rest", off, bound)
-
-
-def backwards(subject: Subject, support: str) -> Iterator[Result]:
-    """Free motion from where another ended, with its rates turned round, ends where that began."""
-    begin = InitialState(0.5 * PIER.alpha, tilt_rate=0.1, rolling_angle=0.4, rolling_rate=0.3)
-    states = [begin]
-    for _ in range(2):
-        case = Case(PIER, initial=states[-1], duration=2.0)
-        found = subject.simulate(case, support, sample_step=2.0)
-        tilt, tilt_rate, angle, rate = (
-            float(values[-1])
-            for values in (found.tilt, found.tilt_rate, found.rolling_angle, found.rolling_rate)
-        )
-        states.append(InitialState(tilt, -tilt_rate, angle, -rate))
-    last = states[-1]
-    off = max(
-        abs(getattr(begin, name) - getattr(last, name))
-        for name in ("tilt", "tilt_rate", "rolling_angle", "rolling_rate")
-    )
-    bound = Bound(10.0 * subject.repeatability, "no loss: both angles and rates come back", "rad, rad/s")
-    yield at_most("free motion run backwards", off, bound)
+        for words, other in (
+            ("sampled five times as densely", refined(motion, 5)),
+            ("still ground in the record", still),
+        ):
+            yield _same(subject, support, case, words, dataclasses.replace(case, motion=other))
 
 
 def _cases(subject: Subject) -> tuple[Case, ...]:
@@ -213,17 +127,24 @@ def _paced(
     )
 
 
-def _compared(
-    subject: Subject, support: str, case: Case, changes: dict[str, Change], **options: float
-) -> Iterator[Result]:
-    plain = subject.simulate(case, support, sample_step=_SAMPLE, **options)
-    bound = Bound(subject.repeatability, "rounding, magnified by the passes", "alpha")
+def _same(
+    subject: Subject,
+    support: str,
+    case: Case,
+    words: str,
+    other: Case,
+    *,
+    slower: float = 1.0,
+    expected: Callable[[Lean], Lean] = lambda lean: lean,
+) -> Result:
+    """Compare a case with the same motion stated in another way, `slower` and leaning as `expected`."""
+    plain = subject.simulate(case, support, sample_step=_SAMPLE)
+    found = subject.simulate(other, support, sample_step=slower * _SAMPLE)
     moved = float(np.ptp(plain.tilt)) > 0.05 * PIER.alpha
-    for words, change in changes.items():
-        found = subject.simulate(change.case, support, sample_step=change.slower * _SAMPLE, **options)
-        own = _on(plain.time, found.time / change.slower, lean(found))
-        off = largest(np.abs(own - change.expected(lean(plain)))) if moved else math.nan
-        yield at_most(f"{words}, {case.name or 'from rest'}", off, bound)
+    own = _on(plain.time, found.time / slower, lean(found))
+    off = largest(np.abs(own - expected(lean(plain)))) if moved else math.nan
+    bound = Bound(subject.repeatability, "rounding, magnified by the passes", "alpha")
+    return at_most(f"{words}, {case.name}", off, bound)
 
 
 def _on(time: NDArray[np.float64], own: NDArray[np.float64], values: Lean) -> Lean:

@@ -41,7 +41,7 @@ from rockwobble.models.cylinder import PIER
 from rockwobble.models.support import SUPPORTS
 
 from ..metrics.pair import energy_loss
-from .measurement import GRAVITY, RELEASE, Result, at_most, largest, released, worst_of
+from .measurement import GRAVITY, RELEASE, Result, at_most, largest, released, why, worst_of
 from .subject import Subject
 
 Array = NDArray[Any]  # of float, or of complex within a complex step
@@ -59,7 +59,6 @@ class Shape:
     h: float
     I1: float
     I2: float
-    g: float
     slab: float
 
 
@@ -73,7 +72,6 @@ def shape_of(cylinder: Cylinder) -> Shape:
         h=h,
         I1=b * b / 4.0 + height * height / 12.0 if I1 is None else I1,
         I2=b * b / 2.0 if I2 is None else I2,
-        g=9.81,
         slab=cylinder.slab_mass_ratio,
     )
 
@@ -122,7 +120,7 @@ def mass_centre(shape: Shape, theta: Array, phi: Array) -> Array:
 
 def potential(shape: Shape, theta: Array, phi: Array, ground: Array) -> Array:
     """Return V per unit mass, zero standing, with the inertia of the ground's acceleration (n, 3)."""
-    pull = ground + np.array([0.0, 0.0, shape.g])
+    pull = ground + np.array([0.0, 0.0, GRAVITY])
     standing = np.array([0.0, 0.0, shape.h])
     found: Array = ((mass_centre(shape, theta, phi) - standing) * pull).sum(axis=-1)
     return found
@@ -234,12 +232,12 @@ RUNS = 9
 _SEED = 18  # of the states: any other serves
 # 1e-16/0.02^2 of the angles, 1e-11 of p^2 at the worst, and what rtol 1e-13 leaves in a dozen steps
 _REASON = "differences of positions that are known to rounding"
-NAMES = {
-    "equation of motion of the tilt": "equation (18)",
-    "equation of motion of the rolling angle": "equation (19)",
-    "tilt rate against the change of tilt": "tilt rate",
-    "contact force against Newton's law": "contact force (reduced/forces.py)",
-}
+NAMES = (
+    "equation of motion of the tilt",
+    "equation of motion of the rolling angle",
+    "tilt rate against the change of tilt",
+    "contact force against Newton's law",
+)
 
 
 def residual(subject: Subject, support: str) -> Iterator[Result]:
@@ -248,35 +246,23 @@ def residual(subject: Subject, support: str) -> Iterator[Result]:
     d/dt dT/dq' = d(T - V)/dq for the tilt, in g (b + h), and for the rolling angle; theta' in p; the contact
     force over the weight is the acceleration of the mass centre and that of ground and gravity.
     """
-    errors: dict[str, dict[str, float]] = {name: {} for name in NAMES}
-    for place, cylinder in CYLINDERS.items():
-        found = _residuals(subject, support, cylinder)
-        if found is None:
-            yield at_most(f"short motions reach their end, {place}", math.nan, subject.within(0.0, "all do"))
-            return
-        for name, value in zip(NAMES, found, strict=True):
-            errors[name][place] = value
-    # an equation that is wrong makes every other residual wrong, too: a cause is named where it stands alone
+    errors = {place: _residuals(subject, support, cylinder) for place, cylinder in CYLINDERS.items()}
     bound = subject.within(1.0, _REASON, "of g (b + h), p and weights")
-    results = [worst_of(name, error, bound) for name, error in errors.items()]
-    alone = sum(result.failed for result in results) == 1
-    yield from (
-        worst_of(result.name, errors[result.name], bound, NAMES[result.name] if alone else "")
-        for result in results
-    )
+    for at, name in enumerate(NAMES):
+        yield worst_of(name, {place: found[at] for place, found in errors.items()}, bound)
 
 
-def _residuals(subject: Subject, support: str, cylinder: Cylinder) -> list[float] | None:
+def _residuals(subject: Subject, support: str, cylinder: Cylinder) -> list[float]:
     shape = shape_of(cylinder)
     p = math.sqrt(GRAVITY * cylinder.semidiagonal / (shape.I1 + shape.h**2 + shape.b**2))
     step, inner = _SAMPLE / p, slice(REACH, -REACH)
-    errors: list[list[float]] = [[0.0] for _ in NAMES]
+    errors = []
     for initial, motion in _starts(p, step):
         found = subject.simulate(
             Case(cylinder, motion, initial=initial), support, sample_step=step, rtol=1e-13, rest_tilt=0.0
         )
         if found.outcome == "failed":
-            return None
+            raise RuntimeError(f"a short motion failed: {why(found)}")
         # one that fell down ends between two samples, and may go on falling when the motion is over
         even = len(found.time) - (found.outcome == "overturned")
         for piece in range(min((even - 1) // _PIECE, _PIECES)):
@@ -294,18 +280,15 @@ def _residuals(subject: Subject, support: str, cylinder: Cylinder) -> list[float
             carried = (1.0 + 2.0 * shape.slab) / (1.0 + shape.slab)
             force = carried * curve(found.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
             scale = GRAVITY * (shape.b + shape.h)
-            for each, value in zip(
-                errors,
-                (
+            errors.append(
+                [
                     largest(by_tilt) / scale,
                     largest(by_turn) / scale,
                     largest(rates[0] - found.tilt_rate[cut][inner]) / p,
                     largest(force / GRAVITY - found.contact_force[cut][inner]),
-                ),
-                strict=True,
-            ):
-                each.append(value)
-    return [largest(np.array(each)) for each in errors]
+                ]
+            )
+    return [largest(each) for each in np.array(errors).T]
 
 
 def _starts(p: float, step: float) -> Iterator[tuple[InitialState, GroundMotion]]:
@@ -352,7 +335,7 @@ def free_motion(subject: Subject, support: str) -> Iterator[Result]:
         shape = shape_of(PIER)
         state = found.tilt, found.rolling_angle, found.tilt_rate, found.rolling_rate
         stated = largest(found.energy - energy(shape, *state)) / found.energy[0]
-        yield at_most(f"stated energy of a release{words}", stated, bound, "energy of the trace")
+        yield at_most(f"stated energy of a release{words}", stated, bound)
         momentum = momenta(shape, *state)[1][found.tilt > _LEAST_TILT]
         yield at_most(f"L = B phi' of a release{words}", np.ptp(momentum) / abs(momentum[0]), bound)
 
@@ -372,7 +355,7 @@ def rolling_loss(subject: Subject, support: str) -> Iterator[Result]:
     left = largest(start - found.energy - lost) / start
     yield at_most("energy of a release against the power of rolling resistance", left, bound)
     stated = largest(found.energy_lost - lost) / start
-    yield at_most("stated energy lost of a release", stated, bound, "energy lost of the trace")
+    yield at_most("stated energy lost of a release", stated, bound)
 
 
 def work_of_the_ground(subject: Subject, support: str) -> Iterator[Result]:

@@ -99,10 +99,10 @@ def at_most(name: str, value: float, bound: Bound, cause: str = "", note: str = 
     )
 
 
-def worst_of(name: str, errors: Mapping[str, float], bound: Bound, cause: str = "") -> Result:
+def worst_of(name: str, errors: Mapping[str, float], bound: Bound) -> Result:
     """Return the result on the largest of several errors, and its place; one that is no number fails."""
     place = max(errors, key=lambda key: abs(errors[key]) if math.isfinite(errors[key]) else math.inf)
-    return at_most(name, abs(errors[place]), bound, cause, f"largest of {len(errors)}: {place}")
+    return at_most(name, abs(errors[place]), bound, note=f"largest of {len(errors)}: {place}")
 
 
 def not_run(name: str, note: str) -> Result:

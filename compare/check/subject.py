@@ -66,11 +66,11 @@ class Subject(Brief):
     rounding : float
         Relative rounding error of the arithmetic of an engine.
     steps : tuple of float
-        Accuracy parameters (tolerance or time step) of the check of the order, the coarsest first.
+        Time steps of the check of the order, the coarsest first [s].
     order : float
-        Order of the error in that parameter.
+        Order of the error in the time step.
     at_step : callable, optional
-        Returns the subject at another accuracy parameter.
+        Returns the subject at another time step.
     reference : callable, optional
         The independent model that it is compared with, called as `reduced.simulate`.
     run : Run, optional
@@ -142,15 +142,11 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
         options=frozenset({"rtol", "rest_tilt", "restitution", "plane", "rolling_resistance"}),
         tolerance=MODEL_TOLERANCE,
         repeatability=MODEL_TOLERANCE,
-        steps=(1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10),
-        at_step=lambda rtol: reduced_model(module, rtol=rtol),
         carries_slab=True,
     )
 
 
-def engine(
-    name: str, time_step: TimeStep | None = None, *, reference: Simulate | None = None, **settings: object
-) -> Subject:
+def engine(name: str, time_step: TimeStep | None = None, **settings: object) -> Subject:
     """Return an engine with its settings.
 
     Parameters
@@ -158,8 +154,6 @@ def engine(
     name : str
     time_step : float, "auto" or "extrapolated", optional
         [s]
-    reference : callable, optional
-        The independent model that it is compared with. Default: `reduced.simulate`.
     **settings
         Of the engine.
 
@@ -192,8 +186,8 @@ def engine(
             for times in (_STEPS if tolerance == ENGINE_TOLERANCE else _COARSE_STEPS)
         ),
         order=facts.order,
-        at_step=lambda step: engine(name, step, reference=reference, **settings),
-        reference=reference or reduced.simulate,
+        at_step=lambda step: engine(name, step, **settings),
+        reference=reduced.simulate,
         run=Run(name, found.supports[0], time_step, **settings),
         uplifts=found.uplifts,
         carries_slab=facts.carries_slab,

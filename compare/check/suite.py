@@ -29,11 +29,9 @@ from ..comparison.prediction import (
     disturbed,
     early_rms,
     estimated_error,
-    predict,
     time_scale,
 )
 from ..comparison.summary import SUMMARY_COLUMNS, summary_row
-from ..external.verdict import numbers_of
 from ..metrics.pair import landings, rms
 from ..runs.choice import at_step, own_model, require_runnable, support_of
 from ..runs.execution import Job, simulate_all
@@ -85,13 +83,9 @@ class SuiteRuns:
         self.kept.update(zip(missing, made, strict=True))
         return [self.kept[key] for key in keys]
 
-    def solve(self, case: Case, support: str, **options: float) -> Trace:
-        """Return the motion of the reduced model of a support."""
-        return self.reference(case, support=support, **options)
-
-    def simulate(self, case: Case, run: Run) -> Trace:
+    def simulate(self, case: Case, run: Run, **options: float) -> Trace:
         """Return the motion of the reduced model that a run names."""
-        return self.solve(case, run.support)
+        return self.reference(case, support=run.support, **options)
 
 
 def check_suite(runs: SuiteRuns, jobs: Sequence[Job], bounds: Bounds | None) -> Iterator[Result]:
@@ -118,29 +112,16 @@ def check_run(runs: SuiteRuns, job: Job, trace: Trace, bounds: Bounds | None) ->
         return
     if support_of(job.run).walls:
         yield from walls(f"{job.case.name}, {job.label}", job.case, trace)
-    model = runs.solve(job.case, reference.support)
+    model = runs.simulate(job.case, reference)
     if bounds is None:
         yield from compared(runs, job, name, model, trace)
         return
-    prediction = predict(
-        job.case,
-        reference=model,
-        own=model,
-        contact_resolution=trace.contact_resolution,
-        error=estimated_error(job.case, job.run.engine, trace.time_step),
-        simulate=runs.simulate,
-    )
-    yield from _stated(bounds, job, name, model, trace, prediction)
-
-
-def _stated(
-    bounds: Bounds, job: Job, name: str, model: Trace, trace: Trace, prediction: Prediction
-) -> Iterator[Result]:
-    """One result for each bound that the suite states."""
-    row = summary_row(job.case, str(model.run), model, job.label, trace, prediction=prediction)
+    # no bound is on the prediction
+    none = Prediction(length=job.case.length, reason="")
+    row = summary_row(job.case, str(model.run), model, job.label, trace, prediction=none)
     for column, most in bounds.given().items():
         unit, meaning = SUMMARY_COLUMNS[column]
-        value = abs(numbers_of(row)[column])
+        value = abs(row[column])
         if column == "agreement_time":
             # the shorter the worse: what is missing may be nothing
             missing = max(0.0, most - value) if row["diverged"] else 0.0
@@ -158,7 +139,7 @@ def compared(runs: SuiteRuns, job: Job, name: str, model: Trace, trace: Trace) -
         (trace,) = runs.traces([other])
         words = "first seconds" if job.case.is_release else "met rocking"
         name = f"{name}, {words}"
-        model = runs.solve(other.case, model.run.support)
+        model = runs.simulate(other.case, model.run)
         if trace.outcome == "failed":
             yield at_most(name, math.nan, ENDS, f"contact of {job.run.engine}", why(trace))
         else:
@@ -272,7 +253,7 @@ def _copies(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, by_step: Arra
     threshold = trace.contact_resolution / case.cylinder.alpha
     closing = []
     if threshold > REST_TILT:
-        closed = runs.solve(case, model.run.support, rest_tilt=min(threshold, LARGEST_REST_TILT))
+        closed = runs.simulate(case, model.run, rest_tilt=min(threshold, LARGEST_REST_TILT))
         closing.append(_apart(model, closed))
 
     by_table = estimated_error(case, job.run.engine, trace.time_step)

@@ -20,7 +20,6 @@ import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 import pandas as pd
@@ -57,7 +56,7 @@ LEAST_ORDER = 0.5
 # samples are multiples of one step; two that differ by less are the same [s]
 _SAME_TIME = 1e-9
 
-# of the step of the run: always two, and one more where the limit is uncertain
+# times that the step of the run is halved: always two, and one more where the limit is uncertain
 _ALWAYS, _AT_MOST = 2, 3
 # uncertainty of a limit, over the whole difference, that asks for a finer step
 _UNCERTAIN = 0.1
@@ -65,21 +64,6 @@ _UNCERTAIN = 0.1
 _IMPACT = Run(None, "recess", plane=0.0, restitution="momentum")
 Simulate = Callable[[list[Job]], list[Trace]]
 Key = tuple[str, str]
-BUDGET_COLUMNS = (
-    "whole_rms",
-    "model_form_rms",
-    "numerics_rms",
-    "unexplained_rms",
-    "unexplained_share",
-    "limit_error",
-    "step_order",
-    "finest_step",
-    "not_split",
-)
-# of a row without a budget
-NO_BUDGET: Mapping[str, float | str] = MappingProxyType(
-    {**dict.fromkeys(BUDGET_COLUMNS, math.nan), "not_split": ""}
-)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -313,16 +297,17 @@ class Refined:
         return self.case.is_release or engine_facts(self.run.engine).smooth_uplift
 
     @property
+    def key(self) -> Key:
+        """Names of case and run."""
+        return self.case.name, self.label
+
+    @property
     def extrapolated(self) -> bool:
         """Whether the run is itself what others tend to."""
         return self.run.time_step == EXTRAPOLATED
 
-    def levels(self, asked: Sequence[int]) -> Sequence[int]:
-        """Return how often the step is to be halved: not at all, too, where no run was at the step itself."""
-        return (0, *asked) if self.extrapolated and 1 in asked else asked
 
-
-def limits(refined: Sequence[Refined], simulate: Simulate) -> Mapping[tuple[str, str], Limit]:
+def limits(refined: Sequence[Refined], simulate: Simulate) -> Mapping[Key, Limit]:
     """Return the limit of each run, by names of case and run.
 
     A run whose finer runs fail or crash has none.
@@ -333,37 +318,28 @@ def limits(refined: Sequence[Refined], simulate: Simulate) -> Mapping[tuple[str,
     simulate : callable
         Runs jobs, and returns their results in the same order.
     """
-    found: dict[tuple[str, str], list[Trace]] = {
-        (r.case.name, r.label): [] if r.extrapolated else [r.trajectory] for r in refined
-    }
-    waiting = list(refined)
-    levels: Sequence[int] = range(1, _ALWAYS + 1)
-    while waiting:
-        jobs = [[_job(each, level) for level in each.levels(levels)] for each in waiting]
-        results = iter(simulate([job for some in jobs for job in some]))
-        for each, some in zip(waiting, jobs, strict=True):
-            found[each.case.name, each.label] += [next(results) for _ in some]
-        next_level = levels[-1] + 1
-        if next_level > _AT_MOST:
-            break
-        levels = (next_level,)
-        waiting = [each for each in waiting if _is_uncertain(each, found[each.case.name, each.label])]
-    made = {(r.case.name, r.label): _limit(r, found[r.case.name, r.label]) for r in refined}
+    traces = {each.key: [] if each.extrapolated else [each.trajectory] for each in refined}
+
+    def halve(wanted: Sequence[tuple[Refined, int]]) -> None:
+        made = simulate([_job(each, times) for each, times in wanted]) if wanted else []
+        for (each, _), trace in zip(wanted, made, strict=True):
+            traces[each.key].append(trace)
+
+    # not at all, too, where no run was at the step itself
+    halve([(each, times) for each in refined for times in range(not each.extrapolated, _ALWAYS + 1)])
+    halve([(each, _AT_MOST) for each in refined if _is_uncertain(each, traces[each.key])])
+    made = {each.key: _limit(each, traces[each.key]) for each in refined}
     return {key: limit for key, limit in made.items() if limit is not None}
 
 
-def finer_case(refined: Refined) -> Case:
-    """Return the problem of the finer runs: as long as needed."""
+def _job(refined: Refined, times: int) -> Job:
+    """Return the run with its step halved so many times, as long as its limit is needed."""
     case = refined.case
     end = min(case.length, math.ceil(refined.end / SAMPLE_STEP - 1e-6) * SAMPLE_STEP)
-    return dataclasses.replace(case, duration=max(end, SAMPLE_STEP))
-
-
-def _job(refined: Refined, level: int) -> Job:
     return Job(
-        case=finer_case(refined),
-        run=at_step(refined.run, refined.trajectory.time_step * 0.5**level),
-        label=f"{refined.label}, step/{2**level}",
+        case=dataclasses.replace(case, duration=max(end, SAMPLE_STEP)),
+        run=at_step(refined.run, refined.trajectory.time_step * 0.5**times),
+        label=f"{refined.label}, step/{2**times}",
     )
 
 
@@ -444,8 +420,7 @@ def case_budgets(
                     difference=pair.tilt_difference[pair.time >= pair.start],
                 )
             )
-    extrapolations = limits(refined, simulate) if refined else {}
-    by_name = {case.name: case for case in cases}
+    extrapolations = limits(refined, simulate)
     impacts = _impacts(cases, runs, results, simulate)
 
     def own(name: str, label: str) -> Trace:
@@ -454,7 +429,7 @@ def case_budgets(
 
     return {
         (name, label, model): error_budget(
-            by_name[name].cylinder,
+            results[name, label].case.cylinder,
             results[name, label],
             results[name, model],
             own(name, label),

@@ -59,11 +59,6 @@ class Comparison(Results, kind="comparison"):
     """
 
     @property
-    def summary(self) -> pd.DataFrame:
-        """The table of that name."""
-        return self.tables["summary"]
-
-    @property
     def versions(self) -> Mapping[str, str]:
         """Version of each package and engine that took part."""
         return dict(self.facts["versions"])

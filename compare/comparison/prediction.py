@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -100,10 +100,7 @@ def measured_error(case: Case, budget: ErrorBudget) -> float:
 
 def close_pass(reference: Trace, contact_resolution: float, length: float) -> Prediction:
     """Return the prediction for a trajectory whose errors are not known: its first close pass alone."""
-    end = _close_pass(reference, contact_resolution, length)
-    if end >= length:
-        return Prediction(length=length, reason="")
-    return Prediction(length=max(0.0, end - start_of(reference)), reason="pass")
+    return _first_of({"pass": _close_pass(reference, contact_resolution, length)}, reference, length)
 
 
 def predict(
@@ -135,16 +132,20 @@ def predict(
         Tilt difference that ends the agreement [alpha].
     """
     length = case.length
-    start = start_of(reference)
     ends = {
         "model form": length if own is reference else _diverges(case, reference, own, tolerance),
         "pass": _close_pass(own, contact_resolution, length),
         "growth": _copy_diverges(case, own, error, simulate, tolerance),
     }
+    return _first_of(ends, reference, length)
+
+
+def _first_of(ends: Mapping[str, float], reference: Trace, length: float) -> Prediction:
+    """Return the prediction of what ends the agreement first, by time of the run [s]."""
     reason = min(ends, key=ends.__getitem__)
     if ends[reason] >= length:
         return Prediction(length=length, reason="")
-    return Prediction(length=max(0.0, ends[reason] - start), reason=reason)
+    return Prediction(length=max(0.0, ends[reason] - start_of(reference)), reason=reason)
 
 
 def nudged(case: Case) -> list[Case]:

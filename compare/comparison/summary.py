@@ -12,7 +12,7 @@ import pandas as pd
 from rockwobble.models import AGREEMENT, Case, Trace
 from rockwobble.models.diagnostic import joined
 
-from ..external.verdict import VERDICT_COLUMNS, Row, judge, no_verdict
+from ..external.verdict import NO_VERDICT, VERDICT_COLUMNS, Row, judge
 from ..metrics.pair import (
     Agreement,
     Pair,
@@ -31,7 +31,7 @@ from ..metrics.pair import (
     turn_difference,
 )
 from ..runs.choice import REDUCED
-from .budget import NO_BUDGET, ErrorBudget
+from .budget import ErrorBudget
 from .prediction import Prediction, close_pass, verdict
 
 # name: (unit, meaning); the order is that of the table
@@ -102,6 +102,8 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     ),
     **VERDICT_COLUMNS,
 }
+# of a run without a budget that is no external trajectory
+_UNKNOWN: Row = {**dict.fromkeys(SUMMARY_COLUMNS, math.nan), "not_split": "", **NO_VERDICT}
 
 
 def summary_row(
@@ -151,7 +153,8 @@ def summary_row(
     close = agreement_time(whole, tolerance=tolerance, broken=broken, allowance=allowance)
     direction = direction_difference(reference, trial)
     turned_until = min(agreement.end, first_unresolved_pass(trial, start=whole.start))
-    row = {
+    return {
+        **_UNKNOWN,
         **_methods(case, name, reference, label, trial),
         "time_step": trial.time_step,
         "peak_tilt": trial.peak_tilt / alpha,
@@ -181,9 +184,8 @@ def summary_row(
         "predicted_until": within.length + (whole.start if within.reason else 0.0),
         "divergence": _divergence(trial, close, within),
         "estimated_error": estimated_error,
-        **no_verdict(),
+        **({} if budget is None else budget.columns()),
     }
-    return {**row, **(NO_BUDGET if budget is None else budget.columns())}
 
 
 def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) -> Row:
@@ -224,7 +226,7 @@ def external_row(
     Its uplift is compared as its samples show it: see `external.verdict.uplift_differences`. Its peak is
     compared with that of the reference while the file lasts.
     """
-    verdict = judge(trial, reference, case)
+    found = judge(trial, reference, case)
     row = summary_row(
         case,
         name,
@@ -233,22 +235,19 @@ def external_row(
         trial,
         prediction=close_pass(reference, trial.contact_resolution, case.length),
         until=until,
-        allowance=verdict.difference.tilt.bound - AGREEMENT,
+        allowance=found["tilt_bound"] - AGREEMENT,
     )
-    for name, part in (("uplift_time", verdict.uplift_time), ("uplift_direction", verdict.uplift_direction)):
-        if part is not None:
-            row[f"{name}_difference"] = part.size
     tilts = np.vstack([np.column_stack([reference.time, reference.tilt]), reference.extrema[:, :2]])
     covered = (tilts[:, 0] >= trial.time[0]) & (tilts[:, 0] <= trial.time[-1])
     largest = float(np.max(tilts[covered, 1], initial=0.0))
     row["peak_tilt_difference"] = (trial.peak_tilt - largest) / case.cylinder.alpha
-    return row | verdict.columns()
+    return row | found
 
 
 def lost_row(case: Case, name: str, reference: Trace, label: str, trial: Trace) -> Row:
     """Return the row of a run that left no samples: what is not known is NaN."""
-    row: Row = dict.fromkeys(SUMMARY_COLUMNS, math.nan)
-    row |= {
+    return {
+        **_UNKNOWN,
         **_methods(case, name, reference, label, trial),
         "reference_peak_tilt": reference.peak_tilt / case.cylinder.alpha,
         "agreement_time": 0.0,
@@ -262,7 +261,6 @@ def lost_row(case: Case, name: str, reference: Trace, label: str, trial: Trace) 
         "predicted_by": "",
         "divergence": "",
     }
-    return row | no_verdict()
 
 
 # of the agreement matrix, likewise

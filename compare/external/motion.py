@@ -14,7 +14,6 @@ largest tilt there.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,7 +26,6 @@ Complex = NDArray[np.complex128]
 # of a normal distribution: median of the absolute value over the standard deviation
 MEDIAN_OF_NORMAL = 0.6745
 FEWEST_SCATTERED = 12  # samples without which their scatter is not known
-FITTED_SAMPLES = 7  # of the polynomial through a maximum of the tilt
 SAME_TIME = 1e-9  # samples at one time up to rounding [s]
 SAME_STEP = 1e-6  # relative
 
@@ -194,27 +192,6 @@ def scatter(time: Array, values: Array) -> float:
     if len(moving) < FEWEST_SCATTERED:
         return 0.0
     return float(np.median(moving, axis=0).max()) / MEDIAN_OF_NORMAL
-
-
-def maxima(motion: Motion) -> Iterator[tuple[float, float, float]]:
-    """Yield time [s], tilt and azimuth [rad] of each maximum of the tilt inside the run, by a polynomial fit.
-
-    The azimuth is NaN where none is known.
-    """
-    tilt, half, degree = motion.tilt, FITTED_SAMPLES // 2, FITTED_SAMPLES - 1
-    peaks = np.flatnonzero((tilt[1:-1] > tilt[:-2]) & (tilt[1:-1] >= tilt[2:])) + 1
-    for i in peaks[(peaks >= half) & (peaks < len(tilt) - half)]:
-        near = slice(i - half, i + half + 1)
-        unit = motion.time[i + half] - motion.time[i - half]
-        time = (motion.time[near] - motion.time[i]) / unit
-        fit = np.polyfit(time, tilt[near], degree)
-        roots = np.roots(np.polyder(fit))
-        best = float(min(roots[np.abs(roots.imag) < 1e-9].real, key=abs, default=0.0))
-        azimuth = math.nan
-        if motion.lean is not None:
-            turned = np.angle(motion.lean[near] * np.conj(motion.lean[i]))
-            azimuth = float(np.angle(motion.lean[i]) + np.polyval(np.polyfit(time, turned, degree), best))
-        yield float(motion.time[i] + best * unit), float(np.polyval(fit, best)), azimuth
 
 
 def exceeds(time: Array, value: Array, level: float, power: float) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,18 +13,17 @@ import pandas as pd
 from rockwobble.models import AGREEMENT, Case, Trace
 
 from ..metrics.pair import TILTED, start_of
-from .explanation import Explanation, explanations
+from .explanation import explanations
 from .mistakes import Mistake
-from .motion import Difference, Motion, Part, Reference, exceeds, motion_at
+from .motion import Motion, Part, Reference, exceeds, motion_at
 from .table import Values
 from .trajectory import external_motion, measurement, trajectory_of
 
 # standard deviations of the noise: the first of some hundred samples that is above a tilt is sought
 CONFIDENCE = 4.0
 
+Row = dict[str, Any]  # of a summary
 # columns of the summary that only external trajectories have: unit, meaning
-Cell = float | str | bool | tuple[str, ...] | tuple[float, ...]
-Row = dict[str, Cell]  # of a summary
 VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = {
     "differs_in": ("", "of an external trajectory: tilt, azimuth, path, uplift_time, uplift_direction"),
     "not_compared": (
@@ -54,80 +53,15 @@ LISTS = (
     *("differs_in", "not_compared", "not_given", "differs_without_mistake"),
     *("likely_mistake", "likely_mistake_in", "likely_mistake_value"),
 )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Verdict:
-    """An external trajectory compared with a model.
-
-    Attributes
-    ----------
-    explanation : Explanation or None
-        None where nothing differs.
-    not_compared, not_given : tuple of str
-        Azimuth or path, because there is too little motion while the tilts agree or because it is not given.
-    uplift_time, uplift_direction : Part or None
-        Difference and its uncertainty as size and bound [s], [rad]; None at a release, or where one of the
-        two does not uplift.
-    noise : float
-        Standard deviation of the scatter of the samples [alpha].
-    """
-
-    difference: Difference
-    explanation: Explanation | None
-    not_compared: tuple[str, ...]
-    not_given: tuple[str, ...]
-    uplift_time: Part | None
-    uplift_direction: Part | None
-    noise: float
-
-    @property
-    def differs_in(self) -> tuple[str, ...]:
-        """What differs, of tilt, azimuth, path, uplift_time and uplift_direction."""
-        uplift = (("uplift_time", self.uplift_time), ("uplift_direction", self.uplift_direction))
-        return (
-            *self.difference.differs_in,
-            *(name for name, part in uplift if part is not None and part.differs),
-        )
-
-    @property
-    def mistakes(self) -> tuple[Mistake, ...]:
-        """The likely mistakes."""
-        return () if self.explanation is None else self.explanation.mistakes
-
-    def columns(self) -> Row:
-        """Return the columns of the summary."""
-        azimuth, path = self.difference.azimuth, self.difference.path
-        own: Row = no_verdict() | {
-            "differs_in": self.differs_in,
-            "not_compared": self.not_compared,
-            "not_given": self.not_given,
-            "tilt_bound": self.difference.tilt.bound,
-            "noise": self.noise,
-            "likely_mistake": tuple(mistake.code for mistake in self.mistakes),
-            "likely_mistake_in": tuple(mistake.concerns for mistake in self.mistakes),
-            "likely_mistake_value": tuple(mistake.value for mistake in self.mistakes),
-        }
-        if self.explanation is not None and self.mistakes:
-            left = self.explanation.left
-            # as of the agreement time: the length of the run where they never diverge
-            own["differs_without_mistake"] = left.differs_in
-            own["agreement_without_mistake"] = left.length if left.tilt.differs else left.end
-        if azimuth is not None:
-            own |= {"azimuth_rms": math.degrees(azimuth.size), "azimuth_differs_from": azimuth.first_time}
-        if path is not None:
-            own |= {"path_rms": path.size, "path_differs_from": path.first_time}
-        for name, part in (("uplift_time", self.uplift_time), ("uplift_direction", self.uplift_direction)):
-            if part is not None:
-                own[f"{name}_uncertainty"] = part.bound
-        return own
+# what they hold of a run that is no external trajectory
+NO_VERDICT: Row = {name: () if name in LISTS else math.nan for name in VERDICT_COLUMNS}
 
 
 def reference_of(trace: Trace, case: Case) -> Reference:
     """Return what an external trajectory of a case is compared with."""
     cylinder = case.cylinder
     return Reference(
-        motion=motion_of(trace),
+        motion=motion_at(trace.time, trace.tilt, trace.rolling_angle, trace.centre_of_mass),
         alpha=cylinder.alpha,
         base_radius=cylinder.base_radius,
         time_scale=math.sqrt(cylinder.semidiagonal / case.gravity),
@@ -138,21 +72,36 @@ def reference_of(trace: Trace, case: Case) -> Reference:
     )
 
 
-def motion_of(trace: Trace) -> Motion:
-    """Return the motion of the trace of a model."""
-    return motion_at(trace.time, trace.tilt, trace.rolling_angle, trace.centre_of_mass)
+def judge(trajectory: Trace, reference: Trace, case: Case) -> Row:
+    """Return the columns of the summary on an external trajectory of a case and the trace of a model.
 
-
-def judge(trajectory: Trace, reference: Trace, case: Case) -> Verdict:
-    """Compare an external trajectory of a case with the trace of a model."""
+    Those of `VERDICT_COLUMNS`, and the differences at uplift where both uplift.
+    """
     model, motion, source = (
         reference_of(reference, case),
         external_motion(trajectory),
         measurement(trajectory),
     )
     found = model.difference(motion)
-    time, direction = uplift_differences(trajectory, reference)
+    uplift = dict(
+        zip(("uplift_time", "uplift_direction"), uplift_differences(trajectory, reference), strict=True)
+    )
+    later = [name for name, part in uplift.items() if part is not None and part.differs]
     parts = (("azimuth", found.azimuth, motion.lean), ("path", found.path, motion.path))
+    row: Row = NO_VERDICT | {
+        "differs_in": (*found.differs_in, *later),
+        "not_compared": tuple(name for name, part, _ in parts if part is None),
+        "not_given": tuple(name for name, _, given in parts if given is None),
+        "tilt_bound": found.tilt.bound,
+        "noise": source.poses.noise / case.cylinder.alpha,
+    }
+    for name, part in uplift.items():
+        if part is not None:
+            row |= {f"{name}_difference": part.size, f"{name}_uncertainty": part.bound}
+    for name, part, _ in parts:
+        if part is not None:
+            size = math.degrees(part.size) if name == "azimuth" else part.size
+            row |= {f"{name}_rms": size, f"{name}_differs_from": part.first_time}
 
     def read(values: Values) -> Motion | None:
         try:
@@ -161,15 +110,18 @@ def judge(trajectory: Trace, reference: Trace, case: Case) -> Verdict:
             return None
         return external_motion(other)
 
-    return Verdict(
-        difference=found,
-        explanation=next(explanations(source.table.values, read, model)) if found.differs_in else None,
-        not_compared=tuple(name for name, part, _ in parts if part is None),
-        not_given=tuple(name for name, _, given in parts if given is None),
-        uplift_time=time,
-        uplift_direction=direction,
-        noise=source.poses.noise / case.cylinder.alpha,
-    )
+    explained = next(explanations(source.table.values, read, model), None) if found.differs_in else None
+    if explained is not None and (mistakes := explained.mistakes):
+        left = explained.left
+        row |= {
+            "likely_mistake": tuple(mistake.code for mistake in mistakes),
+            "likely_mistake_in": tuple(mistake.concerns for mistake in mistakes),
+            "likely_mistake_value": tuple(mistake.value for mistake in mistakes),
+            "differs_without_mistake": left.differs_in,
+            # as of the agreement time: the length of the run where they never diverge
+            "agreement_without_mistake": left.length if left.tilt.differs else left.end,
+        }
+    return row
 
 
 def uplift_differences(trajectory: Trace, reference: Trace) -> tuple[Part | None, Part | None]:
@@ -221,16 +173,6 @@ def mistakes_of(row: Any) -> tuple[Mistake, ...]:
     """Return the likely mistakes of a row of the summary, a named tuple."""
     columns = zip(row.likely_mistake, row.likely_mistake_in, row.likely_mistake_value, strict=True)
     return tuple(Mistake(code=code, concerns=part, value=value) for code, part, value in columns)
-
-
-def numbers_of(row: Row) -> dict[str, float]:
-    """Return the numbers of a row."""
-    return {name: float(cell) for name, cell in row.items() if not isinstance(cell, str | tuple)}
-
-
-def no_verdict() -> Row:
-    """Return the columns of a run that is no external trajectory."""
-    return {name: () if name in LISTS else math.nan for name in VERDICT_COLUMNS}
 
 
 def lists_in_words(summary: pd.DataFrame) -> pd.DataFrame:

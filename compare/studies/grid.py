@@ -20,6 +20,7 @@ from ..storage.provenance import fingerprint, reduced_makers
 from .plans import GridPlan
 
 MODELS = ("recess", "flat", "planar")
+MOST_RUNS = 100_000_000  # whose table takes 10 GB
 # The runs of a chunk take about a second together: little is lost with it, and keeping it takes a few
 # thousandths of that.
 _CHUNK_SIZE = 1000
@@ -142,6 +143,10 @@ class Grid(Brief, GridPlan):
             raise ValueError(f"{planar[0]} is of planar motion, got models {', '.join(self.models)}")
         for name in ("semidiagonals", "tan_alphas", "scales"):
             object.__setattr__(self, name, _axis(name, getattr(self, name), zero=name == "scales"))
+        if self.rows > MOST_RUNS:
+            raise ValueError(
+                f"a grid has at most {MOST_RUNS:,} runs, got {self.rows:,}: sweep fewer at a time"
+            )
         # looks at the options here, not first in another process
         for model in self.models if self.options else ():
             run = {**reduced.MODELS[model], **self.options}

@@ -24,11 +24,12 @@ from numpy.typing import NDArray
 
 from rockwobble.compare.external.explanation import Explanation, explanations
 from rockwobble.compare.external.mistakes import Change, Mistake, corrected, in_time_scale, readings
-from rockwobble.compare.external.motion import Motion, Reference, exceeds, maxima, motion_at, pose_of
+from rockwobble.compare.external.motion import Motion, Reference, exceeds, motion_at, pose_of
 from rockwobble.compare.external.table import Array, Table, Values, listed, read_tables
 
 LEVELS = ("exact", "good", "pass")
 FEWEST_IN_WINDOW = 30
+FITTED_SAMPLES = 7  # of the polynomial through a maximum of the tilt
 FALLEN = 1.5  # [rad]: what fell ends early
 ENOUGH = 4.0  # a mistake that is named reduces the error so many times
 EXPLAINED_RUNS = 3  # of the worst runs, for whose mistakes all are tried
@@ -89,6 +90,27 @@ def read_motion(run: Run, values: Values) -> Motion | None:
     if not (np.all(np.diff(values["time"]) > 0.0) and np.isfinite(pose.axis).all()):
         return None
     return Motion(time=values["time"], tilt=pose.tilt, lean=pose.lean, path=pose.position)
+
+
+def maxima(motion: Motion) -> Iterator[tuple[float, float, float]]:
+    """Yield time [s], tilt and azimuth [rad] of each maximum of the tilt inside the run, by a polynomial fit.
+
+    The azimuth is NaN where none is known.
+    """
+    tilt, half, degree = motion.tilt, FITTED_SAMPLES // 2, FITTED_SAMPLES - 1
+    peaks = np.flatnonzero((tilt[1:-1] > tilt[:-2]) & (tilt[1:-1] >= tilt[2:])) + 1
+    for i in peaks[(peaks >= half) & (peaks < len(tilt) - half)]:
+        near = slice(i - half, i + half + 1)
+        unit = motion.time[i + half] - motion.time[i - half]
+        time = (motion.time[near] - motion.time[i]) / unit
+        fit = np.polyfit(time, tilt[near], degree)
+        roots = np.roots(np.polyder(fit))
+        best = float(min(roots[np.abs(roots.imag) < 1e-9].real, key=abs, default=0.0))
+        azimuth = math.nan
+        if motion.lean is not None:
+            turned = np.angle(motion.lean[near] * np.conj(motion.lean[i]))
+            azimuth = float(np.angle(motion.lean[i]) + np.polyval(np.polyfit(time, turned, degree), best))
+        yield float(motion.time[i] + best * unit), float(np.polyval(fit, best)), azimuth
 
 
 def through(x: Array, X: Array, Y: NDArray[Any]) -> NDArray[Any]:

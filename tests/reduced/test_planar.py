@@ -73,6 +73,26 @@ def test_each_impact_takes_its_share_of_energy(restitution):
     assert potential[1:] / potential[:-1] == pytest.approx(factor**2, rel=1e-8)
 
 
+@pytest.mark.parametrize(
+    ("restitution", "share"),
+    [(0.9, (0.02, 0.0, 0.25)), (1.0, (0.01, 0.0, -0.25))],
+    ids=["heavier", "lighter"],
+)
+def test_each_impact_takes_its_share_on_ground_that_accelerates_evenly(restitution, share):
+    ground = 9.81 * np.array(share)
+    case = Case(
+        PIER, GroundMotion([ground, ground], 10.0), initial=InitialState(0.25 * PIER.alpha), duration=8.0
+    )
+    response = reduced.simulate(case, plane=0.0, restitution=restitution, rest_tilt=0.0, rtol=1e-11)
+    _, tilt, angle, _ = response.extrema[response.extrema[:, 3] > 0.0].T
+    # at a maximum all energy is potential, with the inertia force of the ground
+    b, h = PIER.base_radius, PIER.mass_centre_height
+    out, rise = b * (1.0 - np.cos(tilt)) + h * np.sin(tilt), b * np.sin(tilt) - h * (1.0 - np.cos(tilt))
+    potential = ground[0] * np.cos(angle) * out + (9.81 + ground[2]) * rise
+    assert len(tilt) > 3
+    assert potential[1:] / potential[:-1] == pytest.approx(restitution**2, rel=1e-8)
+
+
 def test_impacts_that_accumulate_end_at_rest():
     release = InitialState(0.5 * PIER.alpha)
     for restitution in (0.5, 0.0):

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from rockwobble.compare.external.mistakes import AXES_WORDS, WORDS, Mistake
-from rockwobble.compare.external.verdict import no_verdict
+from rockwobble.compare.external.verdict import NO_VERDICT
 from rockwobble.reports.pages.comparison import external_rows
 from rockwobble.reports.pages.findings import cause, explains_divergence, headline, notes, within
 
@@ -61,7 +61,7 @@ def row(**values: Any) -> Any:
         "uplift_time_difference": 0.004,
         "uplift_direction_difference": -0.5,
     }
-    values = common | no_verdict() | AGREES | values
+    values = common | NO_VERDICT | AGREES | values
     until = 1.7 if values["diverged"] else 0.0  # the uplift, where a length counts from it
     tolerances = {
         "reference_uplift_time": 1.7,

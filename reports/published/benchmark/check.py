@@ -235,7 +235,6 @@ Complex = NDArray[np.complex128]
 # of a normal distribution: median of the absolute value over the standard deviation
 MEDIAN_OF_NORMAL = 0.6745
 FEWEST_SCATTERED = 12  # samples without which their scatter is not known
-FITTED_SAMPLES = 7  # of the polynomial through a maximum of the tilt
 SAME_TIME = 1e-9  # samples at one time up to rounding [s]
 SAME_STEP = 1e-6  # relative
 
@@ -402,27 +401,6 @@ def scatter(time: Array, values: Array) -> float:
     if len(moving) < FEWEST_SCATTERED:
         return 0.0
     return float(np.median(moving, axis=0).max()) / MEDIAN_OF_NORMAL
-
-
-def maxima(motion: Motion) -> Iterator[tuple[float, float, float]]:
-    """Yield time [s], tilt and azimuth [rad] of each maximum of the tilt inside the run, by a polynomial fit.
-
-    The azimuth is NaN where none is known.
-    """
-    tilt, half, degree = motion.tilt, FITTED_SAMPLES // 2, FITTED_SAMPLES - 1
-    peaks = np.flatnonzero((tilt[1:-1] > tilt[:-2]) & (tilt[1:-1] >= tilt[2:])) + 1
-    for i in peaks[(peaks >= half) & (peaks < len(tilt) - half)]:
-        near = slice(i - half, i + half + 1)
-        unit = motion.time[i + half] - motion.time[i - half]
-        time = (motion.time[near] - motion.time[i]) / unit
-        fit = np.polyfit(time, tilt[near], degree)
-        roots = np.roots(np.polyder(fit))
-        best = float(min(roots[np.abs(roots.imag) < 1e-9].real, key=abs, default=0.0))
-        azimuth = math.nan
-        if motion.lean is not None:
-            turned = np.angle(motion.lean[near] * np.conj(motion.lean[i]))
-            azimuth = float(np.angle(motion.lean[i]) + np.polyval(np.polyfit(time, turned, degree), best))
-        yield float(motion.time[i] + best * unit), float(np.polyval(fit, best)), azimuth
 
 
 def exceeds(time: Array, value: Array, level: float, power: float) -> float:
@@ -1175,6 +1153,7 @@ def _minima(tilt: Array) -> NDArray[np.intp]:
 
 LEVELS = ("exact", "good", "pass")
 FEWEST_IN_WINDOW = 30
+FITTED_SAMPLES = 7  # of the polynomial through a maximum of the tilt
 FALLEN = 1.5  # [rad]: what fell ends early
 ENOUGH = 4.0  # a mistake that is named reduces the error so many times
 EXPLAINED_RUNS = 3  # of the worst runs, for whose mistakes all are tried
@@ -1235,6 +1214,27 @@ def read_motion(run: Run, values: Values) -> Motion | None:
     if not (np.all(np.diff(values["time"]) > 0.0) and np.isfinite(pose.axis).all()):
         return None
     return Motion(time=values["time"], tilt=pose.tilt, lean=pose.lean, path=pose.position)
+
+
+def maxima(motion: Motion) -> Iterator[tuple[float, float, float]]:
+    """Yield time [s], tilt and azimuth [rad] of each maximum of the tilt inside the run, by a polynomial fit.
+
+    The azimuth is NaN where none is known.
+    """
+    tilt, half, degree = motion.tilt, FITTED_SAMPLES // 2, FITTED_SAMPLES - 1
+    peaks = np.flatnonzero((tilt[1:-1] > tilt[:-2]) & (tilt[1:-1] >= tilt[2:])) + 1
+    for i in peaks[(peaks >= half) & (peaks < len(tilt) - half)]:
+        near = slice(i - half, i + half + 1)
+        unit = motion.time[i + half] - motion.time[i - half]
+        time = (motion.time[near] - motion.time[i]) / unit
+        fit = np.polyfit(time, tilt[near], degree)
+        roots = np.roots(np.polyder(fit))
+        best = float(min(roots[np.abs(roots.imag) < 1e-9].real, key=abs, default=0.0))
+        azimuth = math.nan
+        if motion.lean is not None:
+            turned = np.angle(motion.lean[near] * np.conj(motion.lean[i]))
+            azimuth = float(np.angle(motion.lean[i]) + np.polyval(np.polyfit(time, turned, degree), best))
+        yield float(motion.time[i] + best * unit), float(np.polyval(fit, best)), azimuth
 
 
 def through(x: Array, X: Array, Y: NDArray[Any]) -> NDArray[Any]:
