@@ -178,7 +178,7 @@ def run_checks(
     subject: Subject,
     groups: Sequence[str] | None = None,
     *,
-    checks: Mapping[str, tuple[Check, ...]] = GROUPS,
+    checks: Mapping[str, tuple[Check, ...]] | None = None,
 ) -> Iterator[Result]:
     """Yield the results of the groups, in their order, as they are made.
 
@@ -204,7 +204,7 @@ def run_checks(
     """
     for group in groups or ():
         require_one_of("a group", group, tuple(GROUPS))
-    for group, chosen in checks.items():
+    for group, chosen in (GROUPS if checks is None else checks).items():
         for check in chosen if groups is None or group in groups else ():
             if check.applies(subject):
                 for result in check.run(subject):
