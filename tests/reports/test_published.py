@@ -63,6 +63,12 @@ def test_what_is_not_kept_is_made_by_the_command_of_its_page() -> None:
     assert large == []
 
 
+def test_all_studies_are_of_one_commit() -> None:
+    made = [each for folder in FOLDERS for each in read_manifests(folder)]
+    # releases of engines are measured in environments of their own, by a script
+    assert len({each.commit for each in made if each.kind != "engine versions"}) == 1
+
+
 @pytest.mark.parametrize("folder", FOLDERS, ids=name_of)
 def test_it_is_not_older_than_the_code_that_it_rests_on(folder: Path) -> None:
     current = code_digests()
