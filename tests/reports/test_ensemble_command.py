@@ -11,6 +11,7 @@ import pytest
 from rich.console import Console
 
 from rockwobble.compare import Ensemble
+from rockwobble.compare.metrics.statistics import FEWEST
 from rockwobble.compare.storage.manifest import read_manifests
 from rockwobble.compare.studies.ensemble import KIND, ensemble_of
 from rockwobble.models import Run
@@ -147,6 +148,7 @@ def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process,
     assert "alpha = 11.31 deg" in printed
     assert "Members: 3, perturbed copies, 1 %" in printed
     assert "flat-ground model against recess model: higher in 0 and lower in 0 of 3 members" in printed
+    assert f"Of fewer than {FEWEST} members" in printed
     table = pd.read_parquet(tmp_path / "members.parquet")
     assert table["peak_tilt"].to_numpy() == pytest.approx(
         pd.read_csv(tmp_path / "members.csv")["peak_tilt"].to_numpy(), rel=1e-12
