@@ -344,6 +344,8 @@ def check(
             if engine is None and each.run is not None:
                 checks = _OF_ENGINES if each.label in standard_engines() else _OF_EXTRAS
             results += run_checks(each, [group], checks=checks)
+    if not results:
+        raise ValueError(f"no check of {', '.join(only or GROUPS)} applies: name an engine, or another group")
     return _summed(results)
 
 
