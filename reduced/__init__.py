@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from .batch import peak_tilts
+from .batch import peak_tilts, peak_tilts_of_case
 from .body import restitution_from_momentum
 from .exact import (
     FreeResponse,
@@ -34,6 +34,7 @@ __all__ = [
     "free_response",
     "limiting_angle_of_turn",
     "peak_tilts",
+    "peak_tilts_of_case",
     "planar_quarter_period",
     "restitution_from_momentum",
     "rocking_period",

@@ -122,6 +122,58 @@ def peak_tilts(
     return peaks
 
 
+def peak_tilts_of_case(
+    case: Case,
+    scales: ArrayLike,
+    *,
+    support: str = "recess",
+    plane: float | None = None,
+    rtol: float = 1e-7,
+    workers: int | None = None,
+) -> NDArray[np.float64]:
+    """Return the peak tilt of a case, released or from rest, under its ground motion times each scale.
+
+    Parameters
+    ----------
+    case : Case
+        With a ground motion.
+    scales : array_like, shape (n_scale,)
+        Factors on the motion, not negative [-].
+    support, plane, rtol
+        As in `simulate`.
+    workers : int, optional
+        Number of threads; default: that of the cores.
+
+    Returns
+    -------
+    ndarray, shape (n_scale,)
+        Peak tilt [rad]: 0 without uplift, pi/2 if overturned, NaN where the run failed.
+
+    Raises
+    ------
+    ValueError
+        If the case has no ground motion, or an option is out of range.
+
+    Examples
+    --------
+    >>> from rockwobble.models import el_centro_1940
+    >>> case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940(), duration=5.0)
+    >>> peaks = peak_tilts_of_case(case, [0.5, 2.0])
+    >>> peaks.shape, float(peaks[0])
+    ((2,), 0.0)
+    """
+    if case.motion is None:
+        raise ValueError("scales need a ground motion, got a case without one")
+    problem = Problem(case, support=support, plane=plane, rtol=rtol)
+    make_ready(problem.kernel)
+
+    def peak(factor: float) -> float:
+        return _peak(problem.solve_under(problem.shaking(factor)))
+
+    factors = [float(factor) for factor in _axis("scales", scales)]
+    return np.array(list(in_threads(peak, factors, workers=workers)))
+
+
 def _peak(result: IntegrationResult) -> float:
     if result.status == OVERTURNED:
         return 0.5 * math.pi

@@ -114,6 +114,22 @@ def quantile_interval(values: Array, share: float) -> Interval:
     )
 
 
+def covering(values: Array, share: float) -> tuple[float, int]:
+    """Return the least value that at least a share of the values do not exceed, and how many do not.
+
+    It is an order statistic, so that it is infinite only where more than 1 - share of the values are: what is
+    said of it and of the share of runs that overturn is one statement.
+
+    Examples
+    --------
+    >>> covering(np.array([1.0, 4.0, 2.0, 3.0]), 0.5), covering(np.array([*range(1, 22), np.inf]), 0.95)
+    ((2.0, 2), (21.0, 21))
+    """
+    ordered = np.sort(np.asarray(values, dtype=np.float64))
+    rank = max(math.ceil(share * len(ordered) * (1.0 - 1e-12)), 1)
+    return float(ordered[rank - 1]), rank
+
+
 def share_interval(count: int, total: int) -> Interval:
     """Return the share of what is drawn that a sample has `count` of `total` of, and its interval.
 

@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from ..runs.plan import Plan, option
+
+if TYPE_CHECKING:
+    from rockwobble.models import Case
 
 _ROLLING = (
     "Length of the couple against the rolling of the rim, in m, below every base radius; 0 loses nothing."
@@ -59,12 +62,26 @@ class AdvicePlan(Copies):
         "Support: recess (ideal recess), flat (flat ground) or ring (recess with clearance).",
         group="Method",
     )
+    mass: float | None = option(
+        None,
+        "Mass of the cylinder, or of one column without its share of the slab, in t: forces in kN and "
+        "moments in kNm.",
+        group="Cylinder",
+        above=0.0,
+    )
 
     def __post_init__(self) -> None:
         from rockwobble.models.support import support_named  # with numpy, which help can do without
 
         Plan.__post_init__(self)
         support_named(self.support)
+
+    def perturbed(self, case: Case, count: int | None = None) -> list[Case]:
+        """Return perturbed copies of a case, as many as the plan says or `count`."""
+        from rockwobble.models import perturbed_copies
+
+        copies = self.copies if count is None else count
+        return perturbed_copies(case, copies, perturbation=self.perturbation, seed=self.seed)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import shlex
 from collections.abc import Collection
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -13,6 +12,7 @@ import typer
 import rockwobble as rw
 from rockwobble.compare.runs.plan import Plan, options_in
 
+from ..pages.command_line import command_line
 from . import options
 
 # length of a free response where the user does not say [s]
@@ -232,13 +232,18 @@ def given_options(context: typer.Context) -> list[str]:
     return [name for name, source in sources.items() if source is not None and source.name == "COMMANDLINE"]
 
 
+def stated_options(context: typer.Context, *, also: Collection[str] = ()) -> dict[str, str | bool]:
+    """Return the options of the problem that the user gave, by name; `also`: more of the command's."""
+    return {
+        name: context.params[name] if isinstance(context.params[name], bool) else str(context.params[name])
+        for name in given_options(context)
+        if name in PROBLEM or name in also
+    }
+
+
 def restated(context: typer.Context, command: str, *, also: Collection[str] = ()) -> str:
     """Return the line of another command on the problem that the user gave; `also`: more of its options."""
-    parts = ["rockwobble", command]
-    for name in given_options(context):
-        if name in PROBLEM or name in also:
-            parts += [f"--{name.replace('_', '-')}", str(context.params[name])]
-    return shlex.join(parts)
+    return command_line(command, stated_options(context, also=also))
 
 
 def refuse(context: typer.Context, names: Collection[str], why: str) -> None:

@@ -23,7 +23,7 @@ from ..pages.cases import describe
 from . import options
 from .command import takes_options
 from .options import settings
-from .problem import Problem, given_options, refuse_options_of_engines, restated
+from .problem import Problem, given_options, refuse_options_of_engines, restated, stated_options
 from .suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
 
 if TYPE_CHECKING:
@@ -304,6 +304,8 @@ def advise(
                 progress=progress,
                 **dataclasses.asdict(plan),
             )
+        options_given = stated_options(context, also=[field.name for field in dataclasses.fields(plan)])
+        found = replace(found, facts={**found.facts, "options": options_given})
         show_and_save(found, out, details=details)
     if found.response["outcome"] == "failed":
         raise typer.Exit(FAILED)

@@ -6,37 +6,42 @@ import math
 from collections.abc import Hashable, Iterator, Mapping
 from typing import Any
 
-from rockwobble.compare.comparison.prediction import BEATEN, UNTESTED
+from rockwobble.compare.comparison.prediction import UNTESTED
+from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.metrics.statistics import FEWEST
 from rockwobble.compare.studies.advice.advice import Advice
-from rockwobble.compare.studies.advice.grades import BROKEN, NEAR, SENSITIVE, UNSAFE
-from rockwobble.compare.studies.advice.members import COPIES, SPIKES
-from rockwobble.compare.studies.advice.scales import planar_shares
+from rockwobble.compare.studies.advice.demands import CLOSED, SPIKES
+from rockwobble.compare.studies.advice.grades import CRITERIA, NEAR
+from rockwobble.compare.studies.advice.members import ACCELERATION, COPIES, HORIZONTAL, VELOCITY, VERTICAL
+from rockwobble.compare.studies.advice.scales import AS_STRONG, planar_shares
 from rockwobble.compare.studies.advice.trust import Verification
 from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.compare.studies.spectrum.study import CHECK_RTOL, NUDGE
 from rockwobble.models import AGREEMENT
 from rockwobble.models.diagnostic import CODES, parted
+from rockwobble.models.records import p695
 from rockwobble.models.support import support_named
 from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.reduced.body import restitution_from_momentum
 
 from ..figures.advice import pictures
+from .command_line import command_line, spectrum_line
 from .page import Page
 from .table import number
 
-_GROUPS = {
-    "copies": "copies, {} off",
-    "acceleration": "records, same PGA",
-    "velocity": "records, same PGV",
-}
-# heading of the row: demand at the base, and under the slab
+# rows of the box of demands: name, demand, and what "wall force" takes from the moment
 _DEMANDS = {
-    "friction": ("friction", "top_friction"),
-    "shear": ("shear", "top_shear"),
-    "moment about the vertical": ("moment", ""),
-    "force of that moment on a wall": ("wall_force", ""),
+    "friction": "friction demand",
+    "shear": "shear V",
+    "force": "normal force N",
+    "moment": "vertical moment M",
+    "wall_force": "wall force M/b",
+    "shear_and_wall": "V + M/b together",
+    "top_friction": "under the slab: friction demand",
+    "top_shear": "under the slab: shear",
+    "top_force": "under the slab: normal force",
 }
+_SYMBOLS = {"with_shear": "V", "with_force": "N", "with_moment": "M"}
 _ENDS = {
     "methods": "reduced model and engine diverge",
     "data": "copies are spread over half of the peak tilt",
@@ -55,6 +60,9 @@ _DIVERGENCE = {
     "too little motion": "the model's tilt hardly changes, which tests nothing",
     "earlier": "less than half as long as predicted: rely on neither before you know why",
 }
+_STRONG = f"{100.0 * (1.0 - AS_STRONG[0]):.0f} % weaker to {100.0 * (AS_STRONG[1] - 1.0):.0f} % stronger"
+# options of an advice that other commands do not have
+PLAN = ("mass", "copies", "perturbation", "seed")
 Row = dict[str, object]
 
 
@@ -62,6 +70,7 @@ def page_of(found: Advice) -> Page:
     """Return the page of an advice."""
     drawn = list(pictures(found))
     facts, grades = found.facts, found.grades
+    reasons = _reasons(found) if grades else {}
     values = {
         **facts,
         "found": found,
@@ -72,18 +81,24 @@ def page_of(found: Advice) -> Page:
         "meanings": [CODES[code][1] for code in found.response["diagnostics"]],
         "grades": grades,
         "numbers": _numbers(found),
-        "limits": {
-            **{"near": NEAR, "unsafe": UNSAFE, "broken": BROKEN, "sensitive": SENSITIVE, "beaten": BEATEN},
-            "fewest": FEWEST,
-        },
+        "criteria": [
+            {"topic": topic, "grade": grade, "reason": reasons[topic], **CRITERIA[topic].by_grade()}
+            for topic, grade in grades.items()
+        ],
         "demanded": list(_demanded(found)),
+        "compared": _compared(found),
+        "vertical_words": _vertical_words(found),
+        "steps": _steps(found),
         "groups": _groups(found),
         "headings": {row["group"]: row["name"] for row in _groups(found)},
         "checks": list(_checks(found)),
         "shares": planar_shares(found.planar) if len(found.planar) else [],
         "loss": 1.0 - restitution_from_momentum(found.cylinder),
         "holds": support_named(facts["support"]),
-        "reasons": _reasons(found) if grades else {},
+        "closed": CLOSED,
+        "strong": _STRONG,
+        "strong_scales": len(found.as_strong),
+        "weaker": sorted(set(found.weaker["factor"])) if len(found.weaker) else [],
         **dict(zip(("slips", "lost"), found.missing, strict=True)),
     }
     return Page(name="advice", template="advice", values=values, pictures=drawn)
@@ -113,7 +128,8 @@ def _reason_of_overturning(found: Advice) -> str:
         return "it overturns as given"
     grade, lowest = found.grades["overturning"], found.lowest_factor
     chance, name = max(
-        ((row["chance"], row["name"]) for row in _groups(found) if row["chance"] > 0.0), default=(0.0, "")
+        ((row["chance"], row["name"]) for row in _groups(found) if row["counts"] and row["chance"] > 0.0),
+        default=(0.0, ""),
     )
     reasons = [f"of {name}, {number(chance, 'percent')} overturn"] if chance else []
     if grade == "not satisfied":
@@ -162,12 +178,13 @@ def _reason_of_intensity(found: Advice) -> str:
     low, high = found.beside
     if math.isnan(low):
         return "no other scales of this shaking were run"
-    off = "12 % more or less shaking"
+    which = f"of {len(found.as_strong)} scales {_STRONG}"
     if math.isinf(high):
-        return f"{off} overturns it"
+        fell = int(overturned(found.as_strong["peak_tilt"]).sum())
+        return f"{fell} of {len(found.as_strong)} scales {_STRONG} overturn it"
     if low == 0.0:
-        return f"{off} leaves it at rest"
-    return f"{off} changes the tilt by {number(max(high / found.peak, found.peak / low))} times"
+        return f"some {which} leave it at rest"
+    return f"the tilt changes by {number(max(high / found.peak, found.peak / low))} times {which}"
 
 
 def _reason_of_engine(found: Advice) -> str:
@@ -189,55 +206,187 @@ def _reason_of_engine(found: Advice) -> str:
 
 
 def _groups(found: Advice) -> list[dict[str, Any]]:
-    off = number(found.facts["perturbation"], "percent")
-    named = found.groups.assign(name=[_GROUPS[group].format(off) for group in found.groups.get("group", [])])
-    return [{str(key): value for key, value in row.items()} for row in named.to_dict("records")]
+    """Rows of the groups with their names."""
+    rows = found.groups.to_dict("records")
+    return [{str(key): value for key, value in row.items()} | {"name": _name(found, row)} for row in rows]
+
+
+def _name(found: Advice, row: Mapping[Hashable, Any]) -> str:
+    """The name of a group: what its members are, measured or not, and as strong in which way."""
+    group, off = row["group"], number(found.facts["perturbation"], "percent")
+    copies = {
+        COPIES: f"copies, {off} off",
+        VERTICAL: "copies with vertical",
+        HORIZONTAL: "copies, no vertical",
+    }
+    if group in copies:
+        return copies[group]
+    both = " in both directions" if found.response["in_one_plane"] else ""
+    return f"{row['runs']} {_others(found)}{both}, same {'PGA' if group == ACCELERATION else 'PGV'}"
+
+
+def _others(found: Advice) -> str:
+    return {"p695": "measured records", "synthetic": "synthetic motions"}.get(
+        found.facts["records"], "motions"
+    )
+
+
+def _compared(found: Advice) -> str:
+    """What the case is compared with, beside copies of itself."""
+    rows = [row for row in _groups(found) if row["group"] in (ACCELERATION, VELOCITY)]
+    if not rows:
+        return ""
+    kind = f"{rows[0]['runs']} far-field records of FEMA P-695"
+    if found.facts["records"] == "synthetic":
+        kind = f"{rows[0]['runs']} synthetic ground motions, which are no records"
+    plane = (
+        ", which shake in both directions while this one has one component"
+        if found.response["in_one_plane"]
+        else ""
+    )
+    return f"Compared with {kind}, scaled to its PGA and its PGV{plane}."
+
+
+def _vertical_words(found: Advice) -> str:
+    """What is known of the vertical component: counts with and without it, or that it was not looked at."""
+    vertical = found.vertical
+    if not vertical.source:
+        return ""
+    if vertical.source == "other":
+        return "No vertical component was given: its effect was not looked at."
+    if vertical.ratios is None:
+        return ""
+    ratios = vertical.ratios
+    with_it, without, count = (int(ratios[key]) for key in ("overturned", "against_overturned", "members"))
+    words = f"With the vertical component of the record {with_it} of {count} copies overturn"
+    words += f", without it {without}."
+    return f"{words} This case leaves it out." if vertical.source == "shipped" else words
 
 
 def _numbers(found: Advice) -> list[Row]:
-    """Rows of the three numbers: as given, and what 95 % of each group do not exceed."""
+    """Rows of the numbers: as given, and the order statistic that 95 % of the runs of each group make."""
     alpha = math.degrees(found.cylinder.alpha)
     part = "slab" if "columns" in found.facts["cylinder"] else "top"
-    tilt: Row = {"name": "largest tilt, 95 % of runs [°]"}
-    top: Row = {"name": f"{part} displacement, 95 % [m]"}
-    chance: Row = {"name": "overturning probability (95 %)"}
+    chance: Row = {"name": "overturn", "given": "overturns" if found.overturned else "stands"}
+    ranks: Row = {"name": "not exceeded by", "given": "this run"}
+    tilt: Row = {"name": "largest tilt [°]"}
+    top: Row = {"name": f"{part} displacement [m]"}
     given = math.inf if found.overturned else found.peak
     for group, peak in [("given", given), *((row["group"], row["peak_tilt_95"]) for row in _groups(found))]:
         tilt[group] = "overturns" if math.isinf(peak) else number(alpha * peak)
         top[group] = "overturns" if math.isinf(peak) else number(found.top(peak))
-    chance["given"] = "overturns" if found.overturned else "stands"
     for row in _groups(found):
+        known = row["runs"] - row["failed"]
         low, high = (number(row[f"chance_{end}"], "percent").removesuffix(" %") for end in ("low", "high"))
-        share = f"{number(row['chance'], 'percent')} ({low} to {high} %)"
-        chance[row["group"]] = "one run" if math.isnan(row["chance"]) else share
-    return [tilt, top, chance]
+        share = f"{row['overturned']} of {known} ({low} to {high} %)"
+        chance[row["group"]] = "one run" if row["single"] else share
+        ranks[row["group"]] = "one run" if row["single"] else f"{row['covered']} of {known}"
+    return [chance, ranks, tilt, top]
 
 
 def _demanded(found: Advice) -> Iterator[Row]:
-    """Rows of the design demands, as a designer enters them."""
-    values = {row["demand"]: row for row in found.demands.to_dict("records")}
-    for name, places in _DEMANDS.items():
-        cells = {
-            place: _demand(demand, values[demand])
-            for place, demand in zip(("base", "slab"), places, strict=True)
-            if demand in values
-        }
-        if cells:
-            yield {"name": name, "slab": "", **cells}
+    """Rows of the design demands, as a designer enters them; each names the group that it is of."""
+    values = {str(row["demand"]): row for row in found.demands.to_dict("records")}
+    if "moment" in values:
+        moment = values["moment"]
+        force = {"unit": "weights", "with_shear": math.nan, "with_force": math.nan}
+        if found.facts["mass"] is not None:
+            force["for_mass"] = moment["for_mass"] / found.cylinder.base_radius
+        values["wall_force"] = (
+            moment | force | {"per_tonne": moment["per_tonne"] / found.cylinder.base_radius}
+        )
+    for demand, name in _DEMANDS.items():
+        if demand in values:
+            yield {"name": name, **_demand(found, demand, values[demand])}
     if "clearance" in values:
+        row = values["clearance"]
+        if math.isnan(row["value"]):
+            yield {"name": "wall", "value": f"not given: {row['reason']}"}
+            return
         height, clearance = (number(1e3 * values[part]["value"]) for part in ("wall_height", "clearance"))
         tilt = number(math.degrees(values["tilt"]["value"] * found.cylinder.alpha))
         yield {
-            "name": f"wall, for a tilt of {tilt}°",
-            "base": f"height {height} mm, clearance {clearance} mm",
+            "name": f"wall, tilt {tilt}°",
+            "value": f"height {height} mm, clearance {clearance} mm",
+            "of": _of(found, row),
         }
 
 
-def _demand(name: str, row: Mapping[Hashable, Any]) -> str:
-    """A demand in weights, and per tonne that is carried."""
-    value = number(row["value"]) + ("" if row["unit"] == "-" else f" {row['unit']}")
-    unit = "kNm" if name == "moment" else "kN"
-    return value if math.isnan(row["per_tonne"]) else f"{value} = {number(row['per_tonne'])} {unit}/t"
+def _demand(found: Advice, name: str, row: Mapping[Hashable, Any]) -> Row:
+    """A demand in weights, per tonne that is carried and for the mass, with what acts at the same time."""
+    if math.isnan(row["value"]):
+        return {"value": f"not given: {row['reason']}"}
+    turns = name == "moment"
+    unit = "kNm" if turns else "kN"
+    cells: Row = {"value": number(row["value"]) + ("" if row["unit"] == "-" else f" {row['unit']}")}
+    if not math.isnan(row["per_tonne"]):
+        cells["tonne"] = f"{number(row['per_tonne'])} {unit}/t"
+        if not math.isnan(row["for_mass"]):
+            cells["mass"] = f"{number(row['for_mass'])} {unit}"
+    together = []
+    for part, symbol in _SYMBOLS.items():
+        if not math.isnan(row[part]):
+            together.append(f"{symbol} {number(row[part])}")
+    return {**cells, "together": ", ".join(together), "of": _of(found, row)}
+
+
+def _of(found: Advice, row: Mapping[Hashable, Any]) -> str:
+    """The group of a demand, how many of its runs ask no more, and at which shaking."""
+    name = _name(found, {**row, "runs": int(row["runs"])})
+    head = f"{int(row['covered'])} of {int(row['runs'])}"
+    name = name.removeprefix(f"{int(row['runs'])} ")
+    level = "" if row["factor"] == 1.0 else f", at {number(row['factor'])} of this shaking"
+    fell = f"; {int(row['overturned'])} overturn" if row["overturned"] else ""
+    return f"{head} {name}{level}{fell}"
+
+
+def _steps(found: Advice) -> list[str]:
+    """Lines of what to do next: words, and the whole command where there is one."""
+    options, slender = found.facts["options"], number(found.cylinder.tan_alpha)
+    slips, lost = (number(share, "percent") for share in found.missing)
+    friction, support = number(found.facts["friction"]), found.facts["support"]
+    if options is None:  # made in Python, where `case` is at hand
+        call = 'rw.advise(case, support="{}")'
+        commands = {
+            "friction unknown": "dataclasses.replace(case, friction=...)",
+            "budget": f'rw.compare(case, runs=[rw.Run("{DEFAULT_ENGINE}", "{support}")], budget=True)',
+            "engine": f'rw.advise(case, rw.Run("{DEFAULT_ENGINE}", "{support}"))',
+            "spectrum": f"rw.spectrum({found.cylinder.tan_alpha:.6g}, case.motion)",
+            "ensemble": "rw.ensemble(case)",
+            "ring": call.format("ring"),
+            "recess": call.format("recess"),
+            "vertical": "rw.read_record(x, y, z)",
+        }
+    else:
+        problem = {name: value for name, value in options.items() if name not in PLAN}
+        commands = {
+            "friction unknown": command_line("advise", options | {"friction": "MU"}),
+            "budget": command_line("compare", problem | {"support": support, "budget": True}),
+            "engine": command_line("advise", options | {"engine": DEFAULT_ENGINE}),
+            "spectrum": spectrum_line(options, found.cylinder.tan_alpha),
+            "ensemble": command_line("ensemble", problem | {"support": support}),
+            "ring": command_line("advise", options | {"support": "ring"}),
+            "recess": command_line("advise", options | {"support": "recess"}),
+            "vertical": command_line("advise", options | {"record_z": "Z"}),
+        }
+    words = {
+        "friction unknown": f"find the friction MU; to uplift and not to slide takes b/h = {slender}",
+        "slides": f"a friction of {friction} is below b/h = {slender}: it slides, and nothing here applies",
+        "more friction": f"more friction: with {friction} it slips for up to {slips} of the time in motion",
+        "contact": f"contact is lost for up to {lost} of the time in motion: the models do not know flight",
+        "budget": "why the engine diverges so early",
+        "engine": "an engine verifies the model",
+        "spectrum": "which sizes and intensities overturn; with records of your site",
+        "ensemble": "percentiles of engines beside these; do not report one trace",
+        "ring": "a recess as it is built has walls and clearance",
+        "recess": "nothing here keeps the cylinder from rolling out of its place",
+        "vertical": "with the vertical component Z of the record",
+        "records": f"the records of FEMA P-695 in place of synthetic motions: `{p695.REMEDY}`",
+    }
+    return [
+        f"{words[step][0].upper()}{words[step][1:]}" + (f": `{commands[step]}`" if step in commands else "")
+        for step in found.next_steps
+    ]
 
 
 def _checks(found: Advice) -> Iterator[Row]:
@@ -303,7 +452,9 @@ def _scales(found: Advice) -> Iterator[Row]:
     if not math.isnan(low) and not found.overturned:
         span = f"{number(low)} to {number(high)} α"
         yield _check(
-            "largest tilt for 12 % more or less shaking", span, "∞: overturns" if math.isinf(high) else ""
+            f"largest tilt at {len(found.as_strong)} scales {_STRONG}",
+            span,
+            "∞: overturns" if math.isinf(high) else "",
         )
     lowest = found.lowest.set_index("series")
     if not len(lowest):
@@ -325,14 +476,14 @@ def _scales(found: Advice) -> Iterator[Row]:
 
 def _ratios(found: Advice) -> Iterator[Row]:
     """Rows of the largest tilts of copies by one of two ways over those by the other."""
-    facts, vertical = found.facts, found.facts["vertical"]
+    facts, vertical = found.facts, found.vertical
     holds = support_named(facts["support"])
     place = "on flat ground" if holds.guided or holds.walls else "in an ideal recess"
     other = f"tilt {place} over that here"
     shaken = "tilt with vertical shaking over that without"
-    if vertical and not vertical["given"]:
-        shaken += f" ({vertical['record']} as strong)"
-    for name, ratios in ((other, facts["other_support"]), (shaken, vertical)):
+    if vertical.source == "other":
+        shaken += f" ({vertical.record} as strong, in place of this record)"
+    for name, ratios in ((other, facts["other_support"]), (shaken, vertical.ratios)):
         if ratios is None:
             continue
         note = f"of {ratios['count']} copies {ratios['higher']} tilt more, {ratios['lower']} less"

@@ -6,12 +6,12 @@ import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypedDict
+from typing import Any, Literal, TypedDict
 
 import numpy as np
 import pandas as pd
 
-from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace, el_centro_1940, perturbed_copies
+from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace, el_centro_1940
 from rockwobble.models.cylinder import cylinder_of
 from rockwobble.models.records.units import doubts_of
 from rockwobble.models.support import support_named
@@ -26,8 +26,13 @@ from ...storage.provenance import fingerprint
 from ...storage.results import Results
 from ..plans import AdvicePlan
 from ..spectrum.maps import SPATIAL, uplift_factor
+from .demands import demand_table, demands_of, fall_of, weaker_factors
 from .grades import (
+    POOR,
+    STABILITY,
+    USE,
     Grade,
+    grade_chance,
     grade_engine,
     grade_intensity,
     grade_overturning,
@@ -36,23 +41,53 @@ from .grades import (
     overall,
 )
 from .members import (
+    BESIDE_THE_PROBLEM,
     COPIES,
+    HORIZONTAL,
     OTHER,
     VELOCITY,
-    demand_table,
-    demands_of,
-    fall_of,
+    VERTICAL,
     group_table,
     member_rows,
     other_records,
     ratios_of,
+    run_rows,
     top_displacement,
+    with_vertical,
+    without_vertical,
 )
-from .scales import BESIDE, planar_runs, scan_scales
+from .scales import planar_runs, scan_as_strong, scan_scales
 from .trust import BAND_STEP, Trust, Verification, band_of, predicted, spread_from, trust_of, verified
 
 KIND = "advice"
-_VERTICAL_COUNT = 20  # pairs of copies with and without the vertical component
+VERTICAL_COUNT = 20  # pairs of copies with and without the vertical component
+# members of each group that are run at each intensity of weaker shaking: all other records, and as many
+# copies, of which 95 % are all but one
+WEAKER_COUNT = 22
+WEAKER_STEP = 0.02  # [s] of their samples: what 99 % of the time is not exceeded needs no more
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Vertical:
+    """What is known of the vertical component of the ground motion.
+
+    Attributes
+    ----------
+    source : {"", "own", "shipped", "other"}
+        The ground motion has it; the shipped record has it, which the case takes without; neither, and
+        another record was run in its place; or there is no horizontal shaking.
+    record : str
+        Of which it is.
+    uplift_factor : float
+        Factor on the ground motion with it at which the cylinder uplifts.
+    ratios : dict, optional
+        Largest tilts of the copies with it over those without it, see `ratios_of`.
+    """
+
+    source: Literal["", "own", "shipped", "other"] = ""
+    record: str = ""
+    uplift_factor: float = math.inf
+    ratios: Mapping[str, float] | None = None
 
 
 class Response(TypedDict):
@@ -86,17 +121,22 @@ class Advice(Results, kind=KIND):
         Percentiles of the groups, see `group_table`, and the design demands, see `demand_table`.
     band : DataFrame
         Of the tilts of the copies, see `band_of`.
+    weaker : DataFrame
+        Rows of `member_rows` under weaker shaking by the same records, see `weaker_factors`.
     scales, lowest, planar : DataFrame
         Other scales of the ground motion and the lowest that overturns, see `scan_scales`; and planar
         analysis of other records, see `planar_runs`.
+    as_strong : DataFrame
+        Shaking as strong as that given: scales close to 1, see `scan_as_strong`.
     trace, engine : DataFrame
         time [s], tilt [alpha] and, of the reduced model, friction_needed [-]; no row without an engine.
 
     Its facts are the problem (case, cylinder, motion, release, length, gravity, rolling_resistance, friction:
     None unless it was given), the support with its model and the other_model; the response of the model;
-    trust, prediction and verification as in `Trust`, `Prediction` and `Verification`; other_support and
-    vertical, ratios of the largest tilts there, and with the vertical component (`ratios_of`), None where
-    there are none; what the records are; perturbation and seed of the copies, and the hash of all inputs.
+    trust, prediction and verification as in `Trust`, `Prediction` and `Verification`; other_support, ratios
+    of the largest tilts there (`ratios_of`), None where there are none; vertical, as in `Vertical`; what the
+    other records are; mass of a cylinder [t] or None; perturbation and seed of the copies, and the hash of
+    all inputs. options are those of the command line that stated the problem, None where it was not used.
 
     Examples
     --------
@@ -167,18 +207,28 @@ class Advice(Results, kind=KIND):
     @property
     def lowest_factor(self) -> float:
         """Lowest scale of the ground motion found to overturn; NaN where none is."""
-        return float(self.lowest["factor"][self.lowest["series"] == SPATIAL].max())
+        searched = self.lowest["factor"][self.lowest["series"] == SPATIAL].max()
+        beside = self.as_strong
+        return float(np.fmin(searched, beside["factor"][overturned(beside["peak_tilt"])].min()))
 
     @property
     def beside(self) -> tuple[float, float]:
-        """Least and largest peak tilt [alpha] for up to 12 % more or less shaking; infinite: overturned."""
-        space = self.scales[self.scales["series"] == SPATIAL]
-        if not len(space):
+        """Least and largest peak tilt [alpha] under shaking as strong as that given; infinite: overturned."""
+        if not len(self.as_strong):
             return math.nan, math.nan
-        here = int((space["factor"] - 1.0).abs().argmin())
-        tilts = space["peak_tilt"].to_numpy(float)[here - BESIDE : here + BESIDE + 1]
+        tilts = self.as_strong["peak_tilt"].to_numpy(float)
         tilts = np.where(overturned(tilts), math.inf, tilts / self.cylinder.alpha)
         return float(np.nanmin(tilts)), float(np.nanmax(tilts))
+
+    @property
+    def counting(self) -> pd.DataFrame:
+        """The groups that grades rest on."""
+        return self.groups[self.groups["counts"]] if len(self.groups) else self.groups
+
+    @property
+    def vertical(self) -> Vertical:
+        """The part of the vertical component."""
+        return Vertical(**self.facts["vertical"])
 
     @property
     def missing(self) -> tuple[float, float]:
@@ -186,7 +236,7 @@ class Advice(Results, kind=KIND):
 
         Those that 95 % of the runs of each group do not exceed or, where too few differ, those as given.
         """
-        worst = self.groups.max(numeric_only=True)
+        worst = self.counting.max(numeric_only=True)
         if math.isnan(worst.get("lost_95", math.nan)):
             return self.response["slip"], self.response["lost"]
         return float(worst["slip_95"]), float(worst["lost_95"])
@@ -200,13 +250,13 @@ class Advice(Results, kind=KIND):
         if not self.moves:
             return {}
         shaken, friction = facts["motion"] is not None, facts["friction"]
-        (slip, lost), spread = self.missing, bool(self.groups["lost_95"].notna().any())
+        (slip, lost), spread = self.missing, bool(self.counting["lost_95"].notna().any())
         slides = friction is not None and friction < self.cylinder.tan_alpha and response["uplift_time"] > 0.0
         found: dict[str, Grade] = {
             "overturning": grade_overturning(
                 self.overturned,
                 self.lowest_factor,
-                self.groups["chance"],
+                self.counting["chance"],
                 tested=len(self.lowest) > 0 or (not shaken and self.copies_differ),
             ),
             "friction": grade_share(
@@ -226,6 +276,48 @@ class Advice(Results, kind=KIND):
             differs = (engine.outcome == "overturned") != self.overturned or not engine.moves
             found["engine"] = grade_engine(engine.outcome, engine.divergence, differs=differs)
         return found
+
+    @property
+    def verdict(self) -> str:
+        """One sentence on the cylinder and on the model."""
+        model = self.facts["model"]
+        if self.response["outcome"] == "failed":
+            return f"no advice, the {model} failed"
+        if not self.moves:
+            return "the cylinder stays at rest"
+        ends = "it overturns as given" if self.overturned else STABILITY[self.grades["overturning"]]
+        return f"{ends}; {USE[self.model_grade].format(model)}"
+
+    @property
+    def vertical_matters(self) -> bool:
+        """Whether copies with the vertical component have another grade than those without it."""
+        if not len(self.groups):
+            return False
+        chances = self.groups.set_index("group")["chance"]
+        pair = [chances[name] for name in (COPIES, VERTICAL, HORIZONTAL) if name in chances]
+        return len(pair) == 2 and len(set(map(grade_chance, pair))) == 2
+
+    @property
+    def next_steps(self) -> list[str]:
+        """What to do next, by name, the most urgent first; pages have the words and the commands."""
+        grades, friction = self.grades, self.facts["friction"]
+        holds = support_named(self.facts["support"])
+        slides = friction is not None and friction < self.cylinder.tan_alpha
+        steps = {
+            "friction unknown": friction is None,
+            "slides": slides and self.facts["release"] is None,
+            "more friction": friction is not None and not slides and grades.get("friction") in POOR,
+            "contact": grades.get("contact") in POOR,
+            "budget": grades.get("engine") == "not satisfied",
+            "engine": self.verification is None,
+            "spectrum": grades.get("overturning") != "satisfied" and self.facts["motion"] is not None,
+            "ensemble": self.trust.kind == "statistics",
+            "ring": holds.guided,
+            "recess": not holds.guided and not holds.walls,
+            "vertical": self.vertical.source == "other",
+            "records": self.facts["records"] == "synthetic",
+        }
+        return [name for name, due in steps.items() if due] if self.moves else []
 
     @property
     def model_grade(self) -> Grade:
@@ -283,7 +375,7 @@ def advise(
     model, other = Run(None, support_named(plan.support).compared_with[-1]), Run(None, "flat")
     if model == other:
         other = Run(None, "recess")
-    stage = stages(progress, [1.0] * (4 if run is None else 5))
+    stage = stages(progress, [1.0] * (5 if run is None else 6))
     inputs = fingerprint(
         [*(job_fingerprint(Job(case=case, run=each)) for each in (model, run) if each), plan]
     )
@@ -295,22 +387,29 @@ def advise(
     moves = _moves(trace.outcome, trace.uplift_time)
     copies: list[Trace] = []
     others: list[Trace] = []
+    groups: dict[str, list[Case]] = {}
     with stage(f"{plan.copies} perturbed copies"):
         if moves:  # in this process: other ones take longer to begin than hundreds of reduced runs
-            cases = perturbed_copies(case, plan.copies, perturbation=plan.perturbation, seed=plan.seed)
-            copies = [simulate_run(each, model) for each in cases]
-            others = [simulate_run(each, other, sample_step=BAND_STEP) for each in cases]
+            groups[COPIES] = plan.perturbed(case)
+            copies = [simulate_run(each, model) for each in groups[COPIES]]
+            others = [simulate_run(each, other, sample_step=BAND_STEP) for each in groups[COPIES]]
         rows = [*member_rows(COPIES, copies), *member_rows(OTHER, others)]
-    with stage("other records as strong, and planar analysis"):
+    with stage("other records as strong, planar analysis and the vertical component"):
         records, source = ({}, "") if trace.outcome == "failed" else other_records(case)
+        groups |= records
         for name, cases in records.items():
-            rows += member_rows(name, (simulate_run(each, model) for each in cases))
+            rows += run_rows(name, cases, model)
         planar = planar_runs(records[VELOCITY], model.support) if records else pd.DataFrame()
+        vertical, shaken = vertical_effect(case, model, plan if moves else None)
+        for name, traces in shaken.items():
+            rows += member_rows(name, traces)
+            if name == VERTICAL:
+                groups[name] = [each.case for each in traces]
+    with stage("weaker shaking by the same records"):
+        weaker = weaker_rows(case, groups, model)
     with stage("other scales of the ground motion"):
         scales, lowest = scan_scales(case, model.support)
-        vertical = None
-        if records:
-            vertical = vertical_effect(case, model, perturbation=plan.perturbation, seed=plan.seed)
+        as_strong = scan_as_strong(case, model.support, trace.peak_tilt)
     prediction, verification, engine = predicted(case, trace, run), None, None
     if run is not None:
         with stage(str(run)):
@@ -328,7 +427,9 @@ def advise(
     tables = {
         "members": members,
         "band": band,
+        "weaker": pd.DataFrame(weaker, columns=None if weaker else list(members.columns)),
         "scales": scales,
+        "as_strong": as_strong,
         "lowest": lowest,
         "planar": planar,
         "trace": _samples(trace, alpha).assign(friction_needed=trace.friction_needed),
@@ -346,8 +447,10 @@ def advise(
         "prediction": dataclasses.asdict(prediction),
         "verification": None if verification is None else dataclasses.asdict(verification),
         "other_support": None if form is None else ratios_of(form),
-        "vertical": vertical,
+        "vertical": dataclasses.asdict(vertical),
         "records": source,
+        "mass": plan.mass,
+        "options": None,
         "doubts": doubts_of([case.motion]),
         "perturbation": plan.perturbation,
         "seed": plan.seed,
@@ -359,9 +462,17 @@ def advise(
 def advice_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, object]) -> Advice:
     """Return the advice of its runs, with the tables that are concluded from them."""
     found = Advice(tables=tables, facts=facts)
-    groups = group_table(found.members)
-    demands = demand_table(groups, found.cylinder, found.facts["gravity"], found.facts["support"])
-    return dataclasses.replace(found, tables={**tables, "groups": groups, "demands": demands})
+    counting = found.members[~found.members["group"].isin(BESIDE_THE_PROBLEM)]
+    demands = demand_table(
+        pd.concat([counting, found.weaker]) if len(found.weaker) else counting,
+        found.cylinder,
+        gravity=found.facts["gravity"],
+        support=found.facts["support"],
+        mass=found.facts["mass"],
+    )
+    return dataclasses.replace(
+        found, tables={**tables, "groups": group_table(found.members), "demands": demands}
+    )
 
 
 def _moves(outcome: str, uplift_time: float) -> bool:
@@ -419,32 +530,58 @@ def _response(trace: Trace) -> Response:
     }
 
 
-def vertical_effect(case: Case, model: Run, *, perturbation: float, seed: int) -> dict[str, object] | None:
-    """Return the effect of the vertical component of ground motion on the largest tilt, copy by copy.
+def vertical_effect(
+    case: Case, model: Run, plan: AdvicePlan | None
+) -> tuple[Vertical, dict[str, list[Trace]]]:
+    """Run copies with and without the vertical component of ground motion.
 
-    Of the record itself or, where it has none, of El Centro 1940 as strong: what it usually changes.
+    Of the record itself, or as it is shipped where the case leaves it out; of a record that has none, El
+    Centro 1940 as strong is run in its place, whose runs belong to no group: what it usually changes. Nothing
+    is run without a plan.
 
     Returns
     -------
-    dict
-        given, record, and the ratios of the largest tilts, with over without it: see `ratios_of`.
+    Vertical
+    dict of str to list of Trace
+        Runs of the group `VERTICAL` or `HORIZONTAL`, those that the case itself is not; none of a record that
+        has no vertical component.
     """
     motion = case.motion
-    assert motion is not None
-    record = motion
-    if not motion.has_vertical:
+    if motion is None or motion.peak == 0.0:
+        return Vertical(), {}
+    source: Literal["own", "shipped", "other"] = "own" if motion.has_vertical else "shipped"
+    record, duration = with_vertical(motion), case.duration
+    if record is None:
         record = el_centro_1940(vertical=True)
-        record = record.scaled(motion.peak / record.peak)
-    duration = case.duration if motion.has_vertical else None
-    runs = []
-    for each in (record, GroundMotion(record.acceleration[:, :2], record.time_step, record.name)):
+        source, record, duration = "other", record.scaled(motion.peak / record.peak), None
+    threshold = uplift_factor(record, case.cylinder.tan_alpha, case.gravity, until=case.length)
+    about = Vertical(source=source, record=record.name, uplift_factor=threshold)
+    if plan is None:
+        return about, {}
+    runs: dict[str, list[Trace]] = {}
+    for name, each in ((VERTICAL, record), (HORIZONTAL, without_vertical(record))):
         shaken = dataclasses.replace(case, motion=each, duration=duration)
-        copies = perturbed_copies(shaken, _VERTICAL_COUNT, perturbation=perturbation, seed=seed)
-        runs.append([simulate_run(copy, model, sample_step=1.0) for copy in copies])
-    found = _contrast(*runs)
-    if found is None or not found.compared:
-        return None
-    return {"given": motion.has_vertical, "record": record.name, **ratios_of(found)}
+        runs[name] = [simulate_run(copy, model) for copy in plan.perturbed(shaken, VERTICAL_COUNT)]
+    found = _contrast(*runs.values())
+    ratios = None if found is None or not found.compared else ratios_of(found)
+    kept = {"own": HORIZONTAL, "shipped": VERTICAL}.get(source, "")
+    return dataclasses.replace(about, ratios=ratios), {
+        name: traces for name, traces in runs.items() if name == kept
+    }
+
+
+def weaker_rows(case: Case, groups: Mapping[str, Sequence[Case]], model: Run) -> list[dict[str, float | str]]:
+    """Run the groups under weaker shaking, at most `WEAKER_COUNT` of each; none of what is only released."""
+    motion = case.motion
+    if motion is None or motion.peak == 0.0:
+        return []
+    threshold = uplift_factor(motion, case.cylinder.tan_alpha, case.gravity, until=case.length)
+    return [
+        row
+        for factor in weaker_factors(threshold)
+        for name, cases in groups.items()
+        for row in run_rows(name, cases[:WEAKER_COUNT], model, factor, sample_step=WEAKER_STEP)
+    ]
 
 
 def _contrast(traces: Sequence[Trace], against: Sequence[Trace]) -> Contrast | None:

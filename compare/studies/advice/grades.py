@@ -6,13 +6,17 @@ A grade rests on what was run: "not tested" is the grade of what nothing was run
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Literal
 
-from ...comparison.prediction import UNTESTED
+from ...comparison.prediction import BEATEN, UNTESTED
+from ...metrics.statistics import FEWEST
 
 Grade = Literal["satisfied", "not tested", "caution", "not satisfied"]
 GRADES: tuple[Grade, ...] = ("satisfied", "not tested", "caution", "not satisfied")  # the best first
+POOR: tuple[Grade, ...] = ("caution", "not satisfied")
 # share of the moving time for which contact or friction may be missing before the motion is another one:
 # below it stand the spikes of single passes, milliseconds each
 BROKEN = 0.01
@@ -20,8 +24,89 @@ BROKEN = 0.01
 NEAR = 1.5
 # share of a group that overturns from which on a cylinder is not safe
 UNSAFE = 0.1
-# ratio by which the largest tilt may change with the shaking a little stronger or weaker
+# ratio by which the largest tilt may change under shaking as strong
 SENSITIVE = 1.5
+# of the ratio: the tilt may change by so much more between the scales that were run
+BETWEEN_SCALES = 1.05
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Criterion:
+    """What has to be so for each grade of a topic, in words."""
+
+    satisfied: str
+    not_tested: str
+    caution: str
+    not_satisfied: str
+
+    def by_grade(self) -> dict[Grade, str]:
+        """Return the words by grade."""
+        words = (self.satisfied, self.not_tested, self.caution, self.not_satisfied)
+        return dict(zip(GRADES, words, strict=True))
+
+
+_BRIEFLY = f"for at most {100.0 * BROKEN:g} % of the time in motion"
+_FEW = f"fewer than {FEWEST} runs that differ"
+CRITERIA: Mapping[str, Criterion] = MappingProxyType(
+    {
+        "overturning": Criterion(
+            satisfied=f"no run overturns, nor any scale up to {NEAR:g} times this shaking",
+            not_tested="no run overturns, but no other scales of this shaking were run",
+            caution=f"at most {100.0 * UNSAFE:g} % of a group overturn, or a scale below {NEAR:g} does; "
+            "copies with the vertical component are a group",
+            not_satisfied=f"the case as given overturns, or more than {100.0 * UNSAFE:g} % of a group",
+        ),
+        "friction": Criterion(
+            satisfied="the friction given suffices in 95 % of the runs of each group",
+            not_tested=_FEW,
+            caution=f"not given, or too little {_BRIEFLY}",
+            not_satisfied="too little for longer, or below b/h: it slides before it uplifts",
+        ),
+        "contact": Criterion(
+            satisfied="never lost in 95 % of the runs of each group",
+            not_tested=_FEW,
+            caution=f"lost {_BRIEFLY}",
+            not_satisfied="lost for longer: the models do not know flight",
+        ),
+        "trace": Criterion(
+            satisfied="the largest tilt comes before two methods, or the copies, diverge",
+            not_tested="the copies are all one run",
+            caution="the largest tilt comes after methods or copies diverge: trust statistics",
+            not_satisfied="the run failed",
+        ),
+        "intensity": Criterion(
+            satisfied=f"the tilt changes by less than {SENSITIVE:g} times under shaking as strong, with a "
+            f"margin of {100.0 * (BETWEEN_SCALES - 1.0):.0f} % for what lies between the scales run",
+            not_tested="no other scales of this shaking were run",
+            caution=f"it changes by {SENSITIVE:g} times or more, or one of these scales overturns",
+            not_satisfied="never: the percentiles say it",
+        ),
+        "engine": Criterion(
+            satisfied="agrees with the model as long as predicted, and to the same end",
+            not_tested=f"not run, failed, agrees {BEATEN:g} times the prediction, or hardly moves",
+            caution="comes to another end, or stays at rest where the model moves",
+            not_satisfied="diverges earlier than half of what is predicted",
+        ),
+    }
+)
+# verdict on the cylinder, by the grade of overturning where it does not overturn as given
+STABILITY: Mapping[Grade, str] = MappingProxyType(
+    {
+        "satisfied": "it stands",
+        "not tested": "it stands, its margin is not tested",
+        "caution": "it may overturn",
+        "not satisfied": "it is not safe against overturning",
+    }
+)
+# and on the use of a model, by the worst of the other grades
+USE: Mapping[Grade, str] = MappingProxyType(
+    {
+        "satisfied": "the {} may be used",
+        "not tested": "whether the {} may be used is not tested",
+        "caution": "use the {} with caution",
+        "not satisfied": "do not rely on the {}",
+    }
+)
 
 
 def grade_share(missing: float, *, asked: bool = True, slides: bool = False, tested: bool = True) -> Grade:
@@ -59,12 +144,19 @@ def grade_overturning(overturned: bool, lowest: float, chances: Iterable[float],
     tested : bool
         Whether other scales of the ground motion were run, or copies of a release over still ground.
     """
-    worst = max((chance for chance in chances if not math.isnan(chance)), default=0.0)
-    if overturned or worst > UNSAFE:
+    worst = overall(map(grade_chance, chances))
+    if overturned or worst == "not satisfied":
         return "not satisfied"
-    if worst > 0.0 or lowest < NEAR:
+    if worst == "caution" or lowest < NEAR:
         return "caution"
     return "satisfied" if tested else "not tested"
+
+
+def grade_chance(chance: float) -> Grade:
+    """Return the grade of a share of runs that overturn; "not tested" of NaN."""
+    if math.isnan(chance):
+        return "not tested"
+    return "not satisfied" if chance > UNSAFE else "caution" if chance > 0.0 else "satisfied"
 
 
 def grade_trace(kind: str, *, tested: bool) -> Grade:
@@ -75,10 +167,11 @@ def grade_trace(kind: str, *, tested: bool) -> Grade:
 
 
 def grade_intensity(low: float, peak: float, high: float) -> Grade:
-    """Return the grade of a largest tilt that is `low` to `high` for shaking a little off; NaN: not run."""
+    """Return the grade of a largest tilt that is `low` to `high` under shaking as strong; NaN: not run."""
     if math.isnan(low):
         return "not tested"
-    return "caution" if high > SENSITIVE * peak or low * SENSITIVE < peak else "satisfied"
+    limit = SENSITIVE / BETWEEN_SCALES
+    return "caution" if high > limit * peak or low * limit < peak else "satisfied"
 
 
 def grade_engine(outcome: str, divergence: str, *, differs: bool) -> Grade:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -14,78 +15,42 @@ from rockwobble.models import (
     Case,
     Cylinder,
     GroundMotion,
+    Run,
     Trace,
     WobblingFrame,
+    el_centro_1940,
     far_field_motions,
     synthetic_motions,
 )
+from rockwobble.models.cpus import in_threads
 from rockwobble.models.records import p695
-from rockwobble.models.support import support_named
-from rockwobble.multibody.ring import rim_overhang
 
-from ...metrics.statistics import Contrast, Interval, quantile_interval, share_interval, stated
+from ...metrics.statistics import (
+    FEWEST,
+    Contrast,
+    Interval,
+    covering,
+    quantile_interval,
+    share_interval,
+    stated,
+)
+from ...runs.execution import SAMPLE_STEP, simulate_run
 from ..fragility import intensity
+from .demands import COVERED, SHARES, UNITS, all_alike, demands_of
 
 Array = NDArray[np.float64]
 
 COPIES, ACCELERATION, VELOCITY = "copies", "acceleration", "velocity"
 OTHER = "other support"  # group of the copies on the other support
+# groups of copies with the vertical component of a record that the case leaves out, and without the one
+# that it has
+VERTICAL, HORIZONTAL = "with vertical", "without vertical"
+# groups of what is not the problem as stated: they are shown and count for no grade and no demand
+BESIDE_THE_PROBLEM = (OTHER, HORIZONTAL)
 _SEED = 1  # of synthetic ground motions where the records are not installed
-# what is not exceeded in 99 % of the moving time leaves out the spikes of the nearest passes
-SPIKES = 0.01
-_QUANTILES = {"05": 0.05, "50": 0.5, "95": 0.95}
-# demands of a run at its base and, in a frame, at the top, with their units
-_BASE = {"friction": "-", "shear": "weights", "force": "weights"}
-_TOP = {f"top_{name}": unit for name, unit in _BASE.items()}
+_QUANTILES = {"05": 0.05, "50": 0.5}
 # those of which there are percentiles over the members
-DEMANDS = (*_BASE, *_TOP, "moment", "slip", "lost")
-
-
-def fall_of(trace: Trace) -> float:
-    """Return when a run that overturns last passes alpha [s], inf where it does not: a fall asks nothing."""
-    if trace.outcome != "overturned":
-        return math.inf
-    below = trace.time[trace.tilt <= trace.case.cylinder.alpha]
-    return float(below[-1]) if len(below) else 0.0
-
-
-def demands_of(trace: Trace) -> dict[str, float]:
-    """Return the demands of a run on ground, recess and slab, until it last passes alpha if it overturns.
-
-    Returns
-    -------
-    dict
-        friction [-], shear and (normal) force [weights] at the base and, as top_friction, top_shear and
-        top_force, under the slab of a frame [weights of the share of the slab]; moment of the recess [weights
-        times b]: each not exceeded in 99 % of the moving time. slip and lost, shares of that time in which
-        the friction of the case does not suffice and in which contact is lost, at base or top. All zero, and
-        a force of one weight, where nothing moves.
-    """
-    moving = (trace.tilt > 0.0) & (trace.time <= fall_of(trace))
-    ends = [(_BASE, trace.contact_force, trace.friction_needed)]
-    if trace.case.cylinder.slab_mass_ratio > 0.0:
-        ends.append((_TOP, trace.top_contact_force, trace.top_friction_needed))
-    found: dict[str, float] = {}
-    if not moving.any():
-        for names, *_ in ends:
-            found |= dict(zip(names, (0.0, 0.0, 1.0), strict=True))
-        return found | {"moment": 0.0, "slip": 0.0, "lost": 0.0}
-    lengths = np.diff(trace.time, append=trace.time[-1])[moving]
-    lost, slips = np.zeros((2, len(lengths)), dtype=bool)
-    for names, force, friction in ends:
-        x, y, normal = force[moving].T
-        values = (friction[moving], np.hypot(x, y), normal)
-        found |= dict(zip(names, map(_usual, values), strict=True))
-        lost |= normal <= 0.0
-        slips |= friction[moving] > trace.case.friction
-    found["moment"] = _usual(np.abs(trace.restraining_moment[moving]) / trace.case.cylinder.base_radius)
-    time = max(float(lengths.sum()), 1e-300)
-    return found | {"slip": lengths[slips & ~lost].sum() / time, "lost": lengths[lost].sum() / time}
-
-
-def _usual(values: Array) -> float:
-    # a value of the sample, because a mean with infinity is none
-    return float(np.quantile(values, 1.0 - SPIKES, method="inverted_cdf"))
+DEMANDS = (*UNITS, *SHARES)
 
 
 def top_displacement(cylinder: Cylinder, tilt: ArrayLike) -> Array:
@@ -133,19 +98,67 @@ def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
     }, source
 
 
-def member_rows(group: str, traces: Iterable[Trace]) -> list[dict[str, float | str]]:
-    """Return a row for each run: group, member, model, outcome, peak_tilt [alpha], and its demands."""
-    return [
-        {
-            "group": group,
-            "member": trace.case.name,
-            "model": str(trace.run),
-            "outcome": trace.outcome,
-            "peak_tilt": trace.peak_tilt / trace.case.cylinder.alpha,
-            **(demands_of(trace) if trace.outcome != "failed" else {}),
-        }
-        for trace in traces
-    ]
+def member_row(group: str, trace: Trace, factor: float = 1.0) -> dict[str, float | str]:
+    """Return the row of a run: group, member, factor [-], model, outcome, peak_tilt [alpha], demands."""
+    return {
+        "group": group,
+        "member": trace.case.name,
+        "factor": factor,
+        "model": str(trace.run),
+        "outcome": trace.outcome,
+        "peak_tilt": trace.peak_tilt / trace.case.cylinder.alpha,
+        **(demands_of(trace) if trace.outcome != "failed" else {}),
+    }
+
+
+def member_rows(group: str, traces: Iterable[Trace], factor: float = 1.0) -> list[dict[str, float | str]]:
+    """Return the rows of some runs, see `member_row`."""
+    return list(in_threads(partial(member_row, group, factor=factor), traces))
+
+
+def run_rows(
+    group: str, cases: Sequence[Case], model: Run, factor: float = 1.0, *, sample_step: float = SAMPLE_STEP
+) -> list[dict[str, float | str]]:
+    """Run cases of one group by a reduced model, with a factor on their ground motions; return their rows."""
+
+    def row(case: Case) -> dict[str, float | str]:
+        trace = simulate_run(scaled(case, factor), model, sample_step=sample_step)
+        return member_row(group, trace, factor)
+
+    return list(in_threads(row, cases))
+
+
+def scaled(case: Case, factor: float) -> Case:
+    """Return a case with its ground motion scaled."""
+    if factor == 1.0 or case.motion is None:
+        return case
+    return dataclasses.replace(case, motion=case.motion.scaled(factor))
+
+
+def with_vertical(motion: GroundMotion) -> GroundMotion | None:
+    """Return a ground motion with its vertical component: its own, or that of the record that is shipped.
+
+    None where it has none and is no scaled part of the shipped record from its start.
+    """
+    if motion.has_vertical:
+        return motion
+    record = el_centro_1940(vertical=True)
+    count = len(motion.acceleration)
+    if motion.time_step != record.time_step or count > len(record.acceleration):
+        return None
+    samples = record.acceleration[:count]
+    largest = float(np.abs(samples[:, :2]).max())
+    factor = float(np.abs(motion.acceleration[:, :2]).max()) / largest if largest else 0.0
+    if not factor or not np.allclose(
+        motion.acceleration[:, :2], factor * samples[:, :2], rtol=0.0, atol=1e-9 * factor * largest
+    ):
+        return None
+    return GroundMotion(factor * samples, motion.time_step, motion.name)
+
+
+def without_vertical(motion: GroundMotion) -> GroundMotion:
+    """Return the two horizontal components of a ground motion."""
+    return GroundMotion(motion.acceleration[:, :2], motion.time_step, motion.name)
 
 
 def ratios_of(found: Contrast) -> dict[str, float]:
@@ -175,22 +188,26 @@ def ratios_of(found: Contrast) -> dict[str, float]:
 def group_table(members: pd.DataFrame) -> pd.DataFrame:
     """Return one row for each group of members but the other support: how many overturn, and percentiles.
 
-    Columns: group, runs, failed, overturned, single, whether all moved alike, which makes them one run;
-    chance with chance_low and chance_high, and for peak_tilt [alpha], infinite where it overturns, and each
-    of `DEMANDS` the percentiles _05, _50 and _95. NaN where too few runs differ, see `stated`.
+    Columns: group, runs, failed, overturned; single, whether all moved alike, which makes them one run;
+    counts, whether grades and demands rest on it; chance with chance_low and chance_high; covered, how many
+    of the runs that did not fail make 95 % of them; and for peak_tilt [alpha], inf where it overturns, and
+    each of `DEMANDS` the percentiles _05 and _50, and _95, which `covered` of the runs do not exceed. NaN
+    where too few runs differ, see `stated`.
     """
     rows = []
     numbers = ["peak_tilt", *(name for name in DEMANDS if name in members.columns)]
     for group, runs in members[members["group"] != OTHER].groupby("group", sort=False):
         known = runs[runs["outcome"] != "failed"]
         fell = known["outcome"] == "overturned"
-        # of records that differ none move alike, but many not at all
-        single = len(known) > 1 and known["peak_tilt"].min() > 0.0 and known[numbers].nunique().max() == 1
+        single = all_alike(known)
         chance = Interval(value=math.nan, low=math.nan, high=math.nan)
         if not single:
             chance = share_interval(int(fell.sum()), len(known))
         values = known[numbers].assign(peak_tilt=known["peak_tilt"].mask(fell, math.inf))
         values = values[:1] if single else values
+        upper = dict.fromkeys(numbers, (math.nan, 0))
+        if single or len(values) >= FEWEST:
+            upper = {name: covering(values[name].to_numpy(float), COVERED) for name in numbers}
         rows.append(
             {
                 "group": group,
@@ -198,49 +215,15 @@ def group_table(members: pd.DataFrame) -> pd.DataFrame:
                 "failed": len(runs) - len(known),
                 "overturned": int(fell.sum()),
                 "single": single,
+                "counts": group not in BESIDE_THE_PROBLEM,
                 **chance.columns("chance"),
+                "covered": upper["peak_tilt"][1],
                 **{
                     f"{name}_{label}": quantile_interval(values[name].to_numpy(float), share).value
                     for name in numbers
                     for label, share in _QUANTILES.items()
                 },
+                **{f"{name}_95": value for name, (value, _) in upper.items()},
             }
         )
     return pd.DataFrame(rows)
-
-
-def demand_table(groups: pd.DataFrame, cylinder: Cylinder, gravity: float, support: str) -> pd.DataFrame:
-    """Return the design demands on ground, recess and slab: the worst 95th percentiles of the groups.
-
-    Columns: demand, value, unit, and per_tonne: that times g [kN], or times g b [kNm], for a mass of 1 t of
-    what is carried, the cylinder or, in a frame, a column with its share of the slab or, at the top, this
-    share. Demands: friction, shear and force at the base, with top_ before them those of a frame under its
-    slab; and where a recess is built, of groups that stand to their 95th percentile: tilt; moment about the
-    vertical through the contact point, (1 + cos(tilt)) kappa; wall_force, the least by which a wall supplies
-    it, over the lever arm b; wall_height, at which the rim stands out farthest and the force acts; and
-    clearance, by which a vertical wall of this height must stand back.
-    """
-    worst, facts = groups.max(numeric_only=True), support_named(support)
-    rows = [(name, float(worst.get(f"{name}_95", math.nan)), unit) for name, unit in (_BASE | _TOP).items()]
-    if len(groups) and (facts.guided or facts.walls):
-        rows += _recess(groups[np.isfinite(groups["peak_tilt_95"])], cylinder)
-    table = pd.DataFrame(rows, columns=["demand", "value", "unit"])
-    arms = {"weights": gravity, "weights × b": gravity * cylinder.base_radius}
-    table["per_tonne"] = table["value"] * table["unit"].map(arms).astype(float)
-    return table[table["value"].notna()].reset_index(drop=True)
-
-
-def _recess(standing: pd.DataFrame, cylinder: Cylinder) -> list[tuple[str, float, str]]:
-    tilt, b = float(standing["peak_tilt_95"].max()), cylinder.base_radius
-    if math.isnan(tilt):
-        return []
-    theta = tilt * cylinder.alpha
-    moment = (1.0 + math.cos(theta)) * float(standing["moment_95"].max())
-    overhang, height = (b * part for part in rim_overhang(theta))
-    return [
-        ("tilt", tilt, "alpha"),
-        ("moment", moment, "weights × b"),
-        ("wall_force", moment, "weights"),
-        ("wall_height", height, "m"),
-        ("clearance", max(overhang, height * math.tan(theta)), "m"),
-    ]

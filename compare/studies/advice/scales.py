@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -12,7 +11,6 @@ import pandas as pd
 
 from rockwobble import reduced
 from rockwobble.models import Case
-from rockwobble.models.cpus import in_threads
 
 from ...metrics.pair import overturned
 from ...metrics.statistics import share_interval
@@ -23,8 +21,14 @@ from ..spectrum.study import CHECK_RTOL, NUDGE
 
 # twelve scales for each factor of two, from a quarter to sixteen times the record as it is given
 FACTORS: Array = 2.0 ** (np.arange(-24, 49) / 12.0)
-# shaking is known no better than to 12 %: two steps of the scales either way
-BESIDE = 2
+# [-] least and largest scale of shaking that is as strong as that given: 12 % either way. A peak acceleration
+# says no more: between the geometric mean of both components of a record and their resultant lies a factor
+# of 1.09 to 1.28 (5 to 95 % of the 22 far-field pairs of FEMA P-695), between these scales one of 1.26
+AS_STRONG = (2.0 ** (-1.0 / 6.0), 2.0 ** (1.0 / 6.0))
+# scales that are run between them, evenly in the logarithm, before those about the extrema
+AS_STRONG_COUNT = 385
+# how often scales between are run about so many of the largest, and of the least, tilts
+REFINEMENTS, EXTREMA = 3, 8
 # scales of the records at which planar analysis is compared with 3D
 PLANAR_SCALES = (0.5, 2.0**-0.5, 1.0, 2.0**0.5, 2.0)
 # ratio of peak tilts from which one is larger: below it is rounding and the step of the solution
@@ -52,12 +56,12 @@ def scan_scales(case: Case, support: str = "recess") -> tuple[pd.DataFrame, pd.D
     step = STEP * intensity_unit(tan_alpha, motion, gravity)
     tables, lowest = [], []
     for name in (SPATIAL,) if case.is_release else SERIES:
-        run = partial(_peak, case, series=name, support=support)
+        run = partial(_peaks, case, series=name, support=support)
 
-        def at(_: int, factors: Array, run: Callable[[float], float] = run) -> Array:
-            return np.array(list(in_threads(run, factors)))
+        def at(_: int, factors: Array, run: Callable[[Array], Array] = run) -> Array:
+            return run(factors)
 
-        peaks = _in_threads(run, FACTORS)
+        peaks = run(FACTORS)
         start = 0.0
         if not case.is_release:
             start = uplift_of_series(name, motion, tan_alpha, gravity, until=case.length)
@@ -65,10 +69,36 @@ def scan_scales(case: Case, support: str = "recess") -> tuple[pd.DataFrame, pd.D
         search = search_lowest(FACTORS, peaks, start=start, step=step, alpha=alpha, stands=stands)
         found = run_searches([search], at)[0]
         factor = float(np.fmin(found, lowest_on_grid(FACTORS, peaks[None])[0]))
-        again = [run(factor * nudge, rtol=CHECK_RTOL) for nudge in (1.0, 1.0 - NUDGE, 1.0 + NUDGE)]
+        again = run(factor * np.array([1.0, 1.0 - NUDGE, 1.0 + NUDGE]), rtol=CHECK_RTOL)
         lowest.append((name, factor, bool(overturned(again).all()), start))
         tables.append(pd.DataFrame({"series": name, "factor": FACTORS, "peak_tilt": peaks}))
     return pd.concat(tables, ignore_index=True), pd.DataFrame(lowest, columns=_LOWEST)
+
+
+def scan_as_strong(case: Case, support: str, peak_tilt: float) -> pd.DataFrame:
+    """Run a case over shaking as strong as that given: factor [-], increasing, and peak_tilt [rad].
+
+    Scales evenly in the logarithm over `AS_STRONG`, then, `REFINEMENTS` times, between the largest of the
+    tilts and their neighbours and between the least and theirs: tilts change fastest there. No row without
+    shaking, or where the case as given, of this peak tilt [rad], overturns.
+    """
+    motion = case.motion
+    if motion is None or motion.peak == 0.0 or overturned(np.array([peak_tilt]))[0]:
+        return pd.DataFrame(columns=["factor", "peak_tilt"], dtype=float)
+    run = partial(_peaks, case, series=SPATIAL, support=support)
+    factors = np.unique([*np.geomspace(*AS_STRONG, AS_STRONG_COUNT), 1.0])
+    peaks = run(factors)
+    for _ in range(REFINEMENTS):
+        order = np.argsort(peaks)
+        extreme = np.concatenate([order[:EXTREMA], order[-EXTREMA:]])
+        left = np.unique(np.concatenate([extreme - 1, extreme]))
+        left = left[(left >= 0) & (left < len(factors) - 1)]
+        between = np.sqrt(factors[left] * factors[left + 1])
+        factors = np.concatenate([factors, between])
+        peaks = np.concatenate([peaks, run(between)])
+        order = np.argsort(factors)
+        factors, peaks = factors[order], peaks[order]
+    return pd.DataFrame({"factor": factors, "peak_tilt": peaks})
 
 
 def planar_runs(cases: Sequence[Case], support: str = "recess") -> pd.DataFrame:
@@ -76,12 +106,18 @@ def planar_runs(cases: Sequence[Case], support: str = "recess") -> pd.DataFrame:
 
     Columns: member, scale, and the peak tilts 3d, planar_x, planar_y [rad].
     """
-    rows = [(case, scale) for case in cases for scale in PLANAR_SCALES]
-    members, scales = zip(*rows, strict=True)
-    peaks = {
-        name: _in_threads(partial(_peak, series=name, support=support), members, scales) for name in SERIES
-    }
-    return pd.DataFrame({"member": [case.name for case in members], "scale": scales, **peaks})
+    scales = np.array(PLANAR_SCALES)
+    tables = [
+        pd.DataFrame(
+            {
+                "member": case.name,
+                "scale": scales,
+                **{name: _peaks(case, scales, series=name, support=support) for name in SERIES},
+            }
+        )
+        for case in cases
+    ]
+    return pd.concat(tables, ignore_index=True)
 
 
 def planar_shares(runs: pd.DataFrame) -> list[dict[str, float]]:
@@ -107,16 +143,10 @@ def planar_shares(runs: pd.DataFrame) -> list[dict[str, float]]:
     return rows
 
 
-def _in_threads(run: Callable[..., float], *arguments: Sequence[object] | Array) -> Array:
-    run(*(each[0] for each in arguments))  # compiles, where that is due, once and not in each thread
-    return np.array(list(in_threads(run, *arguments)))
-
-
-def _peak(case: Case, factor: float, *, series: str, support: str, rtol: float = RTOL) -> float:
-    assert case.motion is not None
-    if math.isnan(factor):
-        return math.nan
-    scaled = dataclasses.replace(case, motion=case.motion.scaled(factor))
-    return reduced.simulate(
-        scaled, rtol=rtol, sample_step=case.length, **series_options(series, support)
-    ).peak_tilt
+def _peaks(case: Case, factors: Array, *, series: str, support: str, rtol: float = RTOL) -> Array:
+    """Peak tilts at factors on the motion of a case (n,) [rad]; NaN at a factor that is NaN."""
+    peaks = np.full(len(factors), math.nan)
+    known = np.isfinite(factors)
+    options = series_options(series, support)
+    peaks[known] = reduced.peak_tilts_of_case(case, factors[known], rtol=rtol, **options)
+    return peaks

@@ -1,0 +1,260 @@
+"""Demands on ground, recess and slab: of one run, of a group of runs, and of shaking up to an intensity.
+
+A demand of a run is what it does not exceed in 99 % of its time in motion; where the run overturns, of the
+motion up to overturning. A demand of a group is what 95 % of its runs do not exceed, the order statistic of
+that rank. The design demand is the largest of all groups, under the shaking as given and under weaker shaking
+of the same records (`weaker_factors`): weaker shaking may ask more, as where a cylinder rocks for long that
+stronger shaking overturns at once, and a recess meets both.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockwobble.models import Cylinder, Trace
+from rockwobble.models.support import support_named
+from rockwobble.multibody.ring import rim_overhang
+
+from ...metrics.statistics import FEWEST, covering
+
+Array = NDArray[np.float64]
+
+# what is not exceeded in 99 % of the moving time leaves out the spikes of the nearest passes
+SPIKES = 0.01
+# share of the runs of a group that do not exceed its demand
+COVERED = 0.95
+# [alpha] below which the base counts as closed and asks nothing: a gap at the rim of 0.4 mm for a base of 2 m
+# and alpha = 0.2, which contact takes up; passes closer than that have forces without bound in a rigid model
+CLOSED = 1e-3
+# ratio of neighbouring intensities of weaker shaking
+LEVEL_RATIO = 2.0**0.25
+# [alpha] tilt that is asked of a wall by a run that passes the balance, whether it overturns or is brought back:
+# the larger of this and its own
+PASSED = 1.25
+_FIRST_LEVEL = -4  # steps from the threshold of uplift
+
+_BASE = {"friction": "-", "shear": "weights", "force": "weights"}
+_TOP = {f"top_{name}": unit for name, unit in _BASE.items()}
+_RECESS = {"moment": "weights × b", "shear_and_wall": "weights", "tilt": "alpha"}
+# demands of a run with their units
+UNITS: Mapping[str, str] = {**_BASE, **_TOP, **_RECESS}
+# what else there is of each run
+SHARES = ("slip", "lost")
+# demand: what acts at the time at which a run reaches it
+_TOGETHER = {"shear": ("force", "moment"), "moment": ("shear", "force")}
+_NOT_PLANE = "all runs stay in one plane, in which no moment arises: a real motion leaves it"
+
+
+def fall_of(trace: Trace) -> float:
+    """Return when a run that overturns last passes alpha [s], inf where it does not: a fall asks nothing."""
+    if trace.outcome != "overturned":
+        return math.inf
+    below = trace.time[trace.tilt <= trace.case.cylinder.alpha]
+    return float(below[-1]) if len(below) else 0.0
+
+
+def demands_of(trace: Trace) -> dict[str, float]:
+    """Return the demands of a run on ground, recess and slab, until it last passes alpha if it overturns.
+
+    Samples with a tilt of at most `CLOSED` ask nothing.
+
+    Returns
+    -------
+    dict
+        friction [-], shear and (normal) force [weights] at the base and, as top_friction, top_shear and
+        top_force, under the slab of a frame [weights of the share of the slab]; moment, of the recess about
+        the vertical through the contact point, (1 + cos(tilt)) |kappa| [weights times b]; shear_and_wall,
+        the sum at one time of shear and of the force on a wall that supplies the moment over the lever arm b
+        [weights]: each not exceeded in 99 % of the moving time. shear_with_force, shear_with_moment,
+        moment_with_shear and moment_with_force: what acts when shear and moment are reached. tilt, the
+        largest [alpha]: at least `PASSED` where it passes the balance. slip and lost, shares of the moving time
+        in which the friction of the case does not suffice and in which contact is lost, at base or top. All
+        zero, and a force of one weight, where nothing moves.
+    """
+    cylinder = trace.case.cylinder
+    moving = (trace.tilt > CLOSED * cylinder.alpha) & (trace.time <= fall_of(trace))
+    ends = [(_BASE, trace.contact_force, trace.friction_needed)]
+    if cylinder.slab_mass_ratio > 0.0:
+        ends.append((_TOP, trace.top_contact_force, trace.top_friction_needed))
+    found: dict[str, float] = {}
+    largest = trace.peak_tilt / cylinder.alpha
+    if trace.outcome == "overturned":
+        largest = float(trace.tilt[moving].max()) / cylinder.alpha if moving.any() else 0.0
+    if trace.outcome == "overturned" or largest > 1.0:
+        largest = max(PASSED, largest)
+    if not moving.any():
+        for names, *_ in ends:
+            found |= dict(zip(names, (0.0, 0.0, 1.0), strict=True))
+        together = {f"{name}_with_{part}": float(part == "force") for name, part in _pairs()}
+        return found | {"moment": 0.0, "shear_and_wall": 0.0, "tilt": largest, **together, **_none_missing()}
+    lengths = np.diff(trace.time, append=trace.time[-1])[moving]
+    lost, slips = np.zeros((2, len(lengths)), dtype=bool)
+    series: dict[str, Array] = {}
+    for names, force, friction in ends:
+        x, y, normal = force[moving].T
+        series |= dict(zip(names, (friction[moving], np.hypot(x, y), normal), strict=True))
+        lost |= normal <= 0.0
+        slips |= friction[moving] > trace.case.friction
+    kappa = np.abs(trace.restraining_moment[moving]) / cylinder.base_radius
+    series["moment"] = (1.0 + np.cos(trace.tilt[moving])) * kappa
+    series["shear_and_wall"] = series["shear"] + series["moment"]
+    places = {name: _usual(values) for name, values in series.items()}
+    found = {name: float(series[name][place]) for name, place in places.items()}
+    for name, part in _pairs():
+        found[f"{name}_with_{part}"] = float(series[part][places[name]])
+    time = max(float(lengths.sum()), 1e-300)
+    shares = {"slip": lengths[slips & ~lost].sum() / time, "lost": lengths[lost].sum() / time}
+    return found | {"tilt": largest, **shares}
+
+
+def weaker_factors(threshold: float) -> list[float]:
+    """Return the factors below 1 on a record at which its demands are looked at, too.
+
+    They are a fixed series of intensities in steps of `LEVEL_RATIO`, so that those of stronger shaking by the
+    same record contain those of weaker: its demands do not fall. The threshold of uplift, at which models
+    chatter for long, lies between two of them.
+
+    Parameters
+    ----------
+    threshold : float
+        Factor at which the record uplifts.
+
+    Examples
+    --------
+    >>> [round(factor, 2) for factor in weaker_factors(0.3)]
+    [0.16, 0.19, 0.23, 0.28, 0.33, 0.39, 0.46, 0.55, 0.66, 0.78, 0.93]
+    """
+    if not 0.0 < threshold < math.inf:
+        return []
+    # other records of the same peak velocity may move from below the threshold of this one
+    levels = (threshold * LEVEL_RATIO ** (step + 0.5) for step in itertools.count(_FIRST_LEVEL))
+    return list(itertools.takewhile(lambda factor: factor < 1.0, levels))
+
+
+def demand_table(
+    members: pd.DataFrame, cylinder: Cylinder, *, gravity: float, support: str, mass: float | None = None
+) -> pd.DataFrame:
+    """Return the design demands on ground, recess and slab: the largest of all groups and intensities.
+
+    Parameters
+    ----------
+    members : DataFrame
+        Rows of `member_rows` that count, with the factor on the ground motion.
+    cylinder : Cylinder
+    gravity : float
+        [m/s^2]
+    support : str
+        That is built.
+    mass : float, optional
+        Of one cylinder or column [t].
+
+    Returns
+    -------
+    DataFrame
+        demand, value, unit; per_tonne, the value for a mass of 1 t of what is carried, the cylinder or, in a
+        frame, a column with its share of the slab or, at the top, this share, and for_mass, for that of
+        `mass` [kN, kNm]; group and factor, of which it is, with runs, those of them that differ, covered, how
+        many of these do not exceed it, and overturned; with_shear, with_force and with_moment, what acts at
+        the same time in the run that reaches it [weights, weights times b]; reason, why a value is NaN.
+
+        Demands: those of `demands_of` and, of the tilt, wall_height, at which the rim stands out farthest and
+        a wall takes its force, and clearance, by which a vertical wall of this height must stand back [m].
+    """
+    facts, b = support_named(support), cylinder.base_radius
+    groups = list(_groups(members))
+    if not groups:
+        return pd.DataFrame(columns=[*_COLUMNS, "per_tonne", "for_mass"])
+    rows: list[dict[str, Any]] = []
+    for name, unit in UNITS.items():
+        if name in _TOP and not cylinder.slab_mass_ratio > 0.0:
+            continue
+        if name in _RECESS and not (facts.guided or facts.walls):
+            continue
+        rows.append({"demand": name, "unit": unit, **_largest(name, groups)})
+        if name == "moment" and rows[-1]["value"] == 0.0:
+            rows[-1] |= {"value": math.nan, "reason": _NOT_PLANE}
+    recess = {row["demand"]: row for row in rows}
+    if "tilt" in recess:
+        if math.isnan(recess["moment"]["value"]):
+            lone = {name: recess["moment"][name] for name in ("value", "reason")}
+            recess["shear_and_wall"] |= lone
+        theta = recess["tilt"]["value"] * cylinder.alpha
+        overhang, height = (b * part for part in rim_overhang(theta))
+        walls = {"wall_height": height, "clearance": max(overhang, height * math.tan(theta))}
+        rows += [
+            recess["tilt"] | {"demand": name, "unit": "m", "value": each} for name, each in walls.items()
+        ]
+    table = pd.DataFrame(rows, columns=_COLUMNS)
+    arms = table["unit"].map({"weights": gravity, "weights × b": gravity * b}).astype(float)
+    table["per_tonne"] = table["value"] * arms
+    top = table["demand"].isin(_TOP)
+    carried = np.where(top, cylinder.slab_mass_ratio, 1.0 + cylinder.slab_mass_ratio)
+    table["for_mass"] = table["per_tonne"] * carried * (math.nan if mass is None else mass)
+    return table
+
+
+_COLUMNS = [
+    *("demand", "value", "unit", "group", "factor", "runs", "covered", "overturned"),
+    *("with_shear", "with_force", "with_moment", "reason"),
+]
+
+
+def _groups(members: pd.DataFrame) -> Iterator[tuple[str, float, pd.DataFrame]]:
+    """Groups of runs that may be stated, at each intensity: of fewer than `FEWEST` that differ none is."""
+    if not len(members):
+        return
+    for (group, factor), runs in members.groupby(["group", "factor"], sort=False):
+        known = runs[runs["outcome"] != "failed"]
+        if all_alike(known):
+            known = known[:1]
+        elif len(known) < FEWEST:
+            continue
+        yield str(group), float(factor), known
+
+
+def all_alike(runs: pd.DataFrame) -> bool:
+    """Return whether several runs that move are one: of records that differ many may not move at all."""
+    numbers = [name for name in ("peak_tilt", *UNITS) if name in runs.columns]
+    return len(runs) > 1 and runs["peak_tilt"].min() > 0.0 and bool(runs[numbers].nunique().max() == 1)
+
+
+def _largest(name: str, groups: list[tuple[str, float, pd.DataFrame]]) -> dict[str, Any]:
+    """The largest demand of a name of all groups, and what is stated with it."""
+    best: dict[str, Any] = {"value": math.nan, "reason": f"fewer than {FEWEST} runs differ"}
+    for group, factor, runs in groups:
+        values = runs[name].to_numpy(float)
+        value, covered = covering(values, COVERED)
+        if value <= best["value"]:  # not where the best is none yet, NaN
+            continue
+        place = int(np.flatnonzero(values == value)[0])
+        best = {
+            **{"value": value, "group": group, "factor": factor, "runs": len(runs), "covered": covered},
+            "overturned": int((runs["outcome"] == "overturned").sum()),
+            **{
+                f"with_{part}": float(runs[f"{name}_with_{part}"].to_numpy(float)[place])
+                for part in _TOGETHER.get(name, ())
+            },
+            "reason": "",
+        }
+    return best
+
+
+def _pairs() -> list[tuple[str, str]]:
+    return [(name, part) for name, parts in _TOGETHER.items() for part in parts]
+
+
+def _none_missing() -> dict[str, float]:
+    return dict.fromkeys(SHARES, 0.0)
+
+
+def _usual(values: Array) -> int:
+    """Index of the sample that is not exceeded in 99 % of the time: a mean with infinity would be none."""
+    rank = max(math.ceil((1.0 - SPIKES) * len(values)) - 1, 0)
+    return int(np.argpartition(values, rank)[rank])

@@ -1,0 +1,34 @@
+"""Lines of the command line that state a problem whole, for pages and commands that name another command."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Mapping
+
+# options of a problem that `rockwobble spectrum` has, too: it states the cylinder by slenderness alone
+_OF_SPECTRUM = (
+    *("record", "record_x", "record_y", "record_z", "units", "resample", "scale"),
+    *("slab_mass_ratio", "gravity", "rolling_resistance", "support"),
+)
+
+
+def command_line(command: str, options: Mapping[str, object]) -> str:
+    """Return a command with options by the names of their parameters; a flag is True, None is left out.
+
+    Examples
+    --------
+    >>> command_line("advise", {"record_x": "E W.AT2", "scale": 0.5, "resample": True, "mass": None})
+    "rockwobble advise --record-x 'E W.AT2' --scale 0.5 --resample"
+    """
+    parts = ["rockwobble", command]
+    for name, value in options.items():
+        if value is None or value is False:
+            continue
+        parts += [f"--{name.replace('_', '-')}", *([] if value is True else [str(value)])]
+    return shlex.join(parts)
+
+
+def spectrum_line(options: Mapping[str, object], tan_alpha: float) -> str:
+    """Return the spectrum of the slenderness, slab, ground motion and support that options state."""
+    kept = {name: value for name, value in options.items() if name in _OF_SPECTRUM}
+    return command_line("spectrum", {"tan_alpha": f"{tan_alpha:.6g}", **kept})
