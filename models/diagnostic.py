@@ -41,6 +41,7 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "unsettled": ("alpha", "change from twice the time step: it has not settled, or nobody knows"),
         "extrapolated": ("alpha", "error left after extrapolation in the time step, by estimate"),
         "not_extrapolated": ("", "runs at successive time steps do not agree well enough to extrapolate"),
+        "one_column": ("columns", "the engine runs one column, under a slab that only translates"),
         "side": ("", "it passed through upright itself: the side to which it goes on is undetermined"),
         # what makes a record of the ground improbable
         "large_peak": ("g", "no record has such a peak: is its unit another?"),

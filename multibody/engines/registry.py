@@ -184,10 +184,6 @@ def _require_able(engine: Engine, name: str, case: Case, support: str) -> None:
     if isinstance(case.cylinder, WobblingFrame) and case.cylinder.slab_mass_ratio > 0.0:
         if not engine.facts.carries_slab:
             raise ValueError(f"{name} has no scene of a frame, got {case.cylinder!r}")
-        if case.cylinder.columns != 1:
-            raise ValueError(
-                f"columns must be 1 in {name}, a slab that only translates, got {case.cylinder.columns}"
-            )
         if SUPPORTS[support].walls:
             raise ValueError(f"support must have no walls under a slab, got {support!r}")
     if not engine.uplifts and (case.initial is None or case.initial.tilt == 0.0):

@@ -53,6 +53,8 @@ _WORDS: Mapping[str, str] = {
     "extrapolated": "the motion is, until {duration}, what runs at three time steps tend to, with order "
     "{bound:.0f}: within {size:.1e} alpha, by estimate",
     "not_extrapolated": "it is not extrapolated{later}, but the run at the finest time step: {why}",
+    "one_column": "the engine runs one of the {size:.0f} columns, under its share of a slab that only translates: "
+    "whether the slab turns, or the columns keep in step, is not tested",
     "side": "it passed through upright itself, first{at}: the ground had moved in one plane, and the side "
     "of such a pass is undetermined",
     "large_peak": "its peak is {size:.3g} g, more than any record has ({bound:g} g): it would be "
@@ -84,6 +86,7 @@ _MANY: Mapping[str, str] = {
     "not_extrapolated": "could not be extrapolated in the time step to the end",
     "unresolved_pass": "had passes closer to upright than contact resolves",
     "undecided": "ended in motion that was not decided",
+    "one_column": "ran one column, under a slab that only translates",
     "side": "passed through upright itself",
 }
 

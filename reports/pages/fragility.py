@@ -48,6 +48,7 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         },
         "contrasts": _by_cylinder([row for rows in answers.values() for row in rows], [*cylinders, ALL]),
         "several": len(cylinders) > 1,
+        "engine_runs": any(each["engine"] is not None for each in found.facts["methods"].values()),
         "scaling": _scaling(found, measure.title),
         "fallen": fallen,
         "overturns": any(row["exceeded"] for row in fallen),
