@@ -5,6 +5,7 @@ from .case import Case, InitialState, Run, Suite, run_duration
 from .cylinder import Cylinder, WobblingFrame
 from .diagnostic import Assumptions, Diagnostic
 from .ground_motion import GroundMotion
+from .hazard import HazardCurve, read_hazard
 from .members import perturbed_copies, with_motions
 from .records.files import el_centro_1940, read_record
 from .records.folder import read_records
@@ -21,6 +22,7 @@ __all__ = [
     "Cylinder",
     "Diagnostic",
     "GroundMotion",
+    "HazardCurve",
     "InitialState",
     "Run",
     "Suite",
@@ -31,6 +33,7 @@ __all__ = [
     "p695_far_field",
     "perturbed_copies",
     "pulse",
+    "read_hazard",
     "read_record",
     "read_records",
     "read_suite",
