@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -314,8 +315,9 @@ def _usgs(path: Path, text: str, measure: str, period: float | None) -> tuple[Ar
         ) from None
 
 
-def _head(curve: Mapping[str, Mapping[str, Mapping[str, str]]]) -> Mapping[str, Mapping[str, str]]:
-    return curve.get("metadata", curve)
+def _head(curve: Mapping[str, Any]) -> Mapping[str, Any]:
+    head: Mapping[str, Any] = curve.get("metadata", curve)
+    return head
 
 
 def _require_measure(path: Path, names: Iterable[str], measure: str, period: float | None) -> str:

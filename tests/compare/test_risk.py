@@ -204,7 +204,7 @@ def test_every_measure_of_a_hazard_is_reached(found: rw.compare.Fragility) -> No
 
 def test_a_hazard_of_another_period_is_refused(found: rw.compare.Fragility) -> None:
     other = HazardCurve(SITE.intensity, SITE.annual_frequency, measure="sa", period=0.5)
-    with pytest.raises(ValueError, match="Sa at 0.5 s, the fragility has it at 1 s: .*--period 0.5"):
+    with pytest.raises(ValueError, match=r"Sa at 0\.5 s, the fragility has it at 1 s: .*--period 0\.5"):
         found.risk(other)
 
 

@@ -277,14 +277,14 @@ def risk_tables(
             fit = math.nan if curve is None else lognormal_frequency(hazard, *curve)
             about = {"cylinder": cylinder, "method": method}
             rows.append(
-                about
-                | stated
-                | {
+                {
+                    **about,
+                    **stated,
                     "annual_frequency_fit": fit,
                     "probability": -math.expm1(-value * years),
                     "margin": math.nan if curve is None else math.exp(curve[0]) / hazard.intensity_at(RARE),
+                    **_ratio(value, drawn, *reference, len(blocks.motions)).columns("ratio"),
                 }
-                | _ratio(value, drawn, *reference, len(blocks.motions)).columns("ratio")
             )
             parts.append(_contributions(hazard, exposure, curve).assign(**about))
     return pd.DataFrame(rows), pd.concat(parts, ignore_index=True)
@@ -329,8 +329,7 @@ def _contributions(
 ) -> pd.DataFrame:
     from scipy.special import ndtr
 
-    ends = np.log(hazard.intensity[[0, -1]])
-    x = np.linspace(*ends, _POINTS)
+    x = np.linspace(math.log(hazard.intensity[0]), math.log(hazard.intensity[-1]), _POINTS)
     if exposure.stripes:
         share = np.interp(x, exposure.x[0], np.nanmean(exposure.y, axis=0), left=0.0)
     else:
