@@ -261,7 +261,8 @@ def risk_tables(
         See `Fragility.risk`; and cylinder, method, intensity, annual_frequency (of exceedance), probability
         and probability_fit of overturning, contribution and contribution_fit (p |d lambda / d ln theta|).
     """
-    rows, parts = [], []
+    rows: list[dict[str, float | str]] = []
+    parts = []
     for cylinder in blocks.cylinders:
         reference: tuple[float, Array] | None = None
         for method in blocks.methods:
