@@ -34,6 +34,15 @@ def test_of_a_power_law_the_frequency_is_the_closed_form(median: float, dispersi
     assert lognormal_frequency(power_law(), math.log(median), dispersion) == pytest.approx(exact, rel=1e-12)
 
 
+def test_a_sum_over_the_points_of_a_hazard_is_short_by_half_of_slope_times_step() -> None:
+    hazard = power_law(100, 1e-3, 2.0)
+    share = np.array([0.5 * math.erfc(-math.log(x / 0.4) / 0.4 / math.sqrt(2.0)) for x in hazard.intensity])
+    steps = np.append(-np.diff(hazard.annual_frequency), hazard.annual_frequency[-1])
+    short = 1.0 - float(share @ steps) / lognormal_frequency(hazard, math.log(0.4), 0.4)
+    # the guide says 10 %; the next order is a tenth of it
+    assert short == pytest.approx(0.5 * K * math.log(2000.0) / 99, rel=0.15)
+
+
 def test_many_motions_that_follow_a_lognormal_curve_give_its_frequency_without_a_fit() -> None:
     rng = np.random.default_rng(5)
     capacity = np.exp(rng.normal(math.log(0.8), 0.4, 4000))
