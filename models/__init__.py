@@ -1,6 +1,6 @@
 """The problem, with no mechanics: bodies, ground motions, initial states, cases and runs."""
 
-from .bounds import AGREEMENT, Bounds
+from .bounds import AGREEMENT, CLOSED_TILT, Bounds
 from .case import Case, InitialState, Run, Suite, run_duration
 from .cylinder import Cylinder, WobblingFrame
 from .diagnostic import Assumptions, Diagnostic
@@ -16,6 +16,7 @@ from .trace import Trace
 
 __all__ = [
     "AGREEMENT",
+    "CLOSED_TILT",
     "Assumptions",
     "Bounds",
     "Case",
