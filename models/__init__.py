@@ -12,6 +12,7 @@ from .records.folder import read_records
 from .records.p695 import far_field_motions, p695_far_field
 from .suites import read_suite, shipped_suites
 from .synthetic import pulse, synthetic_motions
+from .tendon import Tendon
 from .trace import Trace
 
 __all__ = [
@@ -27,6 +28,7 @@ __all__ = [
     "InitialState",
     "Run",
     "Suite",
+    "Tendon",
     "Trace",
     "WobblingFrame",
     "el_centro_1940",

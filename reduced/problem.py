@@ -16,9 +16,10 @@ from rockwobble.models.number_checks import quoted
 from rockwobble.models.support import SUPPORTS as FACTS
 
 from . import kernels
-from .body import Body, body_of, restitution_from_momentum
+from .body import Body, TiedBody, body_of, restitution_from_momentum
 from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
 from .integration.result import Driver, IntegrationResult, Options, Task
+from .restoring import tied
 from .rolling import impact_ratio
 
 SUPPORTS = tuple(name for name, support in FACTS.items() if support.modelled)
@@ -102,6 +103,11 @@ class Problem:
             raise ValueError(f"restitution belongs to planar motion, got {factor!r} without a plane")
         if plane is not None and initial is not None:
             _require_in_plane(initial, plane)
+        if self.case.tendon is not None and self.free_twist:
+            raise ValueError(
+                "a tendon is part of the models in the recess and in a plane, got support 'flat': there the "
+                "base wanders from its anchor"
+            )
 
     def __getstate__(self) -> dict[str, Any]:
         # what is derived stays behind: compiled code that travels is compiled again where it arrives
@@ -120,9 +126,11 @@ class Problem:
         return float(self.restitution)
 
     @cached_property
-    def body(self) -> Body:
+    def body(self) -> Body | TiedBody:
         """The constants of the equations."""
-        return body_of(self.case.cylinder, self.case.gravity, self.case.rolling_resistance)
+        case = self.case
+        plain = body_of(case.cylinder, case.gravity, case.rolling_resistance)
+        return plain if case.tendon is None else tied(plain, case.cylinder, case.tendon)
 
     def solve(
         self,
