@@ -45,6 +45,11 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         # what makes a record of the ground improbable
         "large_peak": ("g", "no record has such a peak: is its unit another?"),
         "unlike_components": ("", "peaks of components differ as only units do"),
+        "offset": ("", "the mean is a large part of the peak: the offset was not removed"),
+        "gravity_in_record": ("g", "the mean is 1 g: the sensor has recorded gravity"),
+        "unlikely_step": ("s", "no recorder has such a time step: is the unit of time another?"),
+        "ends_in_strong_motion": ("", "the record ends in strong motion: is it cut?"),
+        "other_direction": ("", "a component stands in the place of another direction"),
         # what an external trajectory leaves open
         "note": ("", "how the file was read"),
         "missed_pass": ("passes", "passes fell between two samples"),
@@ -53,8 +58,11 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
 # code: why, as its detail says it
 REASONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
-        "large_peak": ("m/s2", "cm/s2"),
+        "large_peak": ("", "m/s2", "cm/s2", "m/s2 for g", "cm/s2 for g", "cm/s2 for m/s2"),
         "unlike_components": ("x", "y", "z"),
+        "offset": ("x", "y", "z"),
+        "gravity_in_record": ("x", "y", "z"),
+        "other_direction": tuple(f"{place} is {axis}" for place in "xyz" for axis in "xyz" if axis != place),
         "unsettled": ("fails", "still_changes", "no_later", "no_closer", "unresolved_pass", "energy"),
         "not_extrapolated": ("fails", "diverged", "no_closer", "unresolved_pass", "energy"),
     }
