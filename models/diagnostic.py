@@ -148,6 +148,7 @@ class Diagnostic(Brief):
 class Assumptions(Brief):
     """The demands of a solution on ground and recess, as extrema of the continuous motion.
 
+    They are taken from a tilt of `CLOSED_TILT` (a thousandth) of alpha on, below which the base is closed.
     In a frame those of base and top of a column, whichever asks for more, each over the weight it carries.
 
     Attributes
@@ -155,9 +156,9 @@ class Assumptions(Brief):
     breaches : tuple of Diagnostic
         "tension", with the least normal force as its size [weights], and "friction_needed".
     least_normal_force, largest_normal_force : float
-        In weights, while the cylinder is in motion; 1 if it never is.
+        In weights, while the base is open; 1 if it never is.
     largest_friction_needed : float
-        In motion; inf where contact is lost, 0 if it never moves.
+        While the base is open; inf where contact is lost, 0 if it never is.
     largest_restraining_moment : float
         Kappa of the moment kappa (z_world + z_body) of the recess, over the weight [m].
     friction : float
