@@ -104,9 +104,7 @@ def _component(part: ComponentSource, *, named: bool) -> str:
         return f"{part.axis}: zero"
     words = [f"{part.axis}:"]
     words += [part.file] if named and part.file else []
-    words += [part.label] if part.label and not (part.label.endswith(f"[{part.unit}]")) else []
-    if part.label.endswith(f"[{part.unit}]"):
-        words += [part.label.removesuffix(f"[{part.unit}]").strip()]
+    words += [part.label] if part.label else []
     words += [f"[{part.unit}]"] if part.unit else []
     words += [f"{part.peak:.4g} g"]
     words += [f"(mean {part.mean:.3g} g)"] if abs(part.mean) > LARGEST_MEAN * part.peak else []

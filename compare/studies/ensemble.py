@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Trace, perturbed_copies
 from rockwobble.models.diagnostic import joined
-from rockwobble.models.records.units import doubts_of
+from rockwobble.models.records.units import doubts_of, sources_of
 
 from ..metrics.pair import outcome_of
 from ..metrics.statistics import (
@@ -172,6 +172,7 @@ def ensemble(
     about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
     about |= {"methods": {label: _compared_with(run) for label, run in methods.items()}}
     about |= {"doubts": doubts_of(case.motion for case in members)}
+    about |= {"record_sources": sources_of(case.motion for case in members)}
     about |= {"inputs": fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])}
     return ensemble_of(table, about)
 

@@ -14,7 +14,7 @@ import pandas as pd
 from rockwobble.models import Case, GroundMotion, Run, Suite, Trace
 from rockwobble.models.diagnostic import joined
 from rockwobble.models.plain_json import fields_of
-from rockwobble.models.records.units import doubts_of
+from rockwobble.models.records.units import doubts_of, sources_of
 
 from ..metrics.pair import outcome_of
 from ..metrics.statistics import stated
@@ -292,7 +292,12 @@ def sweep(
         inputs = fingerprint([chunk.key() for chunk in chunks])
         result = Sweep(
             tables={KIND: table, **_motions(whole)},
-            facts={**plain, "doubts": doubts_of(motions), "inputs": inputs},
+            facts={
+                **plain,
+                "doubts": doubts_of(motions),
+                "record_sources": sources_of(motions),
+                "inputs": inputs,
+            },
         )
         if out is not None:
             result.save(out) if save is None else save(result)

@@ -159,6 +159,13 @@ class ColumnName:
     unit: str = ""
     seconds: float | None = None
 
+    @property
+    def label(self) -> str:
+        """The name without its unit in brackets."""
+        return (
+            re.sub(rf"\s?[\[(]\s?{re.escape(self.unit)}\s?[\])]$", "", self.text) if self.unit else self.text
+        )
+
 
 def column_name(text: str) -> ColumnName:
     """Return what a name says of its column.
@@ -352,7 +359,8 @@ def names_of(header: Sequence[str], width: int) -> tuple[list[ColumnName] | None
             known = sum(name.kind != "unknown" and name.text not in ("", name.unit) for name in names)
             # the lower line of two that know as much, and the last whatever it knows
             score = known + 0.5 * (known == width) + 0.25 * (last and known > 0)
-            if score > most and (2 * known > width or (last and known)):
+            separated = re.search(r"[,;|\t]|\s{2}", lines[place].strip()) is not None  # else a sentence
+            if score > most and (2 * known > width or (last and known and separated)):
                 best, most, used = names, score, {place}
     place = max(set(range(len(lines))) - of_units, default=-1)
     if best is None and place >= 0 and width > 1:

@@ -14,7 +14,7 @@ from .component import STEP_OPTION, Direction, ReadingOptions, RecordFile
 from .table import Table
 from .times import is_counting, rises_evenly, stated_step
 
-OPTION = "--columns (columns=)"
+OPTION = "--record-columns (columns=)"
 _ROLES = ("time", "x", "y", "z")
 _SKIPPED = "-"
 

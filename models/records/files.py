@@ -26,7 +26,7 @@ _G = METRES_PER_SECOND_SQUARED["g"]
 
 
 def read_record(
-    x_path: str | Path,
+    x_path: str | Path | Sequence[str | Path],
     y_path: str | Path | None = None,
     z_path: str | Path | None = None,
     *,
@@ -50,8 +50,8 @@ def read_record(
     ----------
     x_path, y_path : str or Path
         East-west and north-south component; without the second the first holds all, and may be a folder of
-        the files of one station. "zero" in the place of one is a component of zeros, for planar motion along
-        the other.
+        the files of one station, or a list of them. "zero" in the place of one is a component of zeros, for
+        planar motion along the other.
     z_path : str or Path, optional
         Vertical component.
     units : {"g", "m/s2", "cm/s2"}, optional
@@ -111,7 +111,12 @@ def read_record(
     if y_path is None:
         if z_path is not None:
             raise ValueError(f"a file of all components has no other beside it, got {z_path} beside {x_path}")
-        components, notes = _read_all(Path(x_path), options)
+        if isinstance(x_path, str | Path):
+            components, notes = _read_all(Path(x_path), options)
+        else:
+            components, notes = _read_station([Path(each) for each in x_path], "the list of files", options)
+    elif not isinstance(x_path, str | Path):
+        raise ValueError("a list of files of one station has no other beside it")
     else:
         components, notes = _read_each(x_path, y_path, z_path, options), ()
     if resample:
@@ -127,7 +132,9 @@ def read_record(
                 for part, unit in zip(components, units_used, strict=True)
             ]
         )
-    name = (Path(x_path).stem if y_path is None else first.path.stem) if name is None else name
+    if name is None:
+        one = y_path is None and isinstance(x_path, str | Path)
+        name = Path(str(x_path)).stem if one else first.path.stem
     motion = GroundMotion(samples, first.time_step, name)  # refuses what is not finite
     source = _source(motion, components, units_used, (*notes, *changes))
     if remove_mean:
@@ -244,18 +251,32 @@ def _read_folder(folder: Path, options: ReadingOptions) -> tuple[list[Component]
             f"the folder {folder} must hold the files of one station, got {len(paths)} files: a folder of "
             "many records is for --records"
         )
+    return _read_station(paths, folder.name, options, others=True)
+
+
+def _read_station(
+    paths: Sequence[Path], name: str, options: ReadingOptions, *, others: bool = False
+) -> tuple[list[Component], tuple[str, ...]]:
+    """Read the files of one station; `others`: some may be none of records, and are noted."""
     components: list[Component] = []
-    refusals: list[str] = []
+    refusals: list[tuple[str, ValueError]] = []
     for path in paths:
         try:
             components += read_components(open_record(path), options)
         except ValueError as error:
-            refusals.append(str(error))
+            if not others:
+                raise
+            refusals.append((path.name, error))
     if not components:
-        raise ValueError(f"the folder {folder.name} holds no record: {refusals[0]}")
-    placed = in_order(components, folder.name)
-    left = [refusal.split(":")[0].split(" ")[0] for refusal in refusals]
-    return placed, ((f"not read: {', '.join(left)[:80]}",) if left else ())
+        raise refusals[0][1] if refusals else ValueError(f"{name} holds no record")
+    try:
+        placed = in_order(components, name)
+    except ValueError:
+        if refusals:  # what is missing is probably what was refused
+            raise refusals[0][1] from None
+        raise
+    left = ", ".join(each for each, _ in refusals)
+    return placed, ((f"not read: {left[:80]}",) if left else ())
 
 
 # provenance and orientation: records/README.md

@@ -26,7 +26,7 @@ _PLACES = tuple(
     re.compile(place, re.IGNORECASE)
     for place in (
         rf"[\[(]\s*{_WORD}\s*[\])]",
-        rf"\bunits?\b(?:\s*[:=]|\s+(?:of|in|are|is)\b)*\s*{_WORD}",
+        rf"units?\b(?:\s*[:=]|\s+(?:of|in|are|is)\b)*\s*{_WORD}",
         rf"\bacc[a-z]*\.?[\s,:]+(?:in\s+)?{_WORD}",
     )
 )
@@ -124,6 +124,14 @@ def doubts(motion: GroundMotion) -> tuple[Diagnostic, ...]:
     if peak > LARGEST_SCALED_PEAK:  # its unit is known: no advice on it
         facts = (*facts, Diagnostic(code="large_peak", size=peak, bound=LARGEST_SCALED_PEAK))
     return facts
+
+
+def sources_of(motions: Iterable[GroundMotion | None]) -> list[str]:
+    """Return what each ground motion is read from, in a line; each once, those made of arrays left out."""
+    lines = (
+        f"{motion.name or 'record'}: {motion.source.line}" for motion in motions if motion and motion.source
+    )
+    return list(dict.fromkeys(lines))
 
 
 def doubts_of(motions: Iterable[GroundMotion | None]) -> list[dict[str, object]]:

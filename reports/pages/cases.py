@@ -39,7 +39,7 @@ def describe(case: Case) -> list[str]:
             f"{components} components, peak {motion.peak / case.gravity:.3f} g "
             f"({1.0 / factor:.2f} times the uplift threshold{within})"
         )
-        lines += motion_warnings([motion])
+        lines += motion_lines([motion])
     if initial is not None:
         lines.append(
             f"Release: tilt {math.degrees(initial.tilt):.4g} deg "
@@ -49,13 +49,21 @@ def describe(case: Case) -> list[str]:
     return lines
 
 
-def motion_warnings(motions: Iterable[GroundMotion | None]) -> list[str]:
-    """Return a line on each doubt about ground motions."""
-    from rockwobble.models.records.units import doubts_of
+MOST_SHOWN = 12  # sources of records; the pages have the same number
+
+
+def motion_lines(motions: Iterable[GroundMotion | None]) -> list[str]:
+    """Return a line on what each ground motion is read from, and one on each doubt about it."""
+    from rockwobble.models.records.units import doubts_of, sources_of
 
     from .diagnostics import warnings
 
-    return warnings(doubts_of(motions))
+    motions = list(motions)
+    sources = sources_of(motions)
+    lines = [f"Record: {source}" for source in sources[:MOST_SHOWN]]
+    if len(sources) > MOST_SHOWN:
+        lines.append(f"and {len(sources) - MOST_SHOWN} records more, which manifest.json lists")
+    return lines + warnings(doubts_of(motions))
 
 
 def group_of(name: str) -> str:

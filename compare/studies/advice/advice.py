@@ -13,7 +13,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace, el_centro_1940, perturbed_copies
 from rockwobble.models.cylinder import cylinder_of
-from rockwobble.models.records.units import doubts_of
+from rockwobble.models.records.units import doubts_of, sources_of
 from rockwobble.models.support import support_named
 
 from ...metrics.pair import overturned, tolerance_of
@@ -349,6 +349,7 @@ def advise(
         "vertical": vertical,
         "records": source,
         "doubts": doubts_of([case.motion]),
+        "record_sources": sources_of([case.motion]),
         "perturbation": plan.perturbation,
         "seed": plan.seed,
         "inputs": inputs,

@@ -14,7 +14,7 @@ import pandas as pd
 from rockwobble.models import Cylinder, GroundMotion, HazardCurve, Run
 from rockwobble.models.number_checks import require_positive
 from rockwobble.models.plain_json import fields_of
-from rockwobble.models.records.units import doubts_of
+from rockwobble.models.records.units import doubts_of, sources_of
 
 from ...metrics.statistics import FEWEST
 from ...runs.progress import ProgressCallback
@@ -339,6 +339,7 @@ def fragility(
         asked = replace(asked, levels=default_levels(bodies, motions, asked))
     plan = RunPlan(cylinders=bodies, motions=motions, methods=chosen, options=asked)
     facts = _facts(plan) | {"source": source, "doubts": doubts_of(motions)}
+    facts["record_sources"] = sources_of(motions)
     runs = run_plan(plan, KIND, folder=resume, workers=workers, scheduler=scheduler, progress=progress)
     return fragility_of(runs, plan.points, facts)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from ..column_names import column_name
 from ..component import Component, ReadingOptions, RecordFile
 from ..numbers import NUMBER, block_of_numbers, parse_number, without_fill
 from ..units import stated_unit
@@ -11,6 +12,7 @@ from ..units import stated_unit
 NAME = "PEER AT2"
 # titles of the forms in circulation are three lines long; one comment more does no harm
 _HEADER_LINES = 6
+_WORDS_OF_TITLE = 3  # event, date, station and component
 _MOST_FILLED = 10  # numbers; no line of the forms in circulation has more
 _LONGEST_HEADER = 200  # the line has 80 characters; bounds what a pattern can cost on one that is damaged
 
@@ -41,7 +43,35 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
         raise ValueError(
             f"{file.name}, line {at + 1}: announces {count} samples, the file holds {len(values)}"
         )
-    return [Component(path=file.path, values=values[:count], time_step=time_step, unit=unit, format=NAME)]
+    azimuth, sense = _orientation(file, at)
+    return [
+        Component(
+            path=file.path,
+            values=values[:count] if sense >= 0.0 else -values[:count],
+            time_step=time_step,
+            unit=unit,
+            format=NAME,
+            azimuth=azimuth,
+            direction="z" if sense else None,
+            notes=("down is turned up",) if sense < 0.0 else (),
+        )
+    ]
+
+
+def _orientation(file: RecordFile, at: int) -> tuple[float | None, float]:
+    """Return the azimuth [deg], and 1 up or -1 down, by the title "event, date, station, 180"."""
+    for line in file.head[:at]:
+        words = [word.strip() for word in line.split(",")]
+        if len(words) < _WORDS_OF_TITLE:
+            continue
+        if re.fullmatch(r"\d{1,3}", words[-1]) and int(words[-1]) <= 360:
+            return float(words[-1]) % 360.0, 0.0
+        name = column_name(words[-1])
+        if name.direction == "z":
+            return None, name.sign
+        east = {"x": 90.0, "y": 0.0}.get(name.direction or "")
+        return name.azimuth if east is None else (east if name.sign > 0.0 else east + 180.0), 0.0
+    return None, 0.0
 
 
 def _counts(file: RecordFile, at: int) -> tuple[int, float]:

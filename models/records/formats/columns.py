@@ -47,7 +47,7 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
             unit=unit,
             start=start,
             format=NAME,
-            label=names[each.place].text if names and names[each.place].text else f"column {each.place + 1}",
+            label=(names[each.place].label if names else "") or f"column {each.place + 1}",
             direction=each.direction,
             azimuth=each.azimuth,
             notes=notes if each.sign > 0.0 else (*notes, "its sense is turned"),

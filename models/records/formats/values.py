@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..column_names import names_of, refuse_other_quantity, refuse_scale
+from ..column_names import names_of, refuse_other_quantity, refuse_scale, unit_of_time
 from ..component import UNITS, Component, ReadingOptions, RecordFile
 from ..numbers import is_number, numbers_of_lines, parted, without_fill
 from ..table import cells_of, first_row, is_comment, uncommented
@@ -17,6 +17,7 @@ from ..units import stated_unit, unit_of
 NAME = "values without times"
 ROW_BY_ROW = "values"
 _MOST_COMPONENTS = 4  # columns of a table of components with times; more numbers in a line are samples
+_QUANTITIES = ("acceleration", "velocity", "displacement")
 _SEEN = 50  # rows that are looked at to tell values from columns
 
 
@@ -81,7 +82,7 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
     stated = stated_step(file, header, len(values)) or step
     names, _ = names_of(header, 1)
     word = names[0].unit if names else ""
-    if word and unit_of(word) is None:
+    if names and names[0].kind in _QUANTITIES and word and unit_of(word) is None and not unit_of_time(word):
         raise ValueError(f"{file.name} is in {word[:20]}, allowed are {', '.join(UNITS)}")
     refuse_other_quantity(file, header)
     refuse_scale(file, header)
