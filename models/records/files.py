@@ -16,7 +16,7 @@ from ..number_checks import require_finite, require_one_of, require_positive
 from ..record_source import ComponentSource, RecordSource
 from .clocks import LENGTHS, equally_long, require_same_clock, resampled
 from .component import METRES_PER_SECOND_SQUARED, UNITS, Component, Direction, ReadingOptions, open_record
-from .directions import NORTH, for_place, in_order, turned_to_north
+from .directions import NORTH, at_the_surface, for_place, in_order, turned_to_north
 from .formats import read_components
 from .plausibility import doubts_as_read
 from .units import factor
@@ -253,9 +253,10 @@ def _read_folder(folder: Path, options: ReadingOptions) -> tuple[list[Component]
             refusals.append(str(error))
     if not components:
         raise ValueError(f"the folder {folder.name} holds no record: {refusals[0]}")
+    components, notes = at_the_surface(components)
     placed = in_order(components, folder.name)
     left = [refusal.split(":")[0].split(" ")[0] for refusal in refusals]
-    return placed, ((f"not read: {', '.join(left)[:80]}",) if left else ())
+    return placed, (*notes, *((f"not read: {', '.join(left)[:80]}",) if left else ()))
 
 
 # provenance and orientation: records/README.md

@@ -11,6 +11,7 @@ from .component import RecordFile
 
 # "(8F10.3)", "(1E15.6)", "(10I8)": repetitions and width
 _FORMAT = re.compile(r"\(?\b(\d{1,3})\s*[FEGI](\d{1,3})(?:\.\d{1,3})?\b", re.IGNORECASE)
+_CHUNK = 20_000  # lines
 _LONGEST_LINE = 200  # [characters]; bounds what a pattern can cost on a damaged line
 
 
@@ -116,16 +117,31 @@ def table_of_numbers(
     ValueError
         If there are fewer or more rows, or a row holds something else: the line is named.
     """
-    rows = [(number, line) for number, line in enumerate(file.text[first:], start=first + 1) if line.strip()]
-    cells = [_cells(line, separator) for _, line in rows]
-    alike = all(len(row) == columns for row in cells)
-    values = _row([cell for row in cells for cell in row]) if alike else None
-    if values is None:
-        number, line = next((number, line) for number, line in rows if not _is_row(line, columns, separator))
-        raise ValueError(f"{file.name}, line {number}: expected {columns} numbers, got {line.strip()[:60]!r}")
-    if len(rows) != (len(rows) if count is None else count):
-        raise ValueError(f"{file.name}: announces {count} samples, the file holds {len(rows)}")
-    return values.reshape(-1, columns)
+    parts: list[NDArray[np.float64]] = []
+    rows = 0
+    for begin in range(first, len(file.text), _CHUNK):  # so that damage ends it early
+        cells = [_cells(line, separator) for line in file.text[begin : begin + _CHUNK] if line.strip()]
+        rows += len(cells)
+        alike = all(len(row) == columns for row in cells)
+        values = _row([cell for row in cells for cell in row]) if alike else None
+        if values is None:
+            _refuse_row(file, begin, columns, separator)
+            continue
+        parts.append(values)
+        if count is not None and rows > count + _CHUNK:
+            break
+    if not parts or rows != (rows if count is None else count):
+        more = "more than " if count is not None and rows > count + _CHUNK else ""
+        raise ValueError(f"{file.name}: announces {count or 'no'} samples, the file holds {more}{rows}")
+    return np.concatenate(parts).reshape(-1, columns)
+
+
+def _refuse_row(file: RecordFile, begin: int, columns: int, separator: str | None) -> None:
+    for number, line in enumerate(file.text[begin : begin + _CHUNK], start=begin + 1):
+        if line.strip() and not _is_row(line, columns, separator):
+            raise ValueError(
+                f"{file.name}, line {number}: expected {columns} numbers, got {line.strip()[:60]!r}"
+            )
 
 
 def _cells(line: str, separator: str | None) -> list[str]:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from network_files import COUNT, STEP
 
+from rockwobble.models import read_record
 from rockwobble.models.records.component import Component, ReadingOptions, open_record
 from rockwobble.models.records.formats import READERS, read_components
 
@@ -402,7 +403,7 @@ def test_a_damaged_file_of_10_megabytes_ends_in_its_refusal(tmp_path: Path) -> N
     bodies = ["1" * 10_000_000, "1.5 " * 2_500_000, "(" * 10_000_000, ": =" * 3_300_000, "x\n" * 5_000_000]
     for head in heads:
         for body in bodies:
-            name = "big.bbp" if "time" in head[0] or "Column" in head[0] else "big.txt"
+            name = "big.bbp" if head[0][:1] in "#0" and "Earthquake" not in head[0] else "big.txt"
             path = tmp_path / name
             path.write_text("\n".join([*head, body]))
             begin = time.perf_counter()
@@ -426,4 +427,44 @@ def test_every_reader_recognises_its_own_files_alone(tmp_path: Path) -> None:
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
         file = open_record(path)
         claims = [reader.NAME for reader in READERS if reader.recognizes(file)]
-        assert len([claim for claim in claims if claim != "columns"]) == 1, (name, claims)
+        # the readers of columns and of values take what no other claims
+        assert len(set(claims) - {"columns", "values without times"}) == 1, (name, claims)
+
+
+def test_a_folder_of_a_station_is_one_record(tmp_path: Path) -> None:
+    for name, code in {"EW": "E-W", "NS": "N-S", "UD": "U-D"}.items():
+        (tmp_path / f"TST0010102030405.{name}").write_text(networks.knet(code, COUNTS))
+    motion = read_record(tmp_path)
+    assert motion.has_vertical
+    factor = 3920.0 / 6182761.0 / 100.0
+    np.testing.assert_allclose(motion.acceleration[:, 0], COUNTS * factor, rtol=1e-12)
+    assert "offset of the sensor not removed" in str(motion.source)
+
+
+def test_a_folder_of_kiknet_is_its_sensor_at_the_surface(tmp_path: Path) -> None:
+    for place, code in enumerate("213546"):
+        ending = ("EW1", "NS1", "UD1", "EW2", "NS2", "UD2")[place]
+        scaled = COUNTS * (place + 1)
+        (tmp_path / f"TSTH010102030405.{ending}").write_text(networks.knet(code, scaled))
+    motion = read_record(tmp_path)
+    factors = np.array([4, 5, 6]) * 3920.0 / 6182761.0 / 100.0
+    np.testing.assert_allclose(motion.acceleration, COUNTS[:, None] * factors, rtol=1e-12)
+    assert "borehole left aside" in str(motion.source)
+
+
+def test_three_files_of_esm_are_one_record(tmp_path: Path) -> None:
+    for axis, name in {"x": "HNE", "y": "HNN", "z": "HNZ"}.items():
+        (tmp_path / f"XX.TST..{name}.D.ACC.ASC").write_text(networks.esm(PARTS[axis], name=name))
+        (tmp_path / f"XX.TST..{name}.D.VEL.ASC").write_text(
+            networks.esm(PARTS[axis], name=name, kind="VELOCITY")
+        )
+    motion = read_record(tmp_path)
+    for place, axis in enumerate("xyz"):
+        np.testing.assert_allclose(motion.acceleration[:, place], PARTS[axis] / 100.0, rtol=0, atol=1e-12)
+
+
+def test_a_step_that_contradicts_the_file_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "afad.txt"
+    path.write_text(WHOLE["afad.txt"])  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"time step of 0\.01 s"):
+        read_record(path, time_step=0.02)

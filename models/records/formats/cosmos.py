@@ -29,6 +29,7 @@ _UNITS = {
 # places of the headers, counted from 0, and what is unknown
 _AZIMUTH, _INTERVAL, _LENGTH, _PEAK = 53, 61, 62, 63
 _UNKNOWN = -999
+_SHORTEST_LINE = 7  # of those that are looked at
 _UP, _DOWN, _VERTICAL = 400, 401, 402
 
 
@@ -56,6 +57,8 @@ def _channels(file: RecordFile) -> Iterator[Component | None]:
     reals: list[float] = []
     label, stream = "", ""
     for at, line in enumerate(file.text):
+        if len(line) < _SHORTEST_LINE:
+            continue
         text = line[:160]
         if "eader values" in text and (match := _HEADER.match(text)):
             shape = stated_format(text, (10, 8) if match[2].upper() == "INTEGER" else (5, 15))

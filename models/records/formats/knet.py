@@ -13,6 +13,7 @@ from ..numbers import block_of_numbers
 
 NAME = "K-NET/KiK-net"
 _HEADER_LINES = 17
+_MOST_LINES, _LONGEST_LINE = 200_000, 200  # two hours at 200 Hz, and [characters]
 _KEY_WIDTH = 18  # [characters]
 _SCALE = re.compile(r"(\d{1,9}(?:\.\d{1,9})?)\s*\(gal\)\s*/\s*(\d{1,12})", re.IGNORECASE)
 _DECIMAL = re.compile(r"\d{1,6}(?:\.\d{1,6})?")
@@ -84,8 +85,15 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
 
 def _counts(file: RecordFile) -> NDArray[np.float64]:
     """Return the counts, which blanks part; the slow way names the line that is damaged."""
+    lines = file.text[_HEADER_LINES:]
+    longer = next((at for at, line in enumerate(lines) if len(line) > _LONGEST_LINE), None)
+    if longer is not None or len(lines) > _MOST_LINES:
+        raise ValueError(
+            f"{file.name} ({NAME}), line {_HEADER_LINES + 1 + (longer or 0)}: expected 8 counts a line, at "
+            f"most {_MOST_LINES} lines, got {lines[longer or 0][:40]!r}"
+        )
     try:
-        counts = np.array(" ".join(file.text[_HEADER_LINES:]).split(), dtype=np.float64)
+        counts = np.array(" ".join(lines).split(), dtype=np.float64)
     except ValueError:
         return block_of_numbers(file, _HEADER_LINES)
     return counts if len(counts) and np.isfinite(counts).all() else block_of_numbers(file, _HEADER_LINES)
