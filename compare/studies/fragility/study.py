@@ -12,8 +12,9 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.models import Cylinder, GroundMotion, Run
+from rockwobble.models.doubts import doubts_about
 from rockwobble.models.plain_json import fields_of
-from rockwobble.models.records.units import doubts_of
+from rockwobble.models.trace import NO_PEAK
 
 from ...metrics.statistics import FEWEST
 from ...runs.progress import ProgressCallback
@@ -114,14 +115,14 @@ class Fragility(Results, kind=KIND):
             "cylinders": str(runs["cylinder"].nunique()),
             "motions": str(runs["motion"].nunique()),
             "runs": str(len(runs)),
-            "failed": str(int((runs["outcome"] == "failed").sum())),
+            "failed": str(int(runs["outcome"].isin(NO_PEAK).sum())),
             "methods": ", ".join(dict.fromkeys(runs["method"])),
         }
 
 
 def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Mapping[str, Any]) -> Fragility:
     """Return the fragility by the runs of the plan that `facts` state."""
-    if (runs["outcome"] == "failed").all():
+    if runs["outcome"].isin(NO_PEAK).all():
         raise ValueError(f"a fragility needs runs that do not fail, got {len(runs)} runs that all failed")
     blocks = blocks_of(runs, points, facts["limits"], str(facts["measure"]))
     weights = resamples(len(blocks.motions), int(facts["resamples"]), int(facts["seed"]))
@@ -269,7 +270,8 @@ def fragility(
     if asked.levels is None and asked.scales is None and motions:  # without, the plan says what is missing
         asked = replace(asked, levels=default_levels(bodies, motions, asked))
     plan = RunPlan(cylinders=bodies, motions=motions, methods=chosen, options=asked)
-    facts = _facts(plan) | {"source": source, "doubts": doubts_of(motions)}
+    doubts = doubts_about(motions=motions, cylinders=bodies.values(), gravities=[asked.gravity])
+    facts = _facts(plan) | {"source": source, "doubts": doubts}
     runs = run_plan(plan, KIND, folder=resume, workers=workers, scheduler=scheduler, progress=progress)
     return fragility_of(runs, plan.points, facts)
 
