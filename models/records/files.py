@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
@@ -13,14 +12,17 @@ import numpy as np
 
 from ..ground_motion import GroundMotion
 from ..number_checks import require_one_of
-from .formats import DRIFT, Component, is_at2, read_at2, read_columns, read_table, resampled
+from .component import Component, ReadingOptions, open_record
+from .formats import read_components
 from .units import UNITS, factor
 
 ZERO = "zero"  # in the place of a file: planar motion
 # components may differ in length by this part, and by more where what is left out is below this part of
 # the peak
 _LEFT_OUT, _STILL = 0.01, 0.05
-_UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)  # what spreadsheets call "Unicode text"
+# over a whole record two components may drift apart by this part of a step, the rounding of printed times
+_DRIFT = 0.05
+_MOST_PARTS = 20  # of the smallest step: a record of more samples by that is a mistake, not a common step
 
 
 def read_record(
@@ -85,7 +87,7 @@ def read_record(
     else:
         components = _read_each(x_path, y_path, z_path)
     if resample:
-        components = resampled(components)
+        components = _resampled(components)
     length = min(len(component.values) for component in components)
     first = max(components, key=lambda part: part.path.name != ZERO)
     for other in components:
@@ -113,40 +115,47 @@ def _factor(part: Component, units: str | None) -> float:
 
 
 def _read_component(path: Path) -> Component:
-    lines = _lines(path)
-    return read_at2(path, lines) if is_at2(lines) else read_columns(path, lines)
+    (component,) = read_components(open_record(path), ReadingOptions())
+    return component
 
 
 def _read_all(path: Path) -> list[Component]:
-    lines = _lines(path)
-    if is_at2(lines):
-        raise ValueError(
-            f"{path.name} is an AT2 file, which holds one component: give one for each horizontal direction, "
-            f"or {ZERO} for the other (planar motion)"
-        )
-    return read_table(path, lines)
+    return read_components(open_record(path), ReadingOptions(alone=True))
 
 
-def _lines(path: Path) -> list[str]:
-    try:
-        endless = path.is_char_device()
-        content = b"" if endless else path.read_bytes()
-    except (OSError, ValueError) as error:  # ValueError: a null byte in the name
-        reason = getattr(error, "strerror", None) or error
-        raise ValueError(f"cannot read the record {path}: {reason}") from None
-    if endless:
-        raise ValueError(f"cannot read the record {path}: it is a device, which may never end")
-    if content.startswith(_UTF16):
-        raise ValueError(f"the record {path} is text in UTF-16: save it as UTF-8 or plain text")
-    if b"\0" in content:
-        raise ValueError(f"the record {path} is no text: it holds null bytes")
-    try:  # utf-8-sig drops the byte-order mark that spreadsheets write
-        lines = content.decode("utf-8-sig").splitlines()
-    except UnicodeDecodeError:  # an older file, whose m/s² is one byte shorter
-        lines = content.decode("cp1252", errors="replace").splitlines()
-    if not any(line.strip() for line in lines):
-        raise ValueError(f"the record {path} is empty")
-    return lines
+def _resampled(components: Sequence[Component]) -> list[Component]:
+    """Return components at the largest time step that divides the steps of all, linear between samples.
+
+    That changes no record: each is linear between its samples, and all of them stay.
+
+    Raises
+    ------
+    ValueError
+        If no such step is at least a twentieth of the smallest one.
+    """
+    finest = min(components, key=lambda each: each.time_step)
+    for parts in range(1, _MOST_PARTS + 1):
+        step = finest.time_step / parts
+        counts = [round(each.time_step / step) for each in components]
+        drifts = [
+            abs(each.time_step - count * step) * len(each.values)
+            for each, count in zip(components, counts, strict=True)
+        ]
+        if max(drifts) <= _DRIFT * step:
+            return [_refined(each, count, step) for each, count in zip(components, counts, strict=True)]
+    coarsest = max(components, key=lambda each: each.time_step)
+    raise ValueError(
+        f"components are resampled to a step that divides all, at least 1/{_MOST_PARTS} of the smallest: "
+        f"{finest.time_step:g} s in {finest.path.name} and {coarsest.time_step:g} s in {coarsest.path.name} "
+        "have none"
+    )
+
+
+def _refined(component: Component, count: int, step: float) -> Component:
+    """Return a component with each of its time steps cut into `count` of `step` [s]."""
+    values = component.values
+    places = np.arange((len(values) - 1) * count + 1) / count
+    return replace(component, values=np.interp(places, np.arange(len(values)), values), time_step=step)
 
 
 def _require_still_beyond(components: Sequence[Component], length: int) -> None:
@@ -162,7 +171,7 @@ def _require_still_beyond(components: Sequence[Component], length: int) -> None:
 
 
 def _require_same_clock(first: Component, other: Component, length: int) -> None:
-    tolerance = DRIFT * first.time_step
+    tolerance = _DRIFT * first.time_step
     if abs(other.time_step - first.time_step) * length > tolerance:
         raise ValueError(
             f"the components of a record must have one time step, got {first.time_step:g} s in "

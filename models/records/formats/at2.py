@@ -1,0 +1,59 @@
+"""PEER AT2, with each form of its header."""
+
+from __future__ import annotations
+
+import re
+
+from ..component import Component, ReadingOptions, RecordFile
+from ..numbers import NUMBER, block_of_numbers, parse_number
+from ..units import stated_unit
+
+NAME = "PEER AT2"
+# titles of the forms in circulation are three lines long; one comment more does no harm
+_HEADER_LINES = 6
+_LONGEST_HEADER = 200  # the line has 80 characters; bounds what a pattern can cost on one that is damaged
+
+
+def recognizes(file: RecordFile) -> bool:
+    """Return whether a header line announces a number of points (NPTS)."""
+    return any("NPTS" in line for line in file.head[:_HEADER_LINES])
+
+
+def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+    """Read the lines of an AT2 file.
+
+    Raises
+    ------
+    ValueError
+        If the header, a line of values or the number of samples is not as the format has it, or the file is
+        to hold all components.
+    """
+    if options.alone:
+        raise ValueError(
+            f"{file.name} is an AT2 file, which holds one component: give one for each horizontal direction, "
+            "or zero for the other (planar motion)"
+        )
+    at = next(index for index, line in enumerate(file.head) if "NPTS" in line)
+    count, time_step = _counts(file, at)
+    unit = stated_unit(file.path, list(file.text[:at]))
+    values = block_of_numbers(file, at + 1)
+    # the last line may be filled up with zeros, and the ground is still after the record anyway
+    if len(values) < count or values[count:].any():
+        raise ValueError(
+            f"{file.name}, line {at + 1}: announces {count} samples, the file holds {len(values)}"
+        )
+    return [Component(path=file.path, values=values[:count], time_step=time_step, unit=unit, format=NAME)]
+
+
+def _counts(file: RecordFile, at: int) -> tuple[int, float]:
+    """Number of samples and time step, from "NPTS= 4000, DT= .0100 SEC" or "4000 .0100 NPTS, DT"."""
+    line = file.text[at][:_LONGEST_HEADER]
+    named = re.search(rf"NPTS\s*[=:]?\s*(\d{{1,9}})\b.*?DT\s*[=:]?\s*({NUMBER})", line, re.IGNORECASE)
+    bare = re.match(rf"\s*(\d{{1,9}})[\s,]+({NUMBER})\s*,?\s*NPTS", line, re.IGNORECASE)
+    match = named or bare
+    if match is None:
+        raise ValueError(
+            f"{file.name}, line {at + 1}: expected 'NPTS= n, DT= step SEC' or 'n step NPTS, DT', "
+            f"got {line.strip()[:60]!r}"
+        )
+    return int(match.group(1)), parse_number(file.path, at + 1, match.group(2))
