@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from rockwobble.models import Case, Run, Suite, Trace, perturbed_copies
 from rockwobble.models.diagnostic import joined
 from rockwobble.models.doubts import doubts_of_cases
+from rockwobble.models.number_checks import require_each
 from rockwobble.models.trace import NO_PEAK
 
 from ..metrics.pair import outcome_of
@@ -150,6 +151,8 @@ def ensemble(
     """
     plan = Copies.of(**options)
     about: dict[str, object] = {"seed": plan.seed}
+    if not isinstance(case_or_members, Case | Suite):
+        require_each("case_or_members", case_or_members, Case)
     if isinstance(case_or_members, Case):
         perturbation = plan.perturbation
         members = perturbed_copies(case_or_members, plan.copies, perturbation=perturbation, seed=plan.seed)

@@ -12,13 +12,24 @@ from math import cos, inf, log, sin
 
 from .._compile import jit
 from ..body import Body
-from .result import HALF_PI, MAXIMUM, Log
+from .result import COMPLETED, HALF_PI, MAXIMUM, UNDECIDED, IntegrationResult, Log
 
 LONGEST = 34.0  # of 1/p, between the balance and the tilt alpha on either side of it: log(2e14) and a little
 # of p^2 alpha, tilt acceleration of a release at rest that is rounding: it neither falls nor turns back
 _ROUNDING = 3e-15
 _NEARBY = 1e-6  # of a tilt, by which the derivative is taken
 _ABOVE = 1e-6  # of a maximum, more than rounding of the tilt there
+
+
+def decided(body: Body, result: IntegrationResult) -> IntegrationResult:
+    """Return a result, undecided where its largest tilt is the balance itself: a turn there is rounding.
+
+    Here and not in the kernel, whose last bits hang on how much there is to compile.
+    """
+    on_balance = abs(result.peak - body.alpha) <= _ROUNDING * body.alpha
+    if on_balance and result.status == COMPLETED:
+        return result._replace(status=UNDECIDED)
+    return result
 
 
 @jit
@@ -94,6 +105,4 @@ def undecided(body: Body, theta: float, L: float, rows: Log, since: float, last:
     beyond = theta > top * (1.0 + _ABOVE) and free_acceleration(body, theta, L) > 0.0
     if top < inf and (falls or beyond):
         return True
-    if L == 0.0 and abs(top - body.alpha) <= _ROUNDING * body.alpha:
-        return True  # a maximum on the balance itself is rounding
     return longest > longest_stay(body) and (falls or departs(body, min(theta, top), L))

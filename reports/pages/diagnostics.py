@@ -139,7 +139,8 @@ def warnings(doubts: Iterable[Mapping[str, Any]]) -> list[str]:
     lines = []
     for doubt in doubts:
         fields = {name: value for name, value in doubt.items() if name != "record"}
-        lines.append(f"Warning: {doubt['record']}: {sentence(Diagnostic(**fields))}.")
+        text = sentence(Diagnostic(**fields))
+        lines.append(f"Warning: {doubt['record']}: {text}{'' if text.endswith('?') else '.'}")
     return lines
 
 

@@ -14,6 +14,7 @@ import pandas as pd
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace, el_centro_1940, perturbed_copies
 from rockwobble.models.cylinder import cylinder_of
 from rockwobble.models.doubts import doubts_of_cases
+from rockwobble.models.number_checks import require_kind
 from rockwobble.models.support import support_named
 from rockwobble.models.trace import NO_PEAK
 
@@ -275,6 +276,9 @@ def advise(
     >>> found.trust.kind, found.grades["engine"]
     ('trace', 'not tested')
     """
+    require_kind("case", case, Case)
+    if run is not None:
+        require_kind("run", run, Run)
     require_case(case)
     plan = AdvicePlan.of(**({} if run is None else {"support": run.support}) | options)
     if run is not None:

@@ -13,6 +13,7 @@ import pandas as pd
 
 from rockwobble.models import Cylinder, GroundMotion, Run
 from rockwobble.models.doubts import doubts_about
+from rockwobble.models.number_checks import require_each
 from rockwobble.models.plain_json import fields_of
 from rockwobble.models.trace import NO_PEAK
 
@@ -265,6 +266,7 @@ def fragility(
     >>> list(zip(overturned["intensity"], overturned["k"], overturned["n"]))
     [(1.5, 0, 8), (3.0, 6, 8), (6.0, 8, 8)]
     """
+    require_each("motions", motions, GroundMotion)
     bodies, asked = _named(cylinders), FragilityPlan.of(**options)
     chosen = methods_of(methods, restitution=asked.restitution)
     if asked.levels is None and asked.scales is None and motions:  # without, the plan says what is missing
@@ -307,8 +309,10 @@ def _described(method: Method, methods: Sequence[Method]) -> dict[str, object]:
 
 def _named(cylinders: Cylinder | Mapping[str, Cylinder] | Sequence[Cylinder]) -> dict[str, Cylinder]:
     if isinstance(cylinders, Mapping):
+        require_each("cylinders", list(cylinders.values()), Cylinder)
         return dict(cylinders)
-    several = [cylinders] if isinstance(cylinders, Cylinder) else list(cylinders)
+    several = [cylinders] if isinstance(cylinders, Cylinder) else cylinders
+    require_each("cylinders", several, Cylinder)
     found = {f"R = {each.semidiagonal:g} m, tan α = {each.tan_alpha:g}": each for each in several}
     if len(found) < len(several):
         raise ValueError("cylinders of the same size and slenderness need names: give them as a mapping")
