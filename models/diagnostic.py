@@ -49,6 +49,11 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         # and a length or a gravity
         "unlikely_length": ("m", "no structure has such a length: is its unit another?"),
         "unlikely_gravity": ("m/s2", "no planet has such a gravity: is its unit another?"),
+        "offset": ("", "the mean is a large part of the peak: the offset was not removed"),
+        "gravity_in_record": ("g", "the mean is 1 g: the sensor has recorded gravity"),
+        "unlikely_step": ("s", "no recorder has such a time step: is the unit of time another?"),
+        "ends_in_strong_motion": ("", "the record ends in strong motion: is it cut?"),
+        "other_direction": ("", "a component stands in the place of another direction"),
         # what an external trajectory leaves open
         "note": ("", "how the file was read"),
         "missed_pass": ("passes", "passes fell between two samples"),
@@ -57,11 +62,14 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
 # code: why, as its detail says it
 REASONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
-        "large_peak": ("m/s2", "cm/s2"),
+        "large_peak": ("", "m/s2", "cm/s2", "m/s2 for g", "cm/s2 for g", "cm/s2 for m/s2"),
         "unlike_components": ("x", "y", "z"),
         "same_components": ("x and y", "x and z", "y and z"),
         "unlikely_length": ("mm", "cm", "in", "ft", "km"),
         "unlikely_gravity": ("ft/s2", "in/s2", "cm/s2", "mm/s2"),
+        "offset": ("x", "y", "z"),
+        "gravity_in_record": ("x", "y", "z"),
+        "other_direction": tuple(f"{place} is {axis}" for place in "xyz" for axis in "xyz" if axis != place),
         "unsettled": ("fails", "still_changes", "no_later", "no_closer", "unresolved_pass", "energy"),
         "not_extrapolated": ("fails", "diverged", "no_closer", "unresolved_pass", "energy"),
     }
@@ -147,6 +155,7 @@ class Diagnostic(Brief):
 class Assumptions(Brief):
     """The demands of a solution on ground and recess, as extrema of the continuous motion.
 
+    They are taken from a tilt of `CLOSED_TILT` (a thousandth) of alpha on, below which the base is closed.
     In a frame those of base and top of a column, whichever asks for more, each over the weight it carries.
 
     Attributes
@@ -154,9 +163,9 @@ class Assumptions(Brief):
     breaches : tuple of Diagnostic
         "tension", with the least normal force as its size [weights], and "friction_needed".
     least_normal_force, largest_normal_force : float
-        In weights, while the cylinder is in motion; 1 if it never is.
+        In weights, while the base is open; 1 if it never is.
     largest_friction_needed : float
-        In motion; inf where contact is lost, 0 if it never moves.
+        While the base is open; inf where contact is lost, 0 if it never is.
     largest_restraining_moment : float
         Kappa of the moment kappa (z_world + z_body) of the recess, over the weight [m].
     friction : float

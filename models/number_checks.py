@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .shown import brief
 
+MOST_SAMPLES = 10_000_000  # of one trace: some gigabytes
 _MOST = 70  # characters of a value that is quoted
 
 
@@ -31,6 +32,23 @@ def require_finite(name: str, value: float, unit: str) -> float:
     if not math.isfinite(number):
         raise ValueError(f"{name} must be a finite number{_in(unit)}, got {quoted(value)}")
     return number
+
+
+def require_sample_step(sample_step: float, duration: float) -> float:
+    """Return the spacing of samples [s], or raise ValueError unless `MOST_SAMPLES` cover the duration.
+
+    Parameters
+    ----------
+    sample_step, duration : float
+        [s]
+    """
+    step = require_positive("sample_step", sample_step, "s")
+    if not duration <= MOST_SAMPLES * step:
+        raise ValueError(
+            f"sample_step must be at least {duration / MOST_SAMPLES:.3g} s over {duration:g} s "
+            f"({MOST_SAMPLES:,} samples at most), got {quoted(sample_step)}"
+        )
+    return step
 
 
 def require_increasing(name: str, values: ArrayLike) -> NDArray[np.float64]:

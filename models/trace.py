@@ -10,8 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import plain_json, trace_file
+from .bounds import CLOSED_TILT
 from .case import Case, Run
 from .cylinder import WobblingFrame
 from .diagnostic import Assumptions, Diagnostic, joined
@@ -87,6 +89,9 @@ class Trace(Shown):
         normal force is not positive.
     slab_displacement : ndarray, shape (n, 3)
         In a frame, of the slab from where it stood, relative to the ground [m].
+    open_base : ndarray, shape (n,)
+        Where demands on ground and recess are taken [bool]: in motion, from a tilt of `CLOSED_TILT` alpha on.
+        Force, friction demand and moment of the other samples are those of a rigid edge as well.
     restraining_moment : ndarray, shape (n,)
         Kappa of the moment kappa (z_world + z_body) that the recess supplies, over the weight [m]; about the
         vertical, as about the axis, that is 1 + cos(tilt) times kappa.
@@ -188,6 +193,16 @@ class Trace(Shown):
     slip = Late(1)
     wall_contact = Late(1)
     wall_impulse = Late(1)
+
+    @property
+    def open_base(self) -> NDArray[np.bool_]:
+        """Whether demands are taken at the samples (n,): it moves, and tilts by `CLOSED_TILT` alpha or more.
+
+        Below that tilt the base counts as closed. The edge of a rigid body would go on to pass upright there,
+        ever closer, with forces that grow without bound and that no joint feels.
+        """
+        moves = ~np.isnan(self.rolling_angle)
+        return np.asarray(moves & (self.tilt >= CLOSED_TILT * self.case.cylinder.alpha))
 
     @property
     def friction_needed(self) -> Array:

@@ -12,7 +12,7 @@ import numpy as np
 
 from rockwobble.models import Case, Diagnostic, InitialState, Run, Trace
 from rockwobble.models.case import TimeStep
-from rockwobble.models.number_checks import require_positive
+from rockwobble.models.number_checks import require_positive, require_sample_step
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.models.trace_source import Known
 
@@ -76,7 +76,7 @@ def simulate(
         that it costs as much as one run at that), and gives what
         they tend to, as far as they agree: see `extrapolated_step`.
     sample_step : float
-        Of the result [s].
+        Of the result [s]; at most 10 million samples.
     progress : callable, optional
         Called now and then with the fraction done.
     **settings
@@ -141,7 +141,7 @@ def _simulate(
     assert run.engine is not None
     scale = froude_scale(case.cylinder.semidiagonal, case.gravity)
     backend, scene, resolved = _stated(case, run.engine, run.support, settings, step)
-    samples = _sample_times(case.length, require_positive("sample_step", sample_step, "s")) / scale.time
+    samples = _sample_times(case.length, require_sample_step(sample_step, case.length)) / scale.time
     release = InitialState(0.0) if case.initial is None else case.initial
     recorder = Recorder(
         scene,

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Diagnostic, Run, Trace
-from rockwobble.models.number_checks import require_positive
+from rockwobble.models.number_checks import require_sample_step
 from rockwobble.models.trace import NO_PEAK
 
 from . import kernels
@@ -59,7 +59,7 @@ def simulate(
         tilt ``rest_tilt * alpha``, less the share of the load that would uplift it; 0 leaves the rule out, as
         in the paper.
     sample_step : float, optional
-        Spacing of the samples returned [s]; does not influence the solution.
+        Spacing of the samples returned [s], at most 10 million of them; does not influence the solution.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def simulate(
     problem = Problem(
         case, support=support, plane=plane, restitution=restitution, rtol=rtol, rest_tilt=rest_tilt
     )
-    require_positive("sample_step", sample_step, "s")
+    sample_step = require_sample_step(sample_step, case.length)
     make_ready(problem.kernel)
     times = sample_times(case.length, sample_step)
     started = time.perf_counter()

@@ -221,4 +221,4 @@ def _shifted(motion: GroundMotion, shift: float) -> GroundMotion:
         samples = samples[-count:]
     else:
         samples = np.concatenate([np.zeros((count, samples.shape[1])), samples])
-    return GroundMotion(samples, motion.time_step, motion.name)
+    return motion.changed(samples, f"shifted by {shift:g} s")

@@ -31,7 +31,7 @@ from pydantic import (
 
 from ..bounds import Bounds
 from ..case import WAYS_TO_A_STEP, TimeStep
-from ..records.units import UNITS
+from ..records.component import UNITS
 from ..synthetic import PULSES
 from .errors import KeyedError, nearest, shown
 

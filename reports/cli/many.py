@@ -21,7 +21,7 @@ from ..pages.cases import case_warnings, describe, warnings_about
 from . import options
 from .command import takes_options
 from .problem import BODY, Body, Problem, Record, refuse, refuse_options_of_engines
-from .several import GridOptions, ManyMethods, ManyMotions, cylinders_of
+from .several import GridOptions, Hazard, ManyMethods, ManyMotions, cylinders_of
 from .suite_choice import chosen_runs, refuse_problem_options, without_missing
 
 if TYPE_CHECKING:
@@ -43,6 +43,7 @@ def fragility(
     body: Body,
     methods: ManyMethods,
     plan: FragilityPlan,
+    hazard: Hazard,
     cylinder: Cylinders = None,
     workers: options.Workers = None,
     scheduler: options.Scheduler = None,
@@ -57,6 +58,9 @@ def fragility(
     Without options: the five reduced models of R = 6 m, tan alpha = 0.2 under 100 synthetic motions.
 
     Whatever ends it, the same command resumes.
+
+    With --hazard, the annual frequency of overturning at that site by each method, without and with the
+    lognormal curve.
 
     Writes fragility.html, the same as fragility.md with its figures, the tables as Parquet, and
     counts.csv and counts.json, from which other tools can fit curves of their own.
@@ -74,6 +78,7 @@ def fragility(
             bodies = cylinders_of(cylinder, body)
             chosen = methods.methods(next(iter(bodies.values())))
             methods_of(chosen, restitution=plan.restitution)  # before motions are read
+            site = hazard.curve(plan.period)
             motions, source = many.read(plan.seed)
             for name, each in bodies.items():
                 size = f"R = {each.semidiagonal:g} m, tan alpha = {each.tan_alpha:g}"
@@ -95,6 +100,8 @@ def fragility(
                 source=source,
                 **dataclasses.asdict(plan),
             )
+            if site is not None:
+                found = found.with_risk(site, hazard.risk_years, total_dispersion=hazard.total_dispersion)
         show_and_save(found, out)
 
 

@@ -150,6 +150,63 @@ class ManyMethods:
         return [*chosen, *runs]
 
 
+_hazard = options_in("Hazard")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hazard(Plan):
+    """The options that state the hazard of a site."""
+
+    hazard: Path | None = _hazard(
+        None,
+        "Hazard curve of the site: CSV of intensity and annual frequency, CSV of OpenQuake or JSON of the "
+        "USGS. Adds the annual frequency of overturning.",
+    )
+    hazard_measure: str | None = _hazard(
+        None,
+        "What its intensity is: pga, pgv or sa_mean (geometric means), pga_resultant, pgv_resultant or sa "
+        "(of the horizontal resultant).",
+    )
+    hazard_units: str | None = _hazard(None, "Unit of its intensity. Default: g, and m/s for velocities.")
+    hazard_years: float | None = _hazard(
+        None, "Years of the probabilities that it gives in place of annual frequencies.", above=0.0
+    )
+    hazard_site: int = _hazard(1, "Number of the site in a file of OpenQuake.", least=1)
+    risk_years: float = _hazard(50.0, "Years of the probability of overturning.", above=0.0)
+    total_dispersion: float | None = _hazard(
+        None,
+        "Dispersion of the lognormal curves in place of that of the motions, as the total of FEMA P-695.",
+        above=0.0,
+    )
+
+    def curve(self, period: float) -> rw.HazardCurve | None:
+        """Return the hazard curve, None without a file; `period`: that of Sa [s].
+
+        Raises
+        ------
+        ValueError
+            If an option stands without what it belongs to, or the file cannot be read.
+        """
+        from rockwobble.models.hazard import HAZARD_MEASURES
+
+        if self.hazard is None:
+            if lone := first_given(
+                self, "hazard_measure", "hazard_units", "hazard_years", "total_dispersion"
+            ):
+                raise ValueError(f"{lone} belongs to a hazard curve, give --hazard as well")
+            return None
+        if self.hazard_measure is None:
+            raise ValueError(f"--hazard needs --hazard-measure, one of {', '.join(HAZARD_MEASURES)}")
+        return rw.read_hazard(
+            self.hazard,
+            measure=self.hazard_measure,
+            period=period if self.hazard_measure in ("sa", "sa_mean") else None,
+            units=self.hazard_units,
+            years=self.hazard_years,
+            site=self.hazard_site,
+        )
+
+
 _motion = options_in("Ground motion")
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from rockwobble.models import Diagnostic
 from rockwobble.models.diagnostic import FAILURES
 from rockwobble.models.doubts import GRAVITIES, LENGTHS
-from rockwobble.models.records.units import likely_unit
+from rockwobble.models.records.plausibility import likely_unit
 
 # why halving the step did not settle it
 _UNSETTLED = {
@@ -56,8 +56,7 @@ _WORDS: Mapping[str, str] = {
     "not_extrapolated": "it is not extrapolated{later}, but the run at the finest time step: {why}",
     "side": "it passed through upright itself, first{at}: the ground had moved in one plane, and the side "
     "of such a pass is undetermined",
-    "large_peak": "its peak is {size:.3g} g, more than any record has ({bound:g} g): it would be "
-    "{other_unit:.2g} g with its numbers in {detail}; give the unit of the file",
+    "large_peak": "its peak is {size:.3g} g, more than {bound:g} g, which few records have{other_unit}",
     "unlike_components": "the peaks of its components differ by a factor of {size:.3g}, {detail} is the "
     "larger: their units may differ",
     "same_components": "its components {detail} are the same: is one file given twice?",
@@ -65,6 +64,14 @@ _WORDS: Mapping[str, str] = {
     "number in {detail} it would be {stated:.4g} m; give it in m",
     "unlikely_gravity": "{size:g} m/s2 is the gravity of no planet (above {bound:g} m/s2): with the number "
     "in {detail} it would be {stated:.4g} m/s2; give it in m/s2",
+    "offset": "the mean of {detail} is {percent:.0f} % of its peak: the offset of the sensor was not "
+    "removed; remove it with --remove-mean (remove_mean=True)",
+    "gravity_in_record": "the mean of {detail} is {size:.3g} g: gravity is in the record; remove it with "
+    "--remove-mean (remove_mean=True)",
+    "unlikely_step": "its time step is {size:g} s, {beyond} {bound:g} s as no recorder has: is the unit of "
+    "its times another?",
+    "ends_in_strong_motion": "it ends in strong motion, {percent:.0f} % of its peak: is it cut?",
+    "other_direction": "by its file, what stands in the place of {detail}",
     "note": "{detail}",
     "missed_pass": "{passes_fell} between two samples, first{at}",
 }
@@ -123,10 +130,20 @@ def _fields(fact: Diagnostic) -> dict[str, str | float]:
         "later": since if fact.time > 0.0 else "",
         "passes_are": _count(fact.size, "pass", "is", "are"),
         "passes_fell": _count(fact.size, "near pass", "fell", "fell"),
-        "beyond": "above" if fact.size > fact.bound else "below",
         "stated": fact.size * {**LENGTHS, **GRAVITIES}.get(fact.detail, math.nan),
-        "other_unit": likely_unit(fact.size)[1] if fact.code == "large_peak" else math.nan,
+        "percent": 100.0 * fact.size,
+        "beyond": "above" if fact.size > fact.bound else "below",
+        "other_unit": _other_unit(fact) if fact.code == "large_peak" else "",
     }
+
+
+def _other_unit(fact: Diagnostic) -> str:
+    """Return the unit in which a peak would be usual, and that in which it was read where that is known."""
+    unit, _, used = fact.detail.partition(" for ")
+    if not unit:
+        return ""
+    peak = likely_unit(fact.size, used or None)[1]
+    return f": it would be {peak:.2g} g with its numbers in {unit}" + (f", not {used}" if used else "")
 
 
 def remarks(facts: Iterable[Diagnostic]) -> str:

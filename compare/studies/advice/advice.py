@@ -469,6 +469,6 @@ def _to_the_fall(case: Case, end: float) -> Case:
     motion = case.motion
     if motion is not None and case.length < motion.duration:
         kept = math.floor(case.length / motion.time_step * (1.0 + 1e-12)) + 1
-        motion = GroundMotion(motion.acceleration[: max(kept, 2)], motion.time_step, motion.name)
+        motion = motion.changed(motion.acceleration[: max(kept, 2)], f"cut to {case.length:g} s")
     duration = math.ceil(end / SAMPLE_STEP) * SAMPLE_STEP
     return dataclasses.replace(case, motion=motion, duration=duration)

@@ -23,7 +23,7 @@ from ...runs.execution import all_makers, case_inputs, engine_time, makers_of, r
 from ...runs.progress import ProgressCallback
 from ...storage.provenance import fingerprint
 from ..plans import FragilityPlan
-from .intensity import intensity, measures_of
+from .intensity import intensity, measures_of, uplift_scale
 from .tables import CONTACT_LOST
 
 Row = dict[str, float | str]  # of a run
@@ -324,18 +324,18 @@ class RunPlan:
 
     @cached_property
     def points(self) -> pd.DataFrame:
-        """One row for each cylinder, motion and level: its place, the factor, and all intensities."""
+        """One row for each cylinder, motion and level: place, factor, factor of uplift, all intensities."""
         rows, asked = [], self.options
         for name, cylinder in self.cylinders.items():
             own = measures_of(self.motions, cylinder, gravity=asked.gravity, period=asked.period)
+            lifts = [uplift_scale(motion, cylinder, asked.gravity) for motion in self.motions]
             for index, motion in enumerate(self.motions):
                 for step, scale in enumerate(self.factors(cylinder, motion)):
                     found = {measure: scale * values[index] for measure, values in own.items()}
                     if asked.levels is not None:  # to the last bit one level for all
                         found[asked.measure] = float(asked.levels[step])
-                    rows.append(
-                        {"cylinder": name, "motion": motion.name, "step": step, "scale": scale, **found}
-                    )
+                    place = {"cylinder": name, "motion": motion.name, "step": step, "scale": scale}
+                    rows.append(place | {"uplift_scale": lifts[index]} | found)
         return pd.DataFrame(rows)
 
     def tasks(self) -> Iterator[Task]:

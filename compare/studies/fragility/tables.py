@@ -121,6 +121,13 @@ class Blocks:
         """Return 1, 0 or NaN for each motion and level (R, S)."""
         return exceeded(self.runs[cylinder, method], limit).reshape(len(self.motions), -1)
 
+    def of_points(self, points: pd.DataFrame, cylinder: str, column: str) -> Array:
+        """Return a column of the points of a cylinder for each motion and level (R, S)."""
+        own = points[points["cylinder"] == cylinder]
+        place = own["motion"].map({name: index for index, name in enumerate(self.motions)})
+        order = np.lexsort((own["step"].to_numpy(), place.to_numpy()))
+        return own[column].to_numpy(float)[order].reshape(len(self.motions), -1)
+
     def known(self, cylinder: str, measure: str) -> bool:
         """Whether every motion has an intensity of this measure."""
         return bool(np.isfinite(self.intensities[cylinder, measure]).all())

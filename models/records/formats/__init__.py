@@ -35,7 +35,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from ..component import Component, ReadingOptions, RecordFile
-from . import at2, columns
+from . import at2, columns, values
 
 
 class Reader(Protocol):
@@ -59,6 +59,7 @@ class Reader(Protocol):
 # in the order in which they are asked
 READERS: tuple[Reader, ...] = (
     at2,
+    values,
     columns,
 )
 
@@ -72,7 +73,7 @@ def read_components(file: RecordFile, options: ReadingOptions) -> list[Component
         If no reader does, or its reader refuses it.
     """
     for reader in READERS:
-        if reader.recognizes(file):
+        if reader.recognizes(file) or (reader is values and options.columns == (values.ROW_BY_ROW,)):
             return reader.read(file, options)
     file.text  # noqa: B018 - says that the file is binary where it is
     raise ValueError(f"{file.name} is of no format that is read here")

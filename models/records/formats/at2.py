@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 
 from ..component import Component, ReadingOptions, RecordFile
-from ..numbers import NUMBER, block_of_numbers, parse_number
+from ..numbers import NUMBER, block_of_numbers, parse_number, without_fill
 from ..units import stated_unit
 
 NAME = "PEER AT2"
 # titles of the forms in circulation are three lines long; one comment more does no harm
 _HEADER_LINES = 6
+_MOST_FILLED = 10  # numbers; no line of the forms in circulation has more
 _LONGEST_HEADER = 200  # the line has 80 characters; bounds what a pattern can cost on one that is damaged
 
 
@@ -25,20 +26,18 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
     Raises
     ------
     ValueError
-        If the header, a line of values or the number of samples is not as the format has it, or the file is
-        to hold all components.
+        If the header, a line of values or the number of samples is not as the format has it.
     """
-    if options.alone:
-        raise ValueError(
-            f"{file.name} is an AT2 file, which holds one component: give one for each horizontal direction, "
-            "or zero for the other (planar motion)"
-        )
     at = next(index for index, line in enumerate(file.head) if "NPTS" in line)
     count, time_step = _counts(file, at)
+    if time_step > 0.0:
+        options.settled_step(file.name, time_step)
     unit = stated_unit(file.path, list(file.text[:at]))
     values = block_of_numbers(file, at + 1)
-    # the last line may be filled up with zeros, and the ground is still after the record anyway
-    if len(values) < count or values[count:].any():
+    rest = values[count:]
+    # the last line may be filled up, with zeros or 9999, and the ground is still after the record anyway
+    filled = without_fill(rest)[0] if len(rest) < _MOST_FILLED else rest
+    if len(values) < count or filled.any():
         raise ValueError(
             f"{file.name}, line {at + 1}: announces {count} samples, the file holds {len(values)}"
         )
