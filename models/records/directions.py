@@ -52,6 +52,17 @@ def in_order(components: Sequence[Component], name: str) -> list[Component]:
     return sorted(parts, key=lambda part: str(part.direction))
 
 
+def at_the_surface(components: Sequence[Component]) -> tuple[list[Component], tuple[str, ...]]:
+    """Return the components of a station without those of its borehole, and a note where there were some.
+
+    A download of KiK-net holds both sensors; what stands on the ground is moved by the one at the surface.
+    """
+    surface = [part for part in components if "borehole" not in part.label]
+    if not surface or len(surface) == len(components):
+        return list(components), ()
+    return surface, ("the sensor in the borehole left aside",)
+
+
 def _with_directions(components: Sequence[Component]) -> list[Component]:
     """Return components with the directions that their azimuths make."""
     open_ones = [part for part in components if part.direction is None and part.azimuth is not None]

@@ -16,7 +16,7 @@ from ..number_checks import require_finite, require_one_of, require_positive
 from ..record_source import ComponentSource, RecordSource
 from .clocks import LENGTHS, equally_long, require_same_clock, resampled
 from .component import METRES_PER_SECOND_SQUARED, UNITS, Component, Direction, ReadingOptions, open_record
-from .directions import NORTH, for_place, in_order, turned_to_north
+from .directions import NORTH, at_the_surface, for_place, in_order, turned_to_north
 from .formats import read_components
 from .plausibility import doubts_as_read
 from .units import factor
@@ -270,13 +270,14 @@ def _read_station(
     if not components:
         raise refusals[0][1] if refusals else ValueError(f"{name} holds no record")
     try:
+        components, notes = at_the_surface(components)
         placed = in_order(components, name)
     except ValueError:
         if refusals:  # what is missing is probably what was refused
             raise refusals[0][1] from None
         raise
     left = ", ".join(each for each, _ in refusals)
-    return placed, ((f"not read: {left[:80]}",) if left else ())
+    return placed, (*notes, *((f"not read: {left[:80]}",) if left else ()))
 
 
 # provenance and orientation: records/README.md

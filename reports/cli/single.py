@@ -19,7 +19,7 @@ from rockwobble.compare.runs.plan import Plan, options_in
 from rockwobble.compare.studies.plans import AdvicePlan, ModelPlan
 
 from ..console import FAILED, complain, echo, interruptible, show_and_save, shown_progress, user_input
-from ..pages.cases import describe, motion_lines
+from ..pages.cases import case_warnings, describe, record_lines
 from . import options
 from .command import takes_options
 from .options import settings
@@ -232,7 +232,7 @@ def simulate(
             named = None if engine == options.NO_ENGINE else engine
             run = _with_settings(case, rw.Run(named, support, time_step), setting, dataclasses.asdict(model))
             rr.require_runnable(case, run)
-        echo(motion_lines([case.motion]))
+        echo([*record_lines([case.motion]), *case_warnings([case])])
         with user_input(), shown_progress() as progress:
             found = single_run(
                 case, run, answer=restated(context, "advise", also=("support",)), progress=progress
@@ -297,7 +297,7 @@ def advise(
             case = problem.case()
             run = _run(case, engine, plan.support, time_step)
             rs.require_writable(out)
-        echo(motion_lines([case.motion]))
+        echo([*record_lines([case.motion]), *case_warnings([case])])
         with shown_progress("stages") as progress:
             found = rw.advise(
                 case,
