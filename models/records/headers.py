@@ -80,7 +80,7 @@ def compare_peak(
     ValueError
         If the two differ by a factor of 2: then the file is damaged, or is not what its header says.
     """
-    if not stated:
+    if not stated or not len(values):
         return ()
     peak, stated = float(np.abs(values).max()), abs(stated)
     off = abs(peak - stated)

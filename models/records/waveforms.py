@@ -70,7 +70,8 @@ def read_waveforms(file: RecordFile, name: str, obspy_format: str) -> list[Wavef
             warnings.filterwarnings("error", module="obspy", category=UserWarning)
             stream = read(io.BytesIO(file.content), format=obspy_format)
     except Exception as error:  # obspy raises whatever its parts raise, by what the damaged file holds
-        reason = " ".join(str(error).split())[:120] or type(error).__name__
+        words = "".join(each if each.isprintable() else " " for each in str(error)).split()
+        reason = " ".join(words)[:120] or type(error).__name__
         raise ValueError(f"{file.name} ({name}) is damaged: {reason}") from None
     channels: dict[str, list[Waveform]] = {}
     for trace in stream:

@@ -46,6 +46,8 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
             f"{file.name} ({NAME}): announces {length[1]} s at {rate[1]} Hz, "
             f"{float(length[1]) * float(rate[1]):.0f} samples, the file holds {rows}"
         )
+    if rows < 2:
+        raise ValueError(f"{file.name} ({NAME}): no samples follow the header")
     shape = stated_format(values_of.get("#DATA", ""), (len(names) + 1, 10))
     if shape[0] != len(names) + 1:
         raise ValueError(

@@ -30,7 +30,9 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
     ValueError
         If a header lacks the number of points, the step or the component, or the file ends early.
     """
-    titles = [at for at, line in enumerate(file.text) if "orrected accelerogram" in line[:40]]
+    titles = [
+        at for at, line in enumerate(file.text) if len(line) > 40 and "orrected accelerogram" in line[:40]
+    ]
     return [_component(file, at) for at in titles]
 
 

@@ -60,6 +60,8 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
         )
     direction, label = _DIRECTIONS[code.upper()]
     values = _counts(file) * (numerator / denominator)
+    if len(values) < 2:
+        raise ValueError(f"{file.name} ({NAME}): no counts follow the header")
     duration = _DECIMAL.fullmatch(header.get("DURATION TIME(S)", ""))
     # the duration is printed in whole seconds
     if duration and abs(len(values) - float(duration[0]) * rate) > rate:
