@@ -23,6 +23,8 @@ from .trace_source import Array, Known, Source, friction_of, no_passes
 if TYPE_CHECKING:
     import pandas as pd
 
+NO_PEAK = ("failed", "undecided")  # outcomes of runs of which nobody knows whether they stand
+
 
 class Late:
     """A sampled quantity that may cost something: the source computes it when it is first asked for."""
@@ -102,8 +104,9 @@ class Trace(Shown):
         summed over time so far, per unit mass [m/s].
     peak_tilt : float
         Largest tilt of the continuous motion that the record causes [rad], a swing that goes on when the run
-        ends included; pi/2 if overturned, NaN if failed.
-    outcome : {"stands", "overturned", "failed"}
+        ends included; pi/2 if overturned, NaN if failed or undecided.
+    outcome : {"stands", "overturned", "undecided", "failed"}
+        Undecided is what stays on its balance, where rounding decides whether it falls.
     rests : bool
         Whether it stands still at the end.
     followed_until : float
@@ -360,7 +363,7 @@ class Trace(Shown):
             "case": self.case.name or str(self.case),
             "run": str(self.run),
             "outcome": f"{self.outcome} at {self.time[-1]:.4g} s" if len(self.time) else self.outcome,
-            "peak tilt": f"{self.peak_tilt / alpha:.4g} alpha",
+            "peak tilt": "not known" if math.isnan(self.peak_tilt) else f"{self.peak_tilt / alpha:.4g} alpha",
             "uplift": "none" if math.isnan(self.uplift_time) else f"{self.uplift_time:.4g} s",
             "passes": str(len(self.passes)),
         }

@@ -14,6 +14,7 @@ from .cylinder import cylinder_of
 from .diagnostic import Assumptions, Diagnostic
 from .ground_motion import GroundMotion
 from .parquet_file import pack, read
+from .record_source import source_from_plain
 from .trace_source import Array, Known
 
 if TYPE_CHECKING:
@@ -114,7 +115,7 @@ def case_from_plain(given: Mapping[str, Any]) -> Case:
     motion, initial = given["motion"], given["initial"]
     fields = {
         "cylinder": cylinder_of(given["cylinder"]),
-        "motion": motion and GroundMotion(**motion),
+        "motion": motion and GroundMotion(**{**motion, "source": source_from_plain(motion.get("source"))}),
         "initial": initial and InitialState(**initial),
     }
     return Case(**{**given, **fields})

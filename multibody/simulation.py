@@ -13,6 +13,7 @@ import numpy as np
 from rockwobble.models import Case, Diagnostic, InitialState, Run, Trace
 from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_positive, require_sample_step
+from rockwobble.models.trace import NO_PEAK
 from rockwobble.models.trace_source import Known
 
 from .auto_step import AUTO, STEP_TOLERANCE, Progress, find_step
@@ -175,7 +176,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
     rows = _rows_to_end(recorder)
     kept = (rows[:, 0] != recorder.asked) | (not recorder.off_grid)
     forces, rows = recorder.forces.at(rows[:, 0])[kept], rows[kept]
-    outcome = recorder.ended or "stands"
+    outcome = recorder.ended or ("undecided" if recorder.undecided else "stands")
     table = dict(zip(("time", *COLUMNS), rows.T, strict=True))
     uplift_time, uplift_direction = recorder.uplift or (math.nan, math.nan)
     contact = np.column_stack([table["contact_x"], table["contact_y"]])
@@ -248,7 +249,7 @@ def _rows_to_end(recorder: Recorder) -> Array:
 
 
 def _peak(recorder: Recorder, outcome: str, rows: Array) -> float:
-    if outcome == "failed":
+    if outcome in NO_PEAK:
         return math.nan
     if outcome == "overturned":
         return 0.5 * math.pi

@@ -70,7 +70,7 @@ def peak_tilts(
     Returns
     -------
     ndarray, shape (n_R, n_scale)
-        Peak tilt [rad]: 0 without uplift, pi/2 if overturned, NaN where the run failed.
+        Peak tilt [rad]: 0 without uplift, pi/2 if overturned, NaN where the run failed or is undecided.
 
     Raises
     ------

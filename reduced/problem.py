@@ -18,6 +18,7 @@ from rockwobble.models.support import SUPPORTS as FACTS
 from . import kernels
 from .body import Body, TiedBody, body_of, restitution_from_momentum
 from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
+from .integration.balance import decided
 from .integration.result import Driver, IntegrationResult, Options, Task
 from .restoring import tied
 from .rolling import impact_ratio
@@ -142,7 +143,8 @@ class Problem:
         integrate, task, azimuth = self._set_up
         # a column of a table would have the time integration compiled for its stride
         task = task._replace(times=np.ascontiguousarray(times))
-        return integrate(self.body, self._options._replace(record_steps=record_steps), task), azimuth
+        result = integrate(self.body, self._options._replace(record_steps=record_steps), task)
+        return self._decided(result), azimuth
 
     def shaking(self, factor: float) -> SetUp:
         """Return the integration of a run from rest under ``motion.scaled(factor)``, for its peak only."""
@@ -158,7 +160,11 @@ class Problem:
 
     def solve_under(self, shaking: SetUp) -> IntegrationResult:
         """Return the result for this body under a motion of another size, for the peak only."""
-        return shaking.integrate(self.body, self._options, shaking.task)
+        return self._decided(shaking.integrate(self.body, self._options, shaking.task))
+
+    def _decided(self, result: IntegrationResult) -> IntegrationResult:
+        # rolling resistance holds what stands on the balance
+        return result if self.case.rolling_resistance else decided(self.body, result)
 
     @property
     def free_twist(self) -> bool:

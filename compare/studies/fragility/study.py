@@ -12,9 +12,11 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.models import Cylinder, GroundMotion, HazardCurve, Run
-from rockwobble.models.number_checks import require_positive
+from rockwobble.models.doubts import doubts_about
+from rockwobble.models.number_checks import require_each, require_positive
 from rockwobble.models.plain_json import fields_of
-from rockwobble.models.records.units import doubts_of
+from rockwobble.models.records.units import sources_of
+from rockwobble.models.trace import NO_PEAK
 
 from ...metrics.statistics import FEWEST
 from ...runs.progress import ProgressCallback
@@ -183,14 +185,14 @@ class Fragility(Results, kind=KIND):
             "cylinders": str(runs["cylinder"].nunique()),
             "motions": str(runs["motion"].nunique()),
             "runs": str(len(runs)),
-            "failed": str(int((runs["outcome"] == "failed").sum())),
+            "failed": str(int(runs["outcome"].isin(NO_PEAK).sum())),
             "methods": ", ".join(dict.fromkeys(runs["method"])),
         }
 
 
 def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Mapping[str, Any]) -> Fragility:
     """Return the fragility by the runs of the plan that `facts` state."""
-    if (runs["outcome"] == "failed").all():
+    if runs["outcome"].isin(NO_PEAK).all():
         raise ValueError(f"a fragility needs runs that do not fail, got {len(runs)} runs that all failed")
     blocks = blocks_of(runs, points, facts["limits"], str(facts["measure"]))
     weights = resamples(len(blocks.motions), int(facts["resamples"]), int(facts["seed"]))
@@ -333,12 +335,14 @@ def fragility(
     >>> list(zip(overturned["intensity"], overturned["k"], overturned["n"]))
     [(1.5, 0, 8), (3.0, 6, 8), (6.0, 8, 8)]
     """
+    require_each("motions", motions, GroundMotion)
     bodies, asked = _named(cylinders), FragilityPlan.of(**options)
     chosen = methods_of(methods, restitution=asked.restitution)
     if asked.levels is None and asked.scales is None and motions:  # without, the plan says what is missing
         asked = replace(asked, levels=default_levels(bodies, motions, asked))
     plan = RunPlan(cylinders=bodies, motions=motions, methods=chosen, options=asked)
-    facts = _facts(plan) | {"source": source, "doubts": doubts_of(motions)}
+    doubts = doubts_about(motions=motions, cylinders=bodies.values(), gravities=[asked.gravity])
+    facts = _facts(plan) | {"source": source, "doubts": doubts, "record_sources": sources_of(motions)}
     runs = run_plan(plan, KIND, folder=resume, workers=workers, scheduler=scheduler, progress=progress)
     return fragility_of(runs, plan.points, facts)
 
@@ -378,8 +382,10 @@ def _described(method: Method, methods: Sequence[Method]) -> dict[str, object]:
 
 def _named(cylinders: Cylinder | Mapping[str, Cylinder] | Sequence[Cylinder]) -> dict[str, Cylinder]:
     if isinstance(cylinders, Mapping):
+        require_each("cylinders", list(cylinders.values()), Cylinder)
         return dict(cylinders)
-    several = [cylinders] if isinstance(cylinders, Cylinder) else list(cylinders)
+    several = [cylinders] if isinstance(cylinders, Cylinder) else cylinders
+    require_each("cylinders", several, Cylinder)
     found = {f"R = {each.semidiagonal:g} m, tan α = {each.tan_alpha:g}": each for each in several}
     if len(found) < len(several):
         raise ValueError("cylinders of the same size and slenderness need names: give them as a mapping")

@@ -17,6 +17,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockwobble.models.trace import NO_PEAK
+
 from ...metrics.statistics import Interval
 from .fit import (
     ALWAYS,
@@ -61,7 +63,7 @@ def exceeded(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
     limit : str
         One of `LIMITS`.
     """
-    failed = (runs["outcome"] == "failed").to_numpy(bool)
+    failed = runs["outcome"].isin(NO_PEAK).to_numpy(bool)
     fell = (runs["outcome"] == "overturned").to_numpy(bool)
     if limit == CONTACT_LOST:
         lost = runs["contact_lost"].to_numpy(float)
