@@ -42,6 +42,7 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "extrapolated": ("alpha", "error left after extrapolation in the time step, by estimate"),
         "not_extrapolated": ("", "runs at successive time steps do not agree well enough to extrapolate"),
         "side": ("", "it passed through upright itself: the side to which it goes on is undetermined"),
+        "tendon_yield": ("weights", "the tendon would yield: what comes after is not modelled"),
         # what makes a record of the ground improbable
         "large_peak": ("g", "no record has such a peak: is its unit another?"),
         "unlike_components": ("", "peaks of components differ as only units do"),

@@ -85,7 +85,7 @@ def kernel(function: F) -> F:
     return cast("F", entry)
 
 
-def by_body(plain: F, tied: F) -> F:
+def by_body(plain: F, tied: Callable[..., object]) -> F:
     """Return a function of a body and more that is `plain`, or `tied` where a tendon holds the body.
 
     A kernel is compiled for each of the two kinds of bodies, and has the one that is meant in the place of
@@ -105,7 +105,7 @@ def by_body(plain: F, tied: F) -> F:
     )
     function: F = scope["function"]
     function.__doc__ = plain.__doc__
-    options = _OPTIONS | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
+    options: Any = _OPTIONS | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
     overload(function, jit_options=options, strict=False)(scope["choice"])
     return function
 

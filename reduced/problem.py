@@ -6,7 +6,7 @@ import math
 from dataclasses import KW_ONLY, dataclass, fields, replace
 from functools import cached_property
 from numbers import Real
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from rockwobble.models.number_checks import quoted
 from rockwobble.models.support import SUPPORTS as FACTS
 
 from . import kernels
-from .body import Body, TiedBody, body_of, restitution_from_momentum
+from .body import Body, body_of, restitution_from_momentum
 from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
 from .integration.balance import decided
 from .integration.result import Driver, IntegrationResult, Options, Task
@@ -104,6 +104,11 @@ class Problem:
             raise ValueError(f"restitution belongs to planar motion, got {factor!r} without a plane")
         if plane is not None and initial is not None:
             _require_in_plane(initial, plane)
+        if self.case.tendon is not None and self.case.rolling_resistance > 0.0:
+            raise ValueError(
+                f"a tendon goes without rolling resistance in the reduced models, got "
+                f"{self.case.rolling_resistance:g} m beside it"
+            )
         if self.case.tendon is not None and self.free_twist:
             raise ValueError(
                 "a tendon is part of the models in the recess and in a plane, got support 'flat': there the "
@@ -127,11 +132,11 @@ class Problem:
         return float(self.restitution)
 
     @cached_property
-    def body(self) -> Body | TiedBody:
-        """The constants of the equations."""
+    def body(self) -> Body:
+        """The constants of the equations; of a `TiedBody`, which has more, with a tendon."""
         case = self.case
         plain = body_of(case.cylinder, case.gravity, case.rolling_resistance)
-        return plain if case.tendon is None else tied(plain, case.cylinder, case.tendon)
+        return plain if case.tendon is None else cast("Body", tied(plain, case.cylinder, case.tendon))
 
     def solve(
         self,

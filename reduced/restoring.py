@@ -54,7 +54,8 @@ def _tendon(body: TiedBody, s: float, u: float) -> float:
 
 @inlined
 def _weight_and_tendon(body: TiedBody, s: float, c: float, gravity: float) -> float:
-    return _weight(body, s, c, gravity) + _tendon(body, s, sqrt(0.5 * (1.0 + c)))
+    weight = gravity * (body.sin_alpha * c - body.cos_alpha * s)
+    return weight + _tendon(body, s, sqrt(0.5 * (1.0 + c)))
 
 
 restoring = by_body(_weight, _weight_and_tendon)
@@ -91,14 +92,14 @@ with_tendon_energy = by_body(_no_energy, _tendon_energy)
 
 @inlined
 def _no_pull(body: Body, c: float) -> tuple[float, float]:
-    """Return the forces of the tendon at base and top together, downward and inward [m/s^2]."""
+    """Return the force of the tendon on the base, downward and inward, over (1 + gamma) m [m/s^2]."""
     return 0.0, 0.0
 
 
 @inlined
 def _pull(body: TiedBody, c: float) -> tuple[float, float]:
     s_half, u = sqrt(max(0.0, 0.5 * (1.0 - c))), sqrt(0.5 * (1.0 + c))
-    force = body.prestress + 2.0 * body.stiffness * s_half
+    force = (body.prestress + 2.0 * body.stiffness * s_half) * (body.nu / body.gaps)
     return force * u, force * s_half
 
 

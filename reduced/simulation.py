@@ -190,9 +190,36 @@ def _facts(problem: Problem, result: IntegrationResult) -> Iterator[Diagnostic]:
         yield Diagnostic(code="tolerance", time=result.end, bound=problem.rtol)
     if result.status == UNDECIDED:
         yield Diagnostic(code="undecided", time=min(result.end, problem.case.length))
+    yield from _yield(problem, result)
     straight = result.extrema[result.extrema[:, 1] == 0.0]
     if len(straight) and not problem.is_planar():
         yield Diagnostic(code="side", time=float(straight[0, 0]))
+
+
+_DIVISIONS, _ROUNDS = 64, 5  # of the time in which a tendon yields: to 1e-9 of a swing
+
+
+def _yield(problem: Problem, result: IntegrationResult) -> Iterator[Diagnostic]:
+    """First time at which the tension of a tendon reaches its yield force, which a known tilt has."""
+    case = problem.case
+    tendon = case.tendon
+    if tendon is None or tendon.yield_force is None or result.status not in _OUTCOMES:
+        return
+    largest = tendon.tension(case.cylinder, 0.5 * math.pi if result.status == OVERTURNED else result.peak)
+    if largest <= tendon.yield_force:
+        return
+    turns = result.extrema[result.extrema[:, 1] > 0.0]
+    over = [tendon.tension(case.cylinder, tilt) > tendon.yield_force for tilt in turns[:, 1]]
+    after = turns[int(np.argmax(over)), 0] if any(over) else result.end
+    before = turns[turns[:, 0] < after, 0].max(initial=0.0)
+    for _ in range(_ROUNDS):
+        times = np.linspace(before, min(after, result.end), _DIVISIONS + 1)
+        found, _azimuth = problem.solve(times)
+        tilts = found.samples[: found.reached, 0]
+        first = [tendon.tension(case.cylinder, tilt) > tendon.yield_force for tilt in tilts]
+        place = int(np.argmax(first)) if any(first) else len(tilts) - 1
+        before, after = times[max(place - 1, 0)], times[place]
+    yield Diagnostic(code="tendon_yield", time=float(after), size=largest, bound=tendon.yield_force)
 
 
 @cache

@@ -100,7 +100,7 @@ def _case(
 
     with located(f"{path}.cylinder"):
         cylinder = _cylinder(table.cylinder, of("cylinder"))
-    own = of("")
+    own: dict[str, Any] = of("")
     motion = initial = None
     if table.motion is not None:
         with located(f"{path}.motion"):
