@@ -1,9 +1,9 @@
 """A column with a tendon, alone or under a slab, from places and springs in space.
 
-The column is a rigid body of revolution whose rim rolls without slip; the recess keeps its twist at zero. The
-tendon is a spring between points: from its anchor on the ground to the centre of the base, and from the centre
-of the top to its anchor in the slab; inside the column it does no work. Energies come from places, velocities
-and the angular velocity, all derivatives from differences.
+The column is a rigid body of revolution whose rim rolls without slip, and the recess keeps its twist at
+zero. The tendon is a spring between points: from its anchor on the ground to the centre of the base, and
+from the centre of the top to its anchor in the slab; inside the column it does no work. Energies come from
+places, velocities and the angular velocity, all derivatives from differences.
 """
 
 from __future__ import annotations
