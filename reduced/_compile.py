@@ -98,9 +98,7 @@ def by_body(plain: F, tied: Callable[..., object]) -> F:
     # the parameters of an overload must have the names of those of the function
     exec(
         f"def function({names}):\n    return (tied if hasattr({first}, 'prestress') else plain)({names})\n"
-        f"def choice({names}):\n"
-        f"    if 'prestress' in {first}.fields:\n        return lambda {names}: tied({names})\n"
-        f"    return lambda {names}: plain({names})\n",
+        f"def choice({names}):\n    return tied.py_func if 'prestress' in {first}.fields else plain.py_func\n",
         scope,
     )
     function: F = scope["function"]
