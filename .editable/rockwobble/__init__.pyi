@@ -22,6 +22,7 @@ from .models import HazardCurve as HazardCurve
 from .models import InitialState as InitialState
 from .models import Run as Run
 from .models import Suite as Suite
+from .models import Tendon as Tendon
 from .models import Trace as Trace
 from .models import WobblingFrame as WobblingFrame
 from .models import el_centro_1940 as el_centro_1940
