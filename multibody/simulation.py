@@ -12,7 +12,8 @@ import numpy as np
 
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace, WobblingFrame
 from rockwobble.models.case import TimeStep
-from rockwobble.models.number_checks import require_positive
+from rockwobble.models.number_checks import require_positive, require_sample_step
+from rockwobble.models.trace import NO_PEAK
 from rockwobble.models.trace_source import Known
 
 from .auto_step import AUTO, STEP_TOLERANCE, Progress, find_step
@@ -75,7 +76,7 @@ def simulate(
         that it costs as much as one run at that), and gives what
         they tend to, as far as they agree: see `extrapolated_step`.
     sample_step : float
-        Of the result [s].
+        Of the result [s]; at most 10 million samples.
     progress : callable, optional
         Called now and then with the fraction done.
     **settings
@@ -140,7 +141,7 @@ def _simulate(
     assert run.engine is not None
     scale = froude_scale(case.cylinder.semidiagonal, case.gravity)
     backend, scene, resolved = _stated(case, run.engine, run.support, settings, step)
-    samples = _sample_times(case.length, require_positive("sample_step", sample_step, "s")) / scale.time
+    samples = _sample_times(case.length, require_sample_step(sample_step, case.length)) / scale.time
     release = InitialState(0.0) if case.initial is None else case.initial
     recorder = Recorder(
         scene,
@@ -175,7 +176,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
     rows = _rows_to_end(recorder)
     kept = (rows[:, 0] != recorder.asked) | (not recorder.off_grid)
     forces, rows = recorder.forces.at(rows[:, 0])[kept], rows[kept]
-    outcome = recorder.ended or "stands"
+    outcome = recorder.ended or ("undecided" if recorder.undecided else "stands")
     table = dict(zip(("time", *COLUMNS), rows.T, strict=True))
     uplift_time, uplift_direction = recorder.uplift or (math.nan, math.nan)
     contact = np.column_stack([table["contact_x"], table["contact_y"]])
@@ -257,7 +258,7 @@ def _rows_to_end(recorder: Recorder) -> Array:
 
 
 def _peak(recorder: Recorder, outcome: str, rows: Array) -> float:
-    if outcome == "failed":
+    if outcome in NO_PEAK:
         return math.nan
     if outcome == "overturned":
         return 0.5 * math.pi
