@@ -42,8 +42,8 @@ class Body(Plan):
     )
     columns: int | None = _cylinder(
         None,
-        "Number of the cylinders under the slab: 3 or more, or 1 for a slab that cannot turn. Engines run one, "
-        "under a slab that only translates, whatever the number, and say so. Default: 3.",
+        "Number of the cylinders under the slab: 3 or more, or 1 for a slab that cannot turn. Engines run "
+        "one, under a slab that only translates, whatever the number, and say so. Default: 3.",
     )
 
     def cylinder(self) -> rw.Cylinder:

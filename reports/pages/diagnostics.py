@@ -54,8 +54,8 @@ _WORDS: Mapping[str, str] = {
     "extrapolated": "the motion is, until {duration}, what runs at three time steps tend to, with order "
     "{bound:.0f}: within {size:.1e} alpha, by estimate",
     "not_extrapolated": "it is not extrapolated{later}, but the run at the finest time step: {why}",
-    "one_column": "the engine runs one of the {size:.0f} columns, under its share of a slab that only translates: "
-    "whether the slab turns, or the columns keep in step, is not tested",
+    "one_column": "the engine runs one of the {size:.0f} columns, under its share of a slab that only "
+    "translates: whether the slab turns, or the columns keep in step, is not tested",
     "side": "it passed through upright itself, first{at}: the ground had moved in one plane, and the side "
     "of such a pass is undetermined",
     "large_peak": "its peak is {size:.3g} g, more than {bound:g} g, which few records have{other_unit}",
