@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, Trace
 from rockwobble.models.support import support_named
+from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody.ring import rim_overhang
 
 from ...metrics.statistics import FEWEST, covering
@@ -30,13 +31,9 @@ Array = NDArray[np.float64]
 SPIKES = 0.01
 # share of the runs of a group that do not exceed its demand
 COVERED = 0.95
-# [alpha] below which the base counts as closed and asks nothing: a gap at the rim of 0.4 mm for a base of 2 m
-# and alpha = 0.2, which contact takes up; passes closer than that have forces without bound in a rigid model
-CLOSED = 1e-3
 # ratio of neighbouring intensities of weaker shaking
 LEVEL_RATIO = 2.0**0.25
-# [alpha] tilt that is asked of a wall by a run that passes the balance, whether it overturns or is brought back:
-# the larger of this and its own
+# [alpha] tilt that a run asks of a wall at least if it passes the balance, whether it overturns or comes back
 PASSED = 1.25
 _FIRST_LEVEL = -4  # steps from the threshold of uplift
 
@@ -63,7 +60,7 @@ def fall_of(trace: Trace) -> float:
 def demands_of(trace: Trace) -> dict[str, float]:
     """Return the demands of a run on ground, recess and slab, until it last passes alpha if it overturns.
 
-    Samples with a tilt of at most `CLOSED` ask nothing.
+    Samples with a tilt below `CLOSED_TILT` ask nothing.
 
     Returns
     -------
@@ -74,12 +71,12 @@ def demands_of(trace: Trace) -> dict[str, float]:
         the sum at one time of shear and of the force on a wall that supplies the moment over the lever arm b
         [weights]: each not exceeded in 99 % of the moving time. shear_with_force, shear_with_moment,
         moment_with_shear and moment_with_force: what acts when shear and moment are reached. tilt, the
-        largest [alpha]: at least `PASSED` where it passes the balance. slip and lost, shares of the moving time
+        largest [alpha]: at least `PASSED` where it passes the balance. slip and lost, shares of that time
         in which the friction of the case does not suffice and in which contact is lost, at base or top. All
         zero, and a force of one weight, where nothing moves.
     """
     cylinder = trace.case.cylinder
-    moving = (trace.tilt > CLOSED * cylinder.alpha) & (trace.time <= fall_of(trace))
+    moving = trace.open_base & (trace.time <= fall_of(trace))
     ends = [(_BASE, trace.contact_force, trace.friction_needed)]
     if cylinder.slab_mass_ratio > 0.0:
         ends.append((_TOP, trace.top_contact_force, trace.top_friction_needed))
@@ -211,7 +208,7 @@ def _groups(members: pd.DataFrame) -> Iterator[tuple[str, float, pd.DataFrame]]:
     if not len(members):
         return
     for (group, factor), runs in members.groupby(["group", "factor"], sort=False):
-        known = runs[runs["outcome"] != "failed"]
+        known = runs[~runs["outcome"].isin(NO_PEAK)]
         if all_alike(known):
             known = known[:1]
         elif len(known) < FEWEST:
@@ -234,13 +231,11 @@ def _largest(name: str, groups: list[tuple[str, float, pd.DataFrame]]) -> dict[s
         if value <= best["value"]:  # not where the best is none yet, NaN
             continue
         place = int(np.flatnonzero(values == value)[0])
+        together = {part: runs[f"{name}_with_{part}"].to_numpy(float) for part in _TOGETHER.get(name, ())}
         best = {
             **{"value": value, "group": group, "factor": factor, "runs": len(runs), "covered": covered},
             "overturned": int((runs["outcome"] == "overturned").sum()),
-            **{
-                f"with_{part}": float(runs[f"{name}_with_{part}"].to_numpy(float)[place])
-                for part in _TOGETHER.get(name, ())
-            },
+            **{f"with_{part}": float(together[part][place]) for part in together},
             "reason": "",
         }
     return best

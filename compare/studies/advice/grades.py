@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
+from rockwobble.models.trace import NO_PEAK
+
 from ...comparison.prediction import BEATEN, UNTESTED
 from ...metrics.statistics import FEWEST
 
@@ -184,7 +186,7 @@ def grade_engine(outcome: str, divergence: str, *, differs: bool) -> Grade:
     differs : bool
         Whether one of engine and model overturns, or moves, and the other does not.
     """
-    if outcome == "failed":
+    if outcome in NO_PEAK:
         return "not tested"
     if divergence == "earlier":
         return "not satisfied"

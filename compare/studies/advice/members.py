@@ -24,6 +24,7 @@ from rockwobble.models import (
 )
 from rockwobble.models.cpus import in_threads
 from rockwobble.models.records import p695
+from rockwobble.models.trace import NO_PEAK
 
 from ...metrics.statistics import (
     FEWEST,
@@ -107,7 +108,7 @@ def member_row(group: str, trace: Trace, factor: float = 1.0) -> dict[str, float
         "model": str(trace.run),
         "outcome": trace.outcome,
         "peak_tilt": trace.peak_tilt / trace.case.cylinder.alpha,
-        **(demands_of(trace) if trace.outcome != "failed" else {}),
+        **(demands_of(trace) if trace.outcome not in NO_PEAK else {}),
     }
 
 
@@ -197,7 +198,7 @@ def group_table(members: pd.DataFrame) -> pd.DataFrame:
     rows = []
     numbers = ["peak_tilt", *(name for name in DEMANDS if name in members.columns)]
     for group, runs in members[members["group"] != OTHER].groupby("group", sort=False):
-        known = runs[runs["outcome"] != "failed"]
+        known = runs[~runs["outcome"].isin(NO_PEAK)]
         fell = known["outcome"] == "overturned"
         single = all_alike(known)
         chance = Interval(value=math.nan, low=math.nan, high=math.nan)
