@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from rockwobble.compare.studies.advice.members import fall_of
+from rockwobble.compare.studies.advice.demands import fall_of
 from rockwobble.models import Trace
 
 from .palette import GREY, ORDER, Style

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from rockwobble.compare.comparison.prediction import NUDGE
-from rockwobble.compare.studies.advice.members import fall_of
+from rockwobble.compare.studies.advice.demands import fall_of
 from rockwobble.compare.studies.single_run import SingleRun
 from rockwobble.models import Diagnostic, Trace
 from rockwobble.models.support import SUPPORTS

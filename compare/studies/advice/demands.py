@@ -207,13 +207,13 @@ def _groups(members: pd.DataFrame) -> Iterator[tuple[str, float, pd.DataFrame]]:
     """Groups of runs that may be stated, at each intensity: of fewer than `FEWEST` that differ none is."""
     if not len(members):
         return
-    for (group, factor), runs in members.groupby(["group", "factor"], sort=False):
+    for (group, _), runs in members.groupby(["group", "factor"], sort=False):
         known = runs[~runs["outcome"].isin(NO_PEAK)]
         if all_alike(known):
             known = known[:1]
         elif len(known) < FEWEST:
             continue
-        yield str(group), float(factor), known
+        yield str(group), float(known["factor"].iloc[0]) if len(known) else 1.0, known
 
 
 def all_alike(runs: pd.DataFrame) -> bool:
