@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .diagnostic import Diagnostic
 from .number_checks import require_finite, require_positive
 from .record_source import RecordSource
 from .shown import brief, line
@@ -93,6 +94,16 @@ class GroundMotion:
     def __reduce__(self) -> tuple[object, ...]:
         # a copy or a worker process must not get a writable array
         return GroundMotion, (self.acceleration, self.time_step, self.name, self.source)
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What makes a record improbable as it was read, see `RecordSource.doubts`; none without a source."""
+        return self.source.doubts if self.source else ()
+
+    @property
+    def synthetic(self) -> bool:
+        """Whether it says that nobody recorded it: a synthetic motion, or a pulse."""
+        return self.source is not None and self.source.synthetic
 
     @property
     def duration(self) -> float:

@@ -127,9 +127,11 @@ def doubts(motion: GroundMotion) -> tuple[Diagnostic, ...]:
 
 
 def sources_of(motions: Iterable[GroundMotion | None]) -> list[str]:
-    """Return what each ground motion is read from, in a line; each once, those made of arrays left out."""
+    """Return what each ground motion is read from, in a line; each once, those of no file left out."""
     lines = (
-        f"{motion.name or 'record'}: {motion.source.line}" for motion in motions if motion and motion.source
+        f"{motion.name or 'record'}: {motion.source.line}"
+        for motion in motions
+        if motion and motion.source and any(part.file for part in motion.source.components)
     )
     return list(dict.fromkeys(lines))
 
