@@ -91,6 +91,11 @@ class RecordSource:
         return self.format in (SYNTHETIC, PULSE)
 
     @property
+    def from_files(self) -> bool:
+        """Whether a file of the user holds it."""
+        return any(part.file for part in self.components)
+
+    @property
     def duration(self) -> float:
         """Time from the first to the last sample as read [s]."""
         return (self.samples - 1) * self.time_step

@@ -11,7 +11,6 @@ from __future__ import annotations
 import itertools
 import math
 import re
-import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -64,9 +63,10 @@ def plain_numbers(text: str) -> NDArray[np.float64] | None:
     if content.translate(None, _ALLOWED):
         return None
     count = int(_begins(content).sum())
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # of a text that is no number from somewhere on
+    try:
         values = np.fromstring(content, dtype=np.float64, sep=" ")
+    except ValueError:  # of a text that is no number from somewhere on
+        return None
     # touching numbers are read as several: more than blanks part
     return values if len(values) == count and np.isfinite(values).all() else None
 

@@ -115,7 +115,7 @@ def doubts(motion: GroundMotion) -> tuple[Diagnostic, ...]:
     >>> [(fact.code, fact.detail) for fact in doubts(motion)]
     [('large_peak', 'cm/s2'), ('unlike_components', 'x')]
     """
-    if motion.source is None:
+    if motion.source is None or not motion.source.from_files:
         return tuple(peak_doubts(motion.acceleration))
     facts = motion.source.doubts
     if any(fact.code == "large_peak" for fact in facts):
@@ -131,7 +131,7 @@ def sources_of(motions: Iterable[GroundMotion | None]) -> list[str]:
     lines = (
         f"{motion.name or 'record'}: {motion.source.line}"
         for motion in motions
-        if motion and motion.source and any(part.file for part in motion.source.components)
+        if motion and motion.source and motion.source.from_files
     )
     return list(dict.fromkeys(lines))
 

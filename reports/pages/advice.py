@@ -58,7 +58,7 @@ _DIVERGENCE = {
 }
 Row = dict[str, object]
 
-_ENDS = {"failed": "failed", "undecided": "is undecided"}  # of a run without a peak
+_NO_PEAK = {"failed": "failed", "undecided": "is undecided"}  # of a run without a peak
 
 
 def page_of(found: Advice) -> Page:
@@ -95,7 +95,7 @@ def page_of(found: Advice) -> Page:
 def _reasons(found: Advice) -> dict[str, str]:
     """What the grade of each topic rests on in this case."""
     if found.response["outcome"] in NO_PEAK:
-        return {"trace": f"the run {_ENDS[found.response['outcome']]}"}
+        return {"trace": f"the run {_NO_PEAK[found.response['outcome']]}"}
     slip, lost = found.missing
     few = f"fewer than {FEWEST} runs differ"
     contact = "never lost in 95 % of all runs" if found.grades["contact"] == "satisfied" else few
