@@ -178,7 +178,7 @@ def _reason_of_engine(found: Advice) -> str:
     if engine is None:
         return "not run"
     if engine.outcome in NO_PEAK:
-        return f"it {_ENDS[engine.outcome]}: {_failure(engine)}"
+        return f"it {_NO_PEAK[engine.outcome]}: {_failure(engine)}"
     agrees = f"agrees until {_agreed_until(engine)}, predicted until {_predicted_until(found)}"
     if engine.divergence == "earlier":
         return f"{agrees}: less than half as long"
