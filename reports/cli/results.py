@@ -20,6 +20,7 @@ from ..pages.cases import describe
 from ..pages.table import number
 from . import options
 from .command import takes_options
+from .folder import claim_folder
 from .options import settings
 from .problem import Problem, given_options, refuse
 
@@ -154,6 +155,7 @@ def view(
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
     out: options.Out = Path("rockwobble-view"),
+    overwrite: options.Overwrite = False,
     opened: Open = None,
 ) -> None:
     """Play one case in three dimensions: the engine's cylinder, and the reduced model translucent over it.
@@ -167,7 +169,7 @@ def view(
     with interruptible():
         with user_input():
             if folder is not None:
-                others = set(given_options(context)) - {"folder", "case_name", "out", "opened"}
+                others = set(given_options(context)) - {"folder", "case_name", "out", "overwrite", "opened"}
                 refuse(context, others, "states a run and does not go with a stored one")
                 comparison = rw.Comparison.load(folder)
                 name = _chosen_case(comparison, case_name)
@@ -179,7 +181,7 @@ def view(
                 (run,) = rr.with_settings(case, [asked], settings(setting))
                 rr.require_runnable(case, run)
                 name = case.name
-            rs.require_writable(out)
+            claim_folder(context)
         if folder is None:
             print(*describe(case), sep="\n")
             with user_input(), shown_progress() as progress:

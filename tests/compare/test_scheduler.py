@@ -19,10 +19,11 @@ import scheduled
 from scheduled import die_once, killed, multiples, never_the_same, refuse, signalled
 
 from rockwobble.compare.runs import dask_backend, scheduler
-from rockwobble.compare.runs.cache import CACHE, open_table_cache, unfinished
+from rockwobble.compare.runs.cache import open_table_cache, unfinished
 from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.progress import Lost, Progress
 from rockwobble.compare.runs.scheduler import run_tasks
+from rockwobble.compare.storage.claim import CACHE
 from rockwobble.models import cpus
 from rockwobble.models.cpus import usable_cpus
 

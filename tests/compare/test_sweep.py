@@ -9,9 +9,9 @@ import pytest
 from rockwobble import reduced
 from rockwobble.compare import Grid, IncompleteError, Progress, Sweep, sweep
 from rockwobble.compare.runs import execution
-from rockwobble.compare.runs.cache import CACHE
 from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.progress import Lost
+from rockwobble.compare.storage.claim import CACHE
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.compare.studies.sweep import KIND
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940

@@ -10,10 +10,10 @@ from scheduled import multiples
 
 from rockwobble.compare import IncompleteError
 from rockwobble.compare.runs import execution
-from rockwobble.compare.runs.cache import CACHE
 from rockwobble.compare.runs.execution import run_tables
 from rockwobble.compare.runs.progress import Lost
 from rockwobble.compare.runs.scheduler import run_tasks
+from rockwobble.compare.storage.claim import CACHE
 
 TASKS = [1, 2, 3]
 
