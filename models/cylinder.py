@@ -161,6 +161,10 @@ class Cylinder(Brief):
         return 0.0
 
 
+# beyond it the columns weigh no more than rounding: the motion is that of a slab alone
+LARGEST_SLAB_MASS_RATIO = 1e15
+
+
 @dataclass(frozen=True, slots=True, repr=False, init=False)
 class WobblingFrame(Cylinder):
     """A rigid slab on equal cylinders that rock and wobble together: a deck on piers, a podium.
@@ -176,13 +180,14 @@ class WobblingFrame(Cylinder):
     slab_mass_ratio : float, optional
         gamma, mass of the slab over that of all columns [-]; 0 is the cylinder alone.
     columns : int, optional
-        Number of columns: three or more, or 1 for a slab that is held from turning.
+        Number of columns: three or more, or 1 for a slab that is held from turning. Engines run one
+        column under a slab that only translates, whatever the number, and say so ("one_column").
 
     Raises
     ------
     ValueError
-        If the ratio is negative or not finite, the columns are no whole number or too few to carry
-        a slab, or the cylinder is itself a frame or has its mass centre elsewhere.
+        If the ratio is negative or above `LARGEST_SLAB_MASS_RATIO`, the columns are no whole number or too
+        few to carry a slab, or the cylinder is itself a frame or has its mass centre elsewhere.
 
     Examples
     --------
@@ -205,8 +210,10 @@ class WobblingFrame(Cylinder):
                 f"{cylinder.mass_centre_height:g} of {2.0 * cylinder.half_height:g} m"
             )
         ratio = require_finite("slab_mass_ratio", slab_mass_ratio, "")
-        if ratio < 0.0:
-            raise ValueError(f"slab_mass_ratio must not be negative, got {slab_mass_ratio!r}")
+        if not 0.0 <= ratio <= LARGEST_SLAB_MASS_RATIO:
+            raise ValueError(
+                f"slab_mass_ratio must be from 0 to {LARGEST_SLAB_MASS_RATIO:g}, got {slab_mass_ratio!r}"
+            )
         whole = isinstance(columns, Real) and float(columns).is_integer() and not isinstance(columns, bool)
         if not whole or columns < 1 or columns == 2:
             raise ValueError(

@@ -12,7 +12,7 @@ from rockwobble.compare.studies.plans import QuickPlan, ValidityPlan
 from ..console import FAILED, show_and_save, user_input
 from . import options
 from .command import takes_options
-from .folder import results_in
+from .outputs import results_in
 
 
 @takes_options

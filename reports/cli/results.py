@@ -14,14 +14,14 @@ import rockwobble as rw
 import rockwobble.compare.runs as rr
 import rockwobble.compare.storage as rs
 
-from ..console import complain, interruptible, print_facts, show_and_save, shown_progress, user_input
+from ..console import complain, echo, interruptible, print_facts, show_and_save, shown_progress, user_input
 from ..pages import KINDS, stored_page
 from ..pages.cases import describe
 from ..pages.table import number
 from . import options
 from .command import takes_options
-from .folder import claim_folder
 from .options import settings
+from .outputs import claim_folder
 from .problem import Problem, given_options, refuse
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ Out = Annotated[
 ]
 
 
-def report(folder: Folder, out: Out = None) -> None:
+def report(folder: Folder, out: Out = None, overwrite: options.Overwrite = False) -> None:
     """Draw the pages and pictures again of results that are stored. Nothing runs again.
 
     They say what they said: which engines and records are installed here has no part in it. The results
@@ -114,15 +114,23 @@ def report(folder: Folder, out: Out = None) -> None:
     """
     place = folder if out is None else out
     with interruptible(), user_input():
-        from rockwobble.compare.storage.manifest import read_manifests, write_pages
+        from rockwobble.compare.storage.files import sole_writer
+        from rockwobble.compare.storage.manifest import manifests_in, read_manifests, write_pages
 
         rs.require_writable(place)
         kinds = [made.kind for made in read_manifests(folder) if made.kind in KINDS]
         if not kinds:
             raise ValueError(f"pages are drawn of {', '.join(KINDS)}; {folder} holds none of them")
+        others = [] if overwrite or place.resolve() == folder.resolve() else manifests_in(place)
+        if others:
+            there = "; ".join(f"{each.kind} of `{each.command or 'another program'}`" for each in others)
+            raise ValueError(
+                f"the folder {place} holds {there}: choose another by --out, or write there by --overwrite"
+            )
         drawn = {kind: stored_page(kind, folder).files() for kind in kinds}
-        for kind, pages in drawn.items():
-            write_pages(place, kind, pages)
+        with sole_writer(place):
+            for kind, pages in drawn.items():
+                write_pages(place, kind, pages)
     names = dict.fromkeys(name for pages in drawn.values() for name in pages)
     print(f"Written to {place}: {', '.join(names)}")
 
@@ -183,7 +191,7 @@ def view(
                 name = case.name
             claim_folder(context)
         if folder is None:
-            print(*describe(case), sep="\n")
+            echo(describe(case))
             with user_input(), shown_progress() as progress:
                 comparison = rw.compare(case, runs=[run], progress=progress)
         show_and_save(comparison.of_case(name), out)

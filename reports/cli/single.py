@@ -17,12 +17,12 @@ import rockwobble.compare.runs as rr
 from rockwobble.compare.runs.plan import Plan, options_in
 from rockwobble.compare.studies.plans import AdvicePlan, ModelPlan
 
-from ..console import FAILED, complain, interruptible, show_and_save, shown_progress, user_input
-from ..pages.cases import describe
+from ..console import FAILED, complain, echo, interruptible, show_and_save, shown_progress, user_input
+from ..pages.cases import case_warnings, describe, record_lines
 from . import options
 from .command import takes_options
-from .folder import claim_folder
 from .options import settings
+from .outputs import claim_folder
 from .problem import Problem, given_options, refuse_options_of_engines, restated
 from .suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
 
@@ -134,9 +134,9 @@ def compare(
                     rr.require_runnable(each, run)
             trajectories = external.read(cases)
         if suite is None:
-            print(*describe(cases[0]), sep="\n")
+            echo(describe(cases[0]))
         else:
-            print(*describe_suite(suite, cases, runs), sep="\n")
+            echo(describe_suite(suite, cases, runs))
         if engine == [options.ALL]:
             for reason in unable_engines(cases):
                 complain(reason)
@@ -234,6 +234,7 @@ def simulate(
             named = None if engine == options.NO_ENGINE else engine
             run = _with_settings(case, rw.Run(named, support, time_step), setting, dataclasses.asdict(model))
             rr.require_runnable(case, run)
+        echo([*record_lines([case.motion]), *case_warnings([case])])
         with user_input(), shown_progress() as progress:
             found = single_run(
                 case, run, answer=restated(context, "advise", also=("support",)), progress=progress
@@ -299,6 +300,7 @@ def advise(
             case = problem.case()
             run = _run(case, engine, plan.support, time_step)
             claim_folder(context)
+        echo([*record_lines([case.motion]), *case_warnings([case])])
         with shown_progress("stages") as progress:
             found = rw.advise(
                 case,

@@ -2,6 +2,8 @@
 
     python reports/published/remake.py               # all of it, some three hours on two cores
     python reports/published/remake.py tradeoff paper
+    python reports/published/remake.py --redraw      # draw pages and figures again from their tables
+    python reports/published/remake.py --check       # is anything damaged, or said without a table?
     python reports/published/remake.py --trim        # leave out what is not kept, without any run
     python reports/published/remake.py --age         # what has changed since in the code that they rest on
 
@@ -22,7 +24,9 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from rockwobble.compare.storage.manifest import MANIFEST, read_manifests
+from rockwobble.compare.storage.manifest import MANIFEST, Manifest, file_state, read_manifests
+from rockwobble.compare.storage.provenance import code_digests
+from rockwobble.reports.pages import KINDS, stored_page
 
 HERE = Path(__file__).parent
 
@@ -190,8 +194,109 @@ def _commits_since(commit: str, folder: str) -> int:
     return int(done.stdout)
 
 
+# a number on a page; digits that belong to a name, a colour or a version are compared, too, and do no harm
+_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+def manifests(place: Path = HERE) -> list[tuple[Path, Manifest]]:
+    """Return the folders of results below `place`, each with the manifest of every kind that it holds."""
+    folders = sorted(path.parent for path in place.rglob(MANIFEST))
+    return [(folder, each) for folder in folders for each in read_manifests(folder)]
+
+
+def _is_whole(folder: Path, made: Manifest) -> bool:
+    return made.kind in KINDS and all(file_state(folder, made, name) == "whole" for name in made.files)
+
+
+def faults(place: Path = HERE) -> list[str]:
+    """Return what is damaged below `place`, and what its pages say that their tables do not bear out."""
+    rows = []
+    for folder, made in manifests(place):
+        name = f"{folder.relative_to(place).as_posix()} ({made.kind})"
+        if len(made.commit) != 40:  # no "+" either: the code was as committed
+            rows.append(f"{name}: was not made by committed code")
+        rows += [
+            f"{name}: {each} is damaged" for each in made.files if file_state(folder, made, each) == "damaged"
+        ]
+        pages = [path for each in made.pages if (path := folder / each).suffix == ".md" and path.exists()]
+        if any(file_state(folder, made, each) == "missing" for each in made.files):
+            rows += [
+                f"{name}: {page.name} does not give the command that makes what is not kept"
+                for page in pages
+                if f"`{made.command}`" not in page.read_text(encoding="utf-8")
+            ]
+        if extra := _numbers_not_borne_out(folder, made):
+            rows.append(f"{name}: its page says {', '.join(extra)}, its tables do not; --redraw mends it")
+    rows += [
+        f"{path.relative_to(place)}: larger than {LARGEST} bytes, a command makes it again"
+        for path in place.rglob("*.parquet")
+        if path.stat().st_size > LARGEST
+    ]
+    return rows
+
+
+def _today(folder: Path, made: Manifest) -> tuple[str, str] | None:
+    """Return the stored words of a page and those of today, or None where today's code cannot draw it."""
+    if not _is_whole(folder, made):
+        return None
+    try:
+        page = stored_page(made.kind, folder)
+        return (folder / f"{page.name}.md").read_text(encoding="utf-8"), page.markdown()
+    except (KeyError, TypeError, AttributeError, ValueError):  # of older code: the report says so
+        return None
+
+
+def _numbers_not_borne_out(folder: Path, made: Manifest) -> list[str]:
+    words = _today(folder, made)
+    if words is None:
+        return []
+    stored, today = (Counter(_NUMBER.findall(each)) for each in words)
+    return sorted(stored.keys() - today.keys())
+
+
+def ages(place: Path = HERE) -> list[str]:
+    """Return what is older than the code: no fault, `remake.py NAME` makes it again."""
+    current, rows = code_digests(), []
+    for folder, made in manifests(place):
+        name = f"{folder.relative_to(place).as_posix()} ({made.kind})"
+        if older := sorted(part for part in made.code if made.code[part] != current[part]):
+            rows.append(f"{name}: older than {', '.join(older)}")
+        if _is_whole(folder, made):
+            words = _today(folder, made)
+            if words is None:
+                rows.append(f"{name}: today's pages ask for more than its tables hold")
+            elif words[0] != words[1]:
+                rows.append(f"{name}: today's page has other words; --redraw writes them")
+    return rows
+
+
+def check() -> int:
+    """Print what is older than the code and what is wrong; return 1 where something is wrong."""
+    for row in ages():
+        print(row)
+    wrong = faults()
+    for row in wrong:
+        print(f"FAULT {row}")
+    print(f"{len(manifests())} results, {len(wrong)} faults")
+    return 1 if wrong else 0
+
+
+def redraw() -> None:
+    """Draw the pages again of what has all its tables."""
+    for folder in dict.fromkeys(folder for folder, made in manifests() if _is_whole(folder, made)):
+        words = ["report", str(folder)]
+        subprocess.run([sys.executable, "-m", "rockwobble", *words], cwd=HERE, check=True)
+        trim(folder)
+    compact_all()
+
+
 def main() -> int:
     """Run the commands of the studies that are named, or of all."""
+    if "--check" in sys.argv:
+        return check()
+    if "--redraw" in sys.argv:
+        redraw()
+        return 0
     if "--trim" in sys.argv:
         for folder in STUDIES:
             trim(HERE / folder, only=CONTROLS.get(folder))
@@ -219,14 +324,14 @@ def main() -> int:
             continue
         begin = time.monotonic()
         print(f"=== {folder}: rockwobble {command}", flush=True)
-        words = [*shlex.split(command), "--out", folder]
+        words = [*shlex.split(command), "--out", folder, "--overwrite"]
         subprocess.run([sys.executable, "-m", "rockwobble", *words], cwd=HERE, check=True)
         trim(HERE / folder, only=CONTROLS.get(folder))
         compact_all()
         print(f"=== {folder}: {time.monotonic() - begin:.0f} s", flush=True)
     (HERE / "certificates").mkdir(exist_ok=True)
     for name, command in CERTIFICATES.items():
-        words = [*command.split(), "--out", f"certificates/{name}.json"]
+        words = [*command.split(), "--out", f"certificates/{name}.json", "--overwrite"]
         subprocess.run([sys.executable, "-m", "rockwobble", *words], cwd=HERE, check=True)
     return 0
 

@@ -1,90 +1,77 @@
-"""What is published says what its tables hold, was made by committed code, and by code that does the same."""
+"""The check of what is published finds damage and words without a table; the guide states its limits."""
 
 from __future__ import annotations
 
 import json
+import runpy
+import shutil
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 import pytest
 
 from rockwobble.compare.certificate.verdict import CHANGED
-from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests
-from rockwobble.compare.storage.provenance import code_digests
 from rockwobble.compare.studies.validity.limits import needs
 from rockwobble.compare.studies.validity.study import Validity
 from rockwobble.models.diagnostic import CODES, parted
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.pages import KINDS, stored_page
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
-LARGEST = 200_000  # [bytes] of a table, as in remake.py
-FOLDERS = sorted(path.parent for path in PUBLISHED.rglob(MANIFEST))
-WHOLE = [
-    (folder, each.kind)
-    for folder in FOLDERS
-    for each in read_manifests(folder)
-    if each.kind in KINDS and all(file_state(folder, each, name) == "whole" for name in each.files)
-]
+STUDY = "extremes"
 
 
 def name_of(value: object) -> str:
     return value.relative_to(PUBLISHED).as_posix() if isinstance(value, Path) else str(value)
 
 
-def test_every_study_is_published_and_most_of_them_whole() -> None:
-    kinds = {each.kind for folder in FOLDERS for each in read_manifests(folder)}
-    studies = set(KINDS) - {"run", "sweep", "view"}
-    assert kinds == studies
-    # these lack their samples or cells, which are large
-    assert {kind for _, kind in WHOLE} == studies - {"comparison", "overturning spectrum", "paper"}
+@pytest.fixture(scope="module")
+def remake() -> dict[str, Any]:
+    return runpy.run_path(str(PUBLISHED / "remake.py"))
 
 
-@pytest.mark.parametrize("folder", FOLDERS, ids=name_of)
-def test_it_was_made_by_committed_code_and_nothing_is_damaged(folder: Path) -> None:
-    for each in read_manifests(folder):
-        assert len(each.commit) == 40  # and no "+": the code was as committed
-        assert [name for name in each.files if file_state(folder, each, name) == "damaged"] == []
-        assert each.headline
+@pytest.fixture
+def copy(tmp_path: Path, remake: dict[str, Any]) -> Path:
+    """A published study whose page has today's words, as `--redraw` leaves it."""
+    shutil.copytree(PUBLISHED / STUDY, tmp_path / STUDY)
+    with pytest.raises(SystemExit):
+        main(["report", str(tmp_path / STUDY)])
+    remake["trim"](tmp_path / STUDY)
+    return tmp_path
 
 
-def test_what_is_not_kept_is_made_by_the_command_of_its_page() -> None:
-    silent = []
-    for folder in FOLDERS:
-        for each in read_manifests(folder):
-            lacking = [name for name in each.files if file_state(folder, each, name) == "missing"]
-            pages = [path for name in each.pages if (path := folder / name).suffix == ".md" and path.exists()]
-            if lacking:
-                silent += [
-                    path for path in pages if f"`{each.command}`" not in path.read_text(encoding="utf-8")
-                ]
-    assert silent == []
-    large = [path for path in PUBLISHED.rglob("*.parquet") if path.stat().st_size > LARGEST]
-    assert large == []
+def test_what_is_redrawn_is_sound(remake: dict[str, Any], copy: Path) -> None:
+    assert remake["faults"](copy) == []
+    assert not any("words" in row for row in remake["ages"](copy))
 
 
-def test_all_studies_are_of_one_commit() -> None:
-    made = [each for folder in FOLDERS for each in read_manifests(folder)]
-    # releases of engines are measured in environments of their own, by a script
-    assert len({each.commit for each in made if each.kind != "engine versions"}) == 1
+def test_a_damaged_table_is_found(remake: dict[str, Any], copy: Path) -> None:
+    table = next((copy / STUDY).glob("*.parquet"))
+    content = bytearray(table.read_bytes())
+    content[len(content) // 2] ^= 1
+    table.write_bytes(content)
+    assert any(f"{table.name} is damaged" in row for row in remake["faults"](copy))
 
 
-@pytest.mark.parametrize("folder", FOLDERS, ids=name_of)
-def test_it_is_not_older_than_the_code_that_it_rests_on(folder: Path) -> None:
-    current = code_digests()
-    older = {
-        name for each in read_manifests(folder) for name in each.code if each.code[name] != current[name]
-    }
-    if older:  # no error: the certificates below say whether results move
-        pytest.xfail(f"{name_of(folder)} is older than {', '.join(sorted(older))}; remake.py makes it again")
+def test_a_number_that_its_table_does_not_hold_is_found(remake: dict[str, Any], copy: Path) -> None:
+    page = copy / STUDY / "extremes.md"
+    page.write_text(page.read_text() + "\nAnd 0.98765 of all runs stand.\n")
+    assert any("its page says 0.98765" in row for row in remake["faults"](copy))
 
 
-@pytest.mark.parametrize(("folder", "kind"), WHOLE, ids=name_of)
-def test_its_words_are_what_its_tables_say_today(folder: Path, kind: str) -> None:
-    page = stored_page(kind, folder)
-    words = page.markdown()
-    assert r"\*" not in words  # emphasis that would be read as asterisks
-    assert (folder / f"{page.name}.md").read_text(encoding="utf-8") == words
+def test_another_sentence_is_no_fault_but_reported(remake: dict[str, Any], copy: Path) -> None:
+    page = copy / STUDY / "extremes.md"
+    page.write_text(page.read_text() + "\nA sentence of yesterday.\n")
+    assert remake["faults"](copy) == []
+    assert any("other words" in row for row in remake["ages"](copy))
+
+
+def test_results_of_code_that_was_not_committed_are_found(remake: dict[str, Any], copy: Path) -> None:
+    path = copy / STUDY / "manifest.json"
+    stated = json.loads(path.read_text())
+    stated["commit"] += "+"
+    path.write_text(json.dumps(stated))
+    assert any("committed" in row for row in remake["faults"](copy))
 
 
 @pytest.mark.parametrize("path", sorted(PUBLISHED.rglob("*.parquet")), ids=name_of)

@@ -1,9 +1,10 @@
-"""The folder of a command: claimed for what the command was asked for, until it ends."""
+"""Outputs of a command: a folder or file that holds what another command has made is refused."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+import json
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 # options that change no number of the results
 _NOT_OF_PLAN = {"out", "overwrite", "workers", "scheduler", "chunk", "details", "opened"}
-_NOT_OF_PLAN |= {"json", "junit", "markdown"}
+_NOT_OF_PLAN |= {"json", "junit", "markdown", "place"}
 
 
 def claim_folder(context: typer.Context) -> None:
@@ -65,6 +66,48 @@ def plan_of(context: typer.Context) -> str:
     if isinstance(suite := context.params.get("suite"), str):
         stated["suite"] = _suite(suite)
     return fingerprint({"command": context.info_name, "options": stated})
+
+
+def require_own_file(option: str, path: Path, plan: str, plan_in: Callable[[bytes], str | None]) -> None:
+    """Refuse a file that would be replaced and is of another plan.
+
+    Parameters
+    ----------
+    option : str
+        That names the file.
+    path : Path
+    plan : str
+        Hash of the plan.
+    plan_in : callable
+        Returns the hash in such a file, empty where it states none; None or a ValueError for another kind.
+
+    Raises
+    ------
+    ValueError
+        If it holds something else, or cannot be written.
+    """
+    from rockwobble.compare.storage.files import require_file
+
+    require_file(option, path)
+    if not path.is_file() or not (content := path.read_bytes()):
+        return
+    try:
+        there = plan_in(content)
+    except (ValueError, AttributeError):
+        there = None
+    if there not in ("", plan):
+        what = "something else" if there is None else "what this command has made with other options"
+        raise ValueError(f"{option} {path} holds {what}: name another file, or replace it by --overwrite")
+
+
+def plan_in_json(keys: Collection[str]) -> Callable[[bytes], str | None]:
+    """Return what finds the hash of a plan in JSON that has these keys, see `require_own_file`."""
+
+    def plan_in(content: bytes) -> str | None:
+        found = json.loads(content)
+        return str(found.get("plan", "")) if {*keys} <= {*found} else None
+
+    return plan_in
 
 
 def _suite(name: str) -> object:

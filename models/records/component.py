@@ -1,0 +1,205 @@
+"""Files of records as their readers see them, and the components that readers return."""
+
+from __future__ import annotations
+
+import codecs
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Direction = Literal["x", "y", "z"]
+"""Of a component: x east, y north, z up."""
+
+_UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)  # what spreadsheets call "Unicode text"
+# the largest of the networks are below 50 MB; what is larger is another file by mistake
+LARGEST_FILE = 200_000_000  # [bytes]
+# 1 g is 9.81 m/s^2, the default gravity of every model here, so that a/g stays what the file says
+METRES_PER_SECOND_SQUARED = {"g": 9.81, "m/s2": 1.0, "cm/s2": 0.01}
+UNITS = tuple(METRES_PER_SECOND_SQUARED)
+STEP_OPTION = "--record-step (time_step=)"
+_SAME_STEP = 3e-3  # relative: 0.0167 for 1/60
+_END_OF_FILE = b"\x1a"  # Ctrl-Z of DOS
+_HEAD = 60  # lines; the longest headers of the networks have 55
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReadingOptions:
+    """What the user says of a file where the file may not.
+
+    Attributes
+    ----------
+    units : str or None
+        One of `UNITS`; readers leave the unit of a silent file None, and `files` fills it in.
+    columns : tuple of str
+        Names or numbers of the columns of time, x, y and z, in this order; for files of columns.
+    time_step : float or None
+        Of a file that gives none [s]; one that gives another is refused, see `settled_step`.
+    """
+
+    units: str | None = None
+    columns: tuple[str, ...] = ()
+    time_step: float | None = None
+
+    def settled_step(self, name: str, stated: float | None) -> float:
+        """Return the time step of a file [s]: the one it states, or the one that the user gives.
+
+        Parameters
+        ----------
+        name : str
+            Of the file, for messages.
+        stated : float or None
+            Time step that the file states [s].
+
+        Raises
+        ------
+        ValueError
+            If there is neither, or the two differ.
+        """
+        if stated is None:
+            if self.time_step is None:
+                raise ValueError(f"{name} has no times and states no time step: give it [s] by {STEP_OPTION}")
+            return self.time_step
+        if self.time_step is not None and abs(stated - self.time_step) > _SAME_STEP * stated:
+            raise ValueError(
+                f"{name} has a time step of {stated:g} s, but {STEP_OPTION} is {self.time_step:g} s"
+            )
+        return stated
+
+
+@dataclass(frozen=True)
+class RecordFile:
+    """A file of a record, read once: its bytes, and its lines where it is text.
+
+    Attributes
+    ----------
+    path : Path
+    content : bytes
+    """
+
+    path: Path
+    content: bytes = field(repr=False)
+
+    @property
+    def name(self) -> str:
+        """Name of the file, as messages begin."""
+        return self.path.name
+
+    @cached_property
+    def lines(self) -> tuple[str, ...] | None:
+        """Lines without their ends; None where the file is binary: it holds null bytes."""
+        if b"\0" in self.content:
+            return None
+        content = self.content.rstrip(b" \t\r\n" + _END_OF_FILE)
+        try:  # utf-8-sig drops the byte-order mark that spreadsheets write
+            text = content.decode("utf-8-sig")
+        except UnicodeDecodeError:  # an older file, whose m/s² is one byte shorter
+            text = content.decode("cp1252", errors="replace")
+        return tuple(text.splitlines())
+
+    @property
+    def text(self) -> tuple[str, ...]:
+        """Lines of a file that is text.
+
+        Raises
+        ------
+        ValueError
+            If it is binary.
+        """
+        if self.lines is None:
+            raise ValueError(f"the record {self.path} is no text: it holds null bytes")
+        return self.lines
+
+    @cached_property
+    def head(self) -> tuple[str, ...]:
+        """First lines in capitals, cut to 200 characters: what tells a format; empty for a binary file."""
+        return tuple(line[:200].upper() for line in (self.lines or ())[:_HEAD])
+
+
+def open_record(path: Path) -> RecordFile:
+    """Read the bytes of a file.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read, is empty, no regular file, text in UTF-16, or beyond 200 MB.
+    """
+    try:
+        content = _bytes(path)
+    except (OSError, ValueError) as error:  # ValueError: also for a null byte in the name
+        reason = getattr(error, "strerror", None) or error
+        raise ValueError(f"cannot read the record {path}: {reason}") from None
+    if content.startswith(_UTF16):
+        raise ValueError(f"the record {path} is text in UTF-16: save it as UTF-8 or plain text")
+    file = RecordFile(path, content)
+    if not content or (file.lines is not None and not any(line.strip() for line in file.lines)):
+        raise ValueError(f"the record {path} is empty")
+    return file
+
+
+def _bytes(path: Path) -> bytes:
+    if path.is_char_device():
+        raise ValueError("it is a device, which may never end")
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise ValueError("it is a pipe or a socket, which may never end")
+    size = path.stat().st_size
+    if size > LARGEST_FILE:
+        raise ValueError(f"it has {size / 1e6:.0f} MB, allowed are {LARGEST_FILE / 1e6:.0f}")
+    return path.read_bytes()
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Component:
+    """Samples of one component, in the unit that the file states.
+
+    Parameters
+    ----------
+    path : Path
+        The file, for messages.
+    values : ndarray, shape (n,)
+        Acceleration [`unit`]; n >= 2, finite.
+    time_step : float
+        [s]
+    unit : str or None
+        One of `UNITS`; None where the file is silent.
+    start : float or None
+        Time of the first sample [s]; None where the file gives no times.
+    format : str
+        NAME of the reader.
+    label : str
+        Column or channel as the file names it; empty where it has no name.
+    direction : "x", "y", "z" or None
+        East, north or up, where the file says so.
+    azimuth : float or None
+        Of the positive sense, where the file gives one [deg, clockwise from north].
+    notes : tuple of str
+        How the file was read where that is not plain, such as "mean of 12 gal removed by the network".
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two samples, or the time step is not positive and finite.
+    """
+
+    path: Path
+    values: NDArray[np.float64]
+    time_step: float
+    unit: str | None
+    start: float | None = None
+    format: str = ""
+    label: str = ""
+    direction: Direction | None = None
+    azimuth: float | None = None
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if len(self.values) < 2:
+            raise ValueError(f"{self.path.name} must hold at least two samples, got {len(self.values)}")
+        if not 0.0 < self.time_step < math.inf:
+            raise ValueError(
+                f"{self.path.name}: the time step must be positive and finite [s], got {self.time_step:g}"
+            )

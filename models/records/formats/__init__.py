@@ -1,0 +1,114 @@
+"""Formats of record files, one a module, behind one protocol.
+
+A reader turns a file into components. It knows nothing of the other files of a record, of directions that the
+user states, of lengths and clocks that must agree: `files` puts components together.
+
+Writing one
+-----------
+Write a module here with the members of `Reader`, and name it in READERS. What it must hold:
+
+* `NAME` is the format as its users call it, printed with every record that was read.
+* `recognizes` looks for what only this format has, mostly in `RecordFile.head` (the first lines in capitals),
+  raises nothing, whatever stands in the file, and takes no more than some microseconds: it is asked of every
+  file. A binary file has no lines; look at `content`.
+* READERS are asked in their order and the first that recognises the file reads it: a format with a signature
+  stands before the readers of columns and of bare values, which take what is left.
+* `read` returns every component that the file holds, in the order of the file, in the unit of the file after
+  its own scale factor (counts times gal per count are gal). It guesses nothing: what the file does not say
+  stays None, and what contradicts itself is refused.
+* Directions are stated where the file states them: x for east, y for north, z for up; `azimuth` where it
+  gives degrees, of the positive sense (the positive sense of a component named W is 270). `label` is the
+  component as the file has it ("HNE", "Chan 2: 90 Deg").
+* `options` are what the user says. A reader of a format that says its own unit leaves `options.units` alone:
+  `files` compares the two.
+* Bad input raises ValueError in one printable line below 250 characters that begins with `file.name`, has
+  the line where there is one, and says what was expected and what stands there.
+* Time grows linearly with the size of the file, also of a damaged one: no pattern that can match in two ways,
+  no text that is cut again for each number. `numbers` reads blocks of numbers, `units` the unit of a header.
+
+A new format is its module, its test in tests/models (a small file of invented values, and each refusal), and
+its line in the table of the page docs/guide/records.md.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from ..component import Component, ReadingOptions, RecordFile
+from . import (
+    afad,
+    at2,
+    bbp,
+    columns,
+    cosmos,
+    csmip,
+    csmnc,
+    cwa,
+    esm,
+    geonet,
+    jma,
+    knet,
+    miniseed,
+    others,
+    sac,
+    smc,
+    values,
+)
+
+
+class Reader(Protocol):
+    """A module that reads one format."""
+
+    NAME: str
+
+    def recognizes(self, file: RecordFile) -> bool:
+        """Return whether a file is of this format."""
+
+    def read(self, file: RecordFile, options: ReadingOptions) -> list[Component]:
+        """Return the components of a file.
+
+        Raises
+        ------
+        ValueError
+            If the file is damaged, or holds something else than accelerations.
+        """
+
+
+# in the order in which they are asked
+READERS: tuple[Reader, ...] = (
+    knet,
+    jma,
+    esm,
+    afad,
+    cwa,
+    geonet,
+    cosmos,
+    others,
+    csmip,
+    csmnc,
+    smc,
+    bbp,
+    miniseed,
+    sac,
+    at2,
+    values,
+    columns,
+)
+
+
+def read_components(file: RecordFile, options: ReadingOptions) -> list[Component]:
+    """Return the components of a file by the first reader that recognises it.
+
+    Raises
+    ------
+    ValueError
+        If no reader does, or its reader refuses it.
+    """
+    for reader in READERS:
+        if reader.recognizes(file) or (reader is values and options.columns == (values.ROW_BY_ROW,)):
+            components = reader.read(file, options)
+            for component in components:  # a step that the user gives must be that of the file
+                options.settled_step(component.path.name, component.time_step)
+            return components
+    file.text  # noqa: B018 - says that the file is binary where it is
+    raise ValueError(f"{file.name} is of no format that is read here")
