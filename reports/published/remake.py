@@ -324,14 +324,14 @@ def main() -> int:
             continue
         begin = time.monotonic()
         print(f"=== {folder}: rockwobble {command}", flush=True)
-        words = [*shlex.split(command), "--out", folder]
+        words = [*shlex.split(command), "--out", folder, "--overwrite"]
         subprocess.run([sys.executable, "-m", "rockwobble", *words], cwd=HERE, check=True)
         trim(HERE / folder, only=CONTROLS.get(folder))
         compact_all()
         print(f"=== {folder}: {time.monotonic() - begin:.0f} s", flush=True)
     (HERE / "certificates").mkdir(exist_ok=True)
     for name, command in CERTIFICATES.items():
-        words = [*command.split(), "--out", f"certificates/{name}.json"]
+        words = [*command.split(), "--out", f"certificates/{name}.json", "--overwrite"]
         subprocess.run([sys.executable, "-m", "rockwobble", *words], cwd=HERE, check=True)
     return 0
 

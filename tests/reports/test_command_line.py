@@ -254,7 +254,8 @@ def test_simulate_says_from_when_on_its_trace_is_one_of_many(folder, in_this_pro
     assert set(about["answer"].split()) == {"rockwobble", "advise", *given}
     words = " ".join(capsys.readouterr().out.split())
     assert f"From {about['until']:.4g} s on, before its largest tilt, a single trace is not" in words
-    assert call("simulate", "--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2") == 0
+    release = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2"]
+    assert call("simulate", *release, "--out", "released") == 0
     assert "not reproducible" not in capsys.readouterr().out
 
 
@@ -289,7 +290,7 @@ def test_nothing_is_ignored_in_silence(folder, monkeypatch, capsys, kind):
 
 
 def result(*arguments: str) -> dict[str, Any]:
-    assert call("simulate", *arguments) == 0
+    assert call("simulate", *arguments, "--overwrite") == 0
     made = json.loads(Path("rockwobble-simulate/manifest.json").read_text())
     return made["about"] | {"inputs": made["inputs"]}
 
