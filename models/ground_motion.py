@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .diagnostic import Diagnostic
-from .number_checks import require_finite, require_positive
+from .number_checks import quoted, require_finite, require_positive
 from .record_source import RecordSource
 from .shown import brief, line
+
+_FULL_TURN = 2.0 * math.pi * (1.0 + 1e-9)  # [rad]; 360 deg may round to more than 2 pi
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -143,13 +145,23 @@ class GroundMotion:
         Parameters
         ----------
         angle : float
-            Counter-clockwise as seen from above [rad].
+            Counter-clockwise as seen from above [rad], from -2 pi to 2 pi.
 
         Returns
         -------
         GroundMotion
+
+        Raises
+        ------
+        ValueError
+            If the angle is no finite number or is beyond a full turn, as one in degrees is.
         """
         angle = require_finite("angle", angle, "rad")
+        if abs(angle) > _FULL_TURN:
+            raise ValueError(
+                f"angle must be from -2 pi to 2 pi [rad], got {quoted(angle)}: if that is in degrees, "
+                f"give math.radians({angle:g})"
+            )
         turned = np.array(self.acceleration)
         x, y = self.acceleration[:, 0], self.acceleration[:, 1]
         turned[:, 0] = x * math.cos(angle) - y * math.sin(angle)
