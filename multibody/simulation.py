@@ -150,6 +150,7 @@ def _simulate(
         release.tilt_rate == 0.0,
         backend.facts.rounding,
         joined=not backend.uplifts,
+        shared_cone=backend.facts.shared_cone,
     )
     means = StepMeans(case.motion, scale, scene.time_step)
     try:
@@ -197,8 +198,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         "wall_impulse": table["wall_impulse"] * scale.length / scale.time,
     }
     if scene.rolling_resistance > 0.0:
-        # all that contact took, of which the part of the couple is not known alone
-        sampled["energy_lost"] = -sampled["energy_error"]
+        sampled["energy_lost"] = table["energy_lost"] * scale.energy
     return Trace(
         time=table["time"] * scale.time,
         tilt=table["tilt"],
@@ -364,6 +364,9 @@ def diagnostics(
     since, share, bound = recorder.energy.remark(end)
     if not math.isnan(since):
         yield Diagnostic(code="energy", time=since * unit_time, size=share, bound=bound)
+        rolled = recorder.last_value("energy_lost") / recorder.energy.largest
+        if rolled > 0.0:
+            yield Diagnostic(code="rolling_loss", size=rolled)
     if recorder.undecided:
         yield Diagnostic(code="undecided", time=end * unit_time)
     if recorder.unsolved:

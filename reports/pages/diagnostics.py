@@ -42,6 +42,7 @@ _WORDS: Mapping[str, str] = {
     "where there is {bound:g}",
     "wall_contact": "the cylinder touched a wall{since}",
     "energy": "contact {made} {amount:.1e} of the energy of the motion, which shows{since}",
+    "rolling_loss": "rolling resistance took {amount:.1e} of it besides",
     "undecided": "it stays so near its balance that rounding or the error of the solution decides whether it "
     "falls or turns back: whether it overturns is not known",
     "solver": "the solver had not converged in {size:.0f} of the {bound:.0f} steps looked at",
