@@ -58,8 +58,6 @@ class Recorder:
         Relative rounding error of the engine.
     joined : bool
         Whether a joint keeps the slab of a frame on the top; a column in contact may hop without it.
-    shared_cone : bool
-        Whether one cone of the engine bounds friction and rolling resistance together.
     """
 
     def __init__(
@@ -71,12 +69,10 @@ class Recorder:
         rounding: float = 2.0**-53,
         *,
         joined: bool = False,
-        shared_cone: bool = False,
     ) -> None:
         body, start = scene.body, scene.start
         self._gains = body.gains if joined else body.gains[:1]
         self._scene, self._samples = scene, samples
-        self._cone = scene.friction if shared_cone else None  # of the couple as well
         self.asked = float(samples[-1])  # end of the run that was asked for, before it was extended [s]
         self.off_grid = False  # whether it is no sample of a run that is extended
         self._watch: UpliftWatch | None = None
@@ -273,7 +269,7 @@ class Recorder:
              force_of_steps(poses, after, ground, scene.time_step, scene.gravity, gain))
             for mass, gain in zip(carried, body.gains, strict=False)
         ]  # fmt: skip
-        power = couple_power(poses, after, forces, scene.rolling_resistance, self._cone)
+        power = couple_power(poses, after, forces, scene.rolling_resistance)
         return self.energy.lost(power)
 
     def _slip(self, time: Array, state: Kinematics) -> Array:

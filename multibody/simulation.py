@@ -150,7 +150,6 @@ def _simulate(
         release.tilt_rate == 0.0,
         backend.facts.rounding,
         joined=not backend.uplifts,
-        shared_cone=backend.facts.shared_cone,
     )
     means = StepMeans(case.motion, scale, scene.time_step)
     try:

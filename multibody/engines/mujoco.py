@@ -45,7 +45,6 @@ _FACTS = EngineFacts(
     smooth_uplift=True,  # its corners turn under the load
     carries_slab=True,
     rolling_friction=True,
-    shared_cone=True,
     contact_time="contact_time_constant",
     alternatives={
         **{
