@@ -83,6 +83,8 @@ _UNKNOWN: Mapping[str, str] = {
     "tension": "contact is lost{at}: a joint holds the rim down",
     "friction_needed": "a joint holds the rim{at}, where the friction of the case would let it slip",
     "unsettled": "the tilt has not settled by halving the step: {why}",
+    "rolling_loss": "rolling resistance took energy besides",
+    "one_column": "the engine runs one column, under a slab that only translates",
 }
 _INFINITE: Mapping[str, str] = {
     "friction_needed": "the rim would slip{at}, for {duration} in all: no friction suffices",
