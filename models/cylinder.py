@@ -98,7 +98,8 @@ class Cylinder(Brief):
     def from_dimensions(
         cls,
         *,
-        base_radius: float,
+        base_radius: float | None = None,
+        diameter: float | None = None,
         height: float,
         mass_centre_height: float | None = None,
         transverse_inertia: float | None = None,
@@ -108,8 +109,8 @@ class Cylinder(Brief):
 
         Parameters
         ----------
-        base_radius : float
-            b [m].
+        base_radius, diameter : float
+            b or 2b [m], one of them.
         height : float
             2h, height of the outline [m].
         mass_centre_height : float, optional
@@ -120,9 +121,15 @@ class Cylinder(Brief):
         Raises
         ------
         ValueError
-            If a value is not a positive finite number.
+            If a value is not a positive finite number, or unless one of base_radius and diameter is given.
         """
-        b = require_positive("base_radius", base_radius, "m")
+        if base_radius is not None and diameter is None:
+            b = require_positive("base_radius", base_radius, "m")
+        elif diameter is not None and base_radius is None:
+            b = 0.5 * require_positive("diameter", diameter, "m")
+        else:
+            pair = "neither" if base_radius is None else "both"
+            raise ValueError(f"base_radius or diameter must be given [m], one of them, got {pair}")
         outline = require_positive("height", height, "m")
         h = 0.5 * outline
         if mass_centre_height is not None:
@@ -161,6 +168,10 @@ class Cylinder(Brief):
         return 0.0
 
 
+# beyond it the columns weigh no more than rounding: the motion is that of a slab alone
+LARGEST_SLAB_MASS_RATIO = 1e15
+
+
 @dataclass(frozen=True, slots=True, repr=False, init=False)
 class WobblingFrame(Cylinder):
     """A rigid slab on equal cylinders that rock and wobble together: a deck on piers, a podium.
@@ -176,13 +187,14 @@ class WobblingFrame(Cylinder):
     slab_mass_ratio : float, optional
         gamma, mass of the slab over that of all columns [-]; 0 is the cylinder alone.
     columns : int, optional
-        Number of columns: three or more, or 1 for a slab that is held from turning.
+        Number of columns: three or more, or 1 for a slab that is held from turning. Engines run one
+        column under a slab that only translates, whatever the number, and say so ("one_column").
 
     Raises
     ------
     ValueError
-        If the ratio is negative or not finite, the columns are no whole number or too few to carry
-        a slab, or the cylinder is itself a frame or has its mass centre elsewhere.
+        If the ratio is negative or above `LARGEST_SLAB_MASS_RATIO`, the columns are no whole number or too
+        few to carry a slab, or the cylinder is itself a frame or has its mass centre elsewhere.
 
     Examples
     --------
@@ -205,8 +217,10 @@ class WobblingFrame(Cylinder):
                 f"{cylinder.mass_centre_height:g} of {2.0 * cylinder.half_height:g} m"
             )
         ratio = require_finite("slab_mass_ratio", slab_mass_ratio, "")
-        if ratio < 0.0:
-            raise ValueError(f"slab_mass_ratio must not be negative, got {slab_mass_ratio!r}")
+        if not 0.0 <= ratio <= LARGEST_SLAB_MASS_RATIO:
+            raise ValueError(
+                f"slab_mass_ratio must be from 0 to {LARGEST_SLAB_MASS_RATIO:g}, got {slab_mass_ratio!r}"
+            )
         whole = isinstance(columns, Real) and float(columns).is_integer() and not isinstance(columns, bool)
         if not whole or columns < 1 or columns == 2:
             raise ValueError(

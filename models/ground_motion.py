@@ -8,8 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .number_checks import require_finite, require_positive
+from .diagnostic import Diagnostic
+from .number_checks import quoted, require_finite, require_positive
+from .record_source import RecordSource
 from .shown import brief, line
+
+_FULL_TURN = 2.0 * math.pi * (1.0 + 1e-9)  # [rad]; 360 deg may round to more than 2 pi
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -24,6 +28,9 @@ class GroundMotion:
         Spacing of the samples [s].
     name : str, optional
         For tables and figures.
+    source : RecordSource, optional
+        Files, columns and units that it was read from, and what was done to it since. Of no account when
+        motions are compared.
 
     Raises
     ------
@@ -43,8 +50,11 @@ class GroundMotion:
     acceleration: NDArray[np.float64]
     time_step: float
     name: str = ""
+    source: RecordSource | None = None
 
-    def __init__(self, acceleration: ArrayLike, time_step: float, name: str = "") -> None:
+    def __init__(
+        self, acceleration: ArrayLike, time_step: float, name: str = "", source: RecordSource | None = None
+    ) -> None:
         if isinstance(acceleration, np.ndarray) and np.iscomplexobj(acceleration):
             # numpy would drop the imaginary part
             raise ValueError(f"acceleration must be real numbers, got {acceleration.dtype} numbers")
@@ -67,6 +77,7 @@ class GroundMotion:
         object.__setattr__(self, "acceleration", samples)
         object.__setattr__(self, "time_step", require_positive("time_step", time_step, "s"))
         object.__setattr__(self, "name", str(name))
+        object.__setattr__(self, "source", source)
 
     def __repr__(self) -> str:
         count, components = self.acceleration.shape
@@ -84,7 +95,17 @@ class GroundMotion:
 
     def __reduce__(self) -> tuple[object, ...]:
         # a copy or a worker process must not get a writable array
-        return GroundMotion, (self.acceleration, self.time_step, self.name)
+        return GroundMotion, (self.acceleration, self.time_step, self.name, self.source)
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What makes a record improbable as it was read, see `RecordSource.doubts`; none without a source."""
+        return self.source.doubts if self.source else ()
+
+    @property
+    def synthetic(self) -> bool:
+        """Whether it says that nobody recorded it: a synthetic motion, or a pulse."""
+        return self.source is not None and self.source.synthetic
 
     @property
     def duration(self) -> float:
@@ -116,7 +137,7 @@ class GroundMotion:
         factor = require_finite("factor", factor, "")
         with np.errstate(over="ignore"):  # the constructor refuses what is not finite
             scaled = self.acceleration * factor
-        return GroundMotion(scaled, self.time_step, self.name)
+        return self if factor == 1.0 else self.changed(scaled, f"scaled by {factor:.6g}")
 
     def rotated(self, angle: float) -> GroundMotion:
         """Return the motion turned by `angle` [rad] about the vertical, counter-clockwise from above.
@@ -124,15 +145,42 @@ class GroundMotion:
         Parameters
         ----------
         angle : float
-            Counter-clockwise as seen from above [rad].
+            Counter-clockwise as seen from above [rad], from -2 pi to 2 pi.
+
+        Returns
+        -------
+        GroundMotion
+
+        Raises
+        ------
+        ValueError
+            If the angle is no finite number or is beyond a full turn, as one in degrees is.
+        """
+        angle = require_finite("angle", angle, "rad")
+        if abs(angle) > _FULL_TURN:
+            raise ValueError(
+                f"angle must be from -2 pi to 2 pi [rad], got {quoted(angle)}: if that is in degrees, "
+                f"give math.radians({angle:g})"
+            )
+        turned = np.array(self.acceleration)
+        x, y = self.acceleration[:, 0], self.acceleration[:, 1]
+        turned[:, 0] = x * math.cos(angle) - y * math.sin(angle)
+        turned[:, 1] = x * math.sin(angle) + y * math.cos(angle)
+        return self.changed(turned, f"rotated by {math.degrees(angle):.6g} deg")
+
+    def changed(self, acceleration: ArrayLike, change: str) -> GroundMotion:
+        """Return a motion of the same name, time step and source with other samples.
+
+        Parameters
+        ----------
+        acceleration : array_like, shape (n, 2) or (n, 3)
+            [m/s^2]
+        change : str
+            What was done to it, for its source: "cut to 10 s".
 
         Returns
         -------
         GroundMotion
         """
-        angle = require_finite("angle", angle, "rad")
-        turned = np.array(self.acceleration)
-        x, y = self.acceleration[:, 0], self.acceleration[:, 1]
-        turned[:, 0] = x * math.cos(angle) - y * math.sin(angle)
-        turned[:, 1] = x * math.sin(angle) + y * math.cos(angle)
-        return GroundMotion(turned, self.time_step, self.name)
+        source = self.source and self.source.changed(change)
+        return GroundMotion(acceleration, self.time_step, self.name, source)

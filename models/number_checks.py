@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .shown import brief
 
+MOST_SAMPLES = 10_000_000  # of one trace: some gigabytes
 _MOST = 70  # characters of a value that is quoted
 
 
@@ -33,6 +34,23 @@ def require_finite(name: str, value: float, unit: str) -> float:
     return number
 
 
+def require_sample_step(sample_step: float, duration: float) -> float:
+    """Return the spacing of samples [s], or raise ValueError unless `MOST_SAMPLES` cover the duration.
+
+    Parameters
+    ----------
+    sample_step, duration : float
+        [s]
+    """
+    step = require_positive("sample_step", sample_step, "s")
+    if not duration <= MOST_SAMPLES * step:
+        raise ValueError(
+            f"sample_step must be at least {duration / MOST_SAMPLES:.3g} s over {duration:g} s "
+            f"({MOST_SAMPLES:,} samples at most), got {quoted(sample_step)}"
+        )
+    return step
+
+
 def require_increasing(name: str, values: ArrayLike) -> NDArray[np.float64]:
     """Return a read-only array (n,), or raise ValueError unless it is positive, finite and increasing."""
     found = np.array(values, dtype=np.float64)
@@ -48,6 +66,21 @@ def require_one_of(name: str, value: object, allowed: Iterable[str]) -> None:
     words = tuple(allowed)
     if value not in words:
         raise ValueError(f"{name} must be one of {', '.join(words)}, got {quoted(value)}")
+
+
+def require_kind(name: str, value: object, kind: type) -> None:
+    """Raise ValueError unless a value is of a kind."""
+    if not isinstance(value, kind):
+        raise ValueError(f"{name} must be of kind {kind.__name__}, got {quoted(value)}")  # noqa: TRY004 - bad input is a ValueError
+
+
+def require_each(name: str, values: object, kind: type) -> None:
+    """Raise ValueError unless a value is a sequence whose members are all of a kind."""
+    if isinstance(values, str | bytes) or not isinstance(values, Sequence):
+        raise ValueError(f"{name} must be a sequence of {kind.__name__}, got {quoted(values)}")  # noqa: TRY004
+    for value in values:
+        if not isinstance(value, kind):
+            raise ValueError(f"{name} must be a sequence of {kind.__name__}, got {quoted(value)} in it")  # noqa: TRY004
 
 
 def quoted(value: object) -> str:

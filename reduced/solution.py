@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Assumptions, Diagnostic
+from rockwobble.models import CLOSED_TILT, Assumptions, Diagnostic
 from rockwobble.models.shown import Brief
 from rockwobble.models.trace_source import Array, friction_of
 
@@ -31,13 +31,13 @@ _ROUNDS = 5  # each looks eight times closer, so that a parabola is off by 8^-8 
 
 
 class Demands(NamedTuple):
-    """Demands of a solution at n times; standing included, where nothing is asked."""
+    """Demands of a solution at n times; those with a closed base included, where nothing is asked."""
 
     normal: Array  # (n,) least normal force in weights
     load: Array  # (n,) largest normal force in weights
     friction: Array  # (n,) horizontal over normal force; inf where the normal force is not positive
     moment: Array  # (n,) the restraining one, over the weight [m]
-    moving: NDArray[np.bool_]  # (n,)
+    open_base: NDArray[np.bool_]  # (n,) moving, at a tilt of CLOSED_TILT alpha or more
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -145,7 +145,10 @@ class Solution(Brief):
         )
 
     def assumptions(self, until: float) -> Assumptions:
-        """Return whether contact and friction held until a time [s]; solved again, between its steps too."""
+        """Return whether contact and friction held until a time [s]; solved again, between its steps too.
+
+        From a tilt of `CLOSED_TILT` alpha on.
+        """
         result, _ = self.problem.solve(np.empty(0), record_steps=True)
         end = [min(result.end, until)]
         steps = np.concatenate([[0.0], result.steps[:, 0], self.rest_intervals[:, 0], end])
@@ -163,7 +166,9 @@ class Solution(Brief):
         if top is not None:  # whichever end asks for more
             least, largest = np.minimum(least, top[:, 2]), np.maximum(largest, top[:, 2])
             friction = np.maximum(friction, friction_of(top))
-        return Demands(least, largest, friction, derived[:, forces.MOMENT], result.moving[:reached])
+        opens = result.samples[:reached, 0] >= CLOSED_TILT * self.problem.body.alpha
+        open_base = result.moving[:reached] & opens
+        return Demands(least, largest, friction, derived[:, forces.MOMENT], open_base)
 
     def _derive(self, times: Array, states: Array) -> tuple[Array, Array | None]:
         """Return the derived quantities (n, 6), and in a frame the force on the slab (n, 3)."""
@@ -177,7 +182,8 @@ class Solution(Brief):
         if problem.case.cylinder.slab_mass_ratio == 0.0:
             return derived, None
         base = derived[:, forces.FORCE_X : forces.FORCE_Z + 1]
-        return derived, forces.top_force(problem.body, base, ground)
+        gamma = problem.case.cylinder.slab_mass_ratio
+        return derived, forces.top_force(problem.body, base, ground, states, gamma)
 
 
 def six_columns(states: Array, azimuth: float) -> Array:
@@ -212,12 +218,12 @@ def review(
     parts = max(_LEAST_PARTS, min(_PARTS, _MOST_TIMES // len(edges)))
     times = np.unique(_divided(edges, parts))
     found = demands_at(times)
-    if not found.moving.any():
+    if not found.open_base.any():
         return Assumptions(friction=friction)
 
     def slips(found: Demands) -> NDArray[np.bool_]:
         # where contact is lost it is that which is said
-        return found.moving & (found.normal > 0.0) & (found.friction > friction)
+        return found.open_base & (found.normal > 0.0) & (found.friction > friction)
 
     def largest(quantity: Callable[[Demands], Array]) -> tuple[float, float]:
         return _largest(quantity, demands_at, times, found)
@@ -255,7 +261,7 @@ def _need(found: Demands) -> Array:
 
 
 def _lost(found: Demands) -> NDArray[np.bool_]:
-    return found.moving & (found.normal <= 0.0)
+    return found.open_base & (found.normal <= 0.0)
 
 
 def _breach(
@@ -288,10 +294,10 @@ def _largest(
     times: Array,
     found: Demands,
 ) -> tuple[float, float]:
-    """Return the largest value in motion, looked for ever closer about that at `times`, and its time."""
+    """Return the largest value of an open base, sought ever closer about that at `times`, and its time."""
     best, when = -math.inf, math.nan
     for _ in range(_ROUNDS):
-        values = np.where(found.moving, quantity(found), -math.inf)
+        values = np.where(found.open_base, quantity(found), -math.inf)
         at = int(values.argmax())
         if not values[at] <= best:
             best, when = float(values[at]), float(times[at])

@@ -80,6 +80,16 @@ def _recess_derivative(body: Body, y: State, a: Vector) -> State:
     return y[1], free + tilting / body.A, phi_rate, torque - s * turning, power, 0.0
 
 
+@inlined
+def _drift(body: Body, phi: float, tau_rate: float) -> tuple[float, float]:
+    """Return the velocity of the centre of the circle that the rim rolls on [m/s].
+
+    Whatever the body does, a rim that rolls leaves its contact where the twist does.
+    """
+    sin_phi, cos_phi = sin_cos(phi)
+    return body.b * tau_rate * sin_phi, -body.b * tau_rate * cos_phi
+
+
 @jit
 def _flat_derivative(body: Body, y: State, a: Vector) -> State:
     omega, free, phi_rate, Lambda_rate, tau_rate, S_rate = flat_rhs(
@@ -90,14 +100,14 @@ def _flat_derivative(body: Body, y: State, a: Vector) -> State:
     if y[9] == PIVOTS:
         tilting, turning = needed_to_stand(body, y[0], y[2], tau_rate, body.g + a[2], a, True)
         S_rate += twist_share(body, s, c) * turning
-        return 0.0, 0.0, tau_rate, Lambda_rate - s * turning, tau_rate, S_rate, 0.0, 0.0, 0.0, 0.0
+        X_rate, Y_rate = _drift(body, y[2], tau_rate)
+        return 0.0, 0.0, tau_rate, Lambda_rate - s * turning, tau_rate, S_rate, X_rate, Y_rate, 0.0, 0.0
     if omega == 0.0:
         tilting, turning = couple_on(body, y[0], omega, y[2], spin, tau_rate, free, a, True)
         power = -s * spin * turning
     else:
         tilting, turning, power = couple(body, s, c, omega, spin, free, a[2], y[9])
-    sin_phi, cos_phi = sin_cos(y[2])
-    drift = body.b * tau_rate
+    X_rate, Y_rate = _drift(body, y[2], tau_rate)
     return (
         omega,
         free + tilting / body.A,
@@ -105,8 +115,8 @@ def _flat_derivative(body: Body, y: State, a: Vector) -> State:
         Lambda_rate - s * turning,
         tau_rate,
         S_rate + twist_share(body, s, c) * turning,
-        drift * sin_phi,
-        -drift * cos_phi,
+        X_rate,
+        Y_rate,
         power,
         0.0,
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -13,15 +13,15 @@ import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
-import rockwobble.compare.storage as rs
 from rockwobble.compare.studies.plans import Copies, FragilityPlan, SpectrumPlan
 
-from ..console import interruptible, save_with_page, show_and_save, shown_progress, user_input
-from ..pages.cases import describe, motion_warnings
+from ..console import echo, interruptible, save_with_page, show_and_save, shown_progress, user_input
+from ..pages.cases import case_warnings, describe, record_lines, warnings_about
 from . import options
 from .command import takes_options
-from .problem import BODY, Body, Problem, Record, refuse, refuse_options_of_engines
-from .several import GridOptions, ManyMethods, ManyMotions, cylinders_of
+from .outputs import claim_folder
+from .problem import BODY, Body, Problem, Record, refuse, refuse_options_of_engines, unread
+from .several import GridOptions, Hazard, ManyMethods, ManyMotions, cylinders_of
 from .suite_choice import chosen_runs, refuse_problem_options, without_missing
 
 if TYPE_CHECKING:
@@ -43,10 +43,12 @@ def fragility(
     body: Body,
     methods: ManyMethods,
     plan: FragilityPlan,
+    hazard: Hazard,
     cylinder: Cylinders = None,
     workers: options.Workers = None,
     scheduler: options.Scheduler = None,
     out: options.Out = Path("rockwobble-fragility"),
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Say how probable it is that shaking of an intensity overturns a cylinder, by several methods.
 
@@ -58,6 +60,9 @@ def fragility(
 
     Whatever ends it, the same command resumes.
 
+    With --hazard, the annual frequency of overturning at that site by each method, without and with the
+    lognormal curve.
+
     Writes fragility.html, the same as fragility.md with its figures, the tables as Parquet, and
     counts.csv and counts.json, from which other tools can fit curves of their own.
 
@@ -67,18 +72,25 @@ def fragility(
         with user_input():
             from rockwobble.compare.studies.fragility.runs import methods_of
 
-            rs.require_writable(out)
+            claim_folder(context)
             if cylinder:
                 of_body = BODY - {"slab_mass_ratio", "columns"}
                 refuse(context, of_body, "does not go with --cylinder, which states the cylinder")
             bodies = cylinders_of(cylinder, body)
             chosen = methods.methods(next(iter(bodies.values())))
             methods_of(chosen, restitution=plan.restitution)  # before motions are read
+            site = hazard.curve(plan.period)
             motions, source = many.read(plan.seed)
             for name, each in bodies.items():
                 size = f"R = {each.semidiagonal:g} m, tan alpha = {each.tan_alpha:g}"
                 print(f"{name}: {size}" if cylinder else size)
-            print(f"Motions: {len(motions)}, {source}", *motion_warnings(motions), sep="\n")
+            echo(
+                [
+                    f"Motions: {len(motions)}, {source}",
+                    *record_lines(motions),
+                    *warnings_about(motions, bodies.values(), plan.gravity),
+                ]
+            )
         with user_input(), shown_progress() as progress:
             found = rw.fragility(
                 bodies,
@@ -91,16 +103,20 @@ def fragility(
                 source=source,
                 **dataclasses.asdict(plan),
             )
+            if site is not None:
+                found = found.with_risk(site, hazard.risk_years, total_dispersion=hazard.total_dispersion)
         show_and_save(found, out)
 
 
 @takes_options
 def spectrum(
+    context: typer.Context,
     record: Record,
     plan: SpectrumPlan,
     tan_alpha: Annotated[float, options.body(options.SLENDERNESS)] = 0.1,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-spectrum"),
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Map the peak tilt over size and intensity, in 3D and by planar analysis of each component.
 
@@ -128,12 +144,12 @@ def spectrum(
             slender = rw.Case(
                 rw.Cylinder(semidiagonal=1.0, tan_alpha=tan_alpha), motion, gravity=plan.gravity
             )
-            rs.require_writable(out)
+            claim_folder(context)
         print(
             f"Cylinders: tan alpha = {tan_alpha:g} (alpha = {math.degrees(slender.cylinder.alpha):.4g} deg)"
         )
         # the ground: the threshold of uplift is that of all sizes
-        print(*describe(slender)[1:-1], sep="\n")
+        echo(describe(slender)[1:-1])
         with shown_progress("series") as progress:
             found = rw.spectrum(
                 tan_alpha, motion, workers=workers, progress=progress, **dataclasses.asdict(plan)
@@ -165,6 +181,7 @@ def ensemble(
     support: options.Supports = None,
     time_step: options.TimeStep = None,
     out: options.Out = Path("rockwobble-ensemble"),
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Compare the peak tilts of many members by each method, member by member.
 
@@ -181,7 +198,7 @@ def ensemble(
     """
     with interruptible(out):
         with user_input():
-            rs.require_writable(out)
+            claim_folder(context)
             refuse_options_of_engines(context, engine)
             stated: rw.Case | rw.Suite | list[rw.Case]
             given: rw.Suite | None = None
@@ -199,7 +216,7 @@ def ensemble(
                 lines = describe(stated) if isinstance(stated, rw.Case) else describe(members[0])[:1]
                 lines += [f"Members: {len(members) or copies.copies}, {source}"]
             runs = _runs(engine, support, time_step, given)
-            print(*lines, *motion_warnings(each.motion for each in members), sep="\n")
+            echo([*lines, *record_lines(each.motion for each in members), *case_warnings(members)])
         with user_input(), shown_progress() as progress:
             found = rw.ensemble(
                 stated, runs=runs, progress=progress, resume=out, source=source, **dataclasses.asdict(copies)
@@ -216,7 +233,7 @@ def _members(
         return problem.case(), f"perturbed copies, {100.0 * copies.perturbation:g} %"
     ignored = {"record", "record_x", "record_y", "record_z", "scale", *_COPIES}
     refuse(context, ignored, f"does not go with {motions.given}: its motions are the members")
-    case = dataclasses.replace(problem, units=None, resample=False).case()
+    case = unread(problem).case()
     level = 3.0 if peak is None else peak
     found, source = motions.read(copies.seed)
     target = level * case.gravity * case.cylinder.tan_alpha
@@ -270,6 +287,7 @@ def sweep(
     scheduler: options.Scheduler = None,
     chunk: ChunkSize = None,
     out: options.Out = Path("rockwobble-sweep"),
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Run every combination, and keep each chunk of runs as soon as it is finished.
 
@@ -290,8 +308,8 @@ def sweep(
             stated = {each.name for each in fields(GridOptions)}
             refuse(context, stated, f"does not go with a suite, got {suite}: the file states the problems")
             plan = _suite(suite, model)
-        rs.require_writable(out)
-    print(*_echo(plan), sep="\n")
+        claim_folder(context)
+    echo(_echo(plan))
     shows: list[Callable[[], None]] = []
     with interruptible(out), user_input(), shown_progress("chunks") as progress:
         rw.sweep(
@@ -320,9 +338,12 @@ def _suite(name: str, models: list[str] | None) -> rw.Suite:
 
 
 def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
-    motions: Iterable[rw.GroundMotion | None]
+    from rockwobble.models.doubts import doubts_of_cases
+
+    from ..pages.diagnostics import warnings
+
     if isinstance(plan, rc.Grid):
-        motions = plan.motions
+        doubts = plan.doubts()
         ends = [
             rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
             for size in (min(plan.semidiagonals), max(plan.semidiagonals))
@@ -334,7 +355,7 @@ def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
             f"{len(plan.scales)} scales, {len(plan.motions)} records, models {', '.join(plan.models)}"
         )
     else:
-        motions = [case.motion for case in plan.cases]
+        doubts = doubts_of_cases(plan.cases)
         ends = [case.cylinder for case in plan.cases]
         runs = len(plan.cases) * len(plan.runs)
         what = f"{len(plan.cases)} cases, {len(plan.runs)} runs of each"
@@ -348,7 +369,8 @@ def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
             )
         ),
         f"Runs: {runs:,} ({what})",
-        *motion_warnings(motions),
+        *record_lines(plan.motions if isinstance(plan, rc.Grid) else [case.motion for case in plan.cases]),
+        *warnings(doubts),
     ]
 
 

@@ -116,7 +116,7 @@ def test_files_of_a_record_stand_beside_the_suite(write, tmp_path, monkeypatch):
 def test_times_uplift_needs_something_to_scale(write):
     motion = 'motion = { x = "x.txt", y = "x.txt", units = "g", times_uplift = 2 }'
     path = write(replaced(STILL, motion), "still.suite.toml")
-    write("0 0\n1 0\n", "x.txt")
+    write("0 0\n.1 0\n", "x.txt")
     with pytest.raises(ValueError, match=r"motion.times_uplift: needs a horizontal .*, got none"):
         read_suite(path)
 
@@ -220,7 +220,7 @@ WRONG = {
         "motion.record: must be one of el_centro_1940, p695, got 'el_centro'"
     ),
     replaced(STILL, 'motion = { record = "el_centro_1940", pulse = "one-sine" }'): (
-        "cases[0].motion: must have exactly one of record, x, pulse, got record and pulse"
+        "cases[0].motion: must have exactly one of record, x, files, pulse, got record and pulse"
     ),
     replaced(STILL, 'motion = { record = "el_centro_1940", pair = 3 }'): (
         'motion.pair: must be left out: it belongs to record = "p695"'

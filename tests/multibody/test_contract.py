@@ -161,6 +161,7 @@ def test_import_loads_no_engine() -> None:
         ),
         ({"time_step": -1.0}, "time_step must be positive [s], got -1.0"),
         ({"sample_step": 0.0}, "sample_step must be positive [s], got 0.0"),
+        ({"sample_step": 1e-12}, "sample_step must be at least "),
         ({"duration": None}, "duration [s] must be given where there is no ground motion"),
         ({"gravity": 0.0}, "gravity must be positive [m/s^2], got 0.0"),
         ({"friction": -1.0}, "friction must not be negative, got -1.0"),

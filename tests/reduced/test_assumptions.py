@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+from rockwobble.models import CLOSED_TILT, Case, Cylinder, GroundMotion, InitialState
 
 SQUAT = Cylinder(semidiagonal=2.0, tan_alpha=3.0)
 
@@ -55,3 +55,25 @@ def test_a_loss_of_contact_that_is_shorter_than_a_part_of_a_step_is_said(rtol):
     review = reduced.simulate(Case(pier, initial=initial, duration=5.0, friction=0.6), rtol=rtol).assumptions
     assert review.least_normal_force < 0.0
     assert [breach.code for breach in review.breaches] == ["tension", "friction_needed"]
+
+
+@pytest.mark.parametrize("length", [0.0, 0.05])
+@pytest.mark.parametrize("support", ["recess", "flat"])
+def test_demands_are_those_of_an_open_base(support, length):
+    """Extrema over the motion are those of its samples with an open base, however near upright it passes."""
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    release = InitialState(0.3 * pier.alpha, rolling_rate=1e-4)
+    case = Case(pier, initial=release, duration=5.0, rolling_resistance=length)
+    response = reduced.simulate(case, support=support, sample_step=2e-4)
+    review, opens = response.assumptions, response.open_base
+    assert (response.tilt[opens] >= CLOSED_TILT * pier.alpha).all()
+    assert np.count_nonzero(~opens & (response.tilt > 0.0)) > 0
+    force = response.contact_force
+    # samples of 0.2 ms miss what the base feels as it closes by some percent
+    for largest, sampled in (
+        (review.largest_normal_force, force[opens, 2].max()),
+        (review.largest_friction_needed, response.friction_needed[opens].max()),
+        (1.0 - review.least_normal_force, 1.0 - force[opens, 2].min()),
+    ):
+        assert sampled <= largest * (1.0 + 1e-9)
+        assert largest == pytest.approx(sampled, rel=0.1)

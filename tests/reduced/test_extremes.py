@@ -204,6 +204,7 @@ def test_chatter_without_a_seating_rule_ends_as_failed_with_words():
         ({"rest_tilt": -1.0}, "rest_tilt"),
         ({"gravity": -9.81}, "gravity"),
         ({"sample_step": 0.0}, "sample_step"),
+        ({"sample_step": 1e-12}, "sample_step must be at least"),
         ({"duration": -1.0}, "duration"),
         ({"support": "sliding"}, "recess"),
         ({"restitution": 0.9}, "planar"),

@@ -21,6 +21,7 @@ from rockwobble.models import (
 )
 from rockwobble.models.records import p695
 from rockwobble.models.support import support_named
+from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody.ring import rim_overhang
 
 from ...metrics.statistics import Contrast, Interval, quantile_interval, share_interval, stated
@@ -57,11 +58,11 @@ def demands_of(trace: Trace) -> dict[str, float]:
     dict
         friction [-], shear and (normal) force [weights] at the base and, as top_friction, top_shear and
         top_force, under the slab of a frame [weights of the share of the slab]; moment of the recess [weights
-        times b]: each not exceeded in 99 % of the moving time. slip and lost, shares of that time in which
-        the friction of the case does not suffice and in which contact is lost, at base or top. All zero, and
-        a force of one weight, where nothing moves.
+        times b]: each not exceeded in 99 % of the time in which the base is open (`Trace.open_base`). slip
+        and lost, shares of that time in which the friction of the case does not suffice and in which contact
+        is lost, at base or top. All zero, and a force of one weight, where nothing moves.
     """
-    moving = (trace.tilt > 0.0) & (trace.time <= fall_of(trace))
+    moving = trace.open_base & (trace.time <= fall_of(trace))
     ends = [(_BASE, trace.contact_force, trace.friction_needed)]
     if trace.case.cylinder.slab_mass_ratio > 0.0:
         ends.append((_TOP, trace.top_contact_force, trace.top_friction_needed))
@@ -142,7 +143,7 @@ def member_rows(group: str, traces: Iterable[Trace]) -> list[dict[str, float | s
             "model": str(trace.run),
             "outcome": trace.outcome,
             "peak_tilt": trace.peak_tilt / trace.case.cylinder.alpha,
-            **(demands_of(trace) if trace.outcome != "failed" else {}),
+            **(demands_of(trace) if trace.outcome not in NO_PEAK else {}),
         }
         for trace in traces
     ]
@@ -182,7 +183,7 @@ def group_table(members: pd.DataFrame) -> pd.DataFrame:
     rows = []
     numbers = ["peak_tilt", *(name for name in DEMANDS if name in members.columns)]
     for group, runs in members[members["group"] != OTHER].groupby("group", sort=False):
-        known = runs[runs["outcome"] != "failed"]
+        known = runs[~runs["outcome"].isin(NO_PEAK)]
         fell = known["outcome"] == "overturned"
         # of records that differ none move alike, but many not at all
         single = len(known) > 1 and known["peak_tilt"].min() > 0.0 and known[numbers].nunique().max() == 1
