@@ -60,7 +60,7 @@ def fall_of(trace: Trace) -> float:
 def demands_of(trace: Trace) -> dict[str, float]:
     """Return the demands of a run on ground, recess and slab, until it last passes alpha if it overturns.
 
-    Samples with a tilt below `CLOSED_TILT` ask nothing.
+    Samples at which the base is closed, see `Trace.open_base`, ask nothing.
 
     Returns
     -------
