@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,7 +33,6 @@ from ..metrics.pair import (
     make_pair,
     rms,
     start_of,
-    tolerance_of,
 )
 from .budget import ErrorBudget
 
@@ -49,9 +48,6 @@ FIRST_STRETCH = 1.0
 _TRIAL = 1e-6
 # and the largest that still is a copy
 _LARGEST = 1e-2
-# relative: a record is written with six digits
-NUDGE = 1e-6
-
 _SMALLEST_ERROR = 1e-9  # [alpha] no engine is better than its contact
 
 Simulate = Callable[[Case, Run], Trace]
@@ -146,21 +142,6 @@ def _first_of(ends: Mapping[str, float], reference: Trace, length: float) -> Pre
     if ends[reason] >= length:
         return Prediction(length=length, reason="")
     return Prediction(length=max(0.0, ends[reason] - start_of(reference)), reason=reason)
-
-
-def nudged(case: Case) -> list[Case]:
-    """Return the case with an input that is off by less than anybody knows it, to either side."""
-    return [disturbed(case, relative) for relative in (NUDGE, -NUDGE)]
-
-
-def reproducible_until(own: Trace, copies: Iterable[Trace]) -> float:
-    """Return until when a reduced run stays with all of its `nudged` copies, in the time of the run [s].
-
-    Infinite where it does so to its end.
-    """
-    pairs = (make_pair(own.case.cylinder, own, copy) for copy in copies)
-    found = [agreement_time(pair, tolerance=tolerance_of(own)) for pair in pairs]
-    return min((each.end for each in found if each.diverged), default=math.inf)
 
 
 def verdict(measured: float, diverged: bool, predicted: float, reason: str) -> str:

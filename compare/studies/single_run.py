@@ -1,4 +1,4 @@
-"""Single run: the trace of one reduced model or engine, and until when one trace is reproducible."""
+"""Single run: the trace of one reduced model or engine, and from when on copies of it part."""
 
 from __future__ import annotations
 
@@ -11,12 +11,13 @@ from rockwobble.models import Case, Run, Trace
 from rockwobble.models.plain_json import fields_of
 from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, packed
 
-from ..comparison.prediction import nudged, reproducible_until
 from ..runs.choice import own_model
-from ..runs.execution import Job, job_fingerprint, simulate_all
-from ..runs.progress import ProgressCallback
+from ..runs.execution import Job, job_fingerprint, simulate_all, simulate_run
+from ..runs.progress import ProgressCallback, stages
 from ..storage.manifest import Number, Stored
 from ..storage.results import Results
+from .advice.trust import BAND_STEP, copies_part_at, with_time_to_fall
+from .plans import AdvicePlan
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,8 +34,9 @@ class SingleRun(Results, kind="run"):
     tables : mapping of str to DataFrame
         run: the samples of the trace.
     facts : mapping
-        run: its label; case and result: what the samples do not hold; single_trace: until when one trace is
-        reproducible [s], and the command that answers what many copies do; columns of the files.
+        run: its label; case and result: what the samples do not hold; single_trace: from when on copies of
+        it part [s], by how much their input is off, and the command that says what they do; columns of the
+        files.
     trace : Trace
     """
 
@@ -73,30 +75,37 @@ class SingleRun(Results, kind="run"):
 def single_run(
     case: Case, run: Run, *, answer: str = "", progress: ProgressCallback | None = None
 ) -> SingleRun:
-    """Return a run, and until when it is reproducible, by copies of its reduced model.
+    """Return a run, and from when on copies of its reduced model part, by the rule of an advice.
 
     Parameters
     ----------
     case : Case
     run : Run
     answer : str, optional
-        Command that says what many copies do.
+        Command that says what the copies do.
     progress : callable, optional
-        Called with a `Progress` at the start and at the end of each run.
+        Called with a `Progress` at the start and at the end of each stage.
     """
-    job = Job(case=case, run=run)
     model = run if run.engine is None else own_model(run)
-    cases = [*([case] if model != run else []), *nudged(case)]
-    copies = [Job(case=each, run=model, label=f"copy of the {model}") for each in cases]
-    # in a process of its own, so that Ctrl-C also stops an engine in the middle of a long call
-    trace, *others = simulate_all([job, *copies], workers=2, progress=progress)
-    own, first, second = others if model != run else (trace, *others)
-    known = all(len(each.time) for each in (own, first, second))
-    return single_run_of(trace, reproducible_until(own, (first, second)) if known else math.inf, answer)
+    plan = AdvicePlan()
+    stage = stages(progress, [1.0, 1.0])
+    with stage(Job(case=case, run=run).label):
+        # an engine in a process of its own, so that Ctrl-C also stops it in the middle of a long call
+        (trace,) = simulate_all([Job(case=case, run=run)], workers=1 if model == run else 2)
+    part = math.inf
+    with stage(f"{plan.copies} copies of the {model}"):
+        own = trace if model == run else simulate_run(case, model)
+        if len(own.time) and math.isfinite(own.uplift_time):
+            case = with_time_to_fall(case, own)
+            copies = [simulate_run(each, model, sample_step=BAND_STEP) for each in plan.perturbed(case)]
+            part = copies_part_at(case, own, copies)
+    return single_run_of(trace, part, answer, plan.perturbation)
 
 
-def single_run_of(trace: Trace, until: float = math.inf, answer: str = "") -> SingleRun:
-    """Return the results of a trace that is reproducible until a time of the run [s]."""
+def single_run_of(
+    trace: Trace, part: float = math.inf, answer: str = "", perturbation: float = AdvicePlan().perturbation
+) -> SingleRun:
+    """Return the results of a trace of which copies, off by a perturbation, part at a time of the run [s]."""
     job = Job(case=trace.case, run=trace.run)
     case, motion = fields_of(trace.case), trace.case.motion
     left_out = ("rest_intervals", "extrema", "passes")
@@ -105,7 +114,7 @@ def single_run_of(trace: Trace, until: float = math.inf, answer: str = "") -> Si
         "run": job.label,
         "case": case | {"motion": motion and {"name": motion.name, "time_step": motion.time_step}},
         "result": {name: value for name, value in trace.to_plain().items() if name not in left_out},
-        "single_trace": {"until": until, "answer": answer},
+        "single_trace": {"copies_part": part, "perturbation": perturbation, "answer": answer},
         "columns": {"run.csv": COLUMNS, "passes.csv": PASS_COLUMNS},
     }
     return SingleRun(tables={"run": trace.to_frame()}, facts=facts, trace=trace)

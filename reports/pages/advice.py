@@ -30,19 +30,21 @@ from .command_line import command_line, spectrum_line
 from .page import Page
 from .table import number
 
-# rows of the box of demands: name, demand, and what "wall force" takes from the moment
+# rows of the box of demands
 _DEMANDS = {
     "friction": "friction demand",
     "shear": "shear V",
     "force": "normal force N",
     "moment": "vertical moment M",
     "wall_force": "wall force M/b",
-    "shear_and_wall": "V + M/b together",
-    "top_friction": "under the slab: friction demand",
-    "top_shear": "under the slab: shear",
-    "top_force": "under the slab: normal force",
+    "shear_and_wall": "V + M/b at once",
+    "top_friction": "friction, top",
+    "top_shear": "shear, top",
+    "top_force": "normal force, top",
 }
-_SYMBOLS = {"with_shear": "V", "with_force": "N", "with_moment": "M"}
+# units of a table, and in the box, where W is the weight that its head names
+_UNITS = {"-": "", "weights": " W", "weights × b": " W b"}
+_TOGETHER = {"with_shear": ("V", " W"), "with_force": ("N", " W"), "with_moment": ("M", " W b")}
 _ENDS = {
     "methods": "reduced model and engine diverge",
     "data": "copies are spread over half of the peak tilt",
@@ -83,17 +85,19 @@ def page_of(found: Advice) -> Page:
         "failed": found.response["outcome"] in NO_PEAK,
         "meanings": [CODES[code][1] for code in found.response["diagnostics"]],
         "grades": grades,
-        "numbers": _numbers(found),
+        "numbers": list(_numbers(found)),
+        "part": "slab" if "columns" in facts["cylinder"] else "top",
         "criteria": [
             {"topic": topic, "grade": grade, "reason": reasons[topic], **CRITERIA[topic].by_grade()}
             for topic, grade in grades.items()
         ],
         "demanded": list(_demanded(found)),
+        "together": _together(found),
+        "wall": _wall(found),
         "compared": _compared(found),
         "vertical_words": _vertical_words(found),
         "steps": _steps(found),
         "groups": _groups(found),
-        "headings": {row["group"]: row["name"] for row in _groups(found)},
         "checks": list(_checks(found)),
         "shares": planar_shares(found.planar) if len(found.planar) else [],
         "loss": 1.0 - restitution_from_momentum(found.cylinder),
@@ -130,11 +134,9 @@ def _reason_of_overturning(found: Advice) -> str:
     if found.overturned:
         return "it overturns as given"
     grade, lowest = found.grades["overturning"], found.lowest_factor
-    chance, name = max(
-        ((row["chance"], row["name"]) for row in _groups(found) if row["counts"] and row["chance"] > 0.0),
-        default=(0.0, ""),
-    )
-    reasons = [f"of {name}, {number(chance, 'percent')} overturn"] if chance else []
+    fell = [row for row in _groups(found) if row["counts"] and row["chance"] > 0.0]
+    worst = max(fell, key=lambda row: float(row["chance"]), default=None)
+    reasons = [f"{worst['overturned']} of {worst['name']} overturn"] if worst else []
     if grade == "not satisfied":
         return reasons[0]
     if grade == "caution":
@@ -170,10 +172,14 @@ def _reason_of_trace(found: Advice) -> str:
     ran = engine is not None and engine.outcome not in NO_PEAK
     if trust.kind == "trace":
         return f"{'model, engine' if ran else 'model'} and copies agree to the end"
-    ends = "the engine diverges" if ran else "engines should diverge"
-    if trust.because == "data":
-        ends = "the copies diverge"
-    reason = f"largest tilt at {number(found.response['peak_time'])} s, {ends} at {number(trust.until)} s"
+    ends = []
+    if trust.because == "methods":
+        ends = [f"{'the engine diverges' if ran else 'engines should diverge'} at {number(trust.until)} s"]
+    if math.isfinite(found.copies_part):
+        off = number(found.facts["perturbation"], "percent")
+        ends.append(f"copies {off} off part at {number(found.copies_part, '.4g')} s")
+    what = "it falls" if found.overturned else "largest tilt"
+    reason = f"{what} at {number(found.response['peak_time'])} s, {', '.join(ends)}"
     return f"{reason}: trust statistics" if trust.kind == "statistics" else reason
 
 
@@ -215,17 +221,17 @@ def _groups(found: Advice) -> list[dict[str, Any]]:
 
 
 def _name(found: Advice, row: Mapping[Hashable, Any]) -> str:
-    """The name of a group: what its members are, measured or not, and as strong in which way."""
-    group, off = row["group"], number(found.facts["perturbation"], "percent")
+    """The name of a group: how many, measured or not, and as strong in which way."""
+    group, runs = row["group"], row["runs"] - row["failed"]
     copies = {
-        COPIES: f"copies, {off} off",
+        COPIES: f"copies {number(found.facts['perturbation'], 'percent')} off",
         VERTICAL: "copies with vertical",
-        HORIZONTAL: "copies, no vertical",
+        HORIZONTAL: "copies without vertical",
     }
     if group in copies:
-        return copies[group]
+        return f"{runs} {copies[group]}"
     both = " in both directions" if found.response["in_one_plane"] else ""
-    return f"{row['runs']} {_others(found)}{both}, same {'PGA' if group == ACCELERATION else 'PGV'}"
+    return f"{runs} {_others(found)}{both}, same {'PGA' if group == ACCELERATION else 'PGV'}"
 
 
 def _others(found: Advice) -> str:
@@ -266,81 +272,102 @@ def _vertical_words(found: Advice) -> str:
     return f"{words} This case leaves it out." if vertical.source == "shipped" else words
 
 
-def _numbers(found: Advice) -> list[Row]:
-    """Rows of the numbers: as given, and the order statistic that 95 % of the runs of each group make."""
+def _numbers(found: Advice) -> Iterator[Row]:
+    """Rows of the numbers: the run as given, and the order statistic that 95 % of each group make."""
     alpha = math.degrees(found.cylinder.alpha)
-    part = "slab" if "columns" in found.facts["cylinder"] else "top"
-    chance: Row = {"name": "overturn", "given": "overturns" if found.overturned else "stands"}
-    ranks: Row = {"name": "not exceeded by", "given": "this run"}
-    tilt: Row = {"name": "largest tilt [°]"}
-    top: Row = {"name": f"{part} displacement [m]"}
+
+    def row(name: str, overturn: str, covered: str, peak: float) -> Row:
+        tilt, top = alpha * peak, found.top(peak)
+        words = ["overturns" if math.isinf(peak) else number(each) for each in (tilt, top)]
+        return {"name": name, "overturn": overturn, "covered": covered, "tilt": words[0], "top": words[1]}
+
     given = math.inf if found.overturned else found.peak
-    for group, peak in [("given", given), *((row["group"], row["peak_tilt_95"]) for row in _groups(found))]:
-        tilt[group] = "overturns" if math.isinf(peak) else number(alpha * peak)
-        top[group] = "overturns" if math.isinf(peak) else number(found.top(peak))
-    for row in _groups(found):
-        known = row["runs"] - row["failed"]
-        low, high = (number(row[f"chance_{end}"], "percent").removesuffix(" %") for end in ("low", "high"))
-        share = f"{row['overturned']} of {known} ({low} to {high} %)"
-        chance[row["group"]] = "one run" if row["single"] else share
-        ranks[row["group"]] = "one run" if row["single"] else f"{row['covered']} of {known}"
-    return [chance, ranks, tilt, top]
+    yield row("as given, one run", "overturns" if found.overturned else "stands", "", given)
+    for group in _groups(found):
+        known, peak = group["runs"] - group["failed"], group["peak_tilt_95"]
+        if group["single"]:
+            ends = "overturns" if math.isinf(peak) else "stands"
+            yield row(f"{group['name']}: all one run", ends, "", peak)
+            continue
+        low, high = (number(group[f"chance_{end}"], "percent").removesuffix(" %") for end in ("low", "high"))
+        share = f"{group['overturned']} of {known} ({low} to {high} %)"
+        covered = f"{group['covered']} of {known}" if group["covered"] else ""
+        yield row(group["name"], share, covered, peak)
 
 
 def _demanded(found: Advice) -> Iterator[Row]:
     """Rows of the design demands, as a designer enters them; each names the group that it is of."""
-    values = {str(row["demand"]): row for row in found.demands.to_dict("records")}
+    rows = found.demands.to_dict("records")
+    values = {str(row["demand"]): {str(key): each for key, each in row.items()} for row in rows}
     if "moment" in values:
-        moment = values["moment"]
-        force = {"unit": "weights", "with_shear": math.nan, "with_force": math.nan}
-        if found.facts["mass"] is not None:
-            force["for_mass"] = moment["for_mass"] / found.cylinder.base_radius
-        values["wall_force"] = (
-            moment | force | {"per_tonne": moment["per_tonne"] / found.cylinder.base_radius}
-        )
+        moment, b = values["moment"], found.cylinder.base_radius
+        forces = {name: moment[name] / b for name in ("per_tonne", "for_mass")}
+        values["wall_force"] = moment | forces | {"unit": "weights"}
     for demand, name in _DEMANDS.items():
-        if demand in values:
-            yield {"name": name, **_demand(found, demand, values[demand])}
-    if "clearance" in values:
-        row = values["clearance"]
+        if demand not in values:
+            continue
+        row = values[demand]
         if math.isnan(row["value"]):
-            yield {"name": "wall", "value": f"not given: {row['reason']}"}
-            return
-        height, clearance = (number(1e3 * values[part]["value"]) for part in ("wall_height", "clearance"))
-        tilt = number(math.degrees(values["tilt"]["value"] * found.cylinder.alpha))
-        yield {
-            "name": f"wall, tilt {tilt}°",
-            "value": f"height {height} mm, clearance {clearance} mm",
-            "of": _of(found, row),
-        }
+            yield {"name": name, "value": "not given", "of": row["reason"]}
+            continue
+        cells: Row = {"name": name, "value": f"{number(row['value'])}{_UNITS[row['unit']]}"}
+        unit = "kNm" if demand == "moment" else "kN"
+        if not math.isnan(row["per_tonne"]):
+            cells["tonne"] = f"{_rounded(row['per_tonne'])} {unit}/t"
+            if not math.isnan(row["for_mass"]):
+                cells["mass"] = f"{_rounded(row['for_mass'])} {unit}"
+        yield {**cells, "of": _of(found, row)}
 
 
-def _demand(found: Advice, name: str, row: Mapping[Hashable, Any]) -> Row:
-    """A demand in weights, per tonne that is carried and for the mass, with what acts at the same time."""
+def _rounded(value: float) -> str:
+    """Three digits of a force as a designer writes it: without a power of ten where it is large."""
+    return f"{float(f'{value:.3g}'):.10g}" if value >= 1.0 else number(value)
+
+
+def _together(found: Advice) -> str:
+    """What acts when shear and moment are reached."""
+    rows = found.demands.set_index("demand")
+    parts = []
+    for demand, symbol in (("shear", "V"), ("moment", "M")):
+        if demand not in rows.index or math.isnan(rows["value"][demand]):
+            continue
+        beside = [
+            f"{other} of {number(rows[column][demand])}{unit}"
+            for column, (other, unit) in _TOGETHER.items()
+            if not math.isnan(rows[column][demand])
+        ]
+        if beside:
+            parts.append(f"{symbol} acts with {' and '.join(beside)}")
+    return f"{'; '.join(parts)}." if parts else ""
+
+
+def _wall(found: Advice) -> str:
+    """Height and clearance of the wall of a recess, for which tilt, and of which group."""
+    rows = found.demands.set_index("demand").to_dict("index")
+    if "clearance" not in rows:
+        return ""
+    row = rows["clearance"]
     if math.isnan(row["value"]):
-        return {"value": f"not given: {row['reason']}"}
-    turns = name == "moment"
-    unit = "kNm" if turns else "kN"
-    cells: Row = {"value": number(row["value"]) + ("" if row["unit"] == "-" else f" {row['unit']}")}
-    if not math.isnan(row["per_tonne"]):
-        cells["tonne"] = f"{number(row['per_tonne'])} {unit}/t"
-        if not math.isnan(row["for_mass"]):
-            cells["mass"] = f"{number(row['for_mass'])} {unit}"
-    together = []
-    for part, symbol in _SYMBOLS.items():
-        if not math.isnan(row[part]):
-            together.append(f"{symbol} {number(row[part])}")
-    return {**cells, "together": ", ".join(together), "of": _of(found, row)}
+        return f"Wall: not given, {row['reason']}."
+    height, clearance = (number(1e3 * rows[part]["value"]) for part in ("wall_height", "clearance"))
+    tilt = number(math.degrees(rows["tilt"]["value"] * found.cylinder.alpha))
+    size = f"{height} mm high, {clearance} mm clear of the rim"
+    return f"Wall: {size}, for a tilt of {tilt}° ({_of(found, row)})."
 
 
 def _of(found: Advice, row: Mapping[Hashable, Any]) -> str:
-    """The group of a demand, how many of its runs ask no more, and at which shaking."""
-    name = _name(found, {**row, "runs": int(row["runs"])})
-    head = f"{int(row['covered'])} of {int(row['runs'])}"
-    name = name.removeprefix(f"{int(row['runs'])} ")
-    level = "" if row["factor"] == 1.0 else f", at {number(row['factor'])} of this shaking"
-    fell = f"; {int(row['overturned'])} overturn" if row["overturned"] else ""
-    return f"{head} {name}{level}{fell}"
+    """How many runs of which group ask no more than a demand, and under which shaking."""
+    kind = "" if found.facts["records"] == "p695" else " synthetic"
+    name = {
+        COPIES: " copies",
+        VERTICAL: " with vertical",
+        ACCELERATION: f"{kind}, same PGA",
+        VELOCITY: f"{kind}, same PGV",
+    }[row["group"]]
+    level = "" if row["factor"] == 1.0 else f", × {number(row['factor'])}"
+    runs = int(row["runs"])
+    count = "one run of" if runs == 1 else f"{int(row['covered'])} of {runs}"
+    return f"{count}{name}{level}"
 
 
 def _steps(found: Advice) -> list[str]:

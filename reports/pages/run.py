@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from rockwobble.compare.comparison.prediction import NUDGE
 from rockwobble.compare.studies.advice.demands import fall_of
 from rockwobble.compare.studies.single_run import SingleRun
 from rockwobble.models import Diagnostic, Trace
@@ -21,7 +20,7 @@ def page_of(found: SingleRun) -> Page:
     trace, single = found.trace, found.facts.get("single_trace", {})
     cylinder, engine, falls = trace.case.cylinder, trace.run.engine is not None, fall_of(trace)
     held = trace.assumptions_until(falls)  # a fall asks nothing
-    until = single.get("until", math.inf)  # of earlier versions nothing is known
+    part = single.get("copies_part", math.inf)  # of earlier versions nothing is known
     support = SUPPORTS.get(trace.run.support)
     values = {
         "trace": trace,
@@ -49,9 +48,9 @@ def page_of(found: SingleRun) -> Page:
         "moves": engine or not (support and support.guided),  # out of its place
         "displacement": trace.residual_displacement / cylinder.base_radius,
         "first_touch": trace.first("wall_contact"),
-        "until": until,
-        "peak_later": float(trace.time[int(trace.tilt.argmax())]) > until,
-        "nudge": NUDGE,
+        "part": part,
+        "peak_later": falls > part if math.isfinite(falls) else trace.peak_time > part,
+        "perturbation": single.get("perturbation", math.nan),
         "answer": single.get("answer", ""),
         "about": found.manifest,
     }

@@ -22,7 +22,7 @@ from rockwobble.models.trace import NO_PEAK
 from ...metrics.pair import overturned, tolerance_of
 from ...metrics.statistics import Contrast, contrast
 from ...runs.choice import require_runnable
-from ...runs.execution import SAMPLE_STEP, Job, job_fingerprint, require_case, simulate_run
+from ...runs.execution import Job, job_fingerprint, require_case, simulate_run
 from ...runs.progress import ProgressCallback, stages
 from ...storage.manifest import Number
 from ...storage.provenance import fingerprint
@@ -60,7 +60,17 @@ from .members import (
     without_vertical,
 )
 from .scales import planar_runs, scan_as_strong, scan_scales
-from .trust import BAND_STEP, Trust, Verification, band_of, predicted, spread_from, trust_of, verified
+from .trust import (
+    BAND_STEP,
+    Trust,
+    Verification,
+    band_of,
+    predicted,
+    spread_from,
+    trust_of,
+    verified,
+    with_time_to_fall,
+)
 
 KIND = "advice"
 VERTICAL_COUNT = 20  # pairs of copies with and without the vertical component
@@ -197,6 +207,11 @@ class Advice(Results, kind=KIND):
     def copies_differ(self) -> bool:
         """Whether the copies of the case are more than one run."""
         return _differ(self.groups)
+
+    @property
+    def copies_part(self) -> float:
+        """Time from which on copies are spread over half of the peak tilt [s]; inf where they never are."""
+        return spread_from(self.band, self.peak)
 
     @property
     def peak(self) -> float:
@@ -390,7 +405,7 @@ def advise(
     with stage("both reduced models (compiled on their first run)"):
         trace = simulate_run(case, model)
         if trace.time[-1] > case.length:
-            case = _to_the_fall(case, float(trace.time[-1]))
+            case = with_time_to_fall(case, trace)
             trace = simulate_run(case, model)
     moves = _moves(trace.outcome, trace.uplift_time)
     copies: list[Trace] = []
@@ -600,16 +615,3 @@ def _contrast(traces: Sequence[Trace], against: Sequence[Trace]) -> Contrast | N
     if np.count_nonzero(np.isfinite(peaks).all(axis=0)) < 2:
         return None
     return contrast(*peaks, *fell)
-
-
-def _to_the_fall(case: Case, end: float) -> Case:
-    """Return a case that takes until its fall at `end` [s], after what was asked for, over still ground.
-
-    All that is run for it then sees the fall: the engine, the copies, and when two methods diverge.
-    """
-    motion = case.motion
-    if motion is not None and case.length < motion.duration:
-        kept = math.floor(case.length / motion.time_step * (1.0 + 1e-12)) + 1
-        motion = motion.changed(motion.acceleration[: max(kept, 2)], f"cut to {case.length:g} s")
-    duration = math.ceil(end / SAMPLE_STEP) * SAMPLE_STEP
-    return dataclasses.replace(case, motion=motion, duration=duration)

@@ -154,12 +154,14 @@ def with_vertical(motion: GroundMotion) -> GroundMotion | None:
         motion.acceleration[:, :2], factor * samples[:, :2], rtol=0.0, atol=1e-9 * factor * largest
     ):
         return None
-    return GroundMotion(factor * samples, motion.time_step, motion.name)
+    return motion.changed(factor * samples, "with the vertical component of the record")
 
 
 def without_vertical(motion: GroundMotion) -> GroundMotion:
     """Return the two horizontal components of a ground motion."""
-    return GroundMotion(motion.acceleration[:, :2], motion.time_step, motion.name)
+    if not motion.has_vertical:
+        return motion
+    return motion.changed(motion.acceleration[:, :2], "without the vertical component")
 
 
 def ratios_of(found: Contrast) -> dict[str, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,13 +12,14 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Run, Trace
+from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 
 from ...comparison.driver import compare
 from ...comparison.prediction import Prediction, estimated_error, predict, time_scale
 from ...metrics.pair import tolerance_of
-from ...runs.execution import simulate_run
+from ...runs.execution import SAMPLE_STEP, simulate_run
 
 # A trace is lost where the copies are spread over half of the peak tilt. A percent of alpha, the limit of
 # agreement between methods, would be exceeded by the percent that the copies differ by itself.
@@ -111,6 +113,30 @@ def spread_from(band: pd.DataFrame, peak: float) -> float:
     """Return the time at which copies are spread over half of the peak tilt [s]; inf where they never are."""
     wide = np.flatnonzero(band["high"] - band["low"] > LOST * min(peak, 1.0))
     return float(band["time"].iloc[wide[0]]) if len(wide) else math.inf
+
+
+def copies_part_at(case: Case, trace: Trace, copies: Sequence[Trace]) -> float:
+    """Return the time from which on copies are spread over half of the peak tilt of a run [s]; inf: never."""
+    if trace.outcome in NO_PEAK:
+        return math.inf
+    return spread_from(band_of(case, copies), trace.peak_tilt / case.cylinder.alpha)
+
+
+def with_time_to_fall(case: Case, trace: Trace) -> Case:
+    """Return a case that takes until the fall of its run, after what was asked for, over still ground.
+
+    All that is run for it then sees the fall: the engine, the copies, and when two methods diverge. A case
+    whose run ends in time is the same.
+    """
+    end = float(trace.time[-1])
+    if end <= case.length:
+        return case
+    motion = case.motion
+    if motion is not None and case.length < motion.duration:
+        kept = math.floor(case.length / motion.time_step * (1.0 + 1e-12)) + 1
+        motion = motion.changed(motion.acceleration[: max(kept, 2)], f"cut to {case.length:g} s")
+    duration = math.ceil(end / SAMPLE_STEP) * SAMPLE_STEP
+    return dataclasses.replace(case, motion=motion, duration=duration)
 
 
 def predicted(case: Case, trace: Trace, run: Run | None) -> Prediction:
