@@ -7,6 +7,7 @@ import io
 import math
 import shlex
 import sys
+import textwrap
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -203,20 +204,21 @@ def _lines(what: str) -> Iterator[ProgressCallback]:
 
 
 def print_facts(heading: Sequence[str | Text], facts: Mapping[str, str]) -> None:
-    """Print a heading and facts by their names, as text, in which brackets are no markup."""
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
+    """Print a heading and facts by their names, as text, in which brackets are no markup.
 
-    table = Table(box=box.SIMPLE_HEAD, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
-    table.add_column(no_wrap=True)
-    table.add_column(overflow="fold")
-    for name, fact in facts.items():
-        table.add_row(Text(name), Text(fact))
+    No word is broken: one that is longer than a line, such as a path, is a line.
+    """
+    from rich.console import Console
+
     console = Console()
     console.print(*heading, highlight=False)
-    console.print(table)
+    indent = max(map(len, facts), default=0) + 2
+    for name, fact in facts.items():
+        lines = textwrap.wrap(
+            fact, max(console.width - indent, 1), break_long_words=False, break_on_hyphens=False
+        )
+        print(name.ljust(indent) + ("\n" + " " * indent).join(lines))
+    print()
 
 
 def show_and_save(found: Results, out: Path, *, details: bool = False) -> None:

@@ -8,7 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rockwobble.compare.studies.fragility.fit import Sample, fit_curves, resamples
+from rockwobble.compare.studies.fragility.fit import (
+    EXTRAPOLATED,
+    FALLING,
+    FITTED,
+    KINDS,
+    ONE_MOTION,
+    Sample,
+    fit_curves,
+    resamples,
+)
 from rockwobble.compare.studies.fragility.tables import _differences, contrast_row
 
 X = np.log([2.0, 4.0, 16.0])
@@ -39,6 +48,47 @@ def contrast(first: tuple[int, ...], second: tuple[int, ...]) -> dict[str, Any]:
 )
 def test_what_no_level_tells_is_undecided(first: tuple[int, ...], second: tuple[int, ...]) -> None:
     assert contrast(first, second)["verdict"] == "undecided"
+
+
+def exceeded(*rows: str) -> Sample:
+    """One row of 0 and 1 for each motion, at the levels X."""
+    return Sample(x=np.tile(X, (len(rows), 1)), y=np.array([[float(c) for c in row] for row in rows]))
+
+
+@pytest.mark.parametrize("others", [6, 30])
+@pytest.mark.parametrize(("one", "rest", "median"), [("011", "000", math.inf), ("001", "111", -math.inf)])
+def test_what_one_motion_alone_tells_is_no_curve(one: str, rest: str, median: float, others: int) -> None:
+    # of many motions the counts have a maximum, which is that motion's alone
+    sample = exceeded(one, *[rest] * others)
+    assert KINDS[fit_curves(*sample.counts()).kinds[0]] in (FITTED, FALLING)
+    found = sample.curves()
+    if KINDS[fit_curves(*sample.counts()).kinds[0]] == FITTED:
+        assert KINDS[found.kinds[0]] == ONE_MOTION
+        assert found.median.tolist() == [median]
+        assert np.isnan(found.at(X)).all()
+        ends = (LOG16, math.inf) if median > 0.0 else (-math.inf, LOG2)
+        assert (found.low[0], found.high[0]) == ends
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_no_median_is_a_number_outside_of_the_levels_that_were_run(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    levels = np.sort(random.uniform(0.0, 3.0, 4))
+    capacity = random.normal(random.uniform(-1.0, 4.0), random.uniform(0.2, 1.5), 25)
+    x = np.tile(levels, (25, 1))
+    sample = Sample(x=x, y=(x > capacity[:, None]).astype(float))
+    found, many = sample.curves(), sample.curves(resamples(25, 200, seed))
+    median, low, high = float(found.median[0]), float(found.low[0]), float(found.high[0])
+    assert math.isinf(median) or math.isnan(median) or levels[0] <= median <= levels[-1]
+    if math.isinf(median):
+        edge = levels[-1] if median > 0.0 else levels[0]
+        assert (low, high) == ((edge, math.inf) if median > 0.0 else (-math.inf, edge))
+    if KINDS[found.kinds[0]] in (EXTRAPOLATED, ONE_MOTION):  # no resample tells more than the motions do
+        edge = levels[-1] if median > 0.0 else levels[0]
+        assert (many.high == math.inf).all() if median > 0.0 else (many.low == -math.inf).all()
+        assert (many.low <= edge).all() if median > 0.0 else (many.high >= edge).all()
+    elif KINDS[found.kinds[0]] == FITTED:
+        assert median == found.centre[0] == low == high
 
 
 def test_counts_that_are_apart_by_a_level_are_told() -> None:

@@ -31,7 +31,7 @@ import pandas as pd
 from rockwobble.models.hazard import HazardCurve
 
 from ...metrics.statistics import Interval, share_interval
-from .fit import FITTED, KINDS, Array, Sample, interval
+from .fit import EXTRAPOLATED, FITTED, KINDS, Array, Sample, interval
 from .tables import OVERTURNED, Blocks
 
 TARGET = 2e-4  # [1/year], a common bound on collapse: 1 % in 50 years
@@ -428,6 +428,6 @@ def exposures_of(
             exposures[key] = Exposure(x=x, y=y, uplift=uplift, far=as_recorded + math.log(FAR))
             curve = Sample(x=x, y=y).curves()
             own = float(curve.dispersion[0]) if dispersion is None else dispersion
-            fitted = curve.kinds[0] == KINDS.index(FITTED)
+            fitted = KINDS[curve.kinds[0]] in (FITTED, EXTRAPOLATED)
             curves[key] = (float(curve.centre[0]), own) if fitted else None
     return exposures, curves

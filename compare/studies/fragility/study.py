@@ -64,10 +64,12 @@ class Fragility(Results, kind=KIND):
         n runs and k that exceed a limit, by cylinder, method, limit and intensity.
     fits : DataFrame
         One row for each cylinder, method and limit: kind ("fitted", "never", "always", "separated", "not
-        increasing"; of fewer motions or levels than a curve takes "too few", and no number but counts; then
-        the tables below are empty), median, dispersion, runs, exceeded, failed, extrapolated, without_curve
-        (share of the resamples), and of the goodness of fit deviance, degrees, p and largest (difference of
-        share and curve).
+        increasing"; "extrapolated", where the median lies beyond the intensities that were run; "one motion",
+        where all that exceed the limit, or all that do not, are of one; of fewer motions or levels than a
+        curve takes "too few", and no number but counts; then the tables below are empty), median (infinite or
+        0 where it lies beyond the intensities that were run, with an interval that begins at the last of
+        them), dispersion, runs, exceeded, failed, extrapolated, without_curve (share of the resamples), and
+        of the goodness of fit deviance, degrees, p and largest (difference of share and curve).
     curves : DataFrame
         The curves point by point: intensity, probability, low, high.
     contrasts : DataFrame
@@ -101,9 +103,19 @@ class Fragility(Results, kind=KIND):
         return {
             f"{row['cylinder']}, {row['method']}, overturned of {row['runs']}": row["exceeded"]
             if row["kind"] == TOO_FEW
-            else row["median"]
+            else self.stated(row["cylinder"], row["median"])
             for row in fits
-        } | {f"{row['cylinder']}, {row['method']} / {row['against']}": row["ratio"] for row in contrasts}
+        } | {
+            f"{row['cylinder']}, {row['method']} / {row['against']}": known_ratio(row["ratio"])
+            for row in contrasts
+        }
+
+    def stated(self, cylinder: str, median: float) -> float | str:
+        """Return a median; of one that lies beyond the intensities that were run the bound, as "> 12"."""
+        if math.isnan(median) or 0.0 < median < math.inf:
+            return float(median)
+        run = self.counts.loc[self.counts["cylinder"] == cylinder, "intensity"]
+        return f"> {run.max():.3g}" if median > 0.0 else f"< {run.min():.3g}"
 
     def risk(
         self, hazard: HazardCurve, years: float = 50.0, *, total_dispersion: float | None = None
@@ -188,6 +200,11 @@ class Fragility(Results, kind=KIND):
             "failed": str(int(runs["outcome"].isin(NO_PEAK).sum())),
             "methods": ", ".join(dict.fromkeys(runs["method"])),
         }
+
+
+def known_ratio(ratio: float) -> float | None:
+    """Return a ratio of medians; None where one of them is only bounded."""
+    return float(ratio) if 0.0 < ratio < math.inf else None
 
 
 def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Mapping[str, Any]) -> Fragility:

@@ -21,10 +21,10 @@ from rockwobble.models.trace import NO_PEAK
 
 from ...metrics.statistics import Interval
 from .fit import (
-    ALWAYS,
+    EXTRAPOLATED,
     FITTED,
     KINDS,
-    NEVER,
+    ONE_MOTION,
     Array,
     Curves,
     Sample,
@@ -200,10 +200,10 @@ def fit_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, 
         sample, many = blocks.sample(*key), drawn[key]
         x, n, k = sample.counts()
         centre, dispersion = float(found.centre[0]), float(found.dispersion[0])
-        kind = KINDS[found.kinds[0]]
-        median = interval(centre, many.low, motions, above=many.high)
+        kind, middle = KINDS[found.kinds[0]], float(found.median[0])
+        median = interval(middle, many.low, motions, above=many.high)
         spread = spread_interval(dispersion, many.dispersion, motions)
-        held = goodness(x, n[0], k[0], centre, dispersion) if kind == FITTED else _NO_FIT
+        held = goodness(x, n[0], k[0], centre, dispersion) if kind in (FITTED, EXTRAPOLATED) else _NO_FIT
         rows.append(
             {
                 **dict(zip(_KEY, key, strict=True)),
@@ -213,8 +213,8 @@ def fit_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, 
                 "failed": int(np.isnan(sample.y).sum()),
                 **median.exponential().columns("median"),
                 **spread.columns("dispersion"),
-                # beyond the intensities that were run the curve is a guess
-                "extrapolated": not x.min() <= centre <= x.max(),
+                # beyond the intensities that were run
+                "extrapolated": not x.min() <= middle <= x.max(),
                 "without_curve": float((many.kinds != KINDS.index(FITTED)).mean()),
                 **held,
             }
@@ -225,13 +225,16 @@ def fit_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, 
 def curve_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, Curves]) -> pd.DataFrame:
     """Return the curves point by point, each with its band.
 
-    One that all runs exceed is unknown below the intensities that were run, one that none exceeds above.
+    One whose median lies below the intensities that were run is unknown there, and so is one above them.
+    Where all depends on one motion there is none.
     """
     tables = []
     for key, found in fitted.items():
-        sample, kind = blocks.sample(*key), KINDS[found.kinds[0]]
-        first = sample.x.min() - math.log(_BEYOND) * (kind != ALWAYS)
-        x = np.linspace(first, sample.x.max() + math.log(_BEYOND) * (kind != NEVER), _POINTS)
+        if KINDS[found.kinds[0]] == ONE_MOTION:
+            continue
+        sample, median = blocks.sample(*key), found.median[0]
+        first = sample.x.min() - math.log(_BEYOND) * (median != -math.inf)
+        x = np.linspace(first, sample.x.max() + math.log(_BEYOND) * (median != math.inf), _POINTS)
         low, high = bands(drawn[key], x, len(blocks.motions))
         tables.append(
             pd.DataFrame(
@@ -244,7 +247,8 @@ def curve_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key
                 }
             )
         )
-    return pd.concat(tables, ignore_index=True)
+    columns = [*_KEY, "intensity", "probability", "low", "high"]
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=columns)
 
 
 def contrast_table(
@@ -289,7 +293,7 @@ def _differences(pair: Sequence[Curves]) -> Array:
     with np.errstate(invalid="ignore"):  # of two curves that are never reached there is none
         return np.array(
             [
-                first.centre - second.centre,
+                first.median - second.median,
                 first.dispersion - second.dispersion,
                 first.low - second.high,
                 first.high - second.low,
@@ -346,7 +350,7 @@ def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
         stopped = Sample(x=sample.x, y=incremental(sample.y))
         whole, early = sample.curves(), stopped.curves()
         with np.errstate(invalid="ignore"):
-            value = float(early.centre[0] - whole.centre[0])
+            value = float(early.median[0] - whole.median[0])
             many_early, many = stopped.curves(weights), sample.curves(weights)
             low, high = many_early.low - many.high, many_early.high - many.low
             # of the same counts the same curve, wherever it lies
@@ -361,8 +365,8 @@ def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
                 "motions_with_gaps": int(found.any(axis=1).sum()),
                 "runs": int((~np.isnan(sample.y)).sum()),
                 "runs_below_gaps": int(found.sum()),
-                "median": float(np.exp(whole.centre[0])),
-                "median_incremental": float(np.exp(early.centre[0])),
+                "median": float(np.exp(whole.median[0])),
+                "median_incremental": float(np.exp(early.median[0])),
                 **interval(value, low, motions, above=high).exponential().columns("bias"),
             }
         )
