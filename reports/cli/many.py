@@ -136,11 +136,12 @@ def spectrum(
     """
     with interruptible():
         with user_input():
-            from rockwobble.compare.studies.spectrum.maps import intensity_unit
+            from rockwobble.compare.studies.spectrum.maps import intensity_unit, require_cases
 
             motion = record.motion()
             assert motion is not None  # without a release there always is one
             intensity_unit(tan_alpha, motion, plan.gravity)
+            require_cases(tan_alpha, motion, plan)
             slender = rw.Case(
                 rw.Cylinder(semidiagonal=1.0, tan_alpha=tan_alpha), motion, gravity=plan.gravity
             )
@@ -150,7 +151,7 @@ def spectrum(
         )
         # the ground: the threshold of uplift is that of all sizes
         echo(describe(slender)[1:-1])
-        with shown_progress("series") as progress:
+        with user_input(), shown_progress("series") as progress:
             found = rw.spectrum(
                 tan_alpha, motion, workers=workers, progress=progress, **dataclasses.asdict(plan)
             )

@@ -98,6 +98,7 @@ def test_any_record_will_do(tmp_path: Path, monkeypatch, capsys):
         (["--support", "ring"], "support must be one of recess, flat, got 'ring'"),
         (["--search-step", "inf"], "--search-step must be at least 1e-05, got inf"),
         (["--slab-mass-ratio", "-1"], "--slab-mass-ratio must be at least 0, got -1"),
+        (["--rolling-resistance", "0.3"], "to below the base radius, 0.0497519 m, got 0.3 m"),
         (["--tan-alpha", "0"], "tan_alpha must be positive"),
         (["--record-x", "x.csv"], "both horizontal components are needed"),
         (["--out", "taken"], "the output folder must be a folder"),

@@ -17,7 +17,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.models import GroundMotion
+from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
 from rockwobble.models.number_checks import require_increasing
 
 from ...metrics.pair import overturned
@@ -322,6 +322,20 @@ def safe_gaps(spectrum: TiltMaps) -> pd.DataFrame:
 RTOL = 1e-8
 
 
+def require_cases(tan_alpha: float, motion: GroundMotion, plan: SpectrumPlan) -> None:
+    """Refuse, before anything runs, what is out of range for the smallest of the sizes or for the largest.
+
+    Raises
+    ------
+    ValueError
+        As for a `Case` of it.
+    """
+    sizes = SpectrumPlan.SIZES[:2] if plan.semidiagonals is None else plan.semidiagonals
+    for size in (sizes[0], sizes[-1]):
+        body = WobblingFrame(Cylinder(semidiagonal=float(size), tan_alpha=tan_alpha), plan.slab_mass_ratio)
+        Case(body, motion, gravity=plan.gravity, rolling_resistance=plan.rolling_resistance)
+
+
 def tilt_maps(
     tan_alpha: float,
     motion: GroundMotion,
@@ -378,6 +392,7 @@ def tilt_maps(
     )
     gravity, probes = asked.gravity, asked.probes
     unit = intensity_unit(tan_alpha, motion, gravity)
+    require_cases(tan_alpha, motion, asked)
     peaks, lowest, below, start = {}, {}, {}, {}
     stage = stages(progress, [1.0, 4.0] * len(SERIES))
     for index, name in enumerate(SERIES):
