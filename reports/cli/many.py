@@ -128,13 +128,15 @@ def spectrum(
     The lowest intensity that overturns each size is searched between the intensities and below them,
     too; what the search misses is measured.
 
+    Whatever ends it, the same command resumes.
+
     Writes spectrum.html, the same as spectrum.md with spectrum.svg, and as Parquet the cells (spectrum),
     the lowest intensities found to overturn (lowest), the gaps in the overturning region above them
     (gaps), the shares by size (contrast), and some cells run again to a tighter tolerance (checked).
 
     Example: rockwobble spectrum --tan-alpha 0.2 --semidiagonal 1:20:50 --intensity 1:9:50
     """
-    with interruptible():
+    with interruptible(out):
         with user_input():
             from rockwobble.compare.studies.spectrum.maps import intensity_unit, require_cases
 
@@ -151,9 +153,14 @@ def spectrum(
         )
         # the ground: the threshold of uplift is that of all sizes
         echo(describe(slender)[1:-1])
-        with user_input(), shown_progress("series") as progress:
+        with user_input(), shown_progress("parts") as progress:
             found = rw.spectrum(
-                tan_alpha, motion, workers=workers, progress=progress, **dataclasses.asdict(plan)
+                tan_alpha,
+                motion,
+                workers=workers,
+                progress=progress,
+                resume=out,
+                **dataclasses.asdict(plan),
             )
         show_and_save(found, out)
 

@@ -13,7 +13,7 @@ from rockwobble.compare.studies.advice.grades import BROKEN, NEAR, SENSITIVE, UN
 from rockwobble.compare.studies.advice.members import COPIES, SPIKES
 from rockwobble.compare.studies.advice.scales import planar_shares
 from rockwobble.compare.studies.advice.trust import Verification
-from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.compare.studies.spectrum.study import CHECK_RTOL, NUDGE
 from rockwobble.models import AGREEMENT
 from rockwobble.models.diagnostic import CODES, parted

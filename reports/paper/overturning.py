@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.compare.studies.plans import SpectrumPlan
-from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL, TiltMaps
+from rockwobble.compare.studies.spectrum.maps import TiltMaps
+from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.compare.studies.spectrum.study import planar_contrast, unconservative_from
 from rockwobble.models import el_centro_1940
 

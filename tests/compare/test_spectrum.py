@@ -9,14 +9,8 @@ import pytest
 from rockwobble import reduced
 from rockwobble.compare.studies.plans import STEP
 from rockwobble.compare.studies.spectrum import study as verification
-from rockwobble.compare.studies.spectrum.maps import (
-    PLANAR_X,
-    PLANAR_Y,
-    SERIES,
-    SPATIAL,
-    TiltMaps,
-    tilt_maps,
-)
+from rockwobble.compare.studies.spectrum.maps import TiltMaps, tilt_maps
+from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
 from rockwobble.compare.studies.spectrum.study import CELLS, check_cells, confirm_lowest
 from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame, el_centro_1940
 

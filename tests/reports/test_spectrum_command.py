@@ -13,15 +13,8 @@ import pytest
 from rich.console import Console
 
 from rockwobble import reduced
-from rockwobble.compare.studies.spectrum.maps import (
-    PLANAR_X,
-    SERIES,
-    SPATIAL,
-    TiltMaps,
-    record_frame,
-    safe_gaps,
-    tilt_maps,
-)
+from rockwobble.compare.studies.spectrum.maps import TiltMaps, record_frame, safe_gaps, tilt_maps
+from rockwobble.compare.studies.spectrum.parts import PLANAR_X, SERIES, SPATIAL
 from rockwobble.compare.studies.spectrum.study import KIND, OverturningSpectrum, planar_contrast
 from rockwobble.models import GroundMotion, el_centro_1940
 from rockwobble.reports.cli.main import main

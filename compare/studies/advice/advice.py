@@ -28,7 +28,8 @@ from ...storage.manifest import Number
 from ...storage.provenance import fingerprint
 from ...storage.results import Results
 from ..plans import AdvicePlan
-from ..spectrum.maps import SPATIAL, uplift_factor
+from ..spectrum.maps import uplift_factor
+from ..spectrum.parts import SPATIAL
 from .grades import (
     Grade,
     grade_engine,

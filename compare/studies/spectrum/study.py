@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,18 +25,8 @@ from ...runs.progress import ProgressCallback
 from ...storage.manifest import Number
 from ...storage.provenance import fingerprint, reduced_makers
 from ...storage.results import Results
-from .maps import (
-    PLANAR_X,
-    PLANAR_Y,
-    SERIES,
-    SPATIAL,
-    TiltMaps,
-    maps_of,
-    record_frame,
-    safe_gaps,
-    series_options,
-    tilt_maps,
-)
+from .maps import KIND, TiltMaps, maps_of, record_frame, safe_gaps, tilt_maps
+from .parts import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, series_options
 
 Array = NDArray[np.float64]
 
@@ -251,9 +242,6 @@ def tables_of(spectrum: TiltMaps) -> dict[str, pd.DataFrame]:
     }
 
 
-KIND = "overturning spectrum"
-
-
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class OverturningSpectrum(Results, kind=KIND):
     """Peak tilts over size and intensity in three dimensions and in two planes, and what overturns.
@@ -302,6 +290,7 @@ def spectrum(
     *,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
+    resume: str | Path | None = None,
     **options: Any,
 ) -> OverturningSpectrum:
     """Run every size at every intensity, in three dimensions and in the planes of both components.
@@ -311,7 +300,7 @@ def spectrum(
     tan_alpha : float
         Slenderness b/h [-].
     motion : GroundMotion
-    workers, progress, **options
+    workers, progress, resume, **options
         As in `tilt_maps`: semidiagonals [m], intensities [g tan alpha], support, search_step, probes, ...
 
     Returns
@@ -330,7 +319,9 @@ def spectrum(
     >>> spectrum(0.1, el_centro_1940(), **coarse).maps.overturned("3d").tolist()
     [[False, True], [False, False]]
     """
-    return spectrum_of(tilt_maps(tan_alpha, motion, workers=workers, progress=progress, **options))
+    return spectrum_of(
+        tilt_maps(tan_alpha, motion, workers=workers, progress=progress, resume=resume, **options)
+    )
 
 
 def spectrum_of(maps: TiltMaps) -> OverturningSpectrum:
