@@ -111,19 +111,20 @@ def _plain(error: UnicodeError) -> tuple[str, int]:
 
 # up to so many tasks have a line each where there is no terminal
 _FEW = 12
-_PAUSE = 10.0  # between two lines of more [s]
+_FIRST, _PAUSE = 2.0, 10.0  # before the first line of more, and between two [s]
 
 
 @contextmanager
-def shown_progress(what: str = "runs", *, heading: str = "") -> Iterator[ProgressCallback]:
+def shown_progress(what: str = "runs", *, heading: str = "", each: bool = True) -> Iterator[ProgressCallback]:
     """Yield a callback that shows how far tasks are; `what` they are, and what for, in words.
 
+    Where there is no terminal a line tells of `each` of a few, and of many one from time to time.
     It names each file of finished tasks that is damaged, once.
     """
     if heading:
         _say(f"{heading} ...")
     named: set[str] = set()
-    with _bar(what) if sys.stderr.isatty() else _lines(what) as show:
+    with _bar(what) if sys.stderr.isatty() else _lines(what, _FEW if each else 0) as show:
 
         def show_progress(event: Progress) -> None:
             for path in event.damaged:
@@ -182,21 +183,24 @@ def _bar(what: str) -> Iterator[ProgressCallback]:
 
 
 @contextmanager
-def _lines(what: str) -> Iterator[ProgressCallback]:
+def _lines(what: str, few: int) -> Iterator[ProgressCallback]:
     begun: dict[str, float] = {}
-    last = time.monotonic()
+    start = last = time.monotonic()
 
     def show_progress(event: Progress) -> None:
         nonlocal last
         now = time.monotonic()
-        if event.total - event.found <= _FEW:
+        if event.total - event.found <= few:
             if event.state == "started":
                 begun[event.label] = now
                 _say(f"running {event.label} ...")
             else:
                 took = now - begun.get(event.label, now)
                 _say(f"  done {event.label} in {took:.1f} s ({event.done} of {event.total})")
-        elif now - last >= _PAUSE or (event.state == "finished" and event.done == event.total):
+        elif (
+            now - last >= (_PAUSE if last > start else _FIRST)
+            or (few and event.state == "finished" and event.done == event.total)
+        ):  # fmt: skip
             last = now
             _say(sentence(event, what))
 

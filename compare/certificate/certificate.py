@@ -406,8 +406,8 @@ def read_certificate(path: Path) -> Certificate:
     return found
 
 
-def write_certificate(certificate: Certificate, path: Path) -> None:
-    """Write it whole, or not at all; a claim is a line."""
+def write_certificate(certificate: Mapping[str, object], path: Path) -> None:
+    """Write a certificate, perhaps with more, whole or not at all; a claim is a line."""
     parts = []
     for name, part in certificate.items():
         text = json.dumps(part)

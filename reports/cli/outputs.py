@@ -68,13 +68,13 @@ def plan_of(context: typer.Context) -> str:
     return fingerprint({"command": context.info_name, "options": stated})
 
 
-def require_own_file(option: str, path: Path, plan: str, plan_in: Callable[[bytes], str | None]) -> None:
+def require_own_file(what: str, path: Path, plan: str, plan_in: Callable[[bytes], str | None]) -> None:
     """Refuse a file that would be replaced and is of another plan.
 
     Parameters
     ----------
-    option : str
-        That names the file.
+    what : str
+        Of the file, in words.
     path : Path
     plan : str
         Hash of the plan.
@@ -88,7 +88,7 @@ def require_own_file(option: str, path: Path, plan: str, plan_in: Callable[[byte
     """
     from rockwobble.compare.storage.files import require_file
 
-    require_file(option, path)
+    require_file(what, path)
     if not path.is_file() or not (content := path.read_bytes()):
         return
     try:
@@ -96,8 +96,8 @@ def require_own_file(option: str, path: Path, plan: str, plan_in: Callable[[byte
     except (ValueError, AttributeError):
         there = None
     if there not in ("", plan):
-        what = "something else" if there is None else "what this command has made with other options"
-        raise ValueError(f"{option} {path} holds {what}: name another file, or replace it by --overwrite")
+        holds = "something else" if there is None else "what this command has made with other options"
+        raise ValueError(f"{what} {path} holds {holds}: name another file, or replace it by --overwrite")
 
 
 def plan_in_json(keys: Collection[str]) -> Callable[[bytes], str | None]:

@@ -110,14 +110,14 @@ class OutputOptions(Plan):
 
         from ..pages.check import plan_in_junit
 
-        for option, path, plan_in in (
-            ("--json", self.json, plan_in_json({"passed", "counts", "results"})),
-            ("--junit", self.junit, plan_in_junit),
+        for what, path, plan_in in (
+            ("a report", self.json, plan_in_json({"passed", "counts", "results"})),
+            ("a report", self.junit, plan_in_junit),
         ):
             if path is not None and self.overwrite:
                 require_file("a report", path)
             elif path is not None:
-                require_own_file(option, path, plan, plan_in)
+                require_own_file(what, path, plan, plan_in)
         if self.markdown is not None:  # to which a page is added
             require_file("a report", self.markdown)
 
@@ -215,7 +215,7 @@ def _run(subject: Subject, only: list[str] | None) -> Checks:
     for group in only or ():
         require_one_of("--only", group, tuple(GROUPS))
     what = "engine runs" if "suite" in subject else "checks"
-    with shown_progress(what, heading="checking") as progress:
+    with shown_progress(what, heading="checking", each="suite" in subject) as progress:
         found = check(**subject, only=only, progress=progress)
     print_checks(Console(), found)
     return found
@@ -316,12 +316,12 @@ def certify(
         checked = subject if engine else reduced_model()
         groups = only or CLAIMING
         count = len(chosen_checks(checked, groups))
-        with shown_progress("checks", heading="checking") as progress:
+        with shown_progress("checks", heading="checking", each=False) as progress:
             results = list(run_checks(checked, groups, stage=stages(progress, [1.0] * count)))
         if failed := [result.name for result in results if result.failed]:
             complain(f"a check failed, and nothing is certified: {failed[0]}")
             raise typer.Exit(FAILED)
-        with shown_progress("cases", heading="fingerprint") as progress:
+        with shown_progress("cases", each=False) as progress:
             found = make(subject, results, progress)
         write_certificate({**found, "plan": plan}, out)
     print(f"{out}: {len(found['claims'])} claims, {len(found['fingerprint'])} cases")
@@ -345,7 +345,7 @@ def verify(
         from rockwobble.compare.certificate import verify as verdict_on
 
         stated = read_certificate(certificate)
-        with shown_progress("cases", heading="comparing") as progress:
+        with shown_progress("cases", each=False) as progress:
             verdict = verdict_on(stated, progress=progress)
     print(json.dumps(asdict(verdict), indent=1) if as_json else verdict.words())
     if verdict.exit_code:

@@ -8,9 +8,10 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare.studies.plans import STEP
+from rockwobble.compare.studies.spectrum import maps
 from rockwobble.compare.studies.spectrum import study as verification
 from rockwobble.compare.studies.spectrum.maps import TiltMaps, tilt_maps
-from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
+from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, run_part
 from rockwobble.compare.studies.spectrum.study import CELLS, check_cells, confirm_lowest
 from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame, el_centro_1940
 
@@ -227,3 +228,28 @@ def test_what_falls_after_the_record_has_overturned_in_every_cell():
     # a component that does not move is searched nowhere
     assert math.isnan(cut.lowest[PLANAR_Y][0])
     assert cut.searched_from[PLANAR_Y] > 1e10
+
+
+def test_a_spectrum_resumes_with_the_same_bits_after_whatever_ended_it(tmp_path, monkeypatch):
+    options = {"semidiagonals": np.linspace(1.0, 20.0, 9), "intensities": [1.0, 4.0, 8.0], "probes": 9}
+    whole = tilt_maps(0.1, EL_CENTRO, **options)
+    told = []
+
+    def interrupt(event):
+        told.append(event)
+        if event.done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        tilt_maps(0.1, EL_CENTRO, resume=tmp_path, progress=interrupt, **options)
+    ran = []
+    monkeypatch.setattr(maps, "run_part", lambda part, **more: ran.append(part) or run_part(part, **more))
+    found = tilt_maps(0.1, EL_CENTRO, resume=tmp_path, progress=told.append, **options)
+    assert len(ran) == told[-1].total - 2
+    assert 0.0 < told[-3].left < math.inf
+    for name in SERIES:
+        np.testing.assert_array_equal(found.peak_tilt[name], whole.peak_tilt[name])
+        np.testing.assert_array_equal(found.lowest[name], whole.lowest[name])
+        np.testing.assert_array_equal(found.below[name], whole.below[name])
+    tilt_maps(0.1, EL_CENTRO, resume=tmp_path, **options)
+    assert len(ran) == told[-1].total - 2

@@ -55,7 +55,7 @@ def test_groups_that_hold(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     lines = out.splitlines()
     assert [line.split(":")[0] for line in lines[:-1]] == ["equations of motion", "rest and uplift"]
     assert re.fullmatch(r"\d+ checks passed, in \d+ s\.", lines[-1])
-    assert err.splitlines() == ["checking ..."]
+    assert err.splitlines()[0] == "checking ..."
     found = json.loads(paths[0].read_text())
     assert found["passed"] is True
     assert {result["group"] for result in found["results"]} == {"rest", "equations"}

@@ -49,7 +49,7 @@ def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, caps
     assert "planar analysis is unconservative in" in printed
     assert "in steps down to 0.4 g tan α" in printed
     written = PAGES | {f"{name}.parquet" for name in TABLES} | {"manifest.json"}
-    assert {path.name for path in tmp_path.iterdir()} == written | {"kept.txt"}
+    assert {path.name for path in tmp_path.iterdir()} == written | {"kept.txt", "finished"}
     assert f"Written to {tmp_path}: " in printed
     assert all(name in printed for name in PAGES | {"manifest.json"})
 
