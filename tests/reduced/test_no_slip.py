@@ -22,6 +22,7 @@ BODIES = {"cylinder": PIER, "frame": WobblingFrame(PIER, 1.5)}
 MODELS: dict[str, dict[str, Any]] = {"recess": {}, "flat": {"support": "flat"}, "planar": {"plane": 0.3}}
 # of b/sample step: rounding of the positions, in a difference of two
 ROUNDING = 1e-13
+RESOLVED = 0.05  # azimuth [rad] of the contact from one sample to the next
 Array = NDArray[np.float64]
 
 
@@ -64,7 +65,7 @@ def slip_velocities(trace: Trace) -> tuple[Array, Array]:
 
 
 def smooth(trace: Trace) -> NDArray[np.bool_]:
-    """Return where (n - 4,) the body moves and its base meets the ground neither now nor next to it."""
+    """Return where (n - 4,) the body moves as its samples resolve, and no landing is next to it."""
     step = float(trace.time[1] - trace.time[0])
     landings = trace.extrema[trace.extrema[:, 1] <= 0.0, 0]
     # what is slower than the tolerance stops at once, or begins at once: its rates jump
@@ -72,7 +73,8 @@ def smooth(trace: Trace) -> NDArray[np.bool_]:
     stops = trace.time[1:][still[1:] != still[:-1]]
     events = np.concatenate([[trace.uplift_time], trace.rest_intervals.ravel(), landings, stops])
     events = np.sort(events[np.isfinite(events)])
-    moves = np.isfinite(trace.rolling_angle)
+    # a pass within 1e-5 alpha of the ground may turn the contact by more than a radian from sample to sample
+    moves = np.isfinite(trace.rolling_angle) & (np.abs(trace.rolling_rate) * step < RESOLVED)
     moves = np.logical_and.reduce([moves[i : len(moves) - 4 + i] for i in range(5)])
     time = trace.time[2:-2]
     before = np.searchsorted(events, time - 3.0 * step)
