@@ -68,13 +68,13 @@ def plan_of(context: typer.Context) -> str:
     return fingerprint({"command": context.info_name, "options": stated})
 
 
-def require_own_file(what: str, path: Path, plan: str, plan_in: Callable[[bytes], str | None]) -> None:
+def require_own_file(option: str, path: Path, plan: str, plan_in: Callable[[bytes], str | None]) -> None:
     """Refuse a file that would be replaced and is of another plan.
 
     Parameters
     ----------
-    what : str
-        Of the file, in words.
+    option : str
+        That names the file.
     path : Path
     plan : str
         Hash of the plan.
@@ -88,7 +88,7 @@ def require_own_file(what: str, path: Path, plan: str, plan_in: Callable[[bytes]
     """
     from rockwobble.compare.storage.files import require_file
 
-    require_file(what, path)
+    require_file(option, path)
     if not path.is_file() or not (content := path.read_bytes()):
         return
     try:
@@ -96,8 +96,8 @@ def require_own_file(what: str, path: Path, plan: str, plan_in: Callable[[bytes]
     except (ValueError, AttributeError):
         there = None
     if there not in ("", plan):
-        holds = "something else" if there is None else "what this command has made with other options"
-        raise ValueError(f"{what} {path} holds {holds}: name another file, or replace it by --overwrite")
+        what = "something else" if there is None else "what this command has made with other options"
+        raise ValueError(f"{option} {path} holds {what}: name another file, or replace it by --overwrite")
 
 
 def plan_in_json(keys: Collection[str]) -> Callable[[bytes], str | None]:

@@ -110,16 +110,16 @@ class OutputOptions(Plan):
 
         from ..pages.check import plan_in_junit
 
-        for what, path, plan_in in (
-            ("a report", self.json, plan_in_json({"passed", "counts", "results"})),
-            ("a report", self.junit, plan_in_junit),
+        for option, path, plan_in in (
+            ("--json", self.json, plan_in_json({"passed", "counts", "results"})),
+            ("--junit", self.junit, plan_in_junit),
         ):
             if path is not None and self.overwrite:
-                require_file("a report", path)
+                require_file(option, path)
             elif path is not None:
-                require_own_file(what, path, plan, plan_in)
+                require_own_file(option, path, plan, plan_in)
         if self.markdown is not None:  # to which a page is added
-            require_file("a report", self.markdown)
+            require_file("--markdown", self.markdown)
 
     def write(self, found: Checks, seconds: float, plan: str) -> None:
         """Write the files.

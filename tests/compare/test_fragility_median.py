@@ -18,7 +18,7 @@ from rockwobble.compare.studies.fragility.fit import (
     fit_curves,
     resamples,
 )
-from rockwobble.compare.studies.fragility.tables import _differences, contrast_row
+from rockwobble.compare.studies.fragility.tables import _bounds_of_failed, _differences, contrast_row
 
 X = np.log([2.0, 4.0, 16.0])
 MOTIONS = 12
@@ -114,3 +114,14 @@ def test_the_levels_beside_bound_a_median_without_a_curve(
 ) -> None:
     found = fit_curves(X, np.full((1, 3), 12.0), np.array([counts]))
     assert [found.centre[0], found.low[0], found.high[0]] == pytest.approx([centre, low, high])
+
+
+@pytest.mark.parametrize("one", ["011", "000"])
+def test_a_bound_by_failed_runs_beyond_the_levels_is_no_number(one: str) -> None:
+    """If what failed exceeds nothing, at most one motion exceeds: the median is above all levels."""
+    sample = exceeded(one, *["000"] * 7)
+    sample.y[1, 1:] = math.nan
+    if_exceeded, if_not = _bounds_of_failed(sample)
+    assert if_not == math.inf
+    # and if it exceeds, of one motion, or of two as a curve beyond the levels
+    assert if_exceeded == math.inf

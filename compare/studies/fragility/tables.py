@@ -232,7 +232,7 @@ RATIOS_OF_FAILED = ("ratio_least", "ratio_most")
 def _bounds_of_failed(sample: Sample) -> tuple[float, float]:
     """Return the medians if all runs that failed exceed the limit, and if none does."""
     least, most = (Sample(x=sample.x, y=np.nan_to_num(sample.y, nan=fate)).curves() for fate in (1.0, 0.0))
-    return math.exp(least.centre[0]), math.exp(most.centre[0])
+    return math.exp(least.median[0]), math.exp(most.median[0])
 
 
 def _ratio_bounds(pair: Sequence[Sample]) -> tuple[float, float]:
