@@ -67,10 +67,10 @@ class Fragility(Results, kind=KIND):
         increasing"; "extrapolated", where the median lies beyond the intensities that were run; "one motion",
         where all that exceed the limit, or all that do not, are of one; of fewer motions or levels than a
         curve takes "too few", and no number but counts; then the tables below are empty), median (infinite or
-        0 where it lies beyond the intensities that were run, with an interval that begins at the last of
-        them), median_if_exceeded and median_if_not (were all failed runs to exceed the limit, or none),
-        dispersion, runs, exceeded, failed, extrapolated, without_curve (share of the resamples), and of the
-        goodness of fit deviance, degrees, p and largest (difference of share and curve).
+        0 where it lies beyond the intensities that were run, and so is that end of its interval),
+        median_if_exceeded and median_if_not (were all failed runs to exceed the limit, or none), dispersion,
+        runs, exceeded, failed, extrapolated, without_curve (share of the resamples), and of the goodness of
+        fit deviance, degrees, p and largest (difference of share and curve).
     curves : DataFrame
         The curves point by point: intensity, probability, low, high.
     contrasts : DataFrame
