@@ -5,7 +5,7 @@ One driver serves the three models; they differ in their equations and in the nu
 Every step ends at the next record sample at the latest, because the forcing has a kink there.
 
 A run that ends while the cylinder moves is followed over still ground to the next maximum of the tilt, or
-until it overturns. Of the maxima over still ground the first is the largest:
+until it overturns. Of the maxima over still ground the first is the largest, but on flat ground with a loss:
 
 - Recess: energy and L are conserved, so the tilt oscillates between the same two turning points.
 - Flat ground: Lambda' and S' are theta' times what is linear in (Lambda, S) with coefficients of theta alone.
@@ -13,6 +13,9 @@ until it overturns. Of the maxima over still ground the first is the largest:
   energy (Appell and Chaplygin, of a rolling disc): the tilt again has the same two turning points.
 - Losses lower each maximum: impacts in a plane, and rolling resistance in the recess, whose effect on the
   energy at the maximum goes with theta'^2 + sin^2(theta) phi' (phi' - L/B(theta_max)) >= 0.
+- Flat ground with rolling resistance: no proof, and it is not so. The couple changes Lambda and S by itself, so
+  that a motion which wobbles low with much spin may rise when that is lost. It is followed from maximum to
+  maximum until its energy, which only falls, is below that of a standstill at the largest tilt so far.
 """
 
 from __future__ import annotations
@@ -25,7 +28,7 @@ import numpy as np
 from .._compile import borrowed, once
 from ..body import Body
 from .events import NO_TURN
-from .progress import Stage, make_progress, time_in
+from .progress import Stage, make_progress, may_rise_above, time_in
 from .record import piece_of_record, still_from
 from .result import (
     COMPLETED,
@@ -60,7 +63,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
     """Return the compiled time integration of one model by one method."""
     lifted, lift_in, at_beginning, at_rest, stood, moved = make_progress(system, stepper)
     workspace, derivative = stepper.workspace, system.derivative
-    resists, hold = system.resists, system.hold
+    resists, hold, momenta, grows = system.resists, system.hold, system.momenta, system.grows
 
     @once
     def integrate(body: Body, options: Options, task: Task) -> IntegrationResult:
@@ -81,7 +84,10 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         while run.status == COMPLETED:
             jumps = False
             if now >= end:
-                if following or run.resting or has_turned(log, still_from(record, time_step)):
+                if following or run.resting:
+                    break
+                turns = has_turned(log, still_from(record, time_step))
+                if turns and not (grows and may_rise_above(body, momenta, run.y, run.peak)):
                     break
                 if resists and hold(body, run.y, _STILL_GROUND, _STILL_GROUND) == inf:
                     break

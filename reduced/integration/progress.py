@@ -7,7 +7,7 @@ every step.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, hypot, pi, sin
+from math import cos, hypot, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -63,6 +63,15 @@ def may_sit_down(
         highest = energy(body, limit, 0.0, L_there, S) - (1.0 - share) * standing
         return theta < limit and energy(body, theta, omega, L, S) < highest
     return energy(body, theta, omega, L, S) < share * standing
+
+
+@inlined
+def may_rise_above(
+    body: Body, momenta: Callable[[State], tuple[float, float]], y: State, peak: float
+) -> bool:
+    """Return whether over still ground the energy of a state lets the tilt rise above `peak` later."""
+    L, S = momenta(y)
+    return energy(body, y[0], y[1], L, S) > energy(body, min(peak, body.alpha), 0.0, 0.0, 0.0)
 
 
 @jit
@@ -214,6 +223,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     momenta, is_flat = system.momenta, make_is_flat(system.momenta)
     placed: Callable[..., State] = system.placed
     resists, hold, set_off, stopped = system.resists, system.hold, system.set_off, system.stopped
+    rebound, grows = system.rebound, system.grows
 
     @jit
     def lifted(body: Body, time_step: float, piece: Piece, at: float, time: float, last: State) -> State:
@@ -239,8 +249,8 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     @inlined
     def rebounded(body: Body, y: State, restitution: float) -> State:
         """Return the state after the base met the ground in planar motion: contact changes sides."""
-        opposite = y[2] + (-pi if y[2] > 0.0 else pi)
-        return placed(body, y, 0.0, restitution * abs(y[1]), opposite, 0.0)
+        turn, ratio = rebound(body, y, restitution)
+        return placed(body, y, 0.0, ratio * abs(y[1]), y[2] + turn, 0.0)
 
     sample_rest, sample_uplift, sample_step = make_sampling(lifted, partial)
 
@@ -339,6 +349,8 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
                 peak = max(peak, turn.tilt)
                 status = TURNED if following and turn.kind == MAXIMUM else COMPLETED
             y, peak = ending.y, max(peak, ending.y[0])
+            if grows and status == TURNED and may_rise_above(body, momenta, y, peak):
+                status = COMPLETED
             if ending.overturns:
                 status = OVERTURNED
             elif ending.lands:

@@ -1,8 +1,9 @@
 """The three models with rolling resistance as systems of first order.
 
-Behind the variables of each model (`systems`) stand two more: the energy lost so far, per unit mass, and the
-side, the sign of the tilt rate in planar motion, which stays what it was over a step. The couple jumps where
-such motion turns, so a step ends there and the next one begins with the other side, or none: the body stands
+In the recess the sense of rolling over still ground (+1, -1, 0 where it may change) follows L. Behind the
+variables of each model (`systems`) stand two more: the energy lost so far, per unit mass, and the side, the
+sign of the tilt rate in planar motion, which stays what it was over a step. The couple jumps where such motion
+turns, so a step ends there and the next one begins with the other side, or none: the body stands
 still on its rim while the couple holds it. On flat ground it may pivot on its contact meanwhile, a motion
 with one degree of freedom: its side is PIVOTS. With spin the couple turns instead of jumping, within a time
 that may be short: a step is asked to follow that turn, or to be so short that it does not matter.
@@ -23,6 +24,7 @@ from ..rolling import (
     couple,
     couple_on,
     hold_time,
+    limit_of_pass,
     momenta_of,
     needed_to_stand,
     pivoting_rate,
@@ -41,6 +43,7 @@ from .systems import (
     Weights,
     flat_combine,
     flat_ratio,
+    half_turn,
     make_is_flat,
     planar_combine,
     planar_ratio,
@@ -49,6 +52,9 @@ from .systems import (
 
 # squared cosine of the turn of the couple in a step up to which the step follows it
 _FOLLOWED = 0.64
+# of the tolerance: spin over that of steady wobble below which it is none. What it would add to the turn of
+# a pass is of its size
+_SPENT = 0.1
 # times the tolerance on rates: so slow a body whose couple would hold it is still. Twice the 21 that steps at
 # the bound of their stability would keep whatever the push: the tolerance does not see such a rate
 _STILL = 40.0
@@ -76,8 +82,8 @@ def _recess_derivative(body: Body, y: State, a: Vector) -> State:
         tilting, turning = couple_on(body, y[0], 0.0, y[2], 0.0, 0.0, free, a, False)
         power = 0.0
     else:
-        tilting, turning, power = couple(body, s, c, y[1], -phi_rate, free, a[2], y[5])
-    return y[1], free + tilting / body.A, phi_rate, torque - s * turning, power, 0.0
+        tilting, turning, power = couple(body, s, c, y[1], -phi_rate, free, a[2], y[6])
+    return y[1], free + tilting / body.A, phi_rate, torque - s * turning, 0.0, power, 0.0
 
 
 @inlined
@@ -161,7 +167,7 @@ def _recess_combine(y: State, h: float, weights: Weights, slopes: tuple[State, .
         b += w * k[1]
         c += w * k[2]
         d += w * k[3]
-    return y[0] + h * a, y[1] + h * b, y[2] + h * c, y[3] + h * d
+    return y[0] + h * a, y[1] + h * b, y[2] + h * c, y[3] + h * d, y[4]
 
 
 @jit
@@ -193,6 +199,43 @@ def with_side(y: State, side: float) -> State:
     return (*y[:-1], side)
 
 
+@jit
+def _never_spent(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> State:
+    return y
+
+
+@jit
+def _spin_spent(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> State:
+    """Return a state of the recess model, without spin where that is below the tolerance over still ground.
+
+    There L' = -delta N L/(H w): it keeps its sign, and falls by orders of magnitude in each swing. The sense
+    of rolling is kept beside L: it decides on which side the passes go on.
+    """
+    if y[3] == 0.0:
+        return y
+    if a[0] != 0.0 or a[1] != 0.0 or slope[0] != 0.0 or slope[1] != 0.0:
+        return y[0], y[1], y[2], y[3], 0.0, y[5], y[6]
+    sense = 1.0 if y[3] > 0.0 else -1.0
+    if y[4] == 0.0:
+        y = y[0], y[1], y[2], y[3], sense, y[5], y[6]
+    # L of steady wobble with this energy, near upright
+    level = max(energy(body, y[0], y[1], y[3], 0.0), 0.0) / (1.5 * body.g * body.b)
+    steady = sqrt(body.J * body.g * body.b * level) * level
+    if y[4] != sense or abs(y[3]) < _SPENT * rtol * steady:
+        side = 1.0 if y[1] > 0.0 else -1.0 if y[1] < 0.0 else 0.0
+        return y[0], y[1], y[2], 0.0, y[4], y[5], side
+    return y
+
+
+@jit
+def _pass_without_spin(body: Body, y: State, restitution: float) -> tuple[float, float]:
+    """Return what a pass adds to the rolling angle [rad], and the ratio of the tilt rates."""
+    if y[4] == 0.0:
+        return half_turn(body, y, restitution)
+    turn, ratio = limit_of_pass(body)
+    return y[4] * turn, ratio
+
+
 def _make_system(
     model: System,
     derivative: Callable[..., State],
@@ -206,6 +249,8 @@ def _make_system(
     `place` gives a state other rates theta' and s psi'; `pivots` is as for `needed_to_stand`.
     """
     momenta, placed_before, is_flat = model.momenta, model.placed, make_is_flat(model.momenta)
+    in_recess = spins and not pivots
+    spent = _spin_spent if in_recess else _never_spent
 
     @jit
     def placed(body: Body, y: State, theta: float, omega: float, phi: float, L: float) -> State:
@@ -265,6 +310,7 @@ def _make_system(
 
     @jit
     def stopped(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> State:
+        y = spent(body, rtol, y, a, slope)
         if spins and y[-1] != PIVOTS:
             slow = _STILL * rtol * body.p
             limit = body.A * slow * slow * body.sin_alpha * y[0]
@@ -279,7 +325,8 @@ def _make_system(
                     return (*y[:-2], y[-2] + 0.5 * kinetic, y[-1])
         return y
 
-    return System(derivative, momenta, placed, True, hold, set_off, let_go, stopped)
+    rebound = _pass_without_spin if in_recess else half_turn
+    return System(derivative, momenta, placed, True, hold, set_off, let_go, stopped, rebound, pivots)
 
 
 @jit
@@ -290,7 +337,7 @@ def _planar_moving(body: Body, y: State, omega: float, across: float) -> State:
 @jit
 def _recess_moving(body: Body, y: State, omega: float, across: float) -> State:
     s, c = sin_cos(y[0])
-    return y[0], omega, y[2], -s * across_inertia(body, s, c, False) * across, y[4], y[5]
+    return y[0], omega, y[2], -s * across_inertia(body, s, c, False) * across, y[4], y[5], y[6]
 
 
 @jit
@@ -301,7 +348,16 @@ def _flat_moving(body: Body, y: State, omega: float, across: float) -> State:
 
 
 RESISTED_PLANAR = _make_system(PLANAR, _planar_derivative, _planar_moving, spins=False, pivots=False)
-RESISTED_RECESS = _make_system(RECESS, _recess_derivative, _recess_moving, spins=True, pivots=False)
+
+
+@jit
+def _recess_placed(body: Body, y: State, theta: float, omega: float, phi: float, L: float) -> State:
+    return theta, omega, phi, L, 0.0 if theta == 0.0 and omega == 0.0 else y[4]
+
+
+RESISTED_RECESS = _make_system(
+    RECESS._replace(placed=_recess_placed), _recess_derivative, _recess_moving, spins=True, pivots=False
+)
 RESISTED_FLAT = _make_system(FLAT, _flat_derivative, _flat_moving, spins=True, pivots=True)
 
 STEPPERS = {

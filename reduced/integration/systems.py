@@ -14,7 +14,7 @@ flat     theta, theta', phi, Lambda, tau, S, X, Y; the rim rolls on the circle a
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import inf, sqrt
+from math import inf, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -51,6 +51,12 @@ def _as_it_was(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> S
     return y
 
 
+@jit
+def half_turn(body: Body, y: State, restitution: float) -> tuple[float, float]:
+    """Return what an impact of planar motion adds to the rolling angle [rad], and the ratio of the rates."""
+    return (-pi if y[2] > 0.0 else pi), restitution
+
+
 class System(NamedTuple):
     """The compiled functions of one model."""
 
@@ -63,6 +69,9 @@ class System(NamedTuple):
     set_off: Callable[..., tuple[State, float]] = _as_it_is
     let_go: Callable[..., bool] = _in_motion  # (body, y, a, slope) -> does what only pivots begin to move
     stopped: Callable[..., State] = _as_it_was  # (body, rtol, y, a, slope) -> y, still where it is held
+    # (body, y, restitution) -> what a pass through upright itself adds to phi, ratio of tilt rates
+    rebound: Callable[..., tuple[float, float]] = half_turn
+    grows: bool = False  # over still ground a later maximum of the tilt may be larger than the first
 
 
 def make_is_flat(momenta: Callable[[State], tuple[float, float]]) -> Callable[[State], bool]:
