@@ -5,12 +5,14 @@ from .case import Case, InitialState, Run, Suite, run_duration
 from .cylinder import Cylinder, WobblingFrame
 from .diagnostic import Assumptions, Diagnostic
 from .ground_motion import GroundMotion
+from .hazard import HazardCurve, read_hazard
 from .members import perturbed_copies, with_motions
 from .records.files import el_centro_1940, read_record
 from .records.folder import read_records
 from .records.p695 import far_field_motions, p695_far_field
 from .suites import read_suite, shipped_suites
 from .synthetic import pulse, synthetic_motions
+from .tendon import Tendon
 from .trace import Trace
 
 __all__ = [
@@ -22,9 +24,11 @@ __all__ = [
     "Cylinder",
     "Diagnostic",
     "GroundMotion",
+    "HazardCurve",
     "InitialState",
     "Run",
     "Suite",
+    "Tendon",
     "Trace",
     "WobblingFrame",
     "el_centro_1940",
@@ -32,6 +36,7 @@ __all__ = [
     "p695_far_field",
     "perturbed_copies",
     "pulse",
+    "read_hazard",
     "read_record",
     "read_records",
     "read_suite",

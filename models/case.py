@@ -14,6 +14,7 @@ from .cylinder import Cylinder, WobblingFrame
 from .ground_motion import GroundMotion
 from .number_checks import quoted, require_finite, require_positive
 from .shown import Brief, brief, line
+from .tendon import Tendon
 
 _UNITS = {"tilt": "rad", "tilt_rate": "rad/s", "rolling_angle": "rad", "rolling_rate": "rad/s"}
 
@@ -85,6 +86,8 @@ class Case:
         Length delta of the couple of at most delta times the normal force against the rolling of the rim
         [m], below the base radius: the pressure of a contact stays within the base. 0 loses nothing. The
         columns of a frame roll with it at both ends.
+    tendon : Tendon, optional
+        An unbonded tendon along the axis of each column.
 
     Raises
     ------
@@ -108,9 +111,11 @@ class Case:
     friction: float = 1.0
     name: str = ""
     rolling_resistance: float = 0.0
+    tendon: Tendon | None = None
 
     def __post_init__(self) -> None:
-        for name, kind in (("cylinder", Cylinder), ("motion", GroundMotion), ("initial", InitialState)):
+        kinds = {"cylinder": Cylinder, "motion": GroundMotion, "initial": InitialState, "tendon": Tendon}
+        for name, kind in kinds.items():
             given = getattr(self, name)
             if not (isinstance(given, kind) or (given is None and name != "cylinder")):
                 raise ValueError(f"{name} must be of kind {kind.__name__}, got {quoted(given)}")
@@ -145,7 +150,8 @@ class Case:
         facts += [f"{self.length:g} s", f"friction={self.friction:g}"]
         facts += [f"gravity={self.gravity:g}"] if self.gravity != 9.81 else []
         length = self.rolling_resistance
-        return line("Case", facts + ([f"rolling_resistance={length:g} m"] if length else []))
+        facts += [f"rolling_resistance={length:g} m"] if length else []
+        return line("Case", facts + ([f"tendon={self.tendon!r}"] if self.tendon else []))
 
     @property
     def length(self) -> float:

@@ -180,7 +180,8 @@ class WobblingFrame(Cylinder):
     slab_mass_ratio : float, optional
         gamma, mass of the slab over that of all columns [-]; 0 is the cylinder alone.
     columns : int, optional
-        Number of columns: three or more, or 1 for a slab that is held from turning.
+        Number of columns: three or more, or 1 for a slab that is held from turning. Engines run one
+        column under a slab that only translates, whatever the number, and say so ("one_column").
 
     Raises
     ------

@@ -34,17 +34,28 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "friction_needed": ("", "the rim would slip: more friction is needed than there is"),
         "wall_contact": ("", "the cylinder touched a wall"),
         "energy": ("", "contact made (above 0) or took (below 0) of the energy of the motion"),
-        "undecided": ("", "it ends in motion that was followed to no maximum, no rest and no overturning"),
+        "undecided": ("", "it stays by its balance: rounding decides whether it falls or turns back"),
         "solver": ("steps", "the solver had not converged in some of the steps looked at"),
         "unresolved_pass": ("passes", "passes are closer to upright than contact resolves"),
         "settled": ("alpha", "error that the time step leaves, by extrapolation"),
         "unsettled": ("alpha", "change from twice the time step: it has not settled, or nobody knows"),
         "extrapolated": ("alpha", "error left after extrapolation in the time step, by estimate"),
         "not_extrapolated": ("", "runs at successive time steps do not agree well enough to extrapolate"),
+        "one_column": ("columns", "the engine runs one column, under a slab that only translates"),
         "side": ("", "it passed through upright itself: the side to which it goes on is undetermined"),
+        "tendon_yield": ("weights", "the tendon would yield: what comes after is not modelled"),
         # what makes a record of the ground improbable
         "large_peak": ("g", "no record has such a peak: is its unit another?"),
         "unlike_components": ("", "peaks of components differ as only units do"),
+        "same_components": ("", "two components are the same: is one file given twice?"),
+        # and a length or a gravity
+        "unlikely_length": ("m", "no structure has such a length: is its unit another?"),
+        "unlikely_gravity": ("m/s2", "no planet has such a gravity: is its unit another?"),
+        "offset": ("", "the mean is a large part of the peak: the offset was not removed"),
+        "gravity_in_record": ("g", "the mean is 1 g: the sensor has recorded gravity"),
+        "unlikely_step": ("s", "no recorder has such a time step: is the unit of time another?"),
+        "ends_in_strong_motion": ("", "the record ends in strong motion: is it cut?"),
+        "other_direction": ("", "a component stands in the place of another direction"),
         # what an external trajectory leaves open
         "note": ("", "how the file was read"),
         "missed_pass": ("passes", "passes fell between two samples"),
@@ -53,8 +64,14 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
 # code: why, as its detail says it
 REASONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
-        "large_peak": ("m/s2", "cm/s2"),
+        "large_peak": ("", "m/s2", "cm/s2", "m/s2 for g", "cm/s2 for g", "cm/s2 for m/s2"),
         "unlike_components": ("x", "y", "z"),
+        "same_components": ("x and y", "x and z", "y and z"),
+        "unlikely_length": ("mm", "cm", "in", "ft", "km"),
+        "unlikely_gravity": ("ft/s2", "in/s2", "cm/s2", "mm/s2"),
+        "offset": ("x", "y", "z"),
+        "gravity_in_record": ("x", "y", "z"),
+        "other_direction": tuple(f"{place} is {axis}" for place in "xyz" for axis in "xyz" if axis != place),
         "unsettled": ("fails", "still_changes", "no_later", "no_closer", "unresolved_pass", "energy"),
         "not_extrapolated": ("fails", "diverged", "no_closer", "unresolved_pass", "energy"),
     }

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .number_checks import require_finite, require_positive
+from .record_source import RecordSource
 from .shown import brief, line
 
 
@@ -24,6 +25,9 @@ class GroundMotion:
         Spacing of the samples [s].
     name : str, optional
         For tables and figures.
+    source : RecordSource, optional
+        Files, columns and units that it was read from, and what was done to it since. Of no account when
+        motions are compared.
 
     Raises
     ------
@@ -43,8 +47,11 @@ class GroundMotion:
     acceleration: NDArray[np.float64]
     time_step: float
     name: str = ""
+    source: RecordSource | None = None
 
-    def __init__(self, acceleration: ArrayLike, time_step: float, name: str = "") -> None:
+    def __init__(
+        self, acceleration: ArrayLike, time_step: float, name: str = "", source: RecordSource | None = None
+    ) -> None:
         if isinstance(acceleration, np.ndarray) and np.iscomplexobj(acceleration):
             # numpy would drop the imaginary part
             raise ValueError(f"acceleration must be real numbers, got {acceleration.dtype} numbers")
@@ -67,6 +74,7 @@ class GroundMotion:
         object.__setattr__(self, "acceleration", samples)
         object.__setattr__(self, "time_step", require_positive("time_step", time_step, "s"))
         object.__setattr__(self, "name", str(name))
+        object.__setattr__(self, "source", source)
 
     def __repr__(self) -> str:
         count, components = self.acceleration.shape
@@ -84,7 +92,7 @@ class GroundMotion:
 
     def __reduce__(self) -> tuple[object, ...]:
         # a copy or a worker process must not get a writable array
-        return GroundMotion, (self.acceleration, self.time_step, self.name)
+        return GroundMotion, (self.acceleration, self.time_step, self.name, self.source)
 
     @property
     def duration(self) -> float:
@@ -116,7 +124,7 @@ class GroundMotion:
         factor = require_finite("factor", factor, "")
         with np.errstate(over="ignore"):  # the constructor refuses what is not finite
             scaled = self.acceleration * factor
-        return GroundMotion(scaled, self.time_step, self.name)
+        return self if factor == 1.0 else self.changed(scaled, f"scaled by {factor:.6g}")
 
     def rotated(self, angle: float) -> GroundMotion:
         """Return the motion turned by `angle` [rad] about the vertical, counter-clockwise from above.
@@ -135,4 +143,21 @@ class GroundMotion:
         x, y = self.acceleration[:, 0], self.acceleration[:, 1]
         turned[:, 0] = x * math.cos(angle) - y * math.sin(angle)
         turned[:, 1] = x * math.sin(angle) + y * math.cos(angle)
-        return GroundMotion(turned, self.time_step, self.name)
+        return self.changed(turned, f"rotated by {math.degrees(angle):.6g} deg")
+
+    def changed(self, acceleration: ArrayLike, change: str) -> GroundMotion:
+        """Return a motion of the same name, time step and source with other samples.
+
+        Parameters
+        ----------
+        acceleration : array_like, shape (n, 2) or (n, 3)
+            [m/s^2]
+        change : str
+            What was done to it, for its source: "cut to 10 s".
+
+        Returns
+        -------
+        GroundMotion
+        """
+        source = self.source and self.source.changed(change)
+        return GroundMotion(acceleration, self.time_step, self.name, source)

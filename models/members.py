@@ -75,7 +75,7 @@ def perturbed(case: Case, first: float, second: float) -> Case:
     acceleration = np.array(motion.acceleration)
     acceleration[:, 0] *= first
     acceleration[:, 1] *= second
-    return dataclasses.replace(case, motion=GroundMotion(acceleration, motion.time_step, motion.name))
+    return dataclasses.replace(case, motion=motion.changed(acceleration, "perturbed"))
 
 
 def with_motions(case: Case, motions: Sequence[GroundMotion]) -> list[Case]:

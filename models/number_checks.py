@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -66,6 +66,21 @@ def require_one_of(name: str, value: object, allowed: Iterable[str]) -> None:
     words = tuple(allowed)
     if value not in words:
         raise ValueError(f"{name} must be one of {', '.join(words)}, got {quoted(value)}")
+
+
+def require_kind(name: str, value: object, kind: type) -> None:
+    """Raise ValueError unless a value is of a kind."""
+    if not isinstance(value, kind):
+        raise ValueError(f"{name} must be of kind {kind.__name__}, got {quoted(value)}")  # noqa: TRY004 - bad input is a ValueError
+
+
+def require_each(name: str, values: object, kind: type) -> None:
+    """Raise ValueError unless a value is a sequence whose members are all of a kind."""
+    if isinstance(values, str | bytes) or not isinstance(values, Sequence):
+        raise ValueError(f"{name} must be a sequence of {kind.__name__}, got {quoted(values)}")  # noqa: TRY004
+    for value in values:
+        if not isinstance(value, kind):
+            raise ValueError(f"{name} must be a sequence of {kind.__name__}, got {quoted(value)} in it")  # noqa: TRY004
 
 
 def quoted(value: object) -> str:

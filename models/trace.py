@@ -23,6 +23,8 @@ from .trace_source import Array, Known, Source, friction_of, no_passes
 if TYPE_CHECKING:
     import pandas as pd
 
+NO_PEAK = ("failed", "undecided")  # outcomes of runs of which nobody knows whether they stand
+
 
 class Late:
     """A sampled quantity that may cost something: the source computes it when it is first asked for."""
@@ -90,6 +92,10 @@ class Trace(Shown):
     open_base : ndarray, shape (n,)
         Where demands on ground and recess are taken [bool]: in motion, from a tilt of `CLOSED_TILT` alpha on.
         Force, friction demand and moment of the other samples are those of a rigid edge as well.
+    elongation, tendon_force : ndarray, shape (n,)
+        Of a tendon, since rest [m], and its tension over the weight of one column [-].
+    peak_tendon_force : float
+        Largest tension of the continuous motion over the same [-].
     restraining_moment : ndarray, shape (n,)
         Kappa of the moment kappa (z_world + z_body) that the recess supplies, over the weight [m]; about the
         vertical, as about the axis, that is 1 + cos(tilt) times kappa.
@@ -102,8 +108,9 @@ class Trace(Shown):
         summed over time so far, per unit mass [m/s].
     peak_tilt : float
         Largest tilt of the continuous motion that the record causes [rad], a swing that goes on when the run
-        ends included; pi/2 if overturned, NaN if failed.
-    outcome : {"stands", "overturned", "failed"}
+        ends included; pi/2 if overturned, NaN if failed or undecided.
+    outcome : {"stands", "overturned", "undecided", "failed"}
+        Undecided is what stays on its balance, where rounding decides whether it falls.
     rests : bool
         Whether it stands still at the end.
     followed_until : float
@@ -212,6 +219,37 @@ class Trace(Shown):
         return friction_of(self.top_contact_force)
 
     @property
+    def elongation(self) -> Array:
+        """Elongation of the tendon (n,) since rest [m]; NaN without one.
+
+        In a recess and in a plane it depends on the tilt alone, n 2 b sin(theta/2) over n gaps; elsewhere
+        the base wanders from the anchor, and the source says it.
+        """
+        known, tendon = self.late.get("elongation"), self.case.tendon
+        if known is not None or tendon is None:
+            return np.full(len(self.time), math.nan) if known is None else known
+        body = self.case.cylinder
+        return np.asarray(tendon.gaps(body) * 2.0 * body.base_radius * np.sin(0.5 * self.tilt))
+
+    @property
+    def tendon_force(self) -> Array:
+        """Tension of the tendon (n,) over the weight of one column [-]; NaN without one."""
+        tendon, body = self.case.tendon, self.case.cylinder
+        if tendon is None:
+            return np.full(len(self.time), math.nan)
+        return np.asarray(tendon.prestress + tendon.stiffness * self.elongation / body.base_radius)
+
+    @property
+    def peak_tendon_force(self) -> float:
+        """Largest tension of the continuous motion over the weight of a column [-]; NaN without one."""
+        tendon = self.case.tendon
+        if tendon is None:
+            return math.nan
+        if "elongation" in self.late:
+            return float(np.nanmax(self.tendon_force))
+        return tendon.tension(self.case.cylinder, self.peak_tilt)
+
+    @property
     def slab_displacement(self) -> Array:
         """Displacement of the slab of a frame relative to the ground (n, 3) [m].
 
@@ -303,6 +341,7 @@ class Trace(Shown):
             for name, part in zip(names, getattr(self, field).T, strict=True)
         }
         left_out = () if isinstance(self.case.cylinder, WobblingFrame) else trace_file.OF_FRAMES
+        left_out += () if self.case.tendon is not None else trace_file.OF_TENDONS
         return pd.DataFrame(
             {
                 name: parts[name] if name in parts else getattr(self, name)
@@ -360,7 +399,7 @@ class Trace(Shown):
             "case": self.case.name or str(self.case),
             "run": str(self.run),
             "outcome": f"{self.outcome} at {self.time[-1]:.4g} s" if len(self.time) else self.outcome,
-            "peak tilt": f"{self.peak_tilt / alpha:.4g} alpha",
+            "peak tilt": "not known" if math.isnan(self.peak_tilt) else f"{self.peak_tilt / alpha:.4g} alpha",
             "uplift": "none" if math.isnan(self.uplift_time) else f"{self.uplift_time:.4g} s",
             "passes": str(len(self.passes)),
         }

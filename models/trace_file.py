@@ -14,6 +14,8 @@ from .cylinder import cylinder_of
 from .diagnostic import Assumptions, Diagnostic
 from .ground_motion import GroundMotion
 from .parquet_file import pack, read
+from .record_source import source_from_plain
+from .tendon import Tendon
 from .trace_source import Array, Known
 
 if TYPE_CHECKING:
@@ -43,6 +45,8 @@ COLUMNS = {
     "top_force_z": ("weights", "likewise, up"),
     "friction_needed": ("", "horizontal over normal force; infinite where the normal force is not positive"),
     "restraining_moment": ("m", "of the recess: kappa in kappa (z_world + z_body), over the weight"),
+    "elongation": ("m", "of the tendon, since rest"),
+    "tendon_force": ("weights", "tension of the tendon, over the weight of one column"),
     "energy": ("m2/s2", "relative to the ground, per unit mass, zero standing"),
     "energy_lost": ("m2/s2", "energy that rolling resistance and impacts took so far, per unit mass"),
     "energy_error": ("m2/s2", "energy that neither the start nor the excitation supplied"),
@@ -63,6 +67,7 @@ VECTORS = {
     "top_contact_force": ("top_force_x", "top_force_y", "top_force_z"),
 }
 OF_FRAMES = VECTORS["top_contact_force"]  # columns that only the trace of a frame has
+OF_TENDONS = ("elongation", "tendon_force")  # and of a body with a tendon
 # of a trace, which samples hold; what else they hold is of its source
 FIELDS = ("time", "tilt", "tilt_rate", "rolling_angle", "twist", "contact_point", "centre_of_mass")
 
@@ -114,8 +119,9 @@ def case_from_plain(given: Mapping[str, Any]) -> Case:
     motion, initial = given["motion"], given["initial"]
     fields = {
         "cylinder": cylinder_of(given["cylinder"]),
-        "motion": motion and GroundMotion(**motion),
+        "motion": motion and GroundMotion(**{**motion, "source": source_from_plain(motion.get("source"))}),
         "initial": initial and InitialState(**initial),
+        "tendon": (tendon := given.get("tendon")) and Tendon(**tendon),
     }
     return Case(**{**given, **fields})
 

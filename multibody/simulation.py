@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockwobble.models import Case, Diagnostic, InitialState, Run, Trace
+from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace, WobblingFrame
 from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_positive, require_sample_step
+from rockwobble.models.trace import NO_PEAK
 from rockwobble.models.trace_source import Known
 
 from .auto_step import AUTO, STEP_TOLERANCE, Progress, find_step
@@ -175,7 +176,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
     rows = _rows_to_end(recorder)
     kept = (rows[:, 0] != recorder.asked) | (not recorder.off_grid)
     forces, rows = recorder.forces.at(rows[:, 0])[kept], rows[kept]
-    outcome = recorder.ended or "stands"
+    outcome = recorder.ended or ("undecided" if recorder.undecided else "stands")
     table = dict(zip(("time", *COLUMNS), rows.T, strict=True))
     uplift_time, uplift_direction = recorder.uplift or (math.nan, math.nan)
     contact = np.column_stack([table["contact_x"], table["contact_y"]])
@@ -214,13 +215,22 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         uplift_direction=uplift_direction,
         source=Known(sampled),
         passes=passes,
-        facts=tuple(diagnostics(recorder, passes, resolution, scale.time)),
+        facts=(
+            *diagnostics(recorder, passes, resolution, scale.time),
+            *_column_facts(method["case"].cylinder),
+        ),
         rest_intervals=np.array(recorder.rests.after_motion(), dtype=float).reshape(-1, 2) * scale.time,
         extrema=_extrema(recorder, scene, scale),
         contact_resolution=resolution,
         residual_displacement=float(np.hypot(table["base_x"][-1], table["base_y"][-1])) * scale.length,
         **method,
     )
+
+
+def _column_facts(cylinder: Cylinder) -> tuple[Diagnostic, ...]:
+    """Return the fact that one column stands for all in the scene of a frame, if it does."""
+    columns = cylinder.columns if isinstance(cylinder, WobblingFrame) and cylinder.slab_mass_ratio else 1
+    return (Diagnostic(code="one_column", size=columns),) if columns > 1 else ()
 
 
 def _extrema(recorder: Recorder, scene: Scene, scale: Scale) -> Array:
@@ -248,7 +258,7 @@ def _rows_to_end(recorder: Recorder) -> Array:
 
 
 def _peak(recorder: Recorder, outcome: str, rows: Array) -> float:
-    if outcome == "failed":
+    if outcome in NO_PEAK:
         return math.nan
     if outcome == "overturned":
         return 0.5 * math.pi

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import hashlib
+import inspect
 import os
 import re
 import stat
@@ -18,7 +19,7 @@ from typing import Any, Generic, ParamSpec, TypeVar, cast
 import numba
 import numpy as np
 from numba.core.caching import IndexDataCacheFile
-from numba.extending import intrinsic
+from numba.extending import intrinsic, overload
 from numpy.typing import NDArray
 
 F = TypeVar("F", bound=Callable[..., object])
@@ -82,6 +83,29 @@ def kernel(function: F) -> F:
     entry.compile = _uncollected()(entry.compile)
     _keep_by_content(entry._cache, _digest(Path(function.__code__.co_filename)))
     return cast("F", entry)
+
+
+def by_body(plain: F, tied: Callable[..., object]) -> F:
+    """Return a function of a body and more that is `plain`, or `tied` where a tendon holds the body.
+
+    A kernel is compiled for each of the two kinds of bodies, and has the one that is meant in the place of
+    the call: without a tendon nothing of it is compiled, which leaves the machine code, and its rounding, as
+    it is. Both are functions of this module's decorators with the same parameters.
+    """
+    names = ", ".join(inspect.signature(plain.py_func).parameters)  # type: ignore[attr-defined]
+    first = names.partition(",")[0]
+    scope: dict[str, Any] = {"plain": plain, "tied": tied}
+    # the parameters of an overload must have the names of those of the function
+    exec(
+        f"def function({names}): return (tied if hasattr({first}, 'prestress') else plain)({names})\n"
+        f"def choice({names}): return (tied if 'prestress' in {first}.fields else plain).py_func\n",
+        scope,
+    )
+    function: F = scope["function"]
+    function.__doc__ = plain.__doc__
+    options: Any = _OPTIONS | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
+    overload(function, jit_options=options, strict=False)(scope["choice"])
+    return function
 
 
 def _keep_by_content(kept: Any, digest: str) -> None:

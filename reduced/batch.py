@@ -10,7 +10,7 @@ from contextlib import closing
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
+from rockwobble.models import Case, Cylinder, GroundMotion, Tendon, WobblingFrame
 from rockwobble.models.cpus import in_threads, usable_cpus
 from rockwobble.models.number_checks import quoted
 
@@ -37,6 +37,7 @@ def peak_tilts(
     gravity: float = 9.81,
     slab_mass_ratio: float = 0.0,
     rolling_resistance: float = 0.0,
+    tendon: Tendon | None = None,
     workers: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> NDArray[np.float64]:
@@ -62,6 +63,8 @@ def peak_tilts(
         Mass of the slab over that of all columns [-]: the peaks of a `WobblingFrame`.
     rolling_resistance : float, optional
         As in `Case` [m]: the same length for every size.
+    tendon : Tendon, optional
+        As in `Case`: the same multiples of weight and base radius for every size.
     workers : int, optional
         Number of threads; default: that of the cores.
     progress : callable, optional
@@ -70,7 +73,7 @@ def peak_tilts(
     Returns
     -------
     ndarray, shape (n_R, n_scale)
-        Peak tilt [rad]: 0 without uplift, pi/2 if overturned, NaN where the run failed.
+        Peak tilt [rad]: 0 without uplift, pi/2 if overturned, NaN where the run failed or is undecided.
 
     Raises
     ------
@@ -93,6 +96,7 @@ def peak_tilts(
                 motion,
                 gravity=gravity,
                 rolling_resistance=rolling_resistance,
+                tendon=tendon,
             ),
             support=support,
             plane=plane,

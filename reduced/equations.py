@@ -29,6 +29,7 @@ from __future__ import annotations
 
 from ._compile import inlined, jit
 from .body import Body
+from .restoring import restoring, with_tendon, with_tendon_energy
 from .trigonometry import sin_cos
 
 _PLANE = 1e-13  # a few hundred roundings: what a rotation of a record leaves across its plane
@@ -58,9 +59,9 @@ def planar_rhs(body: Body, theta: float, direction: float, a: float, az: float) 
     acceleration along the plane [m/s^2].
     """
     s, c = sin_cos(theta)
-    restoring = (body.g + az) * (body.sin_alpha * c - body.cos_alpha * s)
+    held = restoring(body, s, c, body.g + az)
     inertial = (body.cos_alpha * c + body.sin_alpha * s) * direction * a
-    return -(body.p2 / body.g) * (restoring + inertial)
+    return -(body.p2 / body.g) * (held + inertial)
 
 
 @jit
@@ -89,11 +90,11 @@ def recess_motion(
     a_t = ay * cos_phi - ax * sin_phi
     if L == 0.0 and abs(a_t) <= in_plane_below(body, ax, ay):
         a_t = 0.0
-    restoring = (body.g + az) * (body.sin_alpha * c - body.cos_alpha * s)
+    held = restoring(body, s, c, body.g + az)
     inertial = (body.cos_alpha * c + body.sin_alpha * s) * a_r
     # the two constants wait for nothing, so they are ready when the rest is
     centrifugal = half_B_theta * (1.0 / body.A) * (phi_rate * phi_rate)
-    theta_acceleration = centrifugal - (body.p2 / body.g) * (restoring + inertial)
+    theta_acceleration = centrifugal - (body.p2 / body.g) * (held + inertial)
     return theta_acceleration, phi_rate, -(body.h * s + body.b * v) * a_t, s, c
 
 
@@ -139,9 +140,10 @@ def flat_rhs(
 
     centrifugal = L_over_B * L_over_B * s * (c * H + 0.5 * s * H_theta)
     twisting = -0.5 * delta * H_theta / (H * H) * tau_rate * tau_rate - roll_ratio_theta * Lambda * tau_rate
-    restoring = (body.g + az) * (b * c - h * s)
+    weight = (body.g + az) * (b * c - h * s)
     inertial = (b * s + h * c) * a_r
-    theta_acceleration = (centrifugal + twisting - restoring - inertial) / body.A
+    theta_acceleration = (centrifugal + twisting - weight - inertial) / body.A
+    theta_acceleration = with_tendon(body, theta_acceleration, s, c)  # in the recess, for its forces
     Lambda_rate = -body.mu * b * (b * s + h * c) * omega * tau_rate - s * (h + b * t) * a_t
     # without spin the coupling is none, also at theta = 0 where its coefficient is infinite
     coupling = twist_coupling(body, t, H) * omega * Lambda if Lambda != 0.0 else 0.0
@@ -168,4 +170,5 @@ def energy(body: Body, theta: float, omega: float, L: float, S: float) -> float:
     H = base_inertia(body, t)
     spin = L * L / (2.0 * s * s * H) if L != 0.0 else 0.0
     twist = S * S * H / (2.0 * (body.J * body.C - body.E * body.E)) if S != 0.0 else 0.0
-    return 0.5 * body.A * omega * omega + spin + twist + body.g * s * (body.b - body.h * t)
+    whole = 0.5 * body.A * omega * omega + spin + twist + body.g * s * (body.b - body.h * t)
+    return with_tendon_energy(body, whole, c)

@@ -24,8 +24,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._compile import jit, kernel
-from .body import Body
+from .body import Body, TiedBody
 from .equations import base_inertia, energy, flat_rhs
+from .restoring import tendon_pull
 from .rolling import couple_on, twist_share
 
 # columns of what `derived_quantities` returns
@@ -86,13 +87,21 @@ def contact_force(
     F_t = nu * across + a_t * (1.0 - nu * reach * reach / H)
     if body.delta > 0.0:
         F_t -= nu * reach / H * turning
-    return nu * outward + a_r, F_t, body.g + az + nu * up, kappa
+    down, inward = tendon_pull(body, c)
+    return nu * outward + a_r + inward, F_t, body.g + az + nu * up + down, kappa
 
 
-def top_force(body: Body, base: NDArray[np.float64], ground: NDArray[np.float64]) -> NDArray[np.float64]:
+def top_force(
+    body: Body,
+    base: NDArray[np.float64],
+    ground: NDArray[np.float64],
+    states: NDArray[np.float64],
+    gamma: float,
+) -> NDArray[np.float64]:
     """Return the contact force of a column on the slab, over the weight of its share of the slab.
 
-    The slab has twice the acceleration of the mass centre, which is what the force at the base shows.
+    The slab has twice the acceleration of the mass centre, which is what the force at the base shows, less
+    that of a tendon; the tendon pulls the slab as it pulls the base, in the opposite direction.
 
     Parameters
     ----------
@@ -101,13 +110,22 @@ def top_force(body: Body, base: NDArray[np.float64], ground: NDArray[np.float64]
         Contact force at the base, over the weight that it carries [-].
     ground : ndarray, shape (n, 3)
         Ground acceleration [m/s^2].
+    states : ndarray, shape (n, 6)
+        As of `derived_quantities`.
+    gamma : float
+        Mass of the share of the slab over that of the column [-].
 
     Returns
     -------
     ndarray, shape (n, 3)
     """
     standing = ground / body.g + np.array([0.0, 0.0, 1.0])
-    return np.asarray(standing + 2.0 / body.nu * (base - standing))
+    tendon = np.zeros_like(base)
+    if isinstance(body, TiedBody):
+        phi = states[:, 2]
+        down, inward = np.array([tendon_pull(body, each) for each in np.cos(states[:, 0])]).T
+        tendon = np.column_stack([inward * np.cos(phi), inward * np.sin(phi), down]) / body.g
+    return np.asarray(standing + 2.0 / body.nu * (base - tendon - standing) + (1.0 + 1.0 / gamma) * tendon)
 
 
 @kernel
@@ -138,6 +156,7 @@ def derived_quantities(
         ax, ay, az = ground[i]
         if theta == 0.0 and omega == 0.0:
             out[i, FORCE_X], out[i, FORCE_Y], out[i, FORCE_Z] = ax / body.g, ay / body.g, 1.0 + az / body.g
+            out[i, FORCE_Z] += tendon_pull(body, 1.0)[0] / body.g
             continue
         out[i, ROLLING_RATE] = flat_rhs(body, theta, omega, phi, Lambda, tau, S, ax, ay, az)[2]
         out[i, ENERGY] = energy(body, theta, omega, Lambda, S)

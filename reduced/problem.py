@@ -6,7 +6,7 @@ import math
 from dataclasses import KW_ONLY, dataclass, fields, replace
 from functools import cached_property
 from numbers import Real
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,9 @@ from rockwobble.models.support import SUPPORTS as FACTS
 from . import kernels
 from .body import Body, body_of, restitution_from_momentum
 from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
+from .integration.balance import decided
 from .integration.result import Driver, IntegrationResult, Options, Task
+from .restoring import tied
 from .rolling import impact_ratio
 
 SUPPORTS = tuple(name for name, support in FACTS.items() if support.modelled)
@@ -102,6 +104,16 @@ class Problem:
             raise ValueError(f"restitution belongs to planar motion, got {factor!r} without a plane")
         if plane is not None and initial is not None:
             _require_in_plane(initial, plane)
+        if self.case.tendon is not None and self.case.rolling_resistance > 0.0:
+            raise ValueError(
+                f"a tendon goes without rolling resistance in the reduced models, got "
+                f"{self.case.rolling_resistance:g} m beside it"
+            )
+        if self.case.tendon is not None and self.free_twist:
+            raise ValueError(
+                "a tendon is part of the models in the recess and in a plane, got support 'flat': there the "
+                "base wanders from its anchor"
+            )
 
     def __getstate__(self) -> dict[str, Any]:
         # what is derived stays behind: compiled code that travels is compiled again where it arrives
@@ -121,8 +133,10 @@ class Problem:
 
     @cached_property
     def body(self) -> Body:
-        """The constants of the equations."""
-        return body_of(self.case.cylinder, self.case.gravity, self.case.rolling_resistance)
+        """The constants of the equations; of a `TiedBody`, which has more, with a tendon."""
+        case = self.case
+        plain = body_of(case.cylinder, case.gravity, case.rolling_resistance)
+        return plain if case.tendon is None else cast("Body", tied(plain, case.cylinder, case.tendon))
 
     def solve(
         self,
@@ -134,7 +148,8 @@ class Problem:
         integrate, task, azimuth = self._set_up
         # a column of a table would have the time integration compiled for its stride
         task = task._replace(times=np.ascontiguousarray(times))
-        return integrate(self.body, self._options._replace(record_steps=record_steps), task), azimuth
+        result = integrate(self.body, self._options._replace(record_steps=record_steps), task)
+        return self._decided(result), azimuth
 
     def shaking(self, factor: float) -> SetUp:
         """Return the integration of a run from rest under ``motion.scaled(factor)``, for its peak only."""
@@ -150,7 +165,11 @@ class Problem:
 
     def solve_under(self, shaking: SetUp) -> IntegrationResult:
         """Return the result for this body under a motion of another size, for the peak only."""
-        return shaking.integrate(self.body, self._options, shaking.task)
+        return self._decided(shaking.integrate(self.body, self._options, shaking.task))
+
+    def _decided(self, result: IntegrationResult) -> IntegrationResult:
+        # rolling resistance holds what stands on the balance
+        return result if self.case.rolling_resistance else decided(self.body, result)
 
     @property
     def free_twist(self) -> bool:

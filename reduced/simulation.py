@@ -15,14 +15,15 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Diagnostic, Run, Trace
 from rockwobble.models.number_checks import require_sample_step
+from rockwobble.models.trace import NO_PEAK
 
 from . import kernels
 from ._compile import in_memory, on_disk
-from .integration.result import COMPLETED, OVER_BUDGET, OVERTURNED, REST, IntegrationResult
+from .integration.result import COMPLETED, OVER_BUDGET, OVERTURNED, REST, UNDECIDED, IntegrationResult
 from .problem import REST_TILT, Problem
 from .solution import Solution, six_columns
 
-_OUTCOMES = {REST: "stands", COMPLETED: "stands", OVERTURNED: "overturned"}
+_OUTCOMES = {REST: "stands", COMPLETED: "stands", OVERTURNED: "overturned", UNDECIDED: "undecided"}
 
 
 def simulate(
@@ -65,7 +66,7 @@ def simulate(
     Trace
         A numerical failure is an outcome with its diagnostics, not an exception. A run that ends while the
         cylinder moves is followed over still ground to the next maximum of the tilt, which counts for the
-        peak; one that overturns ends there, later than asked for.
+        peak; one that overturns ends there, later than asked for. What stays on its balance is "undecided".
 
     Raises
     ------
@@ -158,7 +159,7 @@ def _trace(
         twist=full[:, 4],
         contact_point=solution.contact_point(moving),
         centre_of_mass=solution.centre_of_mass(),
-        peak_tilt=math.nan if outcome == "failed" else 0.5 * math.pi if overturned else result.peak,
+        peak_tilt=0.5 * math.pi if overturned else math.nan if outcome in NO_PEAK else result.peak,
         outcome=outcome,
         uplift_time=result.uplift_time,
         uplift_direction=result.uplift_direction + azimuth,
@@ -187,9 +188,38 @@ def _facts(problem: Problem, result: IntegrationResult) -> Iterator[Diagnostic]:
         yield Diagnostic(code="step_budget", time=result.end, size=result.step_count - 1.0)
     elif result.status not in _OUTCOMES:
         yield Diagnostic(code="tolerance", time=result.end, bound=problem.rtol)
+    if result.status == UNDECIDED:
+        yield Diagnostic(code="undecided", time=min(result.end, problem.case.length))
+    yield from _yield(problem, result)
     straight = result.extrema[result.extrema[:, 1] == 0.0]
     if len(straight) and not problem.is_planar():
         yield Diagnostic(code="side", time=float(straight[0, 0]))
+
+
+_DIVISIONS, _ROUNDS = 64, 5  # of the time in which a tendon yields: to 1e-9 of a swing
+
+
+def _yield(problem: Problem, result: IntegrationResult) -> Iterator[Diagnostic]:
+    """First time at which the tension of a tendon reaches its yield force, which a known tilt has."""
+    case = problem.case
+    tendon = case.tendon
+    if tendon is None or tendon.yield_force is None or result.status not in _OUTCOMES:
+        return
+    largest = tendon.tension(case.cylinder, 0.5 * math.pi if result.status == OVERTURNED else result.peak)
+    if largest <= tendon.yield_force:
+        return
+    turns = result.extrema[result.extrema[:, 1] > 0.0]
+    over = [tendon.tension(case.cylinder, tilt) > tendon.yield_force for tilt in turns[:, 1]]
+    after = turns[int(np.argmax(over)), 0] if any(over) else result.end
+    before = turns[turns[:, 0] < after, 0].max(initial=0.0)
+    for _ in range(_ROUNDS):
+        times = np.linspace(before, min(after, result.end), _DIVISIONS + 1)
+        found, _azimuth = problem.solve(times)
+        tilts = found.samples[: found.reached, 0]
+        first = [tendon.tension(case.cylinder, tilt) > tendon.yield_force for tilt in tilts]
+        place = int(np.argmax(first)) if any(first) else len(tilts) - 1
+        before, after = times[max(place - 1, 0)], times[place]
+    yield Diagnostic(code="tendon_yield", time=float(after), size=largest, bound=tendon.yield_force)
 
 
 @cache

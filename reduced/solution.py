@@ -182,7 +182,8 @@ class Solution(Brief):
         if problem.case.cylinder.slab_mass_ratio == 0.0:
             return derived, None
         base = derived[:, forces.FORCE_X : forces.FORCE_Z + 1]
-        return derived, forces.top_force(problem.body, base, ground)
+        gamma = problem.case.cylinder.slab_mass_ratio
+        return derived, forces.top_force(problem.body, base, ground, states, gamma)
 
 
 def six_columns(states: Array, azimuth: float) -> Array:

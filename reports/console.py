@@ -8,7 +8,7 @@ import math
 import shlex
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -53,6 +53,12 @@ def command_line() -> str:
 def complain(message: str) -> None:
     """Print one line on standard error."""
     print(f"rockwobble: {' '.join(message.split())}", file=sys.stderr)
+
+
+def echo(lines: Iterable[str]) -> None:
+    """Print lines, warnings among them on standard error."""
+    for line in lines:
+        print(line, file=sys.stderr if line.startswith("Warning: ") else sys.stdout)
 
 
 @contextmanager

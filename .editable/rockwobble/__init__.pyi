@@ -18,9 +18,11 @@ from .models import Case as Case
 from .models import Cylinder as Cylinder
 from .models import Diagnostic as Diagnostic
 from .models import GroundMotion as GroundMotion
+from .models import HazardCurve as HazardCurve
 from .models import InitialState as InitialState
 from .models import Run as Run
 from .models import Suite as Suite
+from .models import Tendon as Tendon
 from .models import Trace as Trace
 from .models import WobblingFrame as WobblingFrame
 from .models import el_centro_1940 as el_centro_1940
@@ -28,6 +30,7 @@ from .models import far_field_motions as far_field_motions
 from .models import p695_far_field as p695_far_field
 from .models import perturbed_copies as perturbed_copies
 from .models import pulse as pulse
+from .models import read_hazard as read_hazard
 from .models import read_record as read_record
 from .models import read_records as read_records
 from .models import read_suite as read_suite

@@ -251,14 +251,18 @@ def _header(case: Case) -> Mapping[str, object] | None:
     if motion is None:
         return None
     components = "xyz"[: motion.acceleration.shape[1]]
-    return {"name": motion.name, "time_step": motion.time_step, "components": components}
+    header = {"name": motion.name, "time_step": motion.time_step, "components": components}
+    return header | ({"source": motion.source} if motion.source else {})
 
 
 def _case(given: Mapping[str, Any], excitation: pd.DataFrame | None) -> Case:
     motion = given["motion"]
     if motion is not None and excitation is not None:
         samples = excitation[[f"acceleration_{axis}" for axis in motion["components"]]].to_numpy()
-        motion = {"acceleration": samples, "time_step": motion["time_step"], "name": motion["name"]}
+        motion = {
+            "acceleration": samples,
+            **{key: motion.get(key) for key in ("time_step", "name", "source")},
+        }
     return case_from_plain({**given, "motion": motion})
 
 

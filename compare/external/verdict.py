@@ -14,6 +14,8 @@ from rockwobble.models import AGREEMENT, Case, Trace
 
 from ..metrics.pair import TILTED, start_of
 from .explanation import explanations
+from .loss import CODES as LOSSES
+from .loss import Loss, losses
 from .mistakes import Mistake
 from .motion import Motion, Part, Reference, exceeds, motion_at
 from .table import Values
@@ -111,8 +113,12 @@ def judge(trajectory: Trace, reference: Trace, case: Case) -> Row:
         return external_motion(other)
 
     explained = next(explanations(source.table.values, read, model), None) if found.differs_in else None
-    if explained is not None and (mistakes := explained.mistakes):
-        left = explained.left
+    mistakes: tuple[Mistake, ...] = explained.mistakes if explained else ()
+    left = explained.left if explained else found
+    if found.tilt.differs and left.tilt.differs:  # before passes are blamed
+        lost, without = losses(motion, model, reference, case)
+        mistakes, left = (*lost, *mistakes), without if len(lost) > 1 and not mistakes else left
+    if mistakes:
         row |= {
             "likely_mistake": tuple(mistake.code for mistake in mistakes),
             "likely_mistake_in": tuple(mistake.concerns for mistake in mistakes),
@@ -172,7 +178,10 @@ def first_passage(trace: Trace, tilt: float) -> float:
 def mistakes_of(row: Any) -> tuple[Mistake, ...]:
     """Return the likely mistakes of a row of the summary, a named tuple."""
     columns = zip(row.likely_mistake, row.likely_mistake_in, row.likely_mistake_value, strict=True)
-    return tuple(Mistake(code=code, concerns=part, value=value) for code, part, value in columns)
+    return tuple(
+        (Loss if code in LOSSES else Mistake)(code=code, concerns=part, value=value)
+        for code, part, value in columns
+    )
 
 
 def lists_in_words(summary: pd.DataFrame) -> pd.DataFrame:

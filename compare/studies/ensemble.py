@@ -17,7 +17,10 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Trace, perturbed_copies
 from rockwobble.models.diagnostic import joined
-from rockwobble.models.records.units import doubts_of
+from rockwobble.models.doubts import doubts_of_cases
+from rockwobble.models.number_checks import require_each
+from rockwobble.models.records.units import sources_of
+from rockwobble.models.trace import NO_PEAK
 
 from ..metrics.pair import outcome_of
 from ..metrics.statistics import (
@@ -149,6 +152,8 @@ def ensemble(
     """
     plan = Copies.of(**options)
     about: dict[str, object] = {"seed": plan.seed}
+    if not isinstance(case_or_members, Case | Suite):
+        require_each("case_or_members", case_or_members, Case)
     if isinstance(case_or_members, Case):
         perturbation = plan.perturbation
         members = perturbed_copies(case_or_members, plan.copies, perturbation=perturbation, seed=plan.seed)
@@ -171,7 +176,8 @@ def ensemble(
     table = _members(jobs, results)
     about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
     about |= {"methods": {label: _compared_with(run) for label, run in methods.items()}}
-    about |= {"doubts": doubts_of(case.motion for case in members)}
+    about |= {"doubts": doubts_of_cases(members)}
+    about |= {"record_sources": sources_of(case.motion for case in members)}
     about |= {"inputs": fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])}
     return ensemble_of(table, about)
 
@@ -271,8 +277,8 @@ def pairs(
     )
     return Pairs(
         members=np.array(names, dtype=str),
-        peaks=ours[peak].where(ours["outcome"] != "failed").to_numpy(float),
-        against=theirs[peak].where(theirs["outcome"] != "failed").to_numpy(float),
+        peaks=ours[peak].where(~ours["outcome"].isin(NO_PEAK)).to_numpy(float),
+        against=theirs[peak].where(~theirs["outcome"].isin(NO_PEAK)).to_numpy(float),
         overturned=(ours["outcome"] == "overturned").to_numpy(bool),
         against_overturned=(theirs["outcome"] == "overturned").to_numpy(bool),
     )
@@ -283,8 +289,8 @@ def method_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFr
     rows = []
     for method, own in methods.items():
         runs = members[members["method"] == method]
-        failed = runs[runs["outcome"] == "failed"]
-        known = runs[runs["outcome"] != "failed"]
+        without = runs["outcome"].isin(NO_PEAK)
+        failed, known = runs[without], runs[~without]
         fallen = known["outcome"] == "overturned"
         peaks = np.where(fallen, math.inf, known["peak_tilt"].to_numpy(float))
         median = quantile_interval(peaks, 0.5)

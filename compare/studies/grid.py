@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockwobble import reduced
-from rockwobble.models import GroundMotion
+from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
+from rockwobble.models.doubts import doubts_about
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import Brief
 
@@ -32,6 +34,7 @@ _OPTIONS: Mapping[str, float | None] = {  # of `reduced.peak_tilts`, and their d
     "plane": None,
     "restitution": None,
 }
+_RTOL = 1e-7  # its default tolerance
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -87,9 +90,22 @@ class GridChunk:
                 "scale": scales.ravel(),
                 "peak_tilt": peaks,
                 "peak_tilt_over_alpha": peaks / math.atan(self.tan_alpha),
-                "outcome": [outcome_of_peak(float(peak)) for peak in peaks],
+                "outcome": [
+                    # of one without a peak its run says why
+                    self._outcome(size, scale) if math.isnan(peak) else outcome_of_peak(peak)
+                    for peak, size, scale in zip(peaks.tolist(), sizes.ravel(), scales.ravel(), strict=True)
+                ],
             }
         )
+
+    def _outcome(self, size: float, scale: float) -> str:
+        options: dict[str, Any] = {**reduced.MODELS[self.model], **self.options}
+        cylinder: Cylinder = Cylinder(semidiagonal=float(size), tan_alpha=self.tan_alpha)
+        if ratio := options.pop("slab_mass_ratio", 0.0):
+            cylinder = WobblingFrame(cylinder, ratio)
+        stated = {name: options.pop(name) for name in ("gravity", "rolling_resistance") if name in options}
+        case = Case(cylinder, self.motion.scaled(float(scale)), **stated)
+        return reduced.simulate(case, **{"rtol": _RTOL, **options}).outcome
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -151,6 +167,15 @@ class Grid(Brief, GridPlan):
         for model in self.models if self.options else ():
             run = {**reduced.MODELS[model], **self.options}
             reduced.peak_tilts([1.0], 0.2, self.motions[0], [], **run)
+
+    def doubts(self) -> list[dict[str, object]]:
+        """Return the doubts about its motions, sizes and gravity, as `doubts_of_cases` does."""
+        cylinders = [
+            Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
+            for size in (min(self.semidiagonals), max(self.semidiagonals))
+            for tan_alpha in (min(self.tan_alphas), max(self.tan_alphas))
+        ]
+        return doubts_about(motions=self.motions, cylinders=cylinders, gravities=[self.gravity])
 
     @property
     def options(self) -> Mapping[str, object]:

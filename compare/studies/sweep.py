@@ -13,8 +13,9 @@ import pandas as pd
 
 from rockwobble.models import Case, GroundMotion, Run, Suite, Trace
 from rockwobble.models.diagnostic import joined
+from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.plain_json import fields_of
-from rockwobble.models.records.units import doubts_of
+from rockwobble.models.records.units import sources_of
 
 from ..metrics.pair import outcome_of
 from ..metrics.statistics import stated
@@ -130,7 +131,7 @@ def _row(job: Job, trace: Trace) -> dict[str, object]:
 
 
 KIND = "sweep"
-_OUTCOMES = ("stands", "overturned", "failed")
+_OUTCOMES = ("stands", "overturned", "undecided", "failed")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -287,12 +288,13 @@ def sweep(
     ) as found:
         by_place = dict(zip(order, found, strict=True))
         table: pd.DataFrame = pd.concat([by_place[place] for place in range(len(chunks))], ignore_index=True)
-        motions = whole.motions if isinstance(whole, Grid) else [case.motion for case in whole.cases]
+        doubts = whole.doubts() if isinstance(whole, Grid) else doubts_of_cases(whole.cases)
         plain = whole.describe() if isinstance(whole, Grid) else describe_suite(whole)
+        motions = whole.motions if isinstance(whole, Grid) else [case.motion for case in whole.cases]
         inputs = fingerprint([chunk.key() for chunk in chunks])
         result = Sweep(
             tables={KIND: table, **_motions(whole)},
-            facts={**plain, "doubts": doubts_of(motions), "inputs": inputs},
+            facts={**plain, "doubts": doubts, "record_sources": sources_of(motions), "inputs": inputs},
         )
         if out is not None:
             result.save(out) if save is None else save(result)

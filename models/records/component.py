@@ -18,6 +18,12 @@ Direction = Literal["x", "y", "z"]
 _UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)  # what spreadsheets call "Unicode text"
 # the largest of the networks are below 50 MB; what is larger is another file by mistake
 LARGEST_FILE = 200_000_000  # [bytes]
+# 1 g is 9.81 m/s^2, the default gravity of every model here, so that a/g stays what the file says
+METRES_PER_SECOND_SQUARED = {"g": 9.81, "m/s2": 1.0, "cm/s2": 0.01}
+UNITS = tuple(METRES_PER_SECOND_SQUARED)
+STEP_OPTION = "--record-step (time_step=)"
+_SAME_STEP = 3e-3  # relative: 0.0167 for 1/60
+_END_OF_FILE = b"\x1a"  # Ctrl-Z of DOS
 _HEAD = 60  # lines; the longest headers of the networks have 55
 
 
@@ -29,12 +35,40 @@ class ReadingOptions:
     ----------
     units : str or None
         One of `UNITS`; readers leave the unit of a silent file None, and `files` fills it in.
-    alone : bool
-        Whether the file is to hold all components of a record, in place of one.
+    columns : tuple of str
+        Names or numbers of the columns of time, x, y and z, in this order; for files of columns.
+    time_step : float or None
+        Of a file that gives none [s]; one that gives another is refused, see `settled_step`.
     """
 
     units: str | None = None
-    alone: bool = False
+    columns: tuple[str, ...] = ()
+    time_step: float | None = None
+
+    def settled_step(self, name: str, stated: float | None) -> float:
+        """Return the time step of a file [s]: the one it states, or the one that the user gives.
+
+        Parameters
+        ----------
+        name : str
+            Of the file, for messages.
+        stated : float or None
+            Time step that the file states [s].
+
+        Raises
+        ------
+        ValueError
+            If there is neither, or the two differ.
+        """
+        if stated is None:
+            if self.time_step is None:
+                raise ValueError(f"{name} has no times and states no time step: give it [s] by {STEP_OPTION}")
+            return self.time_step
+        if self.time_step is not None and abs(stated - self.time_step) > _SAME_STEP * stated:
+            raise ValueError(
+                f"{name} has a time step of {stated:g} s, but {STEP_OPTION} is {self.time_step:g} s"
+            )
+        return stated
 
 
 @dataclass(frozen=True)
@@ -60,10 +94,12 @@ class RecordFile:
         """Lines without their ends; None where the file is binary: it holds null bytes."""
         if b"\0" in self.content:
             return None
+        content = self.content.rstrip(b" \t\r\n" + _END_OF_FILE)
         try:  # utf-8-sig drops the byte-order mark that spreadsheets write
-            return tuple(self.content.decode("utf-8-sig").splitlines())
+            text = content.decode("utf-8-sig")
         except UnicodeDecodeError:  # an older file, whose m/s² is one byte shorter
-            return tuple(self.content.decode("cp1252", errors="replace").splitlines())
+            text = content.decode("cp1252", errors="replace")
+        return tuple(text.splitlines())
 
     @property
     def text(self) -> tuple[str, ...]:
@@ -129,7 +165,7 @@ class Component:
     time_step : float
         [s]
     unit : str or None
-        One of `units.UNITS`; None where the file is silent.
+        One of `UNITS`; None where the file is silent.
     start : float or None
         Time of the first sample [s]; None where the file gives no times.
     format : str

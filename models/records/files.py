@@ -1,7 +1,8 @@
-"""Strong-motion records from files: PEER AT2, two-column text, CSV."""
+"""Strong-motion records from files: components of one or several files as one ground motion."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
@@ -11,179 +12,272 @@ from pathlib import Path
 import numpy as np
 
 from ..ground_motion import GroundMotion
-from ..number_checks import require_one_of
-from .component import Component, ReadingOptions, open_record
+from ..number_checks import require_finite, require_one_of, require_positive
+from ..record_source import ComponentSource, RecordSource
+from .clocks import LENGTHS, equally_long, require_same_clock, resampled
+from .component import METRES_PER_SECOND_SQUARED, UNITS, Component, Direction, ReadingOptions, open_record
+from .directions import NORTH, at_the_surface, for_place, in_order, turned_to_north
 from .formats import read_components
-from .units import UNITS, factor
+from .plausibility import doubts_as_read
+from .units import factor
 
 ZERO = "zero"  # in the place of a file: planar motion
-# components may differ in length by this part, and by more where what is left out is below this part of
-# the peak
-_LEFT_OUT, _STILL = 0.01, 0.05
-# over a whole record two components may drift apart by this part of a step, the rounding of printed times
-_DRIFT = 0.05
-_MOST_PARTS = 20  # of the smallest step: a record of more samples by that is a mistake, not a common step
+_G = METRES_PER_SECOND_SQUARED["g"]
 
 
 def read_record(
-    x_path: str | Path,
+    x_path: str | Path | Sequence[str | Path],
     y_path: str | Path | None = None,
     z_path: str | Path | None = None,
     *,
     units: str | None = None,
-    name: str | None = None,
+    columns: str | Sequence[str | int] | None = None,
+    time_step: float | None = None,
+    lengths: str | None = None,
+    remove_mean: bool = False,
+    rotate: float | str | None = None,
     resample: bool = False,
+    name: str | None = None,
 ) -> GroundMotion:
-    r"""Read a ground motion, one file for each component or one for all.
+    r"""Read a ground motion, one file for each component or one file or folder for all.
 
-    The file of a component may be PEER AT2 (in each form of its header line), text of two columns, time [s]
-    and acceleration, or the same as CSV with or without a header line. One file for all is text or CSV of
-    time, x, y and, where there is one, z. 1 g is 9.81 m/s^2. The first sample is at time 0 of a run, whatever
-    time its file gives it.
+    The formats are those of `models.records.formats`: PEER AT2, what the networks give out, text and CSV of
+    columns, and values without times. In one file of several columns their names say which is x (east), y
+    (north) and z (up), in any order. 1 g is 9.81 m/s^2. The first sample is at time 0 of a run, whatever time
+    its file gives it. `GroundMotion.source` says what was read, in one line.
 
     Parameters
     ----------
     x_path, y_path : str or Path
-        East-west and north-south component; without the second the first holds all. "zero" in the place of
-        one is a component of zeros, for planar motion along the other.
+        East-west and north-south component; without the second the first holds all, and may be a folder of
+        the files of one station, or a list of them. "zero" in the place of one is a component of zeros, for
+        planar motion along the other.
     z_path : str or Path, optional
         Vertical component.
     units : {"g", "m/s2", "cm/s2"}, optional
         Required where a file does not say its unit; where it does, both must agree.
-    name : str, optional
-        Default: the name of the x file without its ending.
+    columns : str or sequence of str or int, optional
+        Columns of time, x, y and z in this order, by name or number from 1, such as "Zeit,Ost,Nord" or
+        [1, 4, 3, 2]; the words "time,x,y,z" (and "-" for a column to leave out) name those of a file without
+        names, in the order of the file. "values": all numbers are one component, row by row.
+    time_step : float, optional
+        Of files that give no times [s].
+    lengths : {"pad", "cut"}, optional
+        Where components differ in length: fill the shorter with zeros, or cut the longer. Default: cut to the
+        shortest where the others are as good as over by then.
+    remove_mean : bool, optional
+        Take its mean from each component, which is the offset of the sensor.
+    rotate : float or "north", optional
+        Turn the components by this angle, counter-clockwise from above [deg]; "north": so that x is east and
+        y north, by the azimuths that the files state.
     resample : bool, optional
         Take components of different time steps at the largest step that divides all of them. Records are
         linear between samples, all of which stay, so no component changes.
+    name : str, optional
+        Default: the name of the x file without its ending.
 
     Returns
     -------
     GroundMotion
-        In m/s^2, cut to the shortest component where the others are as good as over by then.
+        In m/s^2.
 
     Raises
     ------
     ValueError
         If a file is missing, empty or not readable as numbers, its unit is unknown or contradicts
-        `units`, its times are uneven, or the components have different time steps, starts or lengths. The
-        message names the file, and the line where there is one.
+        `units`, its columns cannot be told apart, its times are uneven, or the components have different time
+        steps, starts or lengths. The message names the file, and the line where there is one.
 
     Examples
     --------
     >>> from tempfile import mkdtemp
     >>> from pathlib import Path
     >>> path = Path(mkdtemp()) / "pulse.csv"
-    >>> _ = path.write_text("time,x,y\n0.00,0.0,0.0\n0.01,0.2,0.1\n0.02,0.0,0.0\n")
+    >>> _ = path.write_text("time,NS,EW\n0.00,0.0,0.0\n0.01,0.1,0.2\n0.02,0.0,0.0\n0.03,-0.1,-0.2\n")
     >>> motion = read_record(path, units="g")
     >>> motion.name, motion.acceleration.shape, round(float(motion.acceleration[1, 0]), 3)
-    ('pulse', (3, 2), 1.962)
+    ('pulse', (4, 2), 1.962)
+    >>> motion.source
+    pulse.csv: columns, 4 samples of 0.01 s, 0.03 s; x: EW [g] 0.2 g; y: NS [g] 0.1 g
     """
     if units is not None:
         require_one_of("units", units, UNITS)
+    if lengths is not None:
+        require_one_of("lengths", lengths, LENGTHS)
+    if time_step is not None:
+        time_step = require_positive("time_step", time_step, "s")
+    angle = None if rotate is None or rotate == NORTH else _angle(rotate)
+    options = ReadingOptions(units=units, columns=_column_texts(columns), time_step=time_step)
     if y_path is None:
         if z_path is not None:
             raise ValueError(f"a file of all components has no other beside it, got {z_path} beside {x_path}")
-        components = _read_all(Path(x_path))
+        if isinstance(x_path, str | Path):
+            components, notes = _read_all(Path(x_path), options)
+        else:
+            components, notes = _read_station([Path(each) for each in x_path], "the list of files", options)
+    elif not isinstance(x_path, str | Path):
+        raise ValueError("a list of files of one station has no other beside it")
     else:
-        components = _read_each(x_path, y_path, z_path)
+        components, notes = _read_each(x_path, y_path, z_path, options), ()
     if resample:
-        components = _resampled(components)
-    length = min(len(component.values) for component in components)
+        components = resampled(components)
     first = max(components, key=lambda part: part.path.name != ZERO)
-    for other in components:
-        _require_same_clock(first, other, length)
+    require_same_clock([first, *(part for part in components if part is not first)])
+    units_used = ["" if part.path.name == ZERO else _unit(part, units) for part in components]
+    components, changes = equally_long(components, lengths)
     with np.errstate(over="ignore"):  # GroundMotion refuses what is not finite
-        columns = [part.values[:length] * _factor(part, units) for part in components]
-    _require_still_beyond(components, length)
-    return GroundMotion(np.column_stack(columns), first.time_step, first.path.stem if name is None else name)
+        samples = np.column_stack(
+            [
+                part.values * METRES_PER_SECOND_SQUARED.get(unit, 1.0)
+                for part, unit in zip(components, units_used, strict=True)
+            ]
+        )
+    if name is None:
+        one = y_path is None and isinstance(x_path, str | Path)
+        name = Path(str(x_path)).stem if one else first.path.stem
+    motion = GroundMotion(samples, first.time_step, name)  # refuses what is not finite
+    source = _source(motion, components, units_used, (*notes, *changes))
+    if remove_mean:
+        means = ", ".join(f"{mean / _G:.3g}" for mean in samples.mean(axis=0))
+        samples = samples - samples.mean(axis=0)
+        removed = f"means of {means} g removed"
+        source = replace(
+            _source(GroundMotion(samples, first.time_step), components, units_used, source.notes),
+            changes=(removed,),
+        )
+    motion = GroundMotion(samples, first.time_step, name, source)
+    if rotate == NORTH:
+        azimuths = [_azimuth(part, axis) for part, axis in zip(components, "xy", strict=False)]
+        return motion.changed(turned_to_north(samples, azimuths), "turned: x is east, y north")
+    return motion if angle is None else motion.rotated(math.radians(angle))
 
 
-def _read_each(x: str | Path, y: str | Path, z: str | Path | None) -> list[Component]:
-    """Read the file of each component; one of zeros has the clock of the other."""
-    if str(x) == str(y) == ZERO:
-        raise ValueError("one horizontal component must be a file, got zero for both")
-    found = [
-        None if str(path) == ZERO else _read_component(Path(path)) for path in (x, y, z) if path is not None
+def _angle(rotate: float | str) -> float:
+    try:
+        return require_finite("rotate", float(rotate), "deg")
+    except ValueError:
+        raise ValueError(f"rotate must be an angle [deg] or {NORTH!r}, got {rotate!r}") from None
+
+
+def _column_texts(columns: str | Sequence[str | int] | None) -> tuple[str, ...]:
+    if columns is None:
+        return ()
+    texts = columns.split(",") if isinstance(columns, str) else [str(each) for each in columns]
+    texts = [text.strip() for text in texts]
+    if not texts or not all(texts):
+        raise ValueError(f"columns must be names or numbers, as time,x,y or 1,3,2, got {columns!r}")
+    return tuple(texts)
+
+
+def _unit(part: Component, units: str | None) -> str:
+    factor(part.path, part.unit, units)  # refuses what is silent or contradicts
+    return part.unit or str(units)
+
+
+def _azimuth(part: Component, axis: str) -> float | None:
+    if part.azimuth is not None or part.direction != axis:
+        return part.azimuth
+    return {"x": 90.0, "y": 0.0}[axis]
+
+
+def _source(
+    motion: GroundMotion, components: Sequence[Component], units: Sequence[str], notes: Sequence[str]
+) -> RecordSource:
+    samples = motion.acceleration
+    parts = [
+        ComponentSource(axis=axis, file=ZERO)
+        if part.path.name == ZERO
+        else ComponentSource(
+            axis=axis,
+            file=part.path.name,
+            label=part.label,
+            unit=unit,
+            peak=float(np.abs(column).max()) / _G,
+            mean=float(column.mean()) / _G,
+            azimuth=part.azimuth,
+        )
+        for axis, part, unit, column in zip("xyz", components, units, samples.T, strict=False)
     ]
-    given = next(part for part in found if part is not None)
-    zero = replace(given, path=Path(ZERO), values=np.zeros_like(given.values))
-    return [part or zero for part in found]
-
-
-def _factor(part: Component, units: str | None) -> float:
-    return 1.0 if part.path.name == ZERO else factor(part.path, part.unit, units)
-
-
-def _read_component(path: Path) -> Component:
-    (component,) = read_components(open_record(path), ReadingOptions())
-    return component
-
-
-def _read_all(path: Path) -> list[Component]:
-    return read_components(open_record(path), ReadingOptions(alone=True))
-
-
-def _resampled(components: Sequence[Component]) -> list[Component]:
-    """Return components at the largest time step that divides the steps of all, linear between samples.
-
-    That changes no record: each is linear between its samples, and all of them stay.
-
-    Raises
-    ------
-    ValueError
-        If no such step is at least a twentieth of the smallest one.
-    """
-    finest = min(components, key=lambda each: each.time_step)
-    for parts in range(1, _MOST_PARTS + 1):
-        step = finest.time_step / parts
-        counts = [round(each.time_step / step) for each in components]
-        drifts = [
-            abs(each.time_step - count * step) * len(each.values)
-            for each, count in zip(components, counts, strict=True)
-        ]
-        if max(drifts) <= _DRIFT * step:
-            return [_refined(each, count, step) for each, count in zip(components, counts, strict=True)]
-    coarsest = max(components, key=lambda each: each.time_step)
-    raise ValueError(
-        f"components are resampled to a step that divides all, at least 1/{_MOST_PARTS} of the smallest: "
-        f"{finest.time_step:g} s in {finest.path.name} and {coarsest.time_step:g} s in {coarsest.path.name} "
-        "have none"
+    known = [part for part in components if part.path.name != ZERO]
+    formats = dict.fromkeys(part.format for part in known)
+    said = dict.fromkeys([note for part in known for note in part.notes] + list(notes))
+    return RecordSource(
+        format=" and ".join(formats),
+        time_step=motion.time_step,
+        samples=len(samples),
+        components=tuple(parts),
+        notes=tuple(said),
+        doubts=doubts_as_read(samples, motion.time_step, components, units),
     )
 
 
-def _refined(component: Component, count: int, step: float) -> Component:
-    """Return a component with each of its time steps cut into `count` of `step` [s]."""
-    values = component.values
-    places = np.arange((len(values) - 1) * count + 1) / count
-    return replace(component, values=np.interp(places, np.arange(len(values)), values), time_step=step)
+def _read_each(
+    x: str | Path, y: str | Path, z: str | Path | None, options: ReadingOptions
+) -> list[Component]:
+    """Read the file of each component; one of zeros has the clock of the other."""
+    if str(x) == str(y) == ZERO:
+        raise ValueError("one horizontal component must be a file, got zero for both")
+    axes: tuple[Direction, ...] = ("x", "y", "z")
+    parts = [
+        None
+        if str(path) == ZERO
+        else for_place(read_components(open_record(Path(path)), options), axis, Path(path).name)
+        for path, axis in zip((x, y, z), axes, strict=True)
+        if path is not None
+    ]
+    known = next(part for part in parts if part is not None)
+    zero = replace(known, path=Path(ZERO), values=np.zeros_like(known.values), direction=None, azimuth=None)
+    return [part or zero for part in parts]
 
 
-def _require_still_beyond(components: Sequence[Component], length: int) -> None:
-    """Refuse a component that is cut short in the middle of its motion: half a record is another record."""
-    for part in components:
-        rest, peak = np.abs(part.values[length:]), np.abs(part.values).max()
-        if len(rest) > _LEFT_OUT * len(part.values) and rest.max() > _STILL * peak:
-            raise ValueError(
-                f"the components of a record must be equally long, got {len(part.values)} samples in "
-                f"{part.path.name} and {length} in another: what would be left out has "
-                f"{100.0 * rest.max() / peak:.0f} % of its peak"
-            )
+def _read_all(path: Path, options: ReadingOptions) -> tuple[list[Component], tuple[str, ...]]:
+    """Read the components of a file or a folder, and what of a folder was not read."""
+    try:
+        is_folder = path.is_dir()
+    except (OSError, ValueError):  # a null byte in the name
+        is_folder = False
+    if not is_folder:
+        return in_order(read_components(open_record(path), options), path.name), ()
+    return _read_folder(path, options)
 
 
-def _require_same_clock(first: Component, other: Component, length: int) -> None:
-    tolerance = _DRIFT * first.time_step
-    if abs(other.time_step - first.time_step) * length > tolerance:
+_MOST_FILES = 60  # of the folder of a station; more are those of many stations
+
+
+def _read_folder(folder: Path, options: ReadingOptions) -> tuple[list[Component], tuple[str, ...]]:
+    paths = sorted(path for path in folder.iterdir() if path.is_file() and not path.name.startswith("."))
+    if not 0 < len(paths) <= _MOST_FILES:
         raise ValueError(
-            f"the components of a record must have one time step, got {first.time_step:g} s in "
-            f"{first.path.name} and {other.time_step:g} s in {other.path.name}: resample (--resample) takes "
-            "both at a step that divides them, which changes neither"
+            f"the folder {folder} must hold the files of one station, got {len(paths)} files: a folder of "
+            "many records is for --records"
         )
-    # an AT2 file gives no times: its first sample is taken as that of the others
-    if first.start is not None and other.start is not None and abs(other.start - first.start) > tolerance:
-        raise ValueError(
-            f"the components of a record must start at one time, got {first.start:g} s in "
-            f"{first.path.name} and {other.start:g} s in {other.path.name}"
-        )
+    return _read_station(paths, folder.name, options, others=True)
+
+
+def _read_station(
+    paths: Sequence[Path], name: str, options: ReadingOptions, *, others: bool = False
+) -> tuple[list[Component], tuple[str, ...]]:
+    """Read the files of one station; `others`: some may be none of records, and are noted."""
+    components: list[Component] = []
+    refusals: list[tuple[str, ValueError]] = []
+    for path in paths:
+        try:
+            components += read_components(open_record(path), options)
+        except ValueError as error:
+            if not others:
+                raise
+            refusals.append((path.name, error))
+    if not components:
+        raise refusals[0][1] if refusals else ValueError(f"{name} holds no record")
+    try:
+        components, notes = at_the_surface(components)
+        placed = in_order(components, name)
+    except ValueError:
+        if refusals:  # what is missing is probably what was refused
+            raise refusals[0][1] from None
+        raise
+    left = ", ".join(each for each, _ in refusals)
+    return placed, (*notes, *((f"not read: {left[:80]}",) if left else ()))
 
 
 # provenance and orientation: records/README.md
@@ -214,6 +308,10 @@ def el_centro_1940(vertical: bool = False) -> GroundMotion:
     ((5346, 2), 0.28648)
     """
     with as_file(files("rockwobble.models") / "records") as folder:
-        motion = read_record(folder / _EAST_WEST, folder / _NORTH_SOUTH, folder / _UP if vertical else None)
-    # both horizontal components reach to the shortest of them, 5346 samples, with or without z
-    return GroundMotion(motion.acceleration, motion.time_step, "El Centro 1940")
+        # both horizontal components reach to the shortest of them, 5346 samples, with or without z
+        return read_record(
+            folder / _EAST_WEST,
+            folder / _NORTH_SOUTH,
+            folder / _UP if vertical else None,
+            name="El Centro 1940",
+        )

@@ -1,35 +1,50 @@
-"""Ground motions of a folder of records with a table."""
+"""Ground motions of a folder of records: with a table of its own, or as the database of PEER gives it out."""
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+import io
+import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from ..ground_motion import GroundMotion
 from .files import ZERO, read_record
 
 TABLE = "records.csv"
-_COLUMNS, _NEEDED = ("name", "x", "y", "z", "units", "scale"), ("x", "y")
+PEER_TABLE = "_SearchResults.csv"
+_WAYS = ("units", "columns", "time_step", "lengths", "remove_mean", "rotate", "resample")
+_COLUMNS = ("name", "record", "x", "y", "z", "scale", *_WAYS)
 
 
 def read_records(
-    folder: str | Path, *, units: str | None = None, resample: bool = False
+    folder: str | Path,
+    *,
+    units: str | None = None,
+    columns: str | Sequence[str | int] | None = None,
+    time_step: float | None = None,
+    lengths: str | None = None,
+    remove_mean: bool = False,
+    rotate: float | str | None = None,
+    resample: bool = False,
 ) -> list[GroundMotion]:
-    r"""Return the ground motions of a folder, as its records.csv lists them.
+    r"""Return the ground motions of a folder, as its records.csv lists them, or all of a download from PEER.
 
-    A row for each motion, with the columns x and y, the files of the two horizontal components beside the
-    table (PEER AT2, two-column text or CSV; "zero" is a component of zeros), and maybe z (vertical), name,
-    units and scale.
+    A row of records.csv is a motion: columns x and y, the files of the two horizontal components beside the
+    table ("zero" is a component of zeros) and maybe z (vertical), or record, a file or folder of all
+    components; and maybe name, scale and the options of `read_record`, which count before those given here.
+
+    A folder without one that holds the _SearchResults.csv of PEER, or files named RSN6_..., is read as it
+    comes: the files of one record sequence number are one motion, unscaled, with its vertical component where
+    that is there.
 
     Parameters
     ----------
     folder : str or Path
         Or the table itself.
-    units : {"g", "m/s2", "cm/s2"}, optional
-        Of the files that do not say, where the table has no units.
-    resample : bool, optional
-        Take components of different time steps at one that divides all, as `read_record` does.
+    units, columns, time_step, lengths, remove_mean, rotate, resample
+        As of `read_record`, for the rows that do not say.
 
     Returns
     -------
@@ -51,53 +66,75 @@ def read_records(
     >>> [(motion.name, motion.peak) for motion in read_records(folder)]
     [('pulse', 0.5)]
     """
+    ways: dict[str, Any] = {
+        **{"units": units, "columns": columns, "time_step": time_step, "lengths": lengths},
+        **{"remove_mean": remove_mean, "rotate": rotate, "resample": resample},
+    }
     path = Path(folder)
+    if path.is_dir() and not (path / TABLE).exists():
+        stations = _stations(path)
+        if stations:
+            return _peer_motions(stations, ways)
     path = path / TABLE if path.is_dir() else path
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            reader = csv.DictReader(file)
-            columns = list(reader.fieldnames or ())
-            rows = [(reader.line_num, row) for row in reader]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise ValueError(f"the table of records {path} cannot be read: {reason}") from None
-    wrong = [column for column in columns if column not in _COLUMNS]
-    missing = [column for column in _NEEDED if column not in columns]
-    if wrong or missing:
+    if path.name.endswith(PEER_TABLE):
+        return _peer_motions(_stations(path.parent), ways)
+    columns_of_table, rows = _table(path)
+    wrong = [column for column in columns_of_table if column not in _COLUMNS]
+    if wrong or not ({"x", "y"} <= set(columns_of_table) or "record" in columns_of_table):
         raise ValueError(
-            f"{path} must have the columns x and y, and may have z, name, units and scale, "
-            f"got {', '.join(columns) or 'none'}"
+            f"{path} must have the columns x and y, or record, and may have z, name, scale, "
+            f"{', '.join(_WAYS)}, got {', '.join(columns_of_table)[:100] or 'none'}"
         )
     if not rows:
         raise ValueError(f"{path} must list ground motions, one in a line, got none")
     motions = []
     for number, row in rows:
         try:
-            motions.append(_motion(path.parent, row, units, resample))
+            motions.append(_motion(path.parent, row, ways))
         except ValueError as error:
             raise ValueError(f"{path.name}, line {number}: {error}") from None
     return motions
+
+
+def _table(path: Path) -> tuple[list[str], list[tuple[int, dict[str | None, str | list[str]]]]]:
+    """Return the columns of records.csv, and number and cells of each row."""
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+        first = text.partition("\n")[0]
+        separator = ";" if ";" in first and "," not in first else ","
+        reader = csv.DictReader(io.StringIO(text, newline=""), delimiter=separator)
+        columns = [column.strip().lower() for column in reader.fieldnames or ()]
+        reader.fieldnames = columns
+        return columns, [(reader.line_num, dict(row)) for row in reader]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise ValueError(f"the table of records {path} cannot be read: {reason}") from None
 
 
 def _place(folder: Path, name: str | None) -> str | Path | None:
     return name if name == ZERO else folder / name if name else None
 
 
-def _motion(
-    folder: Path, row: Mapping[str | None, str | list[str]], units: str | None, resample: bool
-) -> GroundMotion:
+_TRUE, _FALSE = ("1", "true", "yes"), ("", "0", "false", "no")
+
+
+def _motion(folder: Path, row: Mapping[str | None, str | list[str]], ways: Mapping[str, Any]) -> GroundMotion:
     beyond = list(row.get(None, ()))  # cells under no column
     if any(cell.strip() for cell in beyond):
         raise ValueError(f"must have {len(row) - 1} cells, got {len(row) - 1 + len(beyond)}")
     cells = {name: (cell or "").strip() for name, cell in row.items() if isinstance(cell, str)}
-    if not (cells.get("x") and cells.get("y")):
-        raise ValueError("both horizontal components are needed, x and y")
-    x, y, z = (_place(folder, cells.get(name)) for name in ("x", "y", "z"))
-    assert x is not None
-    assert y is not None
-    motion = read_record(
-        x, y, z, units=cells.get("units") or units, name=cells.get("name") or None, resample=resample
-    )
+    of_row = {name: _way(name, cells[name]) for name in _WAYS if cells.get(name)}
+    name = cells.get("name") or None
+    if cells.get("record"):
+        if any(cells.get(axis) for axis in "xyz"):
+            raise ValueError("record holds all components, got x, y or z beside it")
+        motion = read_record(folder / cells["record"], name=name, **{**ways, **of_row})
+    else:
+        if not (cells.get("x") and cells.get("y")):
+            raise ValueError("both horizontal components are needed, x and y")
+        x, y, z = (_place(folder, cells.get(axis)) for axis in ("x", "y", "z"))
+        assert x is not None
+        motion = read_record(x, y, z, name=name, **{**ways, **of_row})
     if not cells.get("scale"):
         return motion
     try:
@@ -107,3 +144,105 @@ def _motion(
     if not 0.0 < factor < float("inf"):
         raise ValueError(f"scale must be a positive number, got {cells['scale']!r}")
     return motion.scaled(factor)
+
+
+def _way(name: str, text: str) -> object:
+    """Return the value of an option of reading from its cell."""
+    if name in ("remove_mean", "resample"):
+        if text.lower() not in (*_TRUE, *_FALSE):
+            raise ValueError(f"{name} must be yes or no, got {text!r}")
+        return text.lower() in _TRUE
+    if name == "columns":
+        return text.replace(";", ",").replace(" ", ",") if "," not in text else text
+    if name == "time_step":
+        try:
+            return float(text)
+        except ValueError:
+            raise ValueError(f"time_step must be a number [s], got {text!r}") from None
+    return text
+
+
+_RSN = re.compile(r"RSN(\d{1,6})_", re.IGNORECASE)
+
+
+def _stations(folder: Path) -> list[tuple[str, list[Path]]]:
+    """Return name and AT2 files of each record of a folder of PEER: of its table, else all."""
+    if not folder.is_dir():
+        return []
+    tables = sorted(path for path in folder.iterdir() if path.name.endswith(PEER_TABLE))
+    if tables:
+        return _listed_stations(tables[0])
+    groups: dict[str, list[Path]] = {}
+    for path in sorted(folder.iterdir()):
+        number = _RSN.match(path.name)
+        if number and path.suffix.lower() == ".at2":
+            groups.setdefault(number[1], []).append(path)
+    return [
+        (f"RSN{number}", paths) for number, paths in sorted(groups.items(), key=lambda each: int(each[0]))
+    ]
+
+
+def _listed_stations(table: Path) -> list[tuple[str, list[Path]]]:
+    try:
+        rows = list(
+            csv.reader(io.StringIO(table.read_text(encoding="utf-8-sig", errors="replace"), newline=""))
+        )
+    except (OSError, csv.Error) as error:
+        raise ValueError(f"the table of records {table} cannot be read: {error}") from None
+    heads = [place for place, row in enumerate(rows) if any("filename" in cell.lower() for cell in row)]
+    if not heads:
+        raise ValueError(
+            f"{table} must have the columns 'Horizontal-1 Acc. Filename' and so on, as PEER writes it"
+        )
+    header = [cell.strip().lower() for cell in rows[heads[0]]]
+
+    def column(*words: str) -> int | None:
+        return next((at for at, cell in enumerate(header) if all(word in cell for word in words)), None)
+
+    number, event, station = column("sequence number"), column("earthquake"), column("station name")
+    places = [
+        column("horizontal-1", "filename"),
+        column("horizontal-2", "filename"),
+        column("vertical", "filename"),
+    ]
+    if places[0] is None or places[1] is None:
+        raise ValueError(
+            f"{table} must have the columns 'Horizontal-1 Acc. Filename' and 'Horizontal-2 Acc. Filename'"
+        )
+    here = {path.name.lower(): path for path in table.parent.iterdir()}
+    found: list[tuple[str, list[Path]]] = []
+    for row in rows[heads[0] + 1 :]:
+        cells = [cell.strip() for cell in row]
+        if len(cells) <= max(place for place in places if place is not None):
+            if found:
+                break  # another table follows
+            continue
+        names = [cells[place].replace("\\", "/").rpartition("/")[2] for place in places if place is not None]
+        files = [
+            here.get(name.lower(), table.parent / name) for name in names if name and name.upper() != "NONE"
+        ]
+        words = [f"RSN{cells[number]}" if number is not None else ""]
+        words += [cells[place].strip('"') for place in (event, station) if place is not None]
+        found.append((", ".join(word for word in words if word), files))
+    return found
+
+
+def _peer_motions(stations: Sequence[tuple[str, list[Path]]], ways: Mapping[str, Any]) -> list[GroundMotion]:
+    if not stations:
+        raise ValueError("the table of PEER lists no records")
+    # a download without any vertical component is one of horizontal motions
+    verticals = any(path.exists() for _, paths in stations for path in paths[2:])
+    motions = []
+    for name, paths in stations:
+        files = paths if verticals else paths[:2]
+        try:
+            motions.append(_of_station(files, name, ways))
+        except ValueError as error:
+            raise ValueError(f"{name}: {error}") from None
+    return motions
+
+
+def _of_station(paths: Sequence[Path], name: str, ways: Mapping[str, Any]) -> GroundMotion:
+    if not 2 <= len(paths) <= 3:
+        raise ValueError(f"must have two or three files, got {', '.join(path.name for path in paths)[:120]}")
+    return read_record(paths, name=name, **ways)

@@ -1,9 +1,17 @@
-"""Numbers as the files of records print them: Fortran exponents, columns that touch."""
+"""Numbers as the files of records print them: Fortran exponents, columns that touch.
+
+Numbers that blanks part are read as they stand. Where some touch, they are parted by what Fortran keeps the
+same in all numbers of a format: the decimals behind the point and the digits of the exponent; where these
+differ from column to column, by the places at which the columns end. What can be parted in no such way is
+refused.
+"""
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +19,14 @@ from numpy.typing import NDArray
 
 from .component import RecordFile
 
-# one way to match each text, so that no line takes more than linear time;
-# columns may touch: in "1.2E-031.4E-03" the exponent ends where the next number needs its digit
-NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?(?:\d\d(?=\d?\.)|\d+))?"
+# one way to match each text, so that no line takes more than linear time
+NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?\d+)?"
+_ALLOWED = b"0123456789+-.eE \t\n\r"
+_ENDED = re.compile(r"\.(\d*)(?:[EeDd][-+]?(\d+))?(?=[\s,;+-]|\Z)")  # a number whose end is certain
+_TWO_POINTS = re.compile(r"\.[^\s,;+.-]*(?:(?<=[EeDd])[-+][^\s,;+.-]*)?\.")
+_SIGN_BEHIND = re.compile(r"(?<=[\d.])([-+])")
+_LOST_E = re.compile(r"(?<=\d)([-+]\d{3})(?![\d.])")  # Fortran leaves out the E before three digits
+_MANY_DIGITS = re.compile(r"(?<![\d.])\d{17}")  # more than a double holds: whole numbers that touch
 
 
 def parse_number(path: Path, line_number: int, token: str) -> float:
@@ -35,22 +48,159 @@ def parse_number(path: Path, line_number: int, token: str) -> float:
     return value
 
 
+def is_number(cell: str) -> bool:
+    """Return whether a text is a number, also one that is not finite."""
+    return re.fullmatch(NUMBER, cell) is not None or cell.lower().lstrip("+-") in ("nan", "inf", "infinity")
+
+
+def plain_numbers(text: str) -> NDArray[np.float64] | None:
+    """Return the numbers of a text that blanks part; None where it holds anything else, or they touch."""
+    if "D" in text or "d" in text:
+        text = text.replace("D", "E").replace("d", "E")
+    if not text.isascii() or text.encode("ascii").translate(None, _ALLOWED):
+        return None
+    try:
+        values = np.array(list(map(float, text.split())), dtype=np.float64)
+    except ValueError:
+        return None
+    return values if np.isfinite(values).all() else None
+
+
+def parted(text: str) -> str | None:
+    """Return a text of numbers of which some touch with blanks between them; None if none or several ways do.
+
+    Lines stay lines. The numbers of the answer are still to be read by `plain_numbers`.
+
+    Examples
+    --------
+    >>> parted("914.828 944.8281001.724")
+    ' 914.828   944.828  1001.724 '
+    >>> parted("0.5 0.250.125") is None
+    True
+    """
+    if re.search("[EeDd]", text):
+        text = _LOST_E.sub(r"E\1", text)
+    elif _LOST_E.search(text) and "." in text:
+        return None  # an exponent or a whole number
+    if _TWO_POINTS.search(text) is None:  # signs alone part them
+        return _SIGN_BEHIND.sub(r" \1", text)
+    ends = set(_ENDED.findall(text))
+    shapes = {(len(decimals), len(exponent)) for decimals, exponent in ends}
+    if len(shapes) != 1:
+        return _parted_at_places(text.split("\n"))
+    ((decimals, digits),) = shapes
+    exponent = rf"[EeDd][-+]?\d{{{digits}}}" if digits else ""
+    answer, count = re.subn(rf"[-+]?\d*\.\d{{{decimals}}}{exponent}", r" \g<0> ", text)
+    if len(answer.split()) != count:
+        return None
+    # without exponents the zero before the point stands in all numbers above zero, or in none
+    mixed = not digits and all(re.search(style, answer) for style in (r"(?<![\d-])\.\d", r"(?<![\d-])0\.\d"))
+    return None if mixed else answer
+
+
+def _parted_at_places(lines: Sequence[str]) -> str | None:
+    """Part lines of fixed columns by the places at which columns end: those that are certain in some line."""
+    full = [line.rstrip() for line in lines if line.strip()]
+    points = [match.start() for match in re.finditer(r"\.", full[0])] if full else []
+    ends: list[set[int]] = [set() for _ in points]
+    for line in full:
+        if [match.start() for match in re.finditer(r"\.", line)] != points[: line.count(".")]:
+            return None
+        for match in _ENDED.finditer(line):
+            ends[points.index(match.start())].add(match.end())
+    if not points or any(len(of_column) != 1 for of_column in ends):
+        return None
+    places = [0, *(end for (end,) in ends)]
+    cuts = list(itertools.pairwise(places))
+    return "\n".join(" ".join(line[a:b] for a, b in cuts) + line[places[-1] :] for line in lines)
+
+
 def block_of_numbers(file: RecordFile, first: int, last: int | None = None) -> NDArray[np.float64]:
     """Return the numbers of lines `first` (counted from 0) to `last` (left out), in reading order.
 
-    Blank lines are passed over.
+    Parameters
+    ----------
+    file : RecordFile
+    first, last : int
+        Blank lines are passed over.
+
+    Returns
+    -------
+    ndarray, shape (n,)
 
     Raises
     ------
     ValueError
-        If a line holds something else, or a number that is not finite: the line is named.
+        If a line holds something else, or a number that is not finite: the line is named. If numbers touch
+        and can be parted in no way, or in several.
     """
-    values: list[float] = []
-    for number, line in enumerate(file.text[first:last], start=first + 1):
-        if not line.strip():
-            continue
-        # what is left between the numbers: columns of fixed width may touch, so blanks do not part them
-        if re.sub(NUMBER, "", line).strip():
-            raise ValueError(f"{file.name}, line {number}: expected accelerations, got {line.strip()[:60]!r}")
-        values.extend(parse_number(file.path, number, token) for token in re.findall(NUMBER, line))
-    return np.array(values, dtype=np.float64)
+    return numbers_of_lines(file, file.text[first:last], first + 1)
+
+
+def numbers_of_lines(file: RecordFile, lines: Sequence[str], begin: int) -> NDArray[np.float64]:
+    """Return the numbers of lines of which the first is line `begin` (from 1) of a file.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+
+    Raises
+    ------
+    ValueError
+        As `block_of_numbers`.
+    """
+    text = "\n".join(lines)
+    values = plain_numbers(text) if _MANY_DIGITS.search(text) is None else None
+    if values is not None:
+        return values
+    damaged = next((at for at, line in enumerate(lines) if not only_numbers(line)), None)
+    if damaged is None:
+        answer = parted(text)
+        values = None if answer is None else plain_numbers(answer)
+        if values is not None:
+            return values
+        damaged = next(
+            (at for at, line in enumerate(lines) if plain_numbers(line) is None or _MANY_DIGITS.search(line)),
+            0,
+        )
+        raise ValueError(touching(file, begin + damaged, lines[damaged]))
+    line = lines[damaged]
+    for token in line.split():
+        if re.fullmatch(NUMBER, token):
+            parse_number(file.path, begin + damaged, token)
+    raise ValueError(
+        f"{file.name}, line {begin + damaged}: expected accelerations, got {line.strip()[:60]!r}"
+    )
+
+
+def without_fill(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+    """Return values without what fills the last line after the last sample, such as 9999.9, and a note of it.
+
+    Examples
+    --------
+    >>> without_fill(np.array([0.1, 0.2, -999.0, -999.0]))
+    (array([0.1, 0.2]), ('2 fill values of -999 after the last sample are left out',))
+    """
+    last = float(values[-1]) if len(values) else 0.0
+    if not re.fullmatch(r"-?9{3,}(?:\.(?:9+|0))?", repr(last)):
+        return values, ()
+    others = np.flatnonzero(values != last)
+    count = len(values) - (int(others[-1]) + 1 if len(others) else 0)
+    note = f"{count} fill value{'s' * (count > 1)} of {last:g} after the last sample are left out"
+    return values[: len(values) - count], (note,)
+
+
+def only_numbers(text: str) -> bool:
+    """Return whether a text holds nothing but finite numbers, which may touch."""
+    left = re.sub(NUMBER, " ", text)
+    if left.strip() and re.sub(r"[\s.]", "", left):
+        return False
+    return all(math.isfinite(float(re.sub("[Dd]", "E", token))) for token in re.findall(NUMBER, text))
+
+
+def touching(file: RecordFile, number: int, line: str) -> str:
+    """Return the refusal of a line whose numbers touch."""
+    return (
+        f"{file.name}, line {number}: its numbers touch, and no way to part them is the only one: write them "
+        f"with blanks between, got {line.strip()[:60]!r}"
+    )

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
-
-import numpy as np
 
 from ..diagnostic import Diagnostic
 from ..ground_motion import GroundMotion
-
-# 1 g is 9.81 m/s^2, the default gravity of every model here, so that a/g stays what the file says
-METRES_PER_SECOND_SQUARED = {"g": 9.81, "m/s2": 1.0, "cm/s2": 0.01}
-UNITS = tuple(METRES_PER_SECOND_SQUARED)
+from .component import METRES_PER_SECOND_SQUARED, UNITS
+from .plausibility import LARGEST_SCALED_PEAK, peak_doubts
 
 _SPELLINGS = {
     "g": "g g's gs",
@@ -26,19 +21,26 @@ _UNIT_OF = {spelling: unit for unit, spellings in _SPELLINGS.items() for spellin
 _RATE = re.compile(r"[a-z]{1,3}/s(?:ec)?\S*", re.IGNORECASE)
 # parts of g, which no spelling above allows
 _PART = re.compile(r"%\s?g|m(?:illi-?)?g(?:al)?|[µμ]g", re.IGNORECASE)
-_TIME = r"((?:m|milli|[uµμ]|micro)s(?:ec(?:ond)?s?)?|min(?:ute)?s?)"
-_OTHER_TIME = re.compile(
-    rf"\b(?:time|t)(?:\s*[\[(]\s*{_TIME}\s*[\])]|(?:\s+in\s+|_){_TIME}\b)", re.IGNORECASE
-)
 _WORD = r"(%\s?g|[^\s,;()\[\]]+)"
 _PLACES = tuple(
     re.compile(place, re.IGNORECASE)
     for place in (
         rf"[\[(]\s*{_WORD}\s*[\])]",
-        rf"\bunits?\b(?:\s*[:=]|\s+(?:of|in|are|is)\b)*\s*{_WORD}",
+        rf"units?\b(?:\s*[:=]|\s+(?:of|in|are|is)\b)*\s*{_WORD}",
         rf"\bacc[a-z]*\.?[\s,:]+(?:in\s+)?{_WORD}",
     )
 )
+
+
+def unit_of(word: str) -> str | None:
+    """Return the unit of acceleration that a word spells, None where it spells none that is allowed.
+
+    Examples
+    --------
+    >>> unit_of("cm/sec/sec"), unit_of("Gal"), unit_of("mm")
+    ('cm/s2', 'cm/s2', None)
+    """
+    return _UNIT_OF.get(word.strip().lower())
 
 
 def stated_unit(path: Path, header: list[str]) -> str | None:
@@ -64,20 +66,6 @@ def stated_unit(path: Path, header: list[str]) -> str | None:
     if len(found) > 1:
         raise ValueError(f"{path.name} states two units: {' and '.join(found.values())}")
     return next(iter(found), None)
-
-
-def require_seconds(path: Path, header: list[str]) -> None:
-    """Refuse times that the header states in another unit than seconds.
-
-    Raises
-    ------
-    ValueError
-        If it does, as "time [ms]".
-    """
-    for line in header:
-        other = _OTHER_TIME.search(line)
-        if other is not None:
-            raise ValueError(f"{path.name} gives times in {other[1] or other[2]}, allowed is s")
 
 
 def factor(path: Path, stated: str | None, given: str | None) -> float:
@@ -109,21 +97,17 @@ def _candidates(line: str) -> list[str]:
     return [word.rstrip(".") for word in words]
 
 
-LARGEST_PEAK = 5.0  # [g]; the largest that was ever recorded at the ground is about 4 g
-LARGEST_RATIO = 50.0  # of the peaks of two components; gal taken for m/s^2 makes 100, for g 981
-_USUAL = 0.4  # [g], peak of a strong motion: among the units the one that comes next to it makes sense
-# a planar motion that was turned has components in proportion, the small one by its azimuth
-_PROPORTIONAL = 1e-9
-
-
 def doubts(motion: GroundMotion) -> tuple[Diagnostic, ...]:
-    """Return what makes a record improbable: a peak beyond 5 g, and components 50 times apart.
+    """Return what makes a ground motion improbable.
+
+    Of one that was read from files, what makes it improbable as it was read, see `RecordSource.doubts`, and a
+    peak beyond 5 g after scaling. Of one made of an array its peaks.
 
     Returns
     -------
     tuple of Diagnostic
         "large_peak": size is the peak [g], detail the unit that would make sense; "unlike_components": size
-        is the ratio of the peaks, detail the component that is larger.
+        is the ratio of the peaks, detail the component that is larger; and the codes of a record in `CODES`.
 
     Examples
     --------
@@ -131,7 +115,23 @@ def doubts(motion: GroundMotion) -> tuple[Diagnostic, ...]:
     >>> [(fact.code, fact.detail) for fact in doubts(motion)]
     [('large_peak', 'cm/s2'), ('unlike_components', 'x')]
     """
-    return tuple(_doubts(motion))
+    if motion.source is None:
+        return tuple(peak_doubts(motion.acceleration))
+    facts = motion.source.doubts
+    if any(fact.code == "large_peak" for fact in facts):
+        return facts
+    peak = motion.peak / METRES_PER_SECOND_SQUARED["g"]
+    if peak > LARGEST_SCALED_PEAK:  # its unit is known: no advice on it
+        facts = (*facts, Diagnostic(code="large_peak", size=peak, bound=LARGEST_SCALED_PEAK))
+    return facts
+
+
+def sources_of(motions: Iterable[GroundMotion | None]) -> list[str]:
+    """Return what each ground motion is read from, in a line; each once, those made of arrays left out."""
+    lines = (
+        f"{motion.name or 'record'}: {motion.source.line}" for motion in motions if motion and motion.source
+    )
+    return list(dict.fromkeys(lines))
 
 
 def doubts_of(motions: Iterable[GroundMotion | None]) -> list[dict[str, object]]:
@@ -139,37 +139,11 @@ def doubts_of(motions: Iterable[GroundMotion | None]) -> list[dict[str, object]]
 
     Of a record that comes several times, as at several scales, each doubt is there once.
     """
-    found: dict[tuple[str, str], dict[str, object]] = {}
+    known: dict[tuple[str, str], dict[str, object]] = {}
     for motion in motions:
         if motion is None:
             continue
         for fact in doubts(motion):
             fields = {name: getattr(fact, name) for name in ("code", "size", "bound", "detail")}
-            found.setdefault((motion.name, fact.code), {"record": motion.name or "record"} | fields)
-    return list(found.values())
-
-
-def _doubts(motion: GroundMotion) -> Iterator[Diagnostic]:
-    peaks = np.abs(motion.acceleration).max(axis=0)
-    peak = float(max(motion.peak, peaks.max())) / METRES_PER_SECOND_SQUARED["g"]
-    if peak > LARGEST_PEAK:
-        yield Diagnostic(code="large_peak", size=peak, bound=LARGEST_PEAK, detail=likely_unit(peak)[0])
-    moving = peaks[peaks > 0.0]
-    ratio = float(moving.max() / moving.min()) if len(moving) else 1.0
-    if ratio >= LARGEST_RATIO and not _in_one_plane(motion):
-        axis = "xyz"[int(peaks.argmax())]
-        yield Diagnostic(code="unlike_components", size=ratio, bound=LARGEST_RATIO, detail=axis)
-
-
-def likely_unit(peak: float) -> tuple[str, float]:
-    """Return the unit in which a peak that was read as `peak` [g] makes sense, and the peak in it [g]."""
-    metre = METRES_PER_SECOND_SQUARED
-    read_as_g = [(unit, peak * metre[unit] / metre["g"]) for unit in ("m/s2", "cm/s2")]
-    read_as_metres = ("cm/s2", peak * metre["cm/s2"] / metre["m/s2"])
-    return min((*read_as_g, read_as_metres), key=lambda unit: abs(math.log(unit[1] / _USUAL)))
-
-
-def _in_one_plane(motion: GroundMotion) -> bool:
-    x, y = motion.acceleration[:, :2].T
-    across = math.sqrt(float(x @ x) * float(y @ y))
-    return not motion.has_vertical and abs(across - abs(float(x @ y))) <= _PROPORTIONAL * across
+            known.setdefault((motion.name, fact.code), {"record": motion.name or "record"} | fields)
+    return list(known.values())

@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from ..records.files import ZERO, el_centro_1940, read_record
 from ..records.p695 import p695_far_field
 from ..synthetic import MOST_STILL, SAMPLES_PER_PERIOD, pulse
 from .errors import KeyedError, located
-from .tables import CaseTable, CylinderTable, MotionTable, ReleaseTable, RunTable, SuiteTable
+from .tables import WAYS_OF_READING, CaseTable, CylinderTable, MotionTable, ReleaseTable, RunTable, SuiteTable
 
 # a slip in three ranges must not fill the memory
 _MOST_CASES = 10_000
@@ -24,7 +25,7 @@ _MOST_CASES = 10_000
 _DIGITS = (3, 4, 6, 9, 12)
 
 # keys that say which record it is, beside its pair
-_OF_A_RECORD = ("record", "vertical", "x", "y", "z", "units", "resample")
+_OF_A_RECORD = ("record", "vertical", "x", "y", "z", "files", *WAYS_OF_READING)
 
 _Values = dict[tuple[str, str], float]
 
@@ -99,7 +100,7 @@ def _case(
 
     with located(f"{path}.cylinder"):
         cylinder = _cylinder(table.cylinder, of("cylinder"))
-    own = of("")
+    own: dict[str, Any] = of("")
     motion = initial = None
     if table.motion is not None:
         with located(f"{path}.motion"):
@@ -183,10 +184,17 @@ def _record(table: MotionTable, values: dict[str, float], folder: Path) -> Groun
             raise KeyedError("pair", str(error)) from None
     if table.record is not None:
         return el_centro_1940(vertical=bool(table.vertical))
+    ways: dict[str, Any] = {
+        **{"units": table.units, "columns": table.record_columns, "time_step": table.record_step},
+        **{"lengths": table.lengths, "remove_mean": bool(table.remove_mean), "rotate": table.rotate},
+        **{"resample": bool(table.resample)},
+    }
+    if table.files is not None:
+        return read_record(folder / table.files, **ways)
     x, y, z = (name if name in (None, ZERO) else folder / name for name in (table.x, table.y, table.z))
     assert x is not None
     assert y is not None
-    return read_record(x, y, z, units=table.units, resample=bool(table.resample))
+    return read_record(x, y, z, **ways)
 
 
 def _pulse(kind: str, values: dict[str, float], uplift: float) -> GroundMotion:
@@ -221,4 +229,4 @@ def _shifted(motion: GroundMotion, shift: float) -> GroundMotion:
         samples = samples[-count:]
     else:
         samples = np.concatenate([np.zeros((count, samples.shape[1])), samples])
-    return GroundMotion(samples, motion.time_step, motion.name)
+    return motion.changed(samples, f"shifted by {shift:g} s")

@@ -59,6 +59,8 @@ def nearest(key: str, allowed: Iterable[str]) -> str:
     """Return what to say of a key that is not allowed."""
     names = list(allowed)
     close = difflib.get_close_matches(key, names, n=1, cutoff=0.65)
+    if key in ("slab_mass_ratio", "columns") and "cylinder" in names:
+        return "is not known here, it belongs into cylinder = { ... }"
     hint = f"did you mean {close[0]}?" if close else f"allowed are {', '.join(names)}"
     return f"is not known here, {hint}"
 

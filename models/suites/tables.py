@@ -31,7 +31,8 @@ from pydantic import (
 
 from ..bounds import Bounds
 from ..case import WAYS_TO_A_STEP, TimeStep
-from ..records.units import UNITS
+from ..records.clocks import LENGTHS
+from ..records.component import UNITS
 from ..synthetic import PULSES
 from .errors import KeyedError, nearest, shown
 
@@ -170,6 +171,9 @@ NotNegatives = Annotated[tuple[float, ...], _values(not_negative)]
 Wholes = Annotated[tuple[float, ...], _values(whole)]
 
 
+WAYS_OF_READING = (
+    *("units", "record_columns", "record_step", "lengths", "remove_mean", "rotate", "resample"),
+)
 RECORDS = ("el_centro_1940", "p695")
 
 
@@ -234,6 +238,12 @@ class CylinderTable(_Table):
         return self
 
 
+def _one_positive(given: object) -> float:
+    if isinstance(given, list | dict):
+        raise ValueError(f"must be one number, got {shown(given)}")  # noqa: TRY004 (bad input)
+    return expanded(given, positive)[0]
+
+
 class MotionTable(_Table):
     """The ground motion: a record that ships, files of a record, or a pulse."""
 
@@ -243,7 +253,13 @@ class MotionTable(_Table):
     x: str | None = None
     y: str | None = None
     z: str | None = None
+    files: str | None = None
     units: Annotated[str, _known(*UNITS)] | None = None
+    record_columns: str | None = None
+    record_step: Annotated[float, BeforeValidator(_one_positive)] | None = None
+    lengths: Annotated[str, _known(*LENGTHS)] | None = None
+    remove_mean: bool | None = None
+    rotate: float | str | None = None
     resample: bool | None = None
     pulse: Annotated[str, _known(*PULSES)] | None = None
     amplitude: Positives | None = None
@@ -256,7 +272,7 @@ class MotionTable(_Table):
 
     @model_validator(mode="after")
     def _keys_go_together(self) -> MotionTable:
-        kind = "x" if self.given("x", "y") else self.require_one_of("record", "x", "pulse")
+        kind = "x" if self.given("x", "y") else self.require_one_of("record", "x", "files", "pulse")
         self.refuse_others(kind)
         if self.record == "p695" and not self.given("pair"):
             raise KeyedError("pair", "must be given: 1 to 22")
@@ -274,11 +290,15 @@ class MotionTable(_Table):
 
     def refuse_others(self, kind: str) -> None:
         """Refuse the keys of the other kinds of motion."""
-        files, pulse = ("x", "y", "z", "units", "resample"), ("pulse", "amplitude", "period", "azimuth_deg")
+        pulse = ("pulse", "amplitude", "period", "azimuth_deg")
         if kind != "record":
             self.refuse("belongs to a record that ships", "record", "vertical", "pair")
         if kind != "x":
-            self.refuse("belongs to files of a record, with x and y", *files)
+            self.refuse("belongs to files of a record, with x and y", "x", "y", "z")
+        if kind not in ("x", "files"):
+            self.refuse("belongs to files of a record", *WAYS_OF_READING)
+        if kind != "files":
+            self.refuse("holds all components of a record: without x and y", "files")
         if kind != "pulse":
             self.refuse("belongs to a pulse", *pulse)
         else:
@@ -337,12 +357,6 @@ def _steps(given: object) -> tuple[object, ...]:
     if given in WAYS_TO_A_STEP:
         return (given,)
     return expanded(given, positive)
-
-
-def _one_positive(given: object) -> float:
-    if isinstance(given, list | dict):
-        raise ValueError(f"must be one number, got {shown(given)}")  # noqa: TRY004 (bad input)
-    return expanded(given, positive)[0]
 
 
 Texts = Annotated[list[str], BeforeValidator(_texts), Field(min_length=1)]

@@ -184,16 +184,14 @@ def _require_able(engine: Engine, name: str, case: Case, support: str) -> None:
     if isinstance(case.cylinder, WobblingFrame) and case.cylinder.slab_mass_ratio > 0.0:
         if not engine.facts.carries_slab:
             raise ValueError(f"{name} has no scene of a frame, got {case.cylinder!r}")
-        if case.cylinder.columns != 1:
-            raise ValueError(
-                f"columns must be 1 in {name}, a slab that only translates, got {case.cylinder.columns}"
-            )
         if SUPPORTS[support].walls:
             raise ValueError(f"support must have no walls under a slab, got {support!r}")
     if not engine.uplifts and (case.initial is None or case.initial.tilt == 0.0):
         raise ValueError(
             f"{name} cannot uplift a cylinder that stands: give a release with a tilt, got a start at rest"
         )
+    if case.tendon is not None:
+        raise ValueError(f"{name} has no tendon: tendon must be None, got {case.tendon!r}")
     if case.rolling_resistance and not engine.facts.rolling_friction:
         raise ValueError(
             f"{name} has no rolling friction: rolling_resistance must be 0, got {case.rolling_resistance!r} m"

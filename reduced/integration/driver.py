@@ -5,7 +5,8 @@ One driver serves the three models; they differ in their equations and in the nu
 Every step ends at the next record sample at the latest, because the forcing has a kink there.
 
 A run that ends while the cylinder moves is followed over still ground to the next maximum of the tilt, or
-until it overturns. Of the maxima over still ground the first is the largest, but on flat ground with a loss:
+until it overturns; where rounding decides which, the run is undecided (`balance`). Of the maxima over still
+ground the first is the largest, but on flat ground with a loss:
 
 - Recess: energy and L are conserved, so the tilt oscillates between the same two turning points.
 - Flat ground: Lambda' and S' are theta' times what is linear in (Lambda, S) with coefficients of theta alone.
@@ -13,8 +14,8 @@ until it overturns. Of the maxima over still ground the first is the largest, bu
   energy (Appell and Chaplygin, of a rolling disc): the tilt again has the same two turning points.
 - Losses lower each maximum: impacts in a plane, and rolling resistance in the recess, whose effect on the
   energy at the maximum goes with theta'^2 + sin^2(theta) phi' (phi' - L/B(theta_max)) >= 0.
-- Flat ground with rolling resistance: no proof, and it is not so. The couple changes Lambda and S by itself, so
-  that a motion which wobbles low with much spin may rise when that is lost. It is followed from maximum to
+- Flat ground with rolling resistance: no proof, and it is not so. The couple changes Lambda and S by itself,
+  so that a motion which wobbles low with much spin may rise when that is lost. It is followed from maximum to
   maximum until its energy, which only falls, is below that of a standstill at the largest tilt so far.
 """
 
@@ -27,15 +28,18 @@ import numpy as np
 
 from .._compile import borrowed, once
 from ..body import Body
+from .balance import departs, longest_stay, may_rise_above, turn_since, turns_back, undecided
 from .events import NO_TURN
-from .progress import Stage, make_progress, may_rise_above, time_in
+from .progress import Stage, make_progress, time_in
 from .record import piece_of_record, still_from
 from .result import (
     COMPLETED,
     MAXIMUM,
     MINIMUM,
+    OVERTURNED,
     REST,
     TURNED,
+    UNDECIDED,
     Driver,
     IntegrationResult,
     Options,
@@ -49,13 +53,12 @@ from .result import (
 from .stepping import Stepper
 from .systems import System
 
-_FIRST_STEP = 1e-3  # of 1/p, where a run begins in motion
 _STILL_GROUND = (0.0, 0.0, 0.0)
+_FIRST_STEP = 1e-3  # of 1/p, where a run begins in motion
 # a literal 0 has a type of its own, for which its users would be compiled too
 _FIRST_SAMPLE = cast("int", np.int64(0))
-# of 1/p; what leaves the balance, or unstable steady wobble, grows by exp(p t), and what comes to it slows
-# down alike: in this time all motion turns or falls but what is nearer to them than 3e-7, which nobody could
-# tell from resting there, and whose largest tilt is that of the balance
+# of 1/p; in this time all motion turns or falls but stable steady wobble and what is nearer than 3e-7 to the
+# balance, which is followed on
 _LONGEST = 15.0
 
 
@@ -79,15 +82,20 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         h_next = _FIRST_STEP / body.p
         run = Stage(0.0, initial, initial, h_next, True, resting, initial[0], _FIRST_SAMPLE, 0, COMPLETED)
         now, index, turned = 0.0, 0, np.nan
+        still = still_from(record, time_step)
         end, following, mark = options.duration, False, mark_of(run.y, log)
 
         while run.status == COMPLETED:
             jumps = False
             if now >= end:
+                if following and not run.resting and departs(body, run.y[0], momenta(run.y)[0]):
+                    longest, since, _ = turn_since(log, still, now)
+                    if longest <= longest_stay(body):
+                        end = since + 1.01 * longest_stay(body)
+                        continue
                 if following or run.resting:
                     break
-                turns = has_turned(log, still_from(record, time_step))
-                if turns and not (grows and may_rise_above(body, momenta, run.y, run.peak)):
+                if has_turned(log, still) and not (grows and may_rise_above(body, momenta, run.y, run.peak)):
                     break
                 if resists and hold(body, run.y, _STILL_GROUND, _STILL_GROUND) == inf:
                     break
@@ -95,7 +103,8 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                 index, jumps = len(record), True
             piece = piece_of_record(record, time_step, index, now, end)
             if now == 0.0 and not resting and initial[1] == 0.0:  # a release at rest is a turning point
-                kind = MAXIMUM if derivative(body, initial, piece.a)[1] < 0.0 else MINIMUM
+                back = turns_back(body, derivative(body, initial, piece.a)[1])
+                kind = MAXIMUM if back else MINIMUM
                 log.extrema.append((0.0, initial[0], initial[2], kind))
             # the forcing jumps where a record begins or ends, and only there
             run = at_beginning(run, jumps or index == 0 or index == len(record) - 1)
@@ -130,8 +139,14 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         y, status, followed = run.y, run.status, np.nan
         if following:
             followed = turned if status == TURNED else log.rests[-1][0] if run.resting else now
-        if following and status in (COMPLETED, TURNED):
-            y, now, status = mark.y, options.duration, COMPLETED
+        falls = status == OVERTURNED
+        moves = not run.resting and not (resists and hold(body, run.y, _STILL_GROUND, _STILL_GROUND) == inf)
+        if moves and now >= still and status in (OVERTURNED, COMPLETED, TURNED):
+            L = momenta(run.y)[0]
+            if undecided(body, run.y[0], L, log, still, now, falls, grows):
+                status = UNDECIDED
+        if following and status in (COMPLETED, TURNED, UNDECIDED):
+            y, now, status = mark.y, options.duration, UNDECIDED if status == UNDECIDED else COMPLETED
         else:
             mark = mark_of(y, log)
             if status == COMPLETED and run.resting:

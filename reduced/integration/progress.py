@@ -7,7 +7,7 @@ every step.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, hypot, sin
+from math import hypot
 from typing import NamedTuple
 
 import numpy as np
@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 from .._compile import inlined, jit
 from ..body import Body
 from ..equations import base_inertia, energy
+from ..restoring import balance, surely_overturns, with_prestress_share
 from ..rolling import PIVOTS, rolling_momentum
 from ..trigonometry import sin_cos
+from .balance import may_rise_above
 from .events import NONE, REPEATED, Turn, make_events
 from .record import Piece, Vector, ground
 from .result import (
@@ -55,6 +57,7 @@ def may_sit_down(
         return False
     held = (1.0 + a[2] / body.g) * (1.0 + body.delta / body.b)
     share = held - hypot(a[0], a[1]) * body.cos_alpha / (body.g * body.sin_alpha)
+    share = with_prestress_share(body, share, 1.0 + body.delta / body.b)
     if share <= 0.0 or excess(body, a) >= 0.0:
         return False
     standing = energy(body, limit, 0.0, 0.0, 0.0)
@@ -63,28 +66,6 @@ def may_sit_down(
         highest = energy(body, limit, 0.0, L_there, S) - (1.0 - share) * standing
         return theta < limit and energy(body, theta, omega, L, S) < highest
     return energy(body, theta, omega, L, S) < share * standing
-
-
-@inlined
-def may_rise_above(
-    body: Body, momenta: Callable[[State], tuple[float, float]], y: State, peak: float
-) -> bool:
-    """Return whether over still ground the energy of a state lets the tilt rise above `peak` later."""
-    L, S = momenta(y)
-    return energy(body, y[0], y[1], L, S) > energy(body, min(peak, body.alpha), 0.0, 0.0, 0.0)
-
-
-@jit
-def surely_overturns(body: Body, theta: float, strongest: float, lightest: float) -> bool:
-    """Return whether a tilt above alpha that does not decrease is bound to reach pi/2, without twist.
-
-    `strongest` is the largest |a| and `lightest` the least g + az to come: beyond the equilibrium tilt
-    under these two and the couple of rolling resistance, theta'' is positive and grows with theta. Spin
-    only adds to it, (18); a twist rate, which the flat-ground model has, may hold a cylinder up.
-    """
-    beyond = theta - body.alpha
-    held = body.delta * body.sin_alpha / body.b
-    return lightest > 0.0 and lightest * (sin(beyond) - held) > strongest * cos(beyond)
 
 
 Wanted = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]  # times, states there, in motion
@@ -263,7 +244,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     @inlined
     def falls(body: Body, y: State, later: NDArray[np.float64], index: int) -> bool:
         """Return whether no ground motion to come can keep the side from the ground."""
-        outward = index < len(later) and y[0] > body.alpha and y[1] >= 0.0
+        outward = index < len(later) and y[0] > balance(body) and y[1] >= 0.0
         return outward and surely_overturns(body, y[0], later[index, 0], body.g + later[index, 1])
 
     @inlined

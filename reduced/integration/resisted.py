@@ -2,8 +2,8 @@
 
 In the recess the sense of rolling over still ground (+1, -1, 0 where it may change) follows L. Behind the
 variables of each model (`systems`) stand two more: the energy lost so far, per unit mass, and the side, the
-sign of the tilt rate in planar motion, which stays what it was over a step. The couple jumps where such motion
-turns, so a step ends there and the next one begins with the other side, or none: the body stands
+sign of the tilt rate in planar motion, which stays what it was over a step. The couple jumps where such
+motion turns, so a step ends there and the next one begins with the other side, or none: the body stands
 still on its rim while the couple holds it. On flat ground it may pivot on its contact meanwhile, a motion
 with one degree of freedom: its side is PIVOTS. With spin the couple turns instead of jumping, within a time
 that may be short: a step is asked to follow that turn, or to be so short that it does not matter.
@@ -17,6 +17,7 @@ from math import inf, sqrt
 from .._compile import inlined, jit
 from ..body import Body
 from ..equations import energy, flat_rhs, planar_rhs, recess_motion
+from ..restoring import standing_force
 from ..rolling import (
     PIVOTS,
     across_inertia,
@@ -219,8 +220,9 @@ def _spin_spent(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> 
     if y[4] == 0.0:
         y = y[0], y[1], y[2], y[3], sense, y[5], y[6]
     # L of steady wobble with this energy, near upright
-    level = max(energy(body, y[0], y[1], y[3], 0.0), 0.0) / (1.5 * body.g * body.b)
-    steady = sqrt(body.J * body.g * body.b * level) * level
+    lever = standing_force(body, 0.0) * body.b
+    level = max(energy(body, y[0], y[1], y[3], 0.0), 0.0) / (1.5 * lever)
+    steady = sqrt(body.J * lever * level) * level
     if y[4] != sense or abs(y[3]) < _SPENT * rtol * steady:
         side = 1.0 if y[1] > 0.0 else -1.0 if y[1] < 0.0 else 0.0
         return y[0], y[1], y[2], 0.0, y[4], y[5], side

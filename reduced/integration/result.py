@@ -15,6 +15,7 @@ from ..body import Body
 State = tuple[float, ...]
 
 REST, COMPLETED, OVERTURNED, OVER_BUDGET, STALLED = range(5)  # how a time integration ends
+UNDECIDED = 6  # rounding decides whether it falls (`balance`)
 TURNED = 5  # while it runs: the tilt has reached its first maximum after the duration
 MAXIMUM, MINIMUM = 1.0, -1.0
 HALF_PI = 0.5 * pi  # the tilt at which the side lies on the ground

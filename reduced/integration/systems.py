@@ -22,6 +22,7 @@ import numpy as np
 from .._compile import inlined, jit
 from ..body import Body
 from ..equations import flat_rhs, planar_rhs, recess_rhs
+from ..restoring import balance
 from ..trigonometry import sin_cos
 from .record import Vector
 from .result import State
@@ -94,15 +95,14 @@ def scales(
     Near upright the motion is that of a point at the polar distance theta, with one speed in all
     directions (`spin_rate` is its part across): the tilt is held to itself, and the rates to that
     speed. Planar motion goes through theta = 0, so there the tilt is held to what the speed makes of
-    it in the time 1/p. Near theta = alpha, where every difference grows as exp(p t), the distance
-    from alpha takes the place of theta. An error below the rounding of the tilt cannot be told from
-    none.
+    it in the time 1/p. Near the balance, where every difference grows as exp(p t), the distance from it
+    takes the place of theta. An error below the rounding of the tilt cannot be told from none.
     """
     tilt = abs(tilt)
-    from_alpha = abs(body.alpha - tilt)
+    from_balance = abs(balance(body) - tilt)
     speed = abs(rate) + spin_rate
-    velocity = speed + body.p * min(sqrt(body.sin_alpha * tilt), from_alpha)
-    distance = min(tilt + velocity / body.p if flat else tilt, from_alpha + speed / body.p)
+    velocity = speed + body.p * min(sqrt(body.sin_alpha * tilt), from_balance)
+    distance = min(tilt + velocity / body.p if flat else tilt, from_balance + speed / body.p)
     least = _ROUNDING * tilt
     return 1.0 / max(rtol * distance, least), 1.0 / max(rtol * velocity, body.p * least)
 

@@ -16,7 +16,8 @@ series                                 from
 B = 2 J v + (C - J) v v + 2 E s v      s^2 = 2 v - v v, inertia of the rolling angle
 Q = B'/2 A                             (J s + (C - J) s v + 3 E v - 2 E v v)/A
 w = L/B                                phi', by division of series
-theta''                                Q w w - (p^2/g)[(g + az) sin(alpha - theta) + X a_r]
+theta''                                Q w w - (p^2/g)[r + X a_r], r = (g + az) sin(alpha - theta) and
+                                       what a tendon adds (`restoring`)
 L'                                     -D a_t
 X = cos(alpha - theta), D = h s + b v  linear in s and v; a_r, a_t linear in cos phi and sin phi
 ====================================== ==========================================================
@@ -35,6 +36,7 @@ from numpy.typing import NDArray
 from .._compile import inlined, jit
 from ..body import Body
 from ..equations import in_plane_below
+from ..restoring import half_cosine, with_tendon_coefficient, with_tendon_term
 from ..trigonometry import sin_cos
 from .record import Vector
 from .result import State
@@ -47,7 +49,8 @@ TILT, RATE, ANGLE, MOMENTUM, S, V, COS, SIN, B, Q, W, WW, X, D, RADIAL, ACROSS =
 )
 TRIG = 16 * _WIDTH  # s, v, cos phi and sin phi at the end of the step
 STEPS_LEFT = TRIG + 4  # for so many steps these may still be taken over
-_SIZE = STEPS_LEFT + 1
+U = STEPS_LEFT + 1  # cos(theta/2), with a tendon
+_SIZE = U + _WIDTH
 
 Path = tuple[float, int]  # of the last series: unit of time [s], order
 
@@ -119,6 +122,7 @@ class Origin(NamedTuple):
     D: float
     radial: float
     across: float
+    u: float  # cos(theta/2), with a tendon
     per_B: float  # 1/B, 0 for planar motion
     per_A: float  # 1/A
     factor: float  # p^2/g
@@ -192,6 +196,7 @@ def expand(
         ax, ay, t0 = r0, 0.0, 0.0
         dax, day = dax * cos0 + day * sin0, 0.0
         cos0, sin0 = 1.0, 0.0
+    u0 = half_cosine(body, v0)
     per_B = 0.0 if flat else 1.0 / (J * s0 * s0 + 2.0 * E * sv + C * vv)
     w0 = L * per_B
     ww0 = w0 * w0
@@ -213,6 +218,7 @@ def expand(
         D0,
         r0,
         t0,
+        u0,
         per_B,
         per_A,
         factor,
@@ -222,7 +228,7 @@ def expand(
     )
 
     tilt_1, angle_1 = h * omega, h * w0
-    rate_1 = h * (Q0 * ww0 - factor * (gravity * Y0 + X0 * r0))
+    rate_1 = h * (Q0 * ww0 - factor * with_tendon_term(body, gravity * Y0 + X0 * r0, s0, u0))
     momentum_1 = -h * D0 * t0
     s_1, v_1 = tilt_1 * (1.0 - v0), tilt_1 * s0
     cos_1, sin_1 = -angle_1 * sin0, angle_1 * cos0
@@ -288,7 +294,7 @@ def extend(
 
     step = h / order
     centrifugal = Q_ww + zero.Q * ww + Q_k * zero.ww
-    weight = gravity * Y_k + daz * sums.Y
+    weight = with_tendon_coefficient(body, gravity * Y_k + daz * sums.Y, s_k, v_k, zero.u, k, c, U)
     tilt = step * rate_k
     rate = step * (centrifugal - zero.factor * (weight + X_r + zero.X * r_k + X_k * zero.radial))
     angle = step * w_k

@@ -2,7 +2,8 @@
 
 The cylinder stands until f = |a| - (g + az) tan(alpha) reaches zero (25), and lifts off towards the
 inertia force (26). Rolling resistance holds it longer: a couple of at most delta N, N = g + az, acts
-against the moment about the rim, so tan(alpha) becomes (b + delta)/h. There theta = 0 is a singular point
+against the moment about the rim, so tan(alpha) becomes (b + delta)/h; a tendon adds its prestress to N.
+There theta = 0 is a singular point
 of the polar coordinates with a regular solution: a power series in the time since uplift gives the state
 a little later, from where the equations are integrated. Within one sample |a| is convex and az linear, so
 f is convex: a single sign change tells all.
@@ -17,6 +18,7 @@ import numpy as np
 from .._compile import jit
 from ..body import Body
 from ..equations import in_plane_below
+from ..restoring import fastest_rate, standing_force, with_tendon_slope
 from .record import Vector, ground
 
 # The series is left at the share x of the shortest time scale there: 1/p, and the time in which the
@@ -34,7 +36,7 @@ WEAK = 1e-12
 @jit
 def excess(body: Body, a: Vector) -> float:
     """Return f = |a| - (g + az)(b + delta)/h [m/s^2]; the cylinder cannot stand where it is positive."""
-    return sqrt(a[0] * a[0] + a[1] * a[1]) - (body.g + a[2]) * uplift_slope(body)
+    return sqrt(a[0] * a[0] + a[1] * a[1]) - standing_force(body, a[2]) * uplift_slope(body)
 
 
 @jit
@@ -132,17 +134,17 @@ def started(
     heavier = 1.0 + body.delta * body.mu * body.b / body.A
     factor = body.p2 * body.cos_alpha / body.g / heavier
     tan_alpha = uplift_slope(body)
-    held = body.delta * (body.g + az) / (body.h * size)
+    held = body.delta * standing_force(body, az) / (body.h * size)
     behind = held / (3.0 + held)  # kappa
     F0 = factor * max(excess(body, (ax, ay, az)), 0.0)
     F1 = factor * (along - slope[2] * tan_alpha)
     rolling = turning * (1.0 - behind)
-    held_less = body.delta * (body.g + az) * rolling * rolling / (9.0 * body.A * heavier)
+    held_less = body.delta * standing_force(body, az) * rolling * rolling / (9.0 * body.A * heavier)
     F2 = factor * size * turning * turning * (1.0 - behind * behind) + held_less
     F3 = -3.0 * F2 * along / size
     widened = (1.0 + body.delta * body.b / (body.b * body.b + body.h * body.h)) / heavier
     Q = body.p2 * (1.0 + az / body.g) / body.cos_alpha * widened
-    Q += body.J / body.A / heavier * rolling * rolling
+    Q = with_tendon_slope(body, Q) + body.J / body.A / heavier * rolling * rolling
     t = time
     theta = t * t * (F0 / 2 + t * (F1 / 6 + t * ((F2 + Q * F0) / 24 + t * (F3 + Q * F1) / 120)))
     theta_1 = t * (F0 + t * (F1 / 2 + t * ((F2 + Q * F0) / 6 + t * (F3 + Q * F1) / 24)))
@@ -153,7 +155,7 @@ def started(
     now = max(hypot(bx, by), WEAK * body.g)
     W = cross / (now * now)
     if starts_as_step(F0, F1, shortest_time(body, a, slope, at)):
-        pressed = body.delta * (body.g + az + body.mu * body.b * F0) / (2.0 * body.h * size)
+        pressed = body.delta * (standing_force(body, az) + body.mu * body.b * F0) / (2.0 * body.h * size)
         rate = W / (1.0 + 2.0 * body.J * F0 / (body.h * size) + pressed)
         return theta, theta_1, direction - (W - rate) * t, rate
     direction -= behind * W * t
@@ -171,7 +173,7 @@ def shortest_time(body: Body, a: Vector, slope: Vector, at: float) -> float:
     """Return the time [s] in which motion or ground acceleration change by their own size at an uplift."""
     ax, ay, _ = ground(a, slope, at)
     change = hypot(slope[0], slope[1]) / max(hypot(ax, ay), WEAK * body.g)
-    return 1.0 / max(body.p, change)
+    return 1.0 / max(fastest_rate(body), change)
 
 
 @jit

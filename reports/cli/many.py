@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -16,12 +16,12 @@ import rockwobble.compare as rc
 import rockwobble.compare.storage as rs
 from rockwobble.compare.studies.plans import Copies, FragilityPlan, SpectrumPlan
 
-from ..console import interruptible, save_with_page, show_and_save, shown_progress, user_input
-from ..pages.cases import describe, motion_warnings
+from ..console import echo, interruptible, save_with_page, show_and_save, shown_progress, user_input
+from ..pages.cases import case_warnings, describe, record_lines, warnings_about
 from . import options
 from .command import takes_options
-from .problem import BODY, Body, Problem, Record, refuse, refuse_options_of_engines
-from .several import GridOptions, ManyMethods, ManyMotions, cylinders_of
+from .problem import BODY, Body, Problem, Record, refuse, refuse_options_of_engines, unread
+from .several import GridOptions, Hazard, ManyMethods, ManyMotions, cylinders_of
 from .suite_choice import chosen_runs, refuse_problem_options, without_missing
 
 if TYPE_CHECKING:
@@ -43,6 +43,7 @@ def fragility(
     body: Body,
     methods: ManyMethods,
     plan: FragilityPlan,
+    hazard: Hazard,
     cylinder: Cylinders = None,
     workers: options.Workers = None,
     scheduler: options.Scheduler = None,
@@ -57,6 +58,9 @@ def fragility(
     Without options: the five reduced models of R = 6 m, tan alpha = 0.2 under 100 synthetic motions.
 
     Whatever ends it, the same command resumes.
+
+    With --hazard, the annual frequency of overturning at that site by each method, without and with the
+    lognormal curve.
 
     Writes fragility.html, the same as fragility.md with its figures, the tables as Parquet, and
     counts.csv and counts.json, from which other tools can fit curves of their own.
@@ -74,11 +78,18 @@ def fragility(
             bodies = cylinders_of(cylinder, body)
             chosen = methods.methods(next(iter(bodies.values())))
             methods_of(chosen, restitution=plan.restitution)  # before motions are read
+            site = hazard.curve(plan.period)
             motions, source = many.read(plan.seed)
             for name, each in bodies.items():
                 size = f"R = {each.semidiagonal:g} m, tan alpha = {each.tan_alpha:g}"
                 print(f"{name}: {size}" if cylinder else size)
-            print(f"Motions: {len(motions)}, {source}", *motion_warnings(motions), sep="\n")
+            echo(
+                [
+                    f"Motions: {len(motions)}, {source}",
+                    *record_lines(motions),
+                    *warnings_about(motions, bodies.values(), plan.gravity),
+                ]
+            )
         with user_input(), shown_progress() as progress:
             found = rw.fragility(
                 bodies,
@@ -91,6 +102,8 @@ def fragility(
                 source=source,
                 **dataclasses.asdict(plan),
             )
+            if site is not None:
+                found = found.with_risk(site, hazard.risk_years, total_dispersion=hazard.total_dispersion)
         show_and_save(found, out)
 
 
@@ -133,7 +146,7 @@ def spectrum(
             f"Cylinders: tan alpha = {tan_alpha:g} (alpha = {math.degrees(slender.cylinder.alpha):.4g} deg)"
         )
         # the ground: the threshold of uplift is that of all sizes
-        print(*describe(slender)[1:-1], sep="\n")
+        echo(describe(slender)[1:-1])
         with shown_progress("series") as progress:
             found = rw.spectrum(
                 tan_alpha, motion, workers=workers, progress=progress, **dataclasses.asdict(plan)
@@ -199,7 +212,7 @@ def ensemble(
                 lines = describe(stated) if isinstance(stated, rw.Case) else describe(members[0])[:1]
                 lines += [f"Members: {len(members) or copies.copies}, {source}"]
             runs = _runs(engine, support, time_step, given)
-            print(*lines, *motion_warnings(each.motion for each in members), sep="\n")
+            echo([*lines, *record_lines(each.motion for each in members), *case_warnings(members)])
         with user_input(), shown_progress() as progress:
             found = rw.ensemble(
                 stated, runs=runs, progress=progress, resume=out, source=source, **dataclasses.asdict(copies)
@@ -216,7 +229,7 @@ def _members(
         return problem.case(), f"perturbed copies, {100.0 * copies.perturbation:g} %"
     ignored = {"record", "record_x", "record_y", "record_z", "scale", *_COPIES}
     refuse(context, ignored, f"does not go with {motions.given}: its motions are the members")
-    case = dataclasses.replace(problem, units=None, resample=False).case()
+    case = unread(problem).case()
     level = 3.0 if peak is None else peak
     found, source = motions.read(copies.seed)
     target = level * case.gravity * case.cylinder.tan_alpha
@@ -291,7 +304,7 @@ def sweep(
             refuse(context, stated, f"does not go with a suite, got {suite}: the file states the problems")
             plan = _suite(suite, model)
         rs.require_writable(out)
-    print(*_echo(plan), sep="\n")
+    echo(_echo(plan))
     shows: list[Callable[[], None]] = []
     with interruptible(out), user_input(), shown_progress("chunks") as progress:
         rw.sweep(
@@ -320,9 +333,12 @@ def _suite(name: str, models: list[str] | None) -> rw.Suite:
 
 
 def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
-    motions: Iterable[rw.GroundMotion | None]
+    from rockwobble.models.doubts import doubts_of_cases
+
+    from ..pages.diagnostics import warnings
+
     if isinstance(plan, rc.Grid):
-        motions = plan.motions
+        doubts = plan.doubts()
         ends = [
             rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
             for size in (min(plan.semidiagonals), max(plan.semidiagonals))
@@ -334,7 +350,7 @@ def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
             f"{len(plan.scales)} scales, {len(plan.motions)} records, models {', '.join(plan.models)}"
         )
     else:
-        motions = [case.motion for case in plan.cases]
+        doubts = doubts_of_cases(plan.cases)
         ends = [case.cylinder for case in plan.cases]
         runs = len(plan.cases) * len(plan.runs)
         what = f"{len(plan.cases)} cases, {len(plan.runs)} runs of each"
@@ -348,7 +364,8 @@ def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
             )
         ),
         f"Runs: {runs:,} ({what})",
-        *motion_warnings(motions),
+        *record_lines(plan.motions if isinstance(plan, rc.Grid) else [case.motion for case in plan.cases]),
+        *warnings(doubts),
     ]
 
 

@@ -139,6 +139,17 @@ body, method, work, output = map(panel, ("Cylinder", "Method", "Work", "Output")
 
 SLENDERNESS = "Slenderness b/h, radius over half the height."
 UNITS = "g, m/s2 or cm/s2; required where the files do not say."
+RECORD_COLUMNS = (
+    "Columns of time, x, y and z in this order, by name or number, as Zeit,Ost,Nord or 1,4,3; time,x,y,z for "
+    "those of a file without names; values: all numbers are one component."
+)
+RECORD_STEP = "Time step of files that give no times, in s."
+LENGTHS = "Where components differ in length: pad (fill the shorter with zeros) or cut (the longer)."
+REMOVE_MEAN = "Take its mean, the offset of the sensor, from each component."
+ROTATE = (
+    "Turn the record by this angle, in deg, counter-clockwise from above; north: to x east and y north, by "
+    "the azimuths of its files."
+)
 RESAMPLE = (
     "Take components of different time steps at the largest step that divides all; linear between samples, "
     "which stay, so that none changes."

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 import shlex
 from collections.abc import Collection
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
+from typing import Any
 
 import typer
 
@@ -41,7 +42,8 @@ class Body(Plan):
     )
     columns: int | None = _cylinder(
         None,
-        "Number of the cylinders under the slab: 3 or more, or 1 for a slab that cannot turn. Default: 3.",
+        "Number of the cylinders under the slab: 3 or more, or 1 for a slab that cannot turn. Engines run "
+        "one, under a slab that only translates, whatever the number, and say so. Default: 3.",
     )
 
     def cylinder(self) -> rw.Cylinder:
@@ -96,21 +98,47 @@ def first_given(stated: Plan, *names: str) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Record(Plan):
+class Reading(Plan):
+    """The options that say how files of records are read, the same for one record and for many."""
+
+    units: str | None = _ground(None, options.UNITS)
+    record_columns: str | None = _ground(None, options.RECORD_COLUMNS)
+    record_step: float | None = _ground(None, options.RECORD_STEP, above=0.0)
+    lengths: str | None = _ground(None, options.LENGTHS, choices=("pad", "cut"))
+    remove_mean: bool = _ground(False, options.REMOVE_MEAN, flag="--remove-mean")
+    rotate: str | None = _ground(None, options.ROTATE)
+    resample: bool = _ground(False, options.RESAMPLE, flag="--resample")
+
+    def ways(self) -> dict[str, Any]:
+        """Return them as keywords of `read_record` and `read_records`."""
+        return {
+            "units": self.units,
+            "columns": self.record_columns,
+            "time_step": self.record_step,
+            "lengths": self.lengths,
+            "remove_mean": self.remove_mean,
+            "rotate": self.rotate,
+            "resample": self.resample,
+        }
+
+
+WAYS = tuple(field.name for field in fields(Reading))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record(Reading):
     """The options that state a ground motion."""
 
     record: Path | None = _ground(
-        None, "Text or CSV of time, x, y and perhaps z, in place of the files below."
+        None, "File, or folder of a station, of all components, in place of the files below."
     )
     record_x: Path | None = _ground(
         None,
-        "East-west component: PEER AT2, two-column text or CSV, or zero beside the other (planar motion). "
+        "East-west component, in any format of the guide Records, or zero beside the other (planar motion). "
         "Default: El Centro 1940.",
     )
     record_y: Path | None = _ground(None, "North-south component, or zero.")
     record_z: Path | None = _ground(None, "Vertical component, may be left out.")
-    units: str | None = _ground(None, options.UNITS)
-    resample: bool = _ground(False, options.RESAMPLE, flag="--resample")
     scale: float = _ground(1.0, "Factor on all components.", above=0.0)
 
     def motion(self, *, still: bool = False) -> rw.GroundMotion | None:
@@ -126,11 +154,9 @@ class Record(Plan):
         if whole is not None:
             if any(path is not None for path in (x, y, z)):
                 raise ValueError("--record holds all components, got --record-x, -y or -z beside it")
-            if self.resample:
-                raise ValueError("--resample goes with --record-x and --record-y: --record has one time step")
-            return rw.read_record(whole, units=self.units).scaled(scale)
+            return rw.read_record(whole, **self.ways()).scaled(scale)
         if x is None and y is None:
-            if lone := first_given(self, "record_z", "units", "resample"):
+            if lone := first_given(self, "record_z", *WAYS):
                 raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
             if not still:
                 return rw.el_centro_1940().scaled(scale)
@@ -143,7 +169,7 @@ class Record(Plan):
                 f"both horizontal components are needed, got {given} without {missing}: for planar motion "
                 f"give {missing} zero, one file of all by --record"
             )
-        return rw.read_record(x, y, z, units=self.units, resample=self.resample).scaled(scale)
+        return rw.read_record(x, y, z, **self.ways()).scaled(scale)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -224,6 +250,12 @@ class Problem(Release, Record, Body):
             rolling_resistance=self.rolling_resistance,
             name="free response" if motion is None else motion.name + scaled,
         )
+
+
+def unread(problem: Problem) -> Problem:
+    """Return a problem without the options of reading, which belong to other motions."""
+    defaults: dict[str, Any] = {each.name: each.default for each in fields(Reading)}
+    return replace(problem, **defaults)
 
 
 def given_options(context: typer.Context) -> list[str]:

@@ -14,7 +14,7 @@ import rockwobble as rw
 import rockwobble.compare.runs as rr
 import rockwobble.compare.storage as rs
 
-from ..console import complain, interruptible, print_facts, show_and_save, shown_progress, user_input
+from ..console import complain, echo, interruptible, print_facts, show_and_save, shown_progress, user_input
 from ..pages import KINDS, stored_page
 from ..pages.cases import describe
 from ..pages.table import number
@@ -181,7 +181,7 @@ def view(
                 name = case.name
             rs.require_writable(out)
         if folder is None:
-            print(*describe(case), sep="\n")
+            echo(describe(case))
             with user_input(), shown_progress() as progress:
                 comparison = rw.compare(case, runs=[run], progress=progress)
         show_and_save(comparison.of_case(name), out)

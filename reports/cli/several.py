@@ -10,30 +10,28 @@ from typing import Annotated
 import rockwobble as rw
 import rockwobble.compare as rc
 import rockwobble.compare.runs as rr
-from rockwobble.compare.runs.plan import Plan, option, options_in
+from rockwobble.compare.runs.plan import Plan, options_in
 from rockwobble.compare.studies.plans import GridPlan
 
 from . import options
 from .options import settings
-from .problem import Body, first_given, under_slab
+from .problem import WAYS, Body, Reading, first_given, under_slab
 
 DEFAULT_COUNT = 100  # of synthetic motions, where the user does not say
 _motions = options_in("Many ground motions")
 
 
 @dataclass(frozen=True, kw_only=True)
-class ManyMotions(Plan):
+class ManyMotions(Reading):
     """The options that name many ground motions."""
 
     p695: bool = _motions(False, "The 22 far-field pairs of FEMA P-695 (extra records).", flag="--p695")
     records: Path | None = _motions(
         None,
-        "A folder of records with a table records.csv: columns x and y (files), maybe z, name, units and "
-        "scale.",
+        "A folder of PEER with its _SearchResults.csv, or one with a table records.csv: columns x and y "
+        "(files), or record (file or folder of all), maybe z, name, units, scale and the options below.",
     )
     synthetic: int | None = _motions(None, "So many synthetic motions.", least=2)
-    units: str | None = option(None, options.UNITS, group="Ground motion")
-    resample: bool = option(False, options.RESAMPLE, group="Ground motion", flag="--resample")
 
     @property
     def given(self) -> str:
@@ -54,12 +52,12 @@ class ManyMotions(Plan):
             raise ValueError(
                 "the motions are those of --p695, of --records or --synthetic, got more than one"
             )
-        if self.records is None and (lone := first_given(self, "units", "resample")):
+        if self.records is None and (lone := first_given(self, *WAYS)):
             raise ValueError(f"{lone} belongs to --records")
         if self.p695:
             return recorded_far_field(), "far-field pairs of FEMA P-695"
         if self.records is not None:
-            found = rw.read_records(self.records, units=self.units, resample=self.resample)
+            found = rw.read_records(self.records, **self.ways())
             return found, f"records of {self.records.name}"
         count = DEFAULT_COUNT if self.synthetic is None else self.synthetic
         return rw.synthetic_motions(count, peak=1.0, seed=seed), f"synthetic ground motions, seed {seed}"
@@ -150,11 +148,68 @@ class ManyMethods:
         return [*chosen, *runs]
 
 
+_hazard = options_in("Hazard")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hazard(Plan):
+    """The options that state the hazard of a site."""
+
+    hazard: Path | None = _hazard(
+        None,
+        "Hazard curve of the site: CSV of intensity and annual frequency, CSV of OpenQuake or JSON of the "
+        "USGS. Adds the annual frequency of overturning.",
+    )
+    hazard_measure: str | None = _hazard(
+        None,
+        "What its intensity is: pga, pgv or sa_mean (geometric means), pga_resultant, pgv_resultant or sa "
+        "(of the horizontal resultant).",
+    )
+    hazard_units: str | None = _hazard(None, "Unit of its intensity. Default: g, and m/s for velocities.")
+    hazard_years: float | None = _hazard(
+        None, "Years of the probabilities that it gives in place of annual frequencies.", above=0.0
+    )
+    hazard_site: int = _hazard(1, "Number of the site in a file of OpenQuake.", least=1)
+    risk_years: float = _hazard(50.0, "Years of the probability of overturning.", above=0.0)
+    total_dispersion: float | None = _hazard(
+        None,
+        "Dispersion of the lognormal curves in place of that of the motions, as the total of FEMA P-695.",
+        above=0.0,
+    )
+
+    def curve(self, period: float) -> rw.HazardCurve | None:
+        """Return the hazard curve, None without a file; `period`: that of Sa [s].
+
+        Raises
+        ------
+        ValueError
+            If an option stands without what it belongs to, or the file cannot be read.
+        """
+        from rockwobble.models.hazard import HAZARD_MEASURES
+
+        if self.hazard is None:
+            if lone := first_given(
+                self, "hazard_measure", "hazard_units", "hazard_years", "total_dispersion"
+            ):
+                raise ValueError(f"{lone} belongs to a hazard curve, give --hazard as well")
+            return None
+        if self.hazard_measure is None:
+            raise ValueError(f"--hazard needs --hazard-measure, one of {', '.join(HAZARD_MEASURES)}")
+        return rw.read_hazard(
+            self.hazard,
+            measure=self.hazard_measure,
+            period=period if self.hazard_measure in ("sa", "sa_mean") else None,
+            units=self.hazard_units,
+            years=self.hazard_years,
+            site=self.hazard_site,
+        )
+
+
 _motion = options_in("Ground motion")
 
 
 @dataclass(frozen=True, kw_only=True)
-class GridOptions(GridPlan):
+class GridOptions(GridPlan, Reading):
     """The options that state a grid."""
 
     record_x: list[Path] | None = _motion(
@@ -162,8 +217,6 @@ class GridOptions(GridPlan):
     )
     record_y: list[Path] | None = _motion(None, "North-south component of each, or zero.")
     record_z: list[Path] | None = _motion(None, "Vertical component of each, or of none.")
-    units: str | None = _motion(None, options.UNITS)
-    resample: bool = _motion(False, options.RESAMPLE, flag="--resample")
 
     def grid(self, models: list[str] | None) -> rw.Grid:
         """Return the grid of these axes by some reduced models, the recess model without any.
@@ -182,7 +235,7 @@ class GridOptions(GridPlan):
     def _motions(self) -> list[rw.GroundMotion]:
         x, y, z = self.record_x or [], self.record_y or [], self.record_z or []
         if not x and not y:
-            if lone := first_given(self, "record_z", "units", "resample"):
+            if lone := first_given(self, "record_z", *WAYS):
                 raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
             return [rw.el_centro_1940()]
         if len(x) != len(y) or len(z) not in (0, len(x)):
@@ -192,6 +245,5 @@ class GridOptions(GridPlan):
             )
         ups: list[Path | None] = list(z) if z else [None] * len(x)
         return [
-            rw.read_record(east, north, up, units=self.units, resample=self.resample)
-            for east, north, up in zip(x, y, ups, strict=True)
+            rw.read_record(east, north, up, **self.ways()) for east, north, up in zip(x, y, ups, strict=True)
         ]

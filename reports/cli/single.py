@@ -18,8 +18,8 @@ import rockwobble.compare.storage as rs
 from rockwobble.compare.runs.plan import Plan, options_in
 from rockwobble.compare.studies.plans import AdvicePlan, ModelPlan
 
-from ..console import FAILED, complain, interruptible, show_and_save, shown_progress, user_input
-from ..pages.cases import describe
+from ..console import FAILED, complain, echo, interruptible, show_and_save, shown_progress, user_input
+from ..pages.cases import case_warnings, describe, record_lines
 from . import options
 from .command import takes_options
 from .options import settings
@@ -133,9 +133,9 @@ def compare(
                     rr.require_runnable(each, run)
             trajectories = external.read(cases)
         if suite is None:
-            print(*describe(cases[0]), sep="\n")
+            echo(describe(cases[0]))
         else:
-            print(*describe_suite(suite, cases, runs), sep="\n")
+            echo(describe_suite(suite, cases, runs))
         if engine == [options.ALL]:
             for reason in unable_engines(cases):
                 complain(reason)
@@ -232,6 +232,7 @@ def simulate(
             named = None if engine == options.NO_ENGINE else engine
             run = _with_settings(case, rw.Run(named, support, time_step), setting, dataclasses.asdict(model))
             rr.require_runnable(case, run)
+        echo([*record_lines([case.motion]), *case_warnings([case])])
         with user_input(), shown_progress() as progress:
             found = single_run(
                 case, run, answer=restated(context, "advise", also=("support",)), progress=progress
@@ -296,6 +297,7 @@ def advise(
             case = problem.case()
             run = _run(case, engine, plan.support, time_step)
             rs.require_writable(out)
+        echo([*record_lines([case.motion]), *case_warnings([case])])
         with shown_progress("stages") as progress:
             found = rw.advise(
                 case,

@@ -13,7 +13,7 @@ import rockwobble.compare as rc
 import rockwobble.compare.runs as rr
 
 from ..console import complain
-from ..pages.cases import group_of, motion_warnings
+from ..pages.cases import case_warnings, group_of, record_lines
 from .problem import PROBLEM, refuse
 
 if TYPE_CHECKING:
@@ -85,4 +85,5 @@ def describe_suite(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) 
     counted = (f"{group} ({count})" if count > 1 else group for group, count in groups.items())
     yield f"Cases: {', '.join(counted)}"
     yield f"Runs: {', '.join(run_labels(runs))}"
-    yield from motion_warnings(case.motion for case in cases)
+    yield from record_lines(case.motion for case in cases)
+    yield from case_warnings(cases)

@@ -12,6 +12,7 @@ import pandas as pd
 from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.studies.advice.advice import Advice
 from rockwobble.compare.studies.spectrum.maps import SERIES
+from rockwobble.models.trace import NO_PEAK
 
 from .ensemble import peak_shares
 from .palette import GREY, Style, model_style, run_styles
@@ -48,7 +49,7 @@ def _peaks(found: Advice) -> Panel:
     members = found.members
     groups = [name for name in SHORT if (members["group"] == name).any()]
     styles = run_styles(groups)
-    standing = members[~members["outcome"].isin(["overturned", "failed"])]
+    standing = members[~members["outcome"].isin(["overturned", *NO_PEAK])]
     end = 1.05 * max(float(standing["peak_tilt"].max()), 0.1) if len(standing) else 1.0
     layers: list[Line] = []
     for name in groups:

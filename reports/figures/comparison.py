@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -17,12 +16,11 @@ from rockwobble.reduced import limiting_angle_of_turn
 from .case_view import CaseView, case_views
 from .heat import names
 from .palette import GREY, SYMBOLS, Style
-from .picture import TILT, TIME, Array, Axis, Bars, Layer, Line, Panel, Picture, Rule
+from .picture import TIME, Array, Axis, Bars, Layer, Line, Panel, Picture, Rule, tilt_axis
 from .thinning import envelope
 
 # smaller differences are drawn here: a logarithm has no zero [alpha]
 SMALLEST = 1e-7
-_CUT = 1.5  # [alpha] where tilts are cut if one goes farther
 _HEIGHT = 2.3  # [inch]
 
 
@@ -66,9 +64,7 @@ def _tilts(view: CaseView, runs: Sequence[str], support: str) -> Panel:
         )
         for label in shown
     ]
-    # a fall would leave nothing to be seen of the rest
-    cut = any(float(np.nanmax(line.y, initial=0.0)) > _CUT for line in layers)
-    y = replace(TILT, high=_CUT if cut else None)
+    y = tilt_axis([line.y for line in layers])
     return Panel(
         x=TIME,
         y=y,

@@ -13,6 +13,7 @@ from rockwobble.compare import Ensemble
 from rockwobble.compare.metrics.statistics import MARGIN
 from rockwobble.compare.studies.ensemble import pairs
 from rockwobble.compare.studies.fragility.study import Row
+from rockwobble.models.trace import NO_PEAK
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles
 from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, ecdf, list_axis
@@ -63,7 +64,7 @@ def distributions(members: pd.DataFrame, models: Collection[str], what: str = "m
     layers: list[Line] = []
     for method, style in label_styles(list(members["method"].unique()), models).items():
         runs = members[members["method"] == method]
-        if (runs["outcome"] != "failed").any():
+        if (~runs["outcome"].isin(NO_PEAK)).any():
             layers += peak_shares(runs, method, style, end, width=1.6, notes=True)
     return Panel(
         x=Axis(label="peak tilt / α", unit="-", low=0.0, high=end),
@@ -81,7 +82,7 @@ def peak_shares(
 
     Runs that failed have no part in it; `notes` name the member of each step.
     """
-    known = runs[runs["outcome"] != "failed"]
+    known = runs[~runs["outcome"].isin(NO_PEAK)]
     stands = known[known["outcome"] != "overturned"].sort_values("peak_tilt")
     fallen = len(known) - len(stands)
     x, y = ecdf(stands["peak_tilt"].to_numpy(float), total=len(known), end=end)

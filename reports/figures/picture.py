@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -65,6 +65,13 @@ def list_axis(names: Sequence[str], label: str = "") -> Axis:
 
 TIME = Axis(label="time", unit="s")
 TILT = Axis(label="tilt / α", unit="-", low=0.0)
+CUT = 1.5  # [alpha] where an axis of tilts ends if one goes farther: a fall would leave nothing of the rest
+
+
+def tilt_axis(tilts: Iterable[Array]) -> Axis:
+    """Return the axis of some tilts over alpha, cut where one goes beyond what a body that stands has."""
+    beyond = any(float(np.nanmax(tilt, initial=0.0)) > CUT for tilt in tilts)
+    return replace(TILT, high=CUT if beyond else None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

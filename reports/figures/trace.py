@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
+from rockwobble.compare.studies.advice.members import fall_of
 from rockwobble.models import Trace
 
 from .palette import GREY, ORDER, Style
-from .picture import TILT, TIME, Array, Axis, Layer, Line, Panel, Picture, Rule
+from .picture import TIME, Array, Axis, Layer, Line, Panel, Picture, Rule, tilt_axis
 
 _PATH = Style(colour=ORDER[0])
 _PLACES = Style(colour=ORDER[0], dash="none", symbol="circle")  # between which it only jumps, in a plane
@@ -22,15 +25,19 @@ def pictures(trace: Trace) -> list[Picture]:
     turn = np.linspace(0.0, 2.0 * np.pi, 181)
     x, y = _path(trace.contact_point / cylinder.base_radius).T
     rolls = np.nansum(np.hypot(np.diff(x), np.diff(y))) > _APART
-    tilt: list[Layer] = [Line(x=trace.time, y=trace.tilt / cylinder.alpha, style=_PATH)]
+    tilts = trace.tilt / cylinder.alpha
+    tilt: list[Layer] = [Line(x=trace.time, y=tilts, style=_PATH)]
     if trace.uplift_time > 0.0:
         tilt.append(Rule(at=trace.uplift_time, axis="x", text="uplift", side="right"))
+    falls = fall_of(trace)
+    if math.isfinite(falls):
+        tilt.append(Rule(at=falls, axis="x", text="passes α for good", side="left"))
     path = [
         Line(x=np.cos(turn), y=np.sin(turn), style=_CIRCLE, name="original circle", width=1.0),
         Line(x=x, y=y, style=_PATH if rolls else _PLACES, name="contact point", width=1.0),
     ]
     panels = [
-        Panel(x=TIME, y=TILT, layers=tilt, title="tilt", height=3.4),
+        Panel(x=TIME, y=tilt_axis([tilts]), layers=tilt, title="tilt", height=3.4),
         Panel(
             x=Axis(label="x / b", unit="-"),
             y=Axis(label="y / b", unit="-"),

@@ -18,6 +18,7 @@ from rockwobble.compare.studies.spectrum.study import CHECK_RTOL, NUDGE
 from rockwobble.models import AGREEMENT
 from rockwobble.models.diagnostic import CODES, parted
 from rockwobble.models.support import support_named
+from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.reduced.body import restitution_from_momentum
 
@@ -57,6 +58,8 @@ _DIVERGENCE = {
 }
 Row = dict[str, object]
 
+_ENDS = {"failed": "failed", "undecided": "is undecided"}  # of a run without a peak
+
 
 def page_of(found: Advice) -> Page:
     """Return the page of an advice."""
@@ -68,7 +71,7 @@ def page_of(found: Advice) -> Page:
         "about": found.manifest,
         "drawn": bool(drawn),
         "engine": DEFAULT_ENGINE,
-        "failed": found.response["outcome"] == "failed",
+        "failed": found.response["outcome"] in NO_PEAK,
         "meanings": [CODES[code][1] for code in found.response["diagnostics"]],
         "grades": grades,
         "numbers": _numbers(found),
@@ -91,8 +94,8 @@ def page_of(found: Advice) -> Page:
 
 def _reasons(found: Advice) -> dict[str, str]:
     """What the grade of each topic rests on in this case."""
-    if found.response["outcome"] == "failed":
-        return {"trace": "the run failed"}
+    if found.response["outcome"] in NO_PEAK:
+        return {"trace": f"the run {_ENDS[found.response['outcome']]}"}
     slip, lost = found.missing
     few = f"fewer than {FEWEST} runs differ"
     contact = "never lost in 95 % of all runs" if found.grades["contact"] == "satisfied" else few
@@ -148,7 +151,7 @@ def _reason_of_trace(found: Advice) -> str:
     trust, engine = found.trust, found.verification
     if not found.copies_differ and trust.kind != "statistics":
         return "the copies are all one run"
-    ran = engine is not None and engine.outcome != "failed"
+    ran = engine is not None and engine.outcome not in NO_PEAK
     if trust.kind == "trace":
         return f"{'model, engine' if ran else 'model'} and copies agree to the end"
     ends = "the engine diverges" if ran else "engines should diverge"
@@ -174,8 +177,8 @@ def _reason_of_engine(found: Advice) -> str:
     engine = found.verification
     if engine is None:
         return "not run"
-    if engine.outcome == "failed":
-        return f"it failed: {_failure(engine)}"
+    if engine.outcome in NO_PEAK:
+        return f"it {_ENDS[engine.outcome]}: {_failure(engine)}"
     agrees = f"agrees until {_agreed_until(engine)}, predicted until {_predicted_until(found)}"
     if engine.divergence == "earlier":
         return f"{agrees}: less than half as long"
@@ -245,7 +248,7 @@ def _checks(found: Advice) -> Iterator[Row]:
     if not found.moves:
         return
     response, groups, copies = found.response, found.groups, found.members
-    copies = copies[(copies["group"] == COPIES) & (copies["outcome"] != "failed")]
+    copies = copies[(copies["group"] == COPIES) & (~copies["outcome"].isin(NO_PEAK))]
     if response["uplift_time"] > 0.0:
         yield _check("uplift", f"{number(response['uplift_time'], '.4g')} s")
     below = f"{number((copies['peak_tilt'] < found.peak).mean(), 'percent')} of the copies tilt less"
@@ -276,8 +279,8 @@ def _agreement(found: Advice) -> Iterator[Row]:
     if engine is None:
         return
     method = f"{engine.label} {engine.version}, step {number(engine.time_step)} s, agrees until"
-    if engine.outcome == "failed":
-        yield _check(method, "failed", _failure(engine))
+    if engine.outcome in NO_PEAK:
+        yield _check(method, engine.outcome, _failure(engine))
         return
     tilt = f"largest tilt {number(engine.peak_tilt)} α" if engine.moves else "it stays at rest"
     tilt = "it overturns" if engine.outcome == "overturned" else tilt

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rockwobble.models import Case, GroundMotion
+    from rockwobble.models import Case, Cylinder, GroundMotion
 
 
 def describe(case: Case) -> list[str]:
@@ -39,23 +39,49 @@ def describe(case: Case) -> list[str]:
             f"{components} components, peak {motion.peak / case.gravity:.3f} g "
             f"({1.0 / factor:.2f} times the uplift threshold{within})"
         )
-        lines += motion_warnings([motion])
+        lines += record_lines([motion])
     if initial is not None:
         lines.append(
             f"Release: tilt {math.degrees(initial.tilt):.4g} deg "
             f"({initial.tilt / cylinder.alpha:.3g} alpha), rolling rate {initial.rolling_rate:g} rad/s"
         )
+    lines += case_warnings([case])
     lines.append(f"Length of the run: {case.length:.4g} s")
     return lines
 
 
-def motion_warnings(motions: Iterable[GroundMotion | None]) -> list[str]:
-    """Return a line on each doubt about ground motions."""
-    from rockwobble.models.records.units import doubts_of
+MOST_SHOWN = 12  # sources of records; the pages have the same number
+
+
+def record_lines(motions: Iterable[GroundMotion | None]) -> list[str]:
+    """Return a line on what each ground motion is read from."""
+    from rockwobble.models.records.units import sources_of
+
+    sources = sources_of(motions)
+    lines = [f"Record: {source}" for source in sources[:MOST_SHOWN]]
+    if len(sources) > MOST_SHOWN:
+        lines.append(f"and {len(sources) - MOST_SHOWN} records more, which manifest.json lists")
+    return lines
+
+
+def case_warnings(cases: Iterable[Case]) -> list[str]:
+    """Return a line on each doubt about what cases state."""
+    from rockwobble.models.doubts import doubts_of_cases
 
     from .diagnostics import warnings
 
-    return warnings(doubts_of(motions))
+    return warnings(doubts_of_cases(cases))
+
+
+def warnings_about(
+    motions: Iterable[GroundMotion], cylinders: Iterable[Cylinder] = (), gravity: float = 9.81
+) -> list[str]:
+    """Return a line on each doubt about motions, cylinders and a gravity [m/s^2]."""
+    from rockwobble.models.doubts import doubts_about
+
+    from .diagnostics import warnings
+
+    return warnings(doubts_about(motions=motions, cylinders=cylinders, gravities=[gravity]))
 
 
 def group_of(name: str) -> str:

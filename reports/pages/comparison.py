@@ -13,6 +13,7 @@ from rockwobble.compare.comparison.comparison import View
 from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
 from rockwobble.compare.external.verdict import lists_in_words
 from rockwobble.models import Run
+from rockwobble.models.trace import NO_PEAK
 
 from ..figures.budget import all_budgets_picture, budget_picture, parts_picture
 from ..figures.case_view import CaseView, SummaryRow, case_views, own_rows, rows_of
@@ -197,7 +198,7 @@ def _until(row: SummaryRow, start: float) -> str:
 
 
 def _peak(value: float, outcome: str) -> float | str:
-    return outcome if outcome in ("overturned", "failed") else value
+    return outcome if outcome in ("overturned", *NO_PEAK) else value
 
 
 def external_rows(summary: pd.DataFrame) -> list[Row]:

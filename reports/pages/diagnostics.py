@@ -9,7 +9,8 @@ from typing import Any
 
 from rockwobble.models import Diagnostic
 from rockwobble.models.diagnostic import FAILURES
-from rockwobble.models.records.units import likely_unit
+from rockwobble.models.doubts import GRAVITIES, LENGTHS
+from rockwobble.models.records.plausibility import likely_unit
 
 # why halving the step did not settle it
 _UNSETTLED = {
@@ -41,8 +42,8 @@ _WORDS: Mapping[str, str] = {
     "where there is {bound:g}",
     "wall_contact": "the cylinder touched a wall{since}",
     "energy": "contact {made} {amount:.1e} of the energy of the motion, which shows{since}",
-    "undecided": "it ends in motion, which comes to no maximum of its tilt in the time for which it is "
-    "followed: whether it overturns is not decided",
+    "undecided": "it stays so near its balance that rounding or the error of the solution decides whether it "
+    "falls or turns back: whether it overturns is not known",
     "solver": "the solver had not converged in {size:.0f} of the {bound:.0f} steps looked at",
     "unresolved_pass": "{passes_are} closer to upright than the {bound:.1e} rad that contact resolves, "
     "first{at}",
@@ -53,12 +54,26 @@ _WORDS: Mapping[str, str] = {
     "extrapolated": "the motion is, until {duration}, what runs at three time steps tend to, with order "
     "{bound:.0f}: within {size:.1e} alpha, by estimate",
     "not_extrapolated": "it is not extrapolated{later}, but the run at the finest time step: {why}",
+    "one_column": "the engine runs one of the {size:.0f} columns, under its share of a slab that only "
+    "translates: whether the slab turns, or the columns keep in step, is not tested",
     "side": "it passed through upright itself, first{at}: the ground had moved in one plane, and the side "
     "of such a pass is undetermined",
-    "large_peak": "its peak is {size:.3g} g, more than any record has ({bound:g} g): it would be "
-    "{other_unit:.2g} g with its numbers in {detail}; give the unit of the file",
+    "large_peak": "its peak is {size:.3g} g, more than {bound:g} g, which few records have{other_unit}",
     "unlike_components": "the peaks of its components differ by a factor of {size:.3g}, {detail} is the "
     "larger: their units may differ",
+    "same_components": "its components {detail} are the same: is one file given twice?",
+    "unlikely_length": "a length of {size:g} m is that of no structure ({beyond} {bound:g} m): with the "
+    "number in {detail} it would be {stated:.4g} m; give it in m",
+    "unlikely_gravity": "{size:g} m/s2 is the gravity of no planet (above {bound:g} m/s2): with the number "
+    "in {detail} it would be {stated:.4g} m/s2; give it in m/s2",
+    "offset": "the mean of {detail} is {percent:.0f} % of its peak: the offset of the sensor was not "
+    "removed; remove it with --remove-mean (remove_mean=True)",
+    "gravity_in_record": "the mean of {detail} is {size:.3g} g: gravity is in the record; remove it with "
+    "--remove-mean (remove_mean=True)",
+    "unlikely_step": "its time step is {size:g} s, {beyond} {bound:g} s as no recorder has: is the unit of "
+    "its times another?",
+    "ends_in_strong_motion": "it ends in strong motion, {percent:.0f} % of its peak: is it cut?",
+    "other_direction": "by its file, what stands in the place of {detail}",
     "note": "{detail}",
     "missed_pass": "{passes_fell} between two samples, first{at}",
 }
@@ -84,6 +99,7 @@ _MANY: Mapping[str, str] = {
     "not_extrapolated": "could not be extrapolated in the time step to the end",
     "unresolved_pass": "had passes closer to upright than contact resolves",
     "undecided": "ended in motion that was not decided",
+    "one_column": "ran one column, under a slab that only translates",
     "side": "passed through upright itself",
 }
 
@@ -117,8 +133,20 @@ def _fields(fact: Diagnostic) -> dict[str, str | float]:
         "later": since if fact.time > 0.0 else "",
         "passes_are": _count(fact.size, "pass", "is", "are"),
         "passes_fell": _count(fact.size, "near pass", "fell", "fell"),
-        "other_unit": likely_unit(fact.size)[1] if fact.code == "large_peak" else math.nan,
+        "stated": fact.size * {**LENGTHS, **GRAVITIES}.get(fact.detail, math.nan),
+        "percent": 100.0 * fact.size,
+        "beyond": "above" if fact.size > fact.bound else "below",
+        "other_unit": _other_unit(fact) if fact.code == "large_peak" else "",
     }
+
+
+def _other_unit(fact: Diagnostic) -> str:
+    """Return the unit in which a peak would be usual, and that in which it was read where that is known."""
+    unit, _, used = fact.detail.partition(" for ")
+    if not unit:
+        return ""
+    peak = likely_unit(fact.size, used or None)[1]
+    return f": it would be {peak:.2g} g with its numbers in {unit}" + (f", not {used}" if used else "")
 
 
 def remarks(facts: Iterable[Diagnostic]) -> str:
@@ -127,11 +155,12 @@ def remarks(facts: Iterable[Diagnostic]) -> str:
 
 
 def warnings(doubts: Iterable[Mapping[str, Any]]) -> list[str]:
-    """Return a line on each doubt about a record, as `doubts_of` gives them."""
+    """Return a line on each doubt about records, lengths or gravity, as `doubts_of_cases` gives them."""
     lines = []
     for doubt in doubts:
         fields = {name: value for name, value in doubt.items() if name != "record"}
-        lines.append(f"Warning: {doubt['record']}: {sentence(Diagnostic(**fields))}.")
+        text = sentence(Diagnostic(**fields))
+        lines.append(f"Warning: {doubt['record']}: {text}{'' if text.endswith('?') else '.'}")
     return lines
 
 

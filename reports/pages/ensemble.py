@@ -12,6 +12,7 @@ from rockwobble.compare.metrics.statistics import (
     least_significant_count,
     stated,
 )
+from rockwobble.models.diagnostic import parted
 
 from ..figures.ensemble import main_pairs, pictures
 from .page import Page
@@ -43,6 +44,7 @@ def ensemble_values(found: Ensemble) -> dict[str, object]:
         "methods": methods,
         "contrasts": rows,
         "main": main,
+        "one_column": any("one_column" in parted(cell) for cell in found.members["diagnostics"]),
         "verdicts": {
             verdict: [row for row in main if row["verdict"] == verdict]
             for verdict in ("within", "beyond", "undecided")

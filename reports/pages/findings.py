@@ -12,6 +12,7 @@ from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING
 from rockwobble.compare import findings as unexplained
 from rockwobble.compare.comparison.budget import COVERED
 from rockwobble.compare.comparison.prediction import BEATEN
+from rockwobble.compare.external.loss import ENERGY_LOSS
 from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
 from rockwobble.compare.external.verdict import mistakes_of
 from rockwobble.compare.metrics.pair import make_pair
@@ -31,6 +32,7 @@ CAUSES: Mapping[str, str] = {
     "support": "support",
     "walls": "walls",
     "mistake": "likely mistake",
+    "loss": "loss of energy",
     "pass": "unresolved pass",
     "near passes": "near passes",
     "method": "method",
@@ -63,7 +65,8 @@ def cause(row: SummaryRow, length: float, *, touched: bool = False, models_diffe
     Returns
     -------
     str
-        "support" or "walls", a difference of support, not of accuracy; "mistake" of an external trajectory;
+        "support" or "walls", a difference of support, not of accuracy; "mistake" of an external
+        trajectory, or "loss" of its energy;
         "pass", one that contact does not resolve; "near passes", which amplify what small difference there
         is; "method", without a pass, so that it is not chance.
     """
@@ -75,7 +78,7 @@ def cause(row: SummaryRow, length: float, *, touched: bool = False, models_diffe
     elif support and not support.guided and guided and models_differ:
         return "support"
     if row.support == EXTERNAL and explains_divergence(row):
-        return "mistake"
+        return "loss" if _loses(row) else "mistake"
     by_pass = row.predicted_by == "pass" and row.support != EXTERNAL and row.predicted_until < length
     start = row.reference_uplift_time
     agreed, predicted = row.within_tolerance_until - start, row.predicted_until - start
@@ -135,7 +138,14 @@ def notes(view: CaseView) -> str:
 def _mistakes(row: SummaryRow) -> dict[str, object]:
     """Return the likely mistakes of an external trajectory in words, and whether they explain it."""
     words = [mistake.words for mistake in mistakes_of(row)]
-    return {"row": row, "mistakes": words, "explained": explains_divergence(row)}
+    loses = _loses(row)
+    explained = explains_divergence(row) and (not loses or len(words) > 1)
+    return {"row": row, "mistakes": words, "explained": explained, "loses": loses}
+
+
+def _loses(row: SummaryRow) -> bool:
+    """Whether an external trajectory loses energy that its model does not."""
+    return ENERGY_LOSS in row.likely_mistake
 
 
 def _together(words: Mapping[str, str]) -> list[tuple[list[str], str]]:

@@ -13,7 +13,9 @@ from rockwobble.compare.studies.fragility.tables import ALL, OVERTURNED
 from rockwobble.models.support import SUPPORTS
 
 from ..figures.fragility import pictures
+from ..figures.risk import risk_pictures
 from .page import Page
+from .risk import risk_values
 
 _WALLED = tuple(each.name for each in SUPPORTS.values() if each.walls)
 # below this probability the counts do not follow a lognormal curve
@@ -24,6 +26,7 @@ def page_of(found: Fragility) -> Page:
     """Return the page of a fragility."""
     drawn = pictures(found)
     names = [picture.name for picture in drawn]
+    drawn += risk_pictures(found)
     values = {**fragility_values(found), "about": found.manifest, "pictures": names}
     return Page(name="fragility", template="fragility", values=values, pictures=drawn)
 
@@ -41,6 +44,7 @@ def fragility_values(found: Fragility) -> dict[str, object]:
     ]
     return {
         "facts": found.facts,
+        "risk": risk_values(found),
         "measure": measure,
         "cylinders": [{"name": name, "slab_mass_ratio": 0.0, **body} for name, body in cylinders.items()],
         "answers": {
@@ -48,6 +52,7 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         },
         "contrasts": _by_cylinder([row for rows in answers.values() for row in rows], [*cylinders, ALL]),
         "several": len(cylinders) > 1,
+        "engine_runs": any(each["engine"] is not None for each in found.facts["methods"].values()),
         "scaling": _scaling(found, measure.title),
         "fallen": fallen,
         "overturns": any(row["exceeded"] for row in fallen),

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 
 from rockwobble.compare.comparison.prediction import NUDGE
+from rockwobble.compare.studies.advice.members import fall_of
 from rockwobble.compare.studies.single_run import SingleRun
+from rockwobble.models import Diagnostic, Trace
 from rockwobble.models.support import SUPPORTS
 
 from ..figures.trace import pictures
@@ -17,16 +19,19 @@ from .page import Page
 def page_of(found: SingleRun) -> Page:
     """Return the page of a run; numbers are NaN or infinite where there is none."""
     trace, single = found.trace, found.facts.get("single_trace", {})
-    cylinder, held, engine = trace.case.cylinder, trace.assumptions, trace.run.engine is not None
+    cylinder, engine, falls = trace.case.cylinder, trace.run.engine is not None, fall_of(trace)
+    held = trace.assumptions_until(falls)  # a fall asks nothing
     until = single.get("until", math.inf)  # of earlier versions nothing is known
     support = SUPPORTS.get(trace.run.support)
     values = {
         "trace": trace,
         "label": found.facts["run"],
         "lines": describe(trace.case),
-        "said": remarks(trace.diagnostics),
+        "said": remarks(_limits(trace, falls)),
         "alpha": cylinder.alpha,
         "peak": trace.peak_tilt,
+        "falls": falls,
+        "side_down": float(trace.time[-1]),
         "end": float(trace.time[-1]),
         "length": trace.case.length,
         "plane": trace.run.settings.get("plane", math.nan),
@@ -36,7 +41,10 @@ def page_of(found: SingleRun) -> Page:
         "closest": float(trace.passes["minimum_tilt"].min()) / cylinder.alpha,
         "held": held,
         "friction": held.largest_friction_needed if held else math.nan,
-        "moment": held.largest_restraining_moment if held else math.nan,
+        "lost": min((fact.time for fact in held.breaches if fact.code == "tension"), default=math.nan)
+        if held
+        else math.nan,
+        "moment": held.largest_restraining_moment / cylinder.base_radius if held else math.nan,
         "engine": engine,
         "moves": engine or not (support and support.guided),  # out of its place
         "displacement": trace.residual_displacement / cylinder.base_radius,
@@ -48,3 +56,9 @@ def page_of(found: SingleRun) -> Page:
         "about": found.manifest,
     }
     return Page(name="run", template="runs/run", values=values, pictures=pictures(trace))
+
+
+def _limits(trace: Trace, falls: float) -> list[Diagnostic]:
+    """Return the diagnostics of a run up to its fall, in which contact is lost and the rim slips."""
+    held = trace.assumptions_until(falls)
+    return [*trace.facts, *(held.breaches if held else ())]

@@ -326,7 +326,11 @@ def test_another_start_is_no_mistake_of_the_file(save, name, change):
 def test_a_motion_that_dies_away_has_no_other_time_scale(save, name, loss):
     table = samples(name)
     table["tilt [deg]"] *= np.exp(-loss * table["time"])
-    assert verdict(name, save(table)).mistakes == ()
+    # but that it loses energy
+    assert {each.code for each in verdict(name, save(table)).mistakes} <= {
+        "energy_loss",
+        "rolling_resistance",
+    }
 
 
 def test_what_is_not_told_is_said_and_not_compared(save):

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from rockwobble.models import GroundMotion, el_centro_1940
-from rockwobble.models.records.units import LARGEST_PEAK, doubts, doubts_of
+from rockwobble.models.records.plausibility import LARGEST_PEAK
+from rockwobble.models.records.units import doubts, doubts_of
 
 RECORD = el_centro_1940()
 G = 9.81  # [m/s^2]

@@ -116,7 +116,7 @@ def test_files_of_a_record_stand_beside_the_suite(write, tmp_path, monkeypatch):
 def test_times_uplift_needs_something_to_scale(write):
     motion = 'motion = { x = "x.txt", y = "x.txt", units = "g", times_uplift = 2 }'
     path = write(replaced(STILL, motion), "still.suite.toml")
-    write("0 0\n1 0\n", "x.txt")
+    write("0 0\n.1 0\n", "x.txt")
     with pytest.raises(ValueError, match=r"motion.times_uplift: needs a horizontal .*, got none"):
         read_suite(path)
 

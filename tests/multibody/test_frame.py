@@ -115,18 +115,28 @@ def test_a_joint_that_holds_the_slab_down_or_drags_it_says_so() -> None:
     assert [each.code for each in engine.diagnostics] == ["friction_needed"]
 
 
-@pytest.mark.parametrize(
-    ("engine", "columns", "support", "named"),
-    [
-        ("pybullet", 3, "recess", "columns"),
-        ("mujoco", 3, "recess", "columns"),
-        ("mujoco", 1, "ring", "support"),
-    ],
-)
-def test_what_has_no_scene_is_refused_in_a_line(engine: str, columns: int, support: str, named: str) -> None:
-    case = Case(WobblingFrame(SQUAT, 1.0, columns=columns), initial=InitialState(0.1), duration=1.0)
-    with pytest.raises(ValueError, match=named) as refused:
-        multibody.simulate(case, engine=engine, support=support)
+@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("columns", [3, 4])
+def test_one_column_stands_for_any_number_of_them_and_the_run_says_so(name: str, columns: int) -> None:
+    support, start = find_engine(name).supports[0], InitialState(0.1, rolling_rate=0.5)
+    one, many = (
+        multibody.simulate(
+            Case(WobblingFrame(SQUAT, 1.0, columns=number), initial=start, duration=0.2),
+            engine=name,
+            support=support,
+        )
+        for number in (1, columns)
+    )
+    assert np.array_equal(one.tilt, many.tilt)
+    (fact,) = (fact for fact in many.facts if fact not in one.facts)
+    assert (fact.code, fact.size) == ("one_column", columns)
+    assert "one_column" not in [fact.code for fact in one.facts]
+
+
+def test_walls_under_a_slab_are_refused_in_a_line() -> None:
+    case = Case(WobblingFrame(SQUAT, 1.0, columns=1), initial=InitialState(0.1), duration=1.0)
+    with pytest.raises(ValueError, match="support must have no walls under a slab") as refused:
+        multibody.simulate(case, engine="mujoco", support="ring")
     assert "\n" not in str(refused.value)
 
 

@@ -13,8 +13,11 @@ import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace, el_centro_1940, perturbed_copies
 from rockwobble.models.cylinder import cylinder_of
-from rockwobble.models.records.units import doubts_of
+from rockwobble.models.doubts import doubts_of_cases
+from rockwobble.models.number_checks import require_kind
+from rockwobble.models.records.units import sources_of
 from rockwobble.models.support import support_named
+from rockwobble.models.trace import NO_PEAK
 
 from ...metrics.pair import overturned, tolerance_of
 from ...metrics.statistics import Contrast, contrast
@@ -195,7 +198,7 @@ class Advice(Results, kind=KIND):
     def grades(self) -> dict[str, Grade]:
         """Grade of each topic that there is something to say about; the criteria are in `grades`."""
         response, facts, engine = self.response, self.facts, self.verification
-        if response["outcome"] == "failed":
+        if response["outcome"] in NO_PEAK:
             return {"trace": "not satisfied"}
         if not self.moves:
             return {}
@@ -274,6 +277,9 @@ def advise(
     >>> found.trust.kind, found.grades["engine"]
     ('trace', 'not tested')
     """
+    require_kind("case", case, Case)
+    if run is not None:
+        require_kind("run", run, Run)
     require_case(case)
     plan = AdvicePlan.of(**({} if run is None else {"support": run.support}) | options)
     if run is not None:
@@ -302,7 +308,7 @@ def advise(
             others = [simulate_run(each, other, sample_step=BAND_STEP) for each in cases]
         rows = [*member_rows(COPIES, copies), *member_rows(OTHER, others)]
     with stage("other records as strong, and planar analysis"):
-        records, source = ({}, "") if trace.outcome == "failed" else other_records(case)
+        records, source = ({}, "") if trace.outcome in NO_PEAK else other_records(case)
         for name, cases in records.items():
             rows += member_rows(name, (simulate_run(each, model) for each in cases))
         planar = planar_runs(records[VELOCITY], model.support) if records else pd.DataFrame()
@@ -348,7 +354,8 @@ def advise(
         "other_support": None if form is None else ratios_of(form),
         "vertical": vertical,
         "records": source,
-        "doubts": doubts_of([case.motion]),
+        "doubts": doubts_of_cases([case]),
+        "record_sources": sources_of([case.motion]),
         "perturbation": plan.perturbation,
         "seed": plan.seed,
         "inputs": inputs,
@@ -365,7 +372,7 @@ def advice_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, object]) -
 
 
 def _moves(outcome: str, uplift_time: float) -> bool:
-    return math.isfinite(uplift_time) and outcome != "failed"
+    return math.isfinite(uplift_time) and outcome not in NO_PEAK
 
 
 def _differ(groups: pd.DataFrame) -> bool:
@@ -464,6 +471,6 @@ def _to_the_fall(case: Case, end: float) -> Case:
     motion = case.motion
     if motion is not None and case.length < motion.duration:
         kept = math.floor(case.length / motion.time_step * (1.0 + 1e-12)) + 1
-        motion = GroundMotion(motion.acceleration[: max(kept, 2)], motion.time_step, motion.name)
+        motion = motion.changed(motion.acceleration[: max(kept, 2)], f"cut to {case.length:g} s")
     duration = math.ceil(end / SAMPLE_STEP) * SAMPLE_STEP
     return dataclasses.replace(case, motion=motion, duration=duration)

@@ -9,6 +9,8 @@ import math
 from collections.abc import Iterable
 from typing import Literal
 
+from rockwobble.models.trace import NO_PEAK
+
 from ...comparison.prediction import UNTESTED
 
 Grade = Literal["satisfied", "not tested", "caution", "not satisfied"]
@@ -91,7 +93,7 @@ def grade_engine(outcome: str, divergence: str, *, differs: bool) -> Grade:
     differs : bool
         Whether one of engine and model overturns, or moves, and the other does not.
     """
-    if outcome == "failed":
+    if outcome in NO_PEAK:
         return "not tested"
     if divergence == "earlier":
         return "not satisfied"

@@ -21,6 +21,7 @@ from rockwobble.models import (
 )
 from rockwobble.models.records import p695
 from rockwobble.models.support import support_named
+from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody.ring import rim_overhang
 
 from ...metrics.statistics import Contrast, Interval, quantile_interval, share_interval, stated
@@ -142,7 +143,7 @@ def member_rows(group: str, traces: Iterable[Trace]) -> list[dict[str, float | s
             "model": str(trace.run),
             "outcome": trace.outcome,
             "peak_tilt": trace.peak_tilt / trace.case.cylinder.alpha,
-            **(demands_of(trace) if trace.outcome != "failed" else {}),
+            **(demands_of(trace) if trace.outcome not in NO_PEAK else {}),
         }
         for trace in traces
     ]
@@ -182,7 +183,7 @@ def group_table(members: pd.DataFrame) -> pd.DataFrame:
     rows = []
     numbers = ["peak_tilt", *(name for name in DEMANDS if name in members.columns)]
     for group, runs in members[members["group"] != OTHER].groupby("group", sort=False):
-        known = runs[runs["outcome"] != "failed"]
+        known = runs[~runs["outcome"].isin(NO_PEAK)]
         fell = known["outcome"] == "overturned"
         # of records that differ none move alike, but many not at all
         single = len(known) > 1 and known["peak_tilt"].min() > 0.0 and known[numbers].nunique().max() == 1

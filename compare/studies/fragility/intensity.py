@@ -134,15 +134,34 @@ def _value(name: str, motion: GroundMotion, cylinder: Cylinder, gravity: float, 
     if name == "peak_acceleration":
         return motion.peak / uplift
     if name == "peak_velocity":
-        from rockwobble.reduced.body import body_of  # the folder loads a compiler
-
-        return body_of(cylinder, gravity).p * largest_resultant(velocity(motion)) / uplift
+        return largest_resultant(velocity(motion)) / velocity_unit(cylinder, gravity)
     if name == "pgv":
         return _mean_of_peaks(velocity(motion))
     if name == "pga":
         return _mean_of_peaks(motion.acceleration[:, :2]) / gravity
     response = pseudo_acceleration(motion, period)
     return (largest_resultant(response) if name == "sa" else _mean_of_peaks(response)) / gravity
+
+
+def velocity_unit(cylinder: Cylinder, gravity: float = 9.81) -> float:
+    """Return g tan(alpha)/p, the unit of peak velocities of a cylinder [m/s]."""
+    from rockwobble.reduced.body import body_of  # the folder loads a compiler
+
+    return gravity * cylinder.tan_alpha / body_of(cylinder, gravity).p
+
+
+def uplift_scale(motion: GroundMotion, cylinder: Cylinder, gravity: float = 9.81) -> float:
+    """Return the least factor on a motion with which it uplifts a cylinder; infinite where none does.
+
+    From (25), |a| = (g + az) tan(alpha): |a| - az tan(alpha) is convex between two samples, so that it is
+    largest at one. Rolling resistance, which raises the threshold, is left out.
+    """
+    a = motion.acceleration
+    needed = np.hypot(a[:, 0], a[:, 1])
+    if a.shape[1] > 2:
+        needed = needed - a[:, 2] * cylinder.tan_alpha
+    largest = float(needed.max())
+    return gravity * cylinder.tan_alpha / largest if largest > 0.0 else math.inf
 
 
 def measures_of(

@@ -14,6 +14,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run
 from rockwobble.models.number_checks import require_one_of
+from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody.scene import default_step
 
 from ...metrics.pair import outcome_of, outcome_of_peak
@@ -22,7 +23,7 @@ from ...runs.execution import all_makers, case_inputs, engine_time, makers_of, r
 from ...runs.progress import ProgressCallback
 from ...storage.provenance import fingerprint
 from ..plans import FragilityPlan
-from .intensity import intensity, measures_of
+from .intensity import intensity, measures_of, uplift_scale
 from .tables import CONTACT_LOST
 
 Row = dict[str, float | str]  # of a run
@@ -217,7 +218,13 @@ class Task:
             support=self.run.support,
             **{"rtol": _RTOL, **self.run.settings},
         )[0]
-        return [_row(peak / cylinder.alpha, outcome_of_peak(peak)) for peak in peaks.tolist()]
+        return [
+            # of one without a peak its run says why
+            self._simulated(case, scale)
+            if math.isnan(peak)
+            else _row(peak / cylinder.alpha, outcome_of_peak(peak))
+            for peak, scale in zip(peaks.tolist(), shaking.scales, strict=True)
+        ]
 
     def _simulated(self, case: Case, scale: float) -> Row:
         assert case.motion is not None
@@ -226,7 +233,7 @@ class Task:
             run = Run(None, run.support, **{"rtol": _RTOL, **run.settings})
         trace = simulate_run(replace(case, motion=case.motion.scaled(scale)), run)
         lost = math.nan
-        if trace.outcome != "failed" and (self.contact or run.engine):
+        if trace.outcome not in NO_PEAK and (self.contact or run.engine):
             lost = float(any(fact.code in _LOST for fact in trace.diagnostics))
         return _row(trace.peak_tilt / case.cylinder.alpha, outcome_of(trace), lost)
 
@@ -317,18 +324,18 @@ class RunPlan:
 
     @cached_property
     def points(self) -> pd.DataFrame:
-        """One row for each cylinder, motion and level: its place, the factor, and all intensities."""
+        """One row for each cylinder, motion and level: place, factor, factor of uplift, all intensities."""
         rows, asked = [], self.options
         for name, cylinder in self.cylinders.items():
             own = measures_of(self.motions, cylinder, gravity=asked.gravity, period=asked.period)
+            lifts = [uplift_scale(motion, cylinder, asked.gravity) for motion in self.motions]
             for index, motion in enumerate(self.motions):
                 for step, scale in enumerate(self.factors(cylinder, motion)):
                     found = {measure: scale * values[index] for measure, values in own.items()}
                     if asked.levels is not None:  # to the last bit one level for all
                         found[asked.measure] = float(asked.levels[step])
-                    rows.append(
-                        {"cylinder": name, "motion": motion.name, "step": step, "scale": scale, **found}
-                    )
+                    place = {"cylinder": name, "motion": motion.name, "step": step, "scale": scale}
+                    rows.append(place | {"uplift_scale": lifts[index]} | found)
         return pd.DataFrame(rows)
 
     def tasks(self) -> Iterator[Task]:
@@ -452,13 +459,13 @@ def worse_plane(runs: pd.DataFrame) -> pd.DataFrame:
     """Return the rows of the worse plane: the larger tilt of both, overturned where one is."""
     parts = [runs[runs["method"] == MODELS[name]].set_index(KEYS) for name in _PLANES]
     of = {name: pd.concat([part[name] for part in parts], axis=1) for name in parts[0]}
-    ends = [(of["outcome"] == name).any(axis=1) for name in ("failed", "overturned")]
+    ends = [(of["outcome"] == name).any(axis=1) for name in (*NO_PEAK, "overturned")]
     return (
         parts[0]
         .assign(
             method=MODELS[WORSE_PLANE],
             peak_tilt=of["peak_tilt"].max(axis=1, skipna=False),  # NaN where one failed
-            outcome=np.select(ends, ["failed", "overturned"], parts[0]["outcome"]),
+            outcome=np.select(ends, [*NO_PEAK, "overturned"], parts[0]["outcome"]),
             contact_lost=of["contact_lost"].max(axis=1, skipna=False),
         )
         .reset_index()

@@ -11,9 +11,12 @@ from typing import Any
 
 import pandas as pd
 
-from rockwobble.models import Cylinder, GroundMotion, Run
+from rockwobble.models import Cylinder, GroundMotion, HazardCurve, Run
+from rockwobble.models.doubts import doubts_about
+from rockwobble.models.number_checks import require_each, require_positive
 from rockwobble.models.plain_json import fields_of
-from rockwobble.models.records.units import doubts_of
+from rockwobble.models.records.units import sources_of
+from rockwobble.models.trace import NO_PEAK
 
 from ...metrics.statistics import FEWEST
 from ...runs.progress import ProgressCallback
@@ -22,6 +25,8 @@ from ...storage.provenance import fingerprint
 from ...storage.results import Results
 from ..plans import FragilityPlan
 from .fit import TOO_FEW, resamples
+from .intensity import velocity_unit
+from .risk import RARE, exposures_of, measure_factor, risk_tables
 from .runs import MODELS, Method, RunPlan, default_levels, methods_of, own_model, run_plan
 from .tables import (
     DEFAULT_LIMITS,
@@ -100,6 +105,72 @@ class Fragility(Results, kind=KIND):
             for row in fits
         } | {f"{row['cylinder']}, {row['method']} / {row['against']}": row["ratio"] for row in contrasts}
 
+    def risk(
+        self, hazard: HazardCurve, years: float = 50.0, *, total_dispersion: float | None = None
+    ) -> pd.DataFrame:
+        """Return the mean annual frequency of overturning at a site, with and without a fitted curve.
+
+        The first is the integral of the share of the motions that overturn over the hazard curve, exact for
+        a hazard that is a power law between its points and shares that are linear in the logarithm between
+        levels; so safe gaps count as they are.
+
+        Parameters
+        ----------
+        hazard : HazardCurve
+            Of a measure that the motions of this fragility have.
+        years : float, optional
+            For the probability [years].
+        total_dispersion : float, optional
+            Dispersion of the lognormal curves, as that of FEMA P-695 which holds uncertainty of design, tests
+            and modelling. Default: that of the motions.
+
+        Returns
+        -------
+        DataFrame
+            For each cylinder and method annual_frequency [1/year] and its 95 % interval by resampling the
+            motions (where fewer than three overturn: from 0 to the bound of Clopper and Pearson at each
+            level); annual_frequency_most, if all motions overturned beyond the last level or the last point
+            of the hazard; annual_frequency_fit by the lognormal curve; probability of one or more in so many
+            years; margin, the median over the intensity that is exceeded with 2 % in 50 years; tail_share,
+            the part that rests on intensities beyond the last level or point; far_share, on factors above 5
+            on the motions; ratio to the first method, its interval of the same resamples; motions,
+            overturning_motions, failed (runs).
+
+        Raises
+        ------
+        ValueError
+            If the hazard is of a measure or a period that this fragility does not have.
+        """
+        return self._risk_tables(hazard, years, total_dispersion)[0]
+
+    def with_risk(
+        self, hazard: HazardCurve, years: float = 50.0, *, total_dispersion: float | None = None
+    ) -> Fragility:
+        """Return the same with the tables risk and contributions, and the hazard among its facts."""
+        risk, contributions = self._risk_tables(hazard, years, total_dispersion)
+        site = {"name": hazard.name, "title": hazard.title, "years": years, "rare": hazard.intensity_at(RARE)}
+        return replace(
+            self,
+            tables={**self.tables, "risk": risk, "contributions": contributions},
+            facts={**self.facts, "hazard": site | {"total_dispersion": total_dispersion}},
+            manifest=None,
+        )
+
+    def _risk_tables(
+        self, hazard: HazardCurve, years: float, total_dispersion: float | None
+    ) -> tuple[pd.DataFrame, pd.DataFrame]:
+        require_positive("years", years, "years")
+        if total_dispersion is not None:
+            require_positive("total_dispersion", total_dispersion)
+        facts = self.facts
+        of_hazard = {
+            name: measure_factor(hazard, body, facts["period"]) for name, body in facts["cylinders"].items()
+        }
+        blocks = blocks_of(self.runs, self.points, facts["limits"], str(facts["measure"]))
+        exposures, curves = exposures_of(blocks, self.points, of_hazard, total_dispersion)
+        weights = resamples(len(blocks.motions), int(facts["resamples"]), int(facts["seed"]))
+        return risk_tables(blocks, exposures, curves, hazard, weights=weights, years=years)
+
     def sheets(self) -> dict[str, bytes]:
         """Return the counts as CSV and as JSON, for tools that fit curves of their own."""
         rows = self.counts.to_dict("records")
@@ -114,14 +185,14 @@ class Fragility(Results, kind=KIND):
             "cylinders": str(runs["cylinder"].nunique()),
             "motions": str(runs["motion"].nunique()),
             "runs": str(len(runs)),
-            "failed": str(int((runs["outcome"] == "failed").sum())),
+            "failed": str(int(runs["outcome"].isin(NO_PEAK).sum())),
             "methods": ", ".join(dict.fromkeys(runs["method"])),
         }
 
 
 def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Mapping[str, Any]) -> Fragility:
     """Return the fragility by the runs of the plan that `facts` state."""
-    if (runs["outcome"] == "failed").all():
+    if runs["outcome"].isin(NO_PEAK).all():
         raise ValueError(f"a fragility needs runs that do not fail, got {len(runs)} runs that all failed")
     blocks = blocks_of(runs, points, facts["limits"], str(facts["measure"]))
     weights = resamples(len(blocks.motions), int(facts["resamples"]), int(facts["seed"]))
@@ -264,12 +335,14 @@ def fragility(
     >>> list(zip(overturned["intensity"], overturned["k"], overturned["n"]))
     [(1.5, 0, 8), (3.0, 6, 8), (6.0, 8, 8)]
     """
+    require_each("motions", motions, GroundMotion)
     bodies, asked = _named(cylinders), FragilityPlan.of(**options)
     chosen = methods_of(methods, restitution=asked.restitution)
     if asked.levels is None and asked.scales is None and motions:  # without, the plan says what is missing
         asked = replace(asked, levels=default_levels(bodies, motions, asked))
     plan = RunPlan(cylinders=bodies, motions=motions, methods=chosen, options=asked)
-    facts = _facts(plan) | {"source": source, "doubts": doubts_of(motions)}
+    doubts = doubts_about(motions=motions, cylinders=bodies.values(), gravities=[asked.gravity])
+    facts = _facts(plan) | {"source": source, "doubts": doubts, "record_sources": sources_of(motions)}
     runs = run_plan(plan, KIND, folder=resume, workers=workers, scheduler=scheduler, progress=progress)
     return fragility_of(runs, plan.points, facts)
 
@@ -279,7 +352,11 @@ def _facts(plan: RunPlan) -> dict[str, object]:
     named = ("measure", "period", "margin", "resamples", "seed", "gravity", "friction", "step_factor")
     return {
         "cylinders": {
-            name: {"semidiagonal": body.semidiagonal, "tan_alpha": body.tan_alpha}
+            name: {
+                "semidiagonal": body.semidiagonal,
+                "tan_alpha": body.tan_alpha,
+                "velocity_unit": velocity_unit(body, asked.gravity),
+            }
             | ({"slab_mass_ratio": body.slab_mass_ratio} if body.slab_mass_ratio else {})
             for name, body in plan.cylinders.items()
         },
@@ -305,8 +382,10 @@ def _described(method: Method, methods: Sequence[Method]) -> dict[str, object]:
 
 def _named(cylinders: Cylinder | Mapping[str, Cylinder] | Sequence[Cylinder]) -> dict[str, Cylinder]:
     if isinstance(cylinders, Mapping):
+        require_each("cylinders", list(cylinders.values()), Cylinder)
         return dict(cylinders)
-    several = [cylinders] if isinstance(cylinders, Cylinder) else list(cylinders)
+    several = [cylinders] if isinstance(cylinders, Cylinder) else cylinders
+    require_each("cylinders", several, Cylinder)
     found = {f"R = {each.semidiagonal:g} m, tan α = {each.tan_alpha:g}": each for each in several}
     if len(found) < len(several):
         raise ValueError("cylinders of the same size and slenderness need names: give them as a mapping")

@@ -17,6 +17,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockwobble.models.trace import NO_PEAK
+
 from ...metrics.statistics import Interval
 from .fit import (
     ALWAYS,
@@ -61,7 +63,7 @@ def exceeded(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
     limit : str
         One of `LIMITS`.
     """
-    failed = (runs["outcome"] == "failed").to_numpy(bool)
+    failed = runs["outcome"].isin(NO_PEAK).to_numpy(bool)
     fell = (runs["outcome"] == "overturned").to_numpy(bool)
     if limit == CONTACT_LOST:
         lost = runs["contact_lost"].to_numpy(float)
@@ -118,6 +120,13 @@ class Blocks:
     def exceeded(self, cylinder: str, method: str, limit: str) -> Array:
         """Return 1, 0 or NaN for each motion and level (R, S)."""
         return exceeded(self.runs[cylinder, method], limit).reshape(len(self.motions), -1)
+
+    def of_points(self, points: pd.DataFrame, cylinder: str, column: str) -> Array:
+        """Return a column of the points of a cylinder for each motion and level (R, S)."""
+        own = points[points["cylinder"] == cylinder]
+        place = own["motion"].map({name: index for index, name in enumerate(self.motions)})
+        order = np.lexsort((own["step"].to_numpy(), place.to_numpy()))
+        return own[column].to_numpy(float)[order].reshape(len(self.motions), -1)
 
     def known(self, cylinder: str, measure: str) -> bool:
         """Whether every motion has an intensity of this measure."""

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
-from rockwobble.models.records.units import doubts_of
+from rockwobble.models.doubts import doubts_about
+from rockwobble.models.records.units import sources_of
 
 from ...metrics.pair import overturned
 from ...runs.progress import ProgressCallback
@@ -334,7 +335,9 @@ def spectrum(
 
 def spectrum_of(maps: TiltMaps) -> OverturningSpectrum:
     """Return the results of maps that were run: their tables, with cells and lowest intensities verified."""
-    facts = maps.facts() | {"doubts": doubts_of([maps.motion])}
+    sizes = [Cylinder(semidiagonal=size, tan_alpha=maps.tan_alpha) for size in maps.semidiagonals.tolist()]
+    doubts = doubts_about(motions=[maps.motion], cylinders=sizes, gravities=[maps.gravity])
+    facts = maps.facts() | {"doubts": doubts, "record_sources": sources_of([maps.motion])}
     grid = maps.semidiagonals, maps.intensities
     facts["inputs"] = fingerprint([maps.facts(), *grid, maps.motion.acceleration, reduced_makers()])
     return OverturningSpectrum(tables=tables_of(maps), facts=facts)

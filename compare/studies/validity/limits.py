@@ -10,6 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.models.support import SUPPORTS
+from rockwobble.models.trace import NO_PEAK
 
 from ...comparison.prediction import IN_TIME
 from ...metrics.statistics import MARGIN, log_ratios, quantile_interval
@@ -132,7 +133,7 @@ def records(tables: Tables) -> Numbers:
     return numbers | {
         "touched": float(len(touched)),
         "ring_loss_worst": largest(column(touched, "loss")),
-        "failed": float((runs["outcome"] == "failed").sum()),
+        "failed": float(runs["outcome"].isin(NO_PEAK).sum()),
         "runs": float(len(runs)),
     }
 
@@ -253,7 +254,7 @@ def friction(tables: Tables) -> Numbers:
     slip = tables["slip"]
     share = column(slip, "share")
     # slip is counted at the base; under a slab it shows as a tilt that errs, or as energy that ends the run
-    slipped = (slip[["slip", "tilt_rms"]] > SLIPPED).any(axis="columns") | (slip["outcome"] == "failed")
+    slipped = (slip[["slip", "tilt_rms"]] > SLIPPED).any(axis="columns") | slip["outcome"].isin(NO_PEAK)
     slips_at, sticks = largest(share[slipped]), share[~slipped]
     sticks = sticks[~(sticks <= slips_at)]  # what slips at one release does not hold at all
     nearest = slip[share == slips_at]
@@ -322,7 +323,7 @@ def _decided(table: pd.DataFrame) -> Numbers:
 
     One that failed decides nothing: it has said so itself.
     """
-    decides = table["resolved"].astype(bool) & (table["outcome"] != "failed")
+    decides = table["resolved"].astype(bool) & ~table["outcome"].isin(NO_PEAK)
     resolved = table.assign(apart=models_apart(table))[decides]
     error = np.abs(column(resolved, "engine_turn") - column(resolved, "turn"))
     turn_off = error / np.abs(column(resolved, "turn"))
@@ -374,7 +375,7 @@ def rings(tables: Tables) -> Numbers:
     numbers: Numbers = {
         "touched": float(len(touched)),
         "runs": float(len(ring)),
-        "failed": float((table["outcome"] == "failed").sum()),
+        "failed": float(table["outcome"].isin(NO_PEAK).sum()),
         "loss_worst": largest(column(touched, "loss")),
         "rolled": largest(column(shaken, "rolled_out")),
         "flat_rolled": largest(column(by_support["flat"], "rolled_out")),
@@ -397,7 +398,7 @@ def rings(tables: Tables) -> Numbers:
 def _soft_contacts(tables: Tables) -> pd.DataFrame:
     """The runs with a contact of their own: failed; ratio of the peaks and loss, NaN where one failed."""
     table = tables["contact"]
-    failed = (table[["free_outcome", "outcome"]] == "failed").any(axis="columns")
+    failed = table[["free_outcome", "outcome"]].isin(NO_PEAK).any(axis="columns")
     known = table.assign(ratio=quotient(table))[["ratio", "loss"]].mask(failed)
     return table.assign(failed=failed, **known)
 

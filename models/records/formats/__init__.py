@@ -35,7 +35,25 @@ from __future__ import annotations
 from typing import Protocol
 
 from ..component import Component, ReadingOptions, RecordFile
-from . import at2, columns
+from . import (
+    afad,
+    at2,
+    bbp,
+    columns,
+    cosmos,
+    csmip,
+    csmnc,
+    cwa,
+    esm,
+    geonet,
+    jma,
+    knet,
+    miniseed,
+    others,
+    sac,
+    smc,
+    values,
+)
 
 
 class Reader(Protocol):
@@ -58,7 +76,22 @@ class Reader(Protocol):
 
 # in the order in which they are asked
 READERS: tuple[Reader, ...] = (
+    knet,
+    jma,
+    esm,
+    afad,
+    cwa,
+    geonet,
+    cosmos,
+    others,
+    csmip,
+    csmnc,
+    smc,
+    bbp,
+    miniseed,
+    sac,
     at2,
+    values,
     columns,
 )
 
@@ -72,7 +105,10 @@ def read_components(file: RecordFile, options: ReadingOptions) -> list[Component
         If no reader does, or its reader refuses it.
     """
     for reader in READERS:
-        if reader.recognizes(file):
-            return reader.read(file, options)
+        if reader.recognizes(file) or (reader is values and options.columns == (values.ROW_BY_ROW,)):
+            components = reader.read(file, options)
+            for component in components:  # a step that the user gives must be that of the file
+                options.settled_step(component.path.name, component.time_step)
+            return components
     file.text  # noqa: B018 - says that the file is binary where it is
     raise ValueError(f"{file.name} is of no format that is read here")

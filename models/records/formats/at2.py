@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 
+from ..column_names import column_name
 from ..component import Component, ReadingOptions, RecordFile
-from ..numbers import NUMBER, block_of_numbers, parse_number
+from ..numbers import NUMBER, block_of_numbers, parse_number, without_fill
 from ..units import stated_unit
 
 NAME = "PEER AT2"
 # titles of the forms in circulation are three lines long; one comment more does no harm
 _HEADER_LINES = 6
+_WORDS_OF_TITLE = 3  # event, date, station and component
+_MOST_FILLED = 10  # numbers; no line of the forms in circulation has more
 _LONGEST_HEADER = 200  # the line has 80 characters; bounds what a pattern can cost on one that is damaged
 
 
@@ -25,24 +28,50 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
     Raises
     ------
     ValueError
-        If the header, a line of values or the number of samples is not as the format has it, or the file is
-        to hold all components.
+        If the header, a line of values or the number of samples is not as the format has it.
     """
-    if options.alone:
-        raise ValueError(
-            f"{file.name} is an AT2 file, which holds one component: give one for each horizontal direction, "
-            "or zero for the other (planar motion)"
-        )
     at = next(index for index, line in enumerate(file.head) if "NPTS" in line)
     count, time_step = _counts(file, at)
+    if time_step > 0.0:
+        options.settled_step(file.name, time_step)
     unit = stated_unit(file.path, list(file.text[:at]))
     values = block_of_numbers(file, at + 1)
-    # the last line may be filled up with zeros, and the ground is still after the record anyway
-    if len(values) < count or values[count:].any():
+    rest = values[count:]
+    # the last line may be filled up, with zeros or 9999, and the ground is still after the record anyway
+    filled = without_fill(rest)[0] if len(rest) < _MOST_FILLED else rest
+    if len(values) < count or filled.any():
         raise ValueError(
             f"{file.name}, line {at + 1}: announces {count} samples, the file holds {len(values)}"
         )
-    return [Component(path=file.path, values=values[:count], time_step=time_step, unit=unit, format=NAME)]
+    azimuth, sense = _orientation(file, at)
+    return [
+        Component(
+            path=file.path,
+            values=values[:count] if sense >= 0.0 else -values[:count],
+            time_step=time_step,
+            unit=unit,
+            format=NAME,
+            azimuth=azimuth,
+            direction="z" if sense else None,
+            notes=("down is turned up",) if sense < 0.0 else (),
+        )
+    ]
+
+
+def _orientation(file: RecordFile, at: int) -> tuple[float | None, float]:
+    """Return the azimuth [deg], and 1 up or -1 down, by the title "event, date, station, 180"."""
+    for line in file.head[:at]:
+        words = [word.strip() for word in line.split(",")]
+        if len(words) < _WORDS_OF_TITLE:
+            continue
+        if re.fullmatch(r"\d{1,3}", words[-1]) and int(words[-1]) <= 360:
+            return float(words[-1]) % 360.0, 0.0
+        name = column_name(words[-1])
+        if name.direction == "z":
+            return None, name.sign
+        east = {"x": 90.0, "y": 0.0}.get(name.direction or "")
+        return name.azimuth if east is None else (east if name.sign > 0.0 else east + 180.0), 0.0
+    return None, 0.0
 
 
 def _counts(file: RecordFile, at: int) -> tuple[int, float]:

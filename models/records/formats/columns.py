@@ -1,22 +1,17 @@
-"""Columns of text or CSV: time [s] and one, two or three accelerations."""
+"""Columns of text or CSV: accelerations beside times, by the names of the columns or as the user says."""
 
 from __future__ import annotations
 
-import re
-from pathlib import Path
+from collections.abc import Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ..component import Component, ReadingOptions, RecordFile
-from ..numbers import NUMBER, parse_number
-from ..units import require_seconds, stated_unit
+from ..column_names import ColumnName, names_of, refuse_other_quantity, refuse_scale, unit_of_time
+from ..column_roles import Columns, Roles
+from ..component import UNITS, Component, ReadingOptions, RecordFile
+from ..table import Table, table_of
+from ..times import even_step, is_counting, rises_evenly, since_epoch, stated_seconds, stated_step
+from ..units import stated_unit, unit_of
 
 NAME = "columns"
-_COMMENT_MARKS = "#%!"
-# printed times are rounded, as 0.0167 for 1/60: a sample may stand this much of a step off its place
-_UNEVENNESS = 0.05
-_COMMA_NUMBER = r"[-+]?\d+,\d+(?:[Ee][-+]?\d+)?"
 
 
 def recognizes(file: RecordFile) -> bool:
@@ -25,133 +20,84 @@ def recognizes(file: RecordFile) -> bool:
 
 
 def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
-    """Read lines of time [s] and accelerations, after any header and between comments.
-
-    Where a line of the header names the columns x, y, z, their order is that of the names.
+    """Read the components that the columns are named after, or those that the user names.
 
     Raises
     ------
     ValueError
-        If a line holds something else, the names are others, or the times do not rise in even steps.
+        If names leave a doubt, or there are none for several columns; if a line holds something else than
+        numbers, or the times do not rise in even steps.
     """
-    path, lines = file.path, list(file.text)
-    if not options.alone:
-        header, rows, numbers = _rows(path, lines, (2,), "two numbers, time [s] and acceleration")
-        return [_component(path, header, rows, numbers, 1)]
-    what = (
-        "three or four numbers, time [s] and the accelerations x, y and perhaps z (a file of one component "
-        "needs another beside it, or zero for planar motion)"
-    )
-    header, rows, numbers = _rows(path, lines, (3, 4), what)
-    return [_component(path, header, rows, numbers, place) for place in _places(path, header, len(rows[0]))]
-
-
-def _rows(
-    path: Path, lines: list[str], widths: tuple[int, ...], what: str
-) -> tuple[list[str], list[list[float]], list[int]]:
-    """Return the header, the rows of numbers, and the line of each row."""
-    header: list[str] = []
-    rows: list[list[float]] = []
-    numbers: list[int] = []
-    for number, line in enumerate(lines, start=1):
-        text = line.replace('"', "").strip()
-        cells = _cells(text)
-        is_data = text[:1] not in _COMMENT_MARKS and (rows or _begins_data(cells))
-        if _has_decimal_comma(text) and (is_data or not rows):
-            raise ValueError(
-                f"{path.name}, line {number}: numbers must have a decimal point, got a comma in {text[:60]!r}"
-            )
-        if not is_data:
-            if not rows:
-                header.append(text)
-            continue
-        wide = len(cells) in widths and len(cells) == len(rows[0] if rows else cells)
-        if not (wide and all(map(_is_number, cells))):
-            raise ValueError(f"{path.name}, line {number}: expected {what}, got {text[:60]!r}")
-        rows.append([parse_number(path, number, cell) for cell in cells])
-        numbers.append(number)
-    if len(rows) < 2:
-        raise ValueError(f"{path.name} must hold at least two samples, got {len(rows)}")
-    return header, rows, numbers
-
-
-def _component(
-    path: Path, header: list[str], rows: list[list[float]], numbers: list[int], place: int
-) -> Component:
-    require_seconds(path, header)
-    time, values = np.array([row[0] for row in rows]), np.array([row[place] for row in rows])
-    return Component(
-        path=path,
-        values=values,
-        time_step=_even_step(path, time, numbers),
-        unit=stated_unit(path, header),
-        start=float(time[0]),
-        format=NAME,
-    )
-
-
-def _places(path: Path, header: list[str], width: int) -> list[int]:
-    """Return the columns of x, y and z: by their names where the header has them, else by their order."""
-    for line in reversed(header):
-        names = _names(line, width)
-        axes = set(names[1:]) & set("xyz")
-        # a sentence further up may hold an x, too
-        if len(names) == width and axes and (axes == set(names[1:]) or line is header[-1]):
-            break
-    else:
-        return list(range(1, width))
-    wanted = "xyz"[: width - 1]
-    if sorted(names[1:]) != list(wanted):
-        raise ValueError(
-            f"{path.name}: its columns must be time, {', '.join(wanted)}, got {', '.join(names)}"
+    table = table_of(file)
+    names, others = names_of(table.header, table.values.shape[1])
+    if names and not any(name.kind == "time" for name in names) and names[0].kind not in ("unknown", "index"):
+        time = table.values[:, 0]
+        if rises_evenly(time) and not is_counting(time):
+            names, others = None, list(table.header)  # a sentence that looks like names
+    columns = Columns(file, table, names)
+    roles = columns.by_option(options) if options.columns else columns.by_names(options)
+    step, start, notes = _clock(file, table, names, others, roles.time, options)
+    refuse_scale(file, others)
+    units = _units(file, names, others, roles)
+    return [
+        Component(
+            path=file.path,
+            values=each.sign * table.values[:, each.place],
+            time_step=step,
+            unit=unit,
+            start=start,
+            format=NAME,
+            label=(names[each.place].label if names else "") or f"column {each.place + 1}",
+            direction=each.direction,
+            azimuth=each.azimuth,
+            notes=notes if each.sign > 0.0 else (*notes, "its sense is turned"),
         )
-    return [names.index(axis) for axis in wanted]
+        for each, unit in zip(roles.values, units, strict=True)
+    ]
 
 
-def _names(line: str, width: int) -> list[str]:
-    """Return the first words of the cells of a header line, without units in brackets."""
-    cells = _cells(re.sub(r"\[[^\]]*\]|\([^)]*\)", " ", line.lower()))
-    names = [re.split(r"[\s\[(]", cell)[0] for cell in cells]
-    return names[1:] if len(names) > width and not names[0].strip(_COMMENT_MARKS) else names
+def _clock(
+    file: RecordFile,
+    table: Table,
+    names: Sequence[ColumnName] | None,
+    others: Sequence[str],
+    place: int | None,
+    options: ReadingOptions,
+) -> tuple[float, float | None, tuple[str, ...]]:
+    """Return the time step [s], the time of the first sample [s], and where the step comes from."""
+    stated = stated_step(file, others, len(table.values))
+    given = options.time_step
+    if place is None:
+        step = options.settled_step(file.name, stated)
+        return step, None, ("time step as given" if stated is None else "time step as its header states it",)
+    time, name = table.values[:, place], names[place] if names else None
+    if name is not None and name.seconds is None and unit_of_time(name.unit):
+        raise ValueError(f"{file.name} gives times in {name.unit[:20]}, allowed are s, ms, us and ns")
+    seconds = (name.seconds if name else None) or stated_seconds(file, others) or 1.0
+    counts = is_counting(time) and (name is None or name.seconds is None)
+    if given is not None and (since_epoch(time, seconds) or (counts and given != 1.0)):
+        return given, None, ("time step as given",)
+    step = even_step(file, time, table.lines, seconds)
+    if given is not None:
+        options.settled_step(file.name, step)
+    return step, float(time[0]) * seconds, ()
 
 
-def _begins_data(cells: list[str]) -> bool:
-    """Return whether a line is the first of the data, even if damaged, and no heading with a year in it."""
-    numbers = [_is_number(cell) for cell in cells]
-    return any(numbers) and (numbers[0] or 2 * sum(numbers) >= len(numbers))
-
-
-def _cells(text: str) -> list[str]:
-    text = text.rstrip(",;\t ")
-    return re.split(r"\s*[,;]\s*", text) if re.search("[,;]", text) else text.split()
-
-
-def _has_decimal_comma(text: str) -> bool:
-    """Return whether semicolons or blanks separate the numbers of a line, with commas inside the numbers."""
-    parts = [part.strip() for part in (text.split(";") if ";" in text else text.split())]
-    commas = [re.fullmatch(_COMMA_NUMBER, part) is not None for part in parts]
-    return (
-        len(parts) > 1 and any(commas) and all(c or _is_number(p) for c, p in zip(commas, parts, strict=True))
-    )
-
-
-def _is_number(cell: str) -> bool:
-    return re.fullmatch(NUMBER, cell) is not None or cell.lower().lstrip("+-") in ("nan", "inf", "infinity")
-
-
-def _even_step(path: Path, time: NDArray[np.float64], numbers: list[int]) -> float:
-    # halves, because the difference of two large floats overflows
-    step = 2.0 * float(0.5 * time[-1] - 0.5 * time[0]) / (len(time) - 1)
-    if not 0.0 < step < np.inf:
-        raise ValueError(f"{path.name}: times must rise [s], got {time[0]:g} s first and {time[-1]:g} s last")
-    with np.errstate(over="ignore"):  # an infinite distance is refused like any other
-        off = np.abs((time - time[0]) / step - np.arange(len(time)))
-        # the place where the step changes, not the one where the error has grown largest
-        jump = np.abs(np.diff(time) / step - 1.0)
-    if off.max() > _UNEVENNESS or jump.max() > 2.0 * _UNEVENNESS:
-        at = int(jump.argmax())
-        raise ValueError(
-            f"{path.name}, line {numbers[at + 1]}: times must rise in even steps, got {time[at + 1]:g} s "
-            f"after {time[at]:g} s where the mean step is {step:.6g} s"
-        )
-    return float(f"{step:.12g}")  # 0.01 and not 0.010000000000000002
+def _units(
+    file: RecordFile, names: Sequence[ColumnName] | None, others: Sequence[str], roles: Roles
+) -> list[str | None]:
+    """Return the unit of each column of accelerations: its own, else that of the header or of the others."""
+    words = [names[each.place].unit if names else "" for each in roles.values]
+    own = [unit_of(word) if word else None for word in words]
+    for word, unit in zip(words, own, strict=True):
+        if word and unit is None:
+            raise ValueError(f"{file.name} is in {word[:20]}, allowed are {', '.join(UNITS)}")
+    accelerates = any(own) or any(names[each.place].kind == "acceleration" for each in roles.values if names)
+    if not accelerates:
+        refuse_other_quantity(file, others)
+    # a column in a unit of acceleration settles what the words of the header are about
+    stated = stated_unit(file.path, [*others, "acceleration"] if accelerates else list(others))
+    if stated is not None and any(unit not in (None, stated) for unit in own):
+        raise ValueError(f"{file.name} states two units: {next(word for word in words if word)} and {stated}")
+    alike = next(iter(known)) if len(known := {unit for unit in own if unit}) == 1 else None
+    return [unit or stated or alike for unit in own]

@@ -1,0 +1,98 @@
+"""Doubts about what a user states: records, lengths and gravity that are probably in another unit.
+
+Each doubt is a `Diagnostic`, and no error: structures of other sizes, and other planets, can be computed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+
+from .case import Case
+from .cylinder import Cylinder
+from .diagnostic import Diagnostic
+from .ground_motion import GroundMotion
+from .records.units import doubts_of
+
+LONGEST, SHORTEST = 300.0, 1e-3  # [m], height or diameter beyond those of structures and of their models
+LARGEST_GRAVITY = 25.0  # [m/s^2], about that of Jupiter
+# units in which somebody may have stated it, in m and in m/s^2
+LENGTHS: Mapping[str, float] = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254, "ft": 0.3048, "km": 1e3}
+GRAVITIES: Mapping[str, float] = {"ft/s2": 0.3048, "in/s2": 0.0254, "cm/s2": 1e-2, "mm/s2": 1e-3}
+_USUAL_LENGTH, _USUAL_GRAVITY = 8.0, 9.81  # [m], of a pier, and [m/s^2]
+
+
+def doubts_of_cases(cases: Iterable[Case]) -> list[dict[str, object]]:
+    """Return the doubts about what some cases state as plain values, for a file: record and fields of each.
+
+    Each is there once; those about lengths and gravity have "cylinder" and "gravity" for a record.
+
+    Examples
+    --------
+    >>> pier = Cylinder.from_dimensions(base_radius=800.0, height=9000.0)
+    >>> [(each["record"], each["detail"]) for each in doubts_of_cases([Case(pier, duration=1.0)])]
+    [('cylinder', 'mm')]
+    """
+    cases = list(cases)
+    return doubts_about(
+        motions=(case.motion for case in cases),
+        cylinders=(case.cylinder for case in cases),
+        gravities=(case.gravity for case in cases),
+    )
+
+
+def doubts_about(
+    *,
+    motions: Iterable[GroundMotion | None] = (),
+    cylinders: Iterable[Cylinder] = (),
+    gravities: Iterable[float] = (),
+) -> list[dict[str, object]]:
+    """Return the doubts about motions, cylinders and gravities [m/s^2], as `doubts_of_cases` does."""
+    records = [motion for motion in motions if motion is not None]
+    plain = doubts_of(records)
+    others: list[tuple[str, Diagnostic]] = []
+    for motion in records:
+        others += ((motion.name or "record", fact) for fact in _same_components(motion))
+    for cylinder in cylinders:
+        others += (("cylinder", fact) for fact in length_doubts(cylinder))
+    for gravity in gravities:
+        others += (("gravity", fact) for fact in gravity_doubts(gravity))
+    known: dict[tuple[str, str, str], dict[str, object]] = {}
+    for subject, fact in others:
+        fields = {name: getattr(fact, name) for name in ("code", "size", "bound", "detail")}
+        known.setdefault((subject, fact.code, fact.detail), {"record": subject} | fields)
+    return [*plain, *known.values()]
+
+
+def length_doubts(cylinder: Cylinder) -> Iterator[Diagnostic]:
+    """Yield the doubt about a height or a base diameter beyond those of structures: "unlikely_length".
+
+    Its size is the length [m], its bound the limit that it exceeds or falls below, its detail the unit that
+    would make sense.
+    """
+    for length in (2.0 * cylinder.half_height, 2.0 * cylinder.base_radius):
+        if not SHORTEST <= length <= LONGEST:
+            bound = LONGEST if length > LONGEST else SHORTEST
+            unit = likely_unit(length, LENGTHS, _USUAL_LENGTH)
+            yield Diagnostic(code="unlikely_length", size=length, bound=bound, detail=unit)
+            return
+
+
+def gravity_doubts(gravity: float) -> Iterator[Diagnostic]:
+    """Yield the doubt about a gravity beyond that of planets: "unlikely_gravity", as `length_doubts` does."""
+    if gravity > LARGEST_GRAVITY:
+        unit = likely_unit(gravity, GRAVITIES, _USUAL_GRAVITY)
+        yield Diagnostic(code="unlikely_gravity", size=gravity, bound=LARGEST_GRAVITY, detail=unit)
+
+
+def likely_unit(number: float, units: Mapping[str, float], usual: float) -> str:
+    """Return the unit in which a number comes next to what is usual."""
+    return min(units, key=lambda unit: abs(math.log(number * units[unit] / usual)))
+
+
+def _same_components(motion: GroundMotion) -> Iterator[Diagnostic]:
+    columns = dict(zip("xyz", motion.acceleration.T, strict=False))
+    for one, other in (("x", "y"), ("x", "z"), ("y", "z")):
+        if other in columns and columns[one].any() and (columns[one] == columns[other]).all():
+            yield Diagnostic(code="same_components", detail=f"{one} and {other}")
+            return

@@ -1,0 +1,125 @@
+"""Source of a ground motion: what was read from which file, and what was done to it since."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from .diagnostic import Diagnostic
+
+# a mean above this part of the peak is said beside it, and doubted: an offset that was not removed
+LARGEST_MEAN = 0.05
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ComponentSource:
+    """Source of one component.
+
+    Attributes
+    ----------
+    axis : str
+        "x", "y" or "z".
+    file : str
+        Name of the file; empty where the record has none, "zero" of a component of zeros.
+    label : str
+        Column or channel, as the file names it.
+    unit : str
+        Of the numbers in the file.
+    peak, mean : float
+        As read [g].
+    azimuth : float or None
+        Of the positive sense, where the file gives it [deg, clockwise from north].
+    """
+
+    axis: str
+    file: str = ""
+    label: str = ""
+    unit: str = ""
+    peak: float = 0.0
+    mean: float = 0.0
+    azimuth: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class RecordSource:
+    """Source of a ground motion; its repr is the line that commands print.
+
+    Attributes
+    ----------
+    format : str
+        Of the file, or of the files, as "PEER AT2".
+    time_step : float
+        As read [s].
+    samples : int
+        Number of samples as read.
+    components : tuple of ComponentSource
+    notes : tuple of str
+        How it was read, where that is not plain.
+    doubts : tuple of Diagnostic
+        What makes it improbable as it was read.
+    changes : tuple of str
+        What was done to it since, as "scaled by 2".
+
+    Examples
+    --------
+    >>> x = ComponentSource(axis="x", file="a.csv", label="E", unit="cm/s2", peak=0.25)
+    >>> y = ComponentSource(axis="y", file="zero")
+    >>> RecordSource(format="columns", time_step=0.01, samples=301, components=(x, y)).changed("scaled by 2")
+    a.csv: columns, 301 samples of 0.01 s, 3 s; x: E [cm/s2] 0.25 g; y: zero; scaled by 2
+    """
+
+    format: str
+    time_step: float
+    samples: int
+    components: tuple[ComponentSource, ...]
+    notes: tuple[str, ...] = ()
+    doubts: tuple[Diagnostic, ...] = ()
+    changes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return self.line
+
+    @property
+    def duration(self) -> float:
+        """Time from the first to the last sample as read [s]."""
+        return (self.samples - 1) * self.time_step
+
+    @property
+    def line(self) -> str:
+        """All of it in one line."""
+        files = {each.file for each in self.components if each.file not in ("", "zero")}
+        one = f"{next(iter(files))}: " if len(files) == 1 else ""
+        facts = f"{one}{self.format}, {self.samples} samples of {self.time_step:.6g} s, {self.duration:.5g} s"
+        parts = [_component(each, named=len(files) > 1) for each in self.components]
+        return "; ".join((facts, *parts, *self.notes, *self.changes))
+
+    def changed(self, change: str) -> RecordSource:
+        """Return the source of a motion that was made of this one by `change`."""
+        return replace(self, changes=(*self.changes, change))
+
+
+def _component(part: ComponentSource, *, named: bool) -> str:
+    if part.file == "zero":
+        return f"{part.axis}: zero"
+    words = [f"{part.axis}:"]
+    words += [part.file] if named and part.file else []
+    words += [part.label] if part.label else []
+    words += [f"[{part.unit}]"] if part.unit else []
+    words += [f"{part.peak:.4g} g"]
+    words += [f"(mean {part.mean:.3g} g)"] if abs(part.mean) > LARGEST_MEAN * part.peak else []
+    words += [f"at {part.azimuth:g} deg"] if part.azimuth is not None else []
+    return " ".join(words)
+
+
+def source_from_plain(given: Mapping[str, Any] | None) -> RecordSource | None:
+    """Return a source of its fields, as JSON gives them back."""
+    if given is None:
+        return None
+    fields = {
+        **given,
+        "components": tuple(ComponentSource(**each) for each in given["components"]),
+        "doubts": tuple(Diagnostic(**each) for each in given["doubts"]),
+        **{name: tuple(given[name]) for name in ("notes", "changes")},
+    }
+    return RecordSource(**fields)

@@ -1,0 +1,127 @@
+"""Values without times, one or several a line, as OpenSees and many folders of test motions have them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..column_names import names_of, refuse_other_quantity, refuse_scale, unit_of_time
+from ..component import UNITS, Component, ReadingOptions, RecordFile
+from ..numbers import is_number, numbers_of_lines, parted, without_fill
+from ..table import cells_of, first_row, is_comment, uncommented
+from ..times import rises_evenly, stated_step
+from ..units import stated_unit, unit_of
+
+NAME = "values without times"
+ROW_BY_ROW = "values"
+_MOST_COMPONENTS = 4  # columns of a table of components with times; more numbers in a line are samples
+_QUANTITIES = ("acceleration", "velocity", "displacement")
+_SEEN = 50  # rows that are looked at to tell values from columns
+
+
+def recognizes(file: RecordFile) -> bool:
+    """Return whether rows hold one number, more than a table of components would, or differ in length."""
+    if file.lines is None:
+        return False
+    first = first_row(file.lines)
+    rows = [
+        line for line in file.lines[first : first + _SEEN] if line.strip() and not is_comment(line.strip())
+    ]
+    if not rows:
+        return False
+    cells = _cells(rows)
+    if cells is None:
+        return False
+    widths = [len(row) for row in cells]
+    width = widths[0]
+    header = [uncommented(line) for line in file.lines[:first]]
+    if max(widths) == 1:
+        return True
+    if width == 2 and len(widths) > 1 and set(widths[1:]) == {1}:  # "4096 0.025" above one number a line
+        return True
+    names, _ = names_of(header, width)
+    if names is not None and any(name.kind in ("time", "index") or name.direction for name in names):
+        return False
+    last = next(line for line in reversed(file.lines) if line.strip() and not is_comment(line.strip()))
+    shorter = len((_cells([last]) or [[]])[0]) < width
+    if not (width > _MOST_COMPONENTS or (shorter and width > 1)):
+        return False
+    if len(set(widths[:-1])) > 1:
+        return width > _MOST_COMPONENTS
+    column = np.array([float(row[0]) for row in cells[: max(len(cells) - 1, 1)]])
+    return not (len(column) > 2 and rises_evenly(column))
+
+
+def _cells(rows: Sequence[str]) -> list[list[str]] | None:
+    """Return the numbers of rows as texts, parted where they touch; None where a row holds something else."""
+    cells = [cells_of(row) for row in rows]
+    if not all(is_number(cell) for row in cells for cell in row):
+        answer = parted("\n".join(rows))
+        cells = [line.split() for line in (answer or "").split("\n")]
+        if not answer or not all(is_number(cell) for row in cells for cell in row):
+            # numbers that touch in a way that cannot be settled are refused by the reader of values
+            return [["0"] * (_MOST_COMPONENTS + 1)] if len(rows) == 1 and "." in rows[0] else None
+    return [[cell.upper().replace("D", "E") for cell in row] for row in cells]
+
+
+def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+    """Read the samples of one component in the order of reading.
+
+    Raises
+    ------
+    ValueError
+        If a line holds something else than numbers, they touch and cannot be parted, or no time step is
+        stated or given.
+    """
+    first = first_row(file.text)
+    header = [text for line in file.text[:first] if (text := uncommented(line))]
+    values, step = _without_counts(_samples(file, first))
+    values, notes = without_fill(values)
+    stated = stated_step(file, header, len(values)) or step
+    names, _ = names_of(header, 1)
+    word = names[0].unit if names else ""
+    if names and names[0].kind in _QUANTITIES and word and unit_of(word) is None and not unit_of_time(word):
+        raise ValueError(f"{file.name} is in {word[:20]}, allowed are {', '.join(UNITS)}")
+    refuse_other_quantity(file, header)
+    refuse_scale(file, header)
+    unit = stated_unit(file.path, header)
+    return [
+        Component(
+            path=file.path,
+            values=values,
+            time_step=options.settled_step(file.name, stated),
+            unit=unit,
+            format=NAME,
+            notes=(*notes, "time step as given" if stated is None else "time step as its header states it"),
+        )
+    ]
+
+
+def _samples(file: RecordFile, first: int) -> NDArray[np.float64]:
+    """Return all numbers from a line on; comments, braces and separators between them are passed over."""
+    lines = []
+    for line in file.text[first:]:
+        text = line.strip()
+        if is_comment(text):
+            lines.append("")
+        elif any(mark in text for mark in ',;"{}'):
+            lines.append(" ".join(cells_of(text.replace("{", " ").replace("}", " "))))
+        else:
+            lines.append(line)
+    return numbers_of_lines(file, lines, first + 1)
+
+
+def _without_counts(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], float | None]:
+    """Return values without their number and step in front, and that step [s]."""
+    count = len(values)
+    if count > _LEAST_COUNT and values[0] == count - 1:
+        return values[1:], None
+    if count > _LEAST_COUNT and values[0] == count - 2 and 0.0 < values[1] <= _LARGEST_STEP:
+        return values[2:], float(values[1])
+    return values, None
+
+
+_LEAST_COUNT = 10  # samples; fewer may equal a value by chance
+_LARGEST_STEP = 0.1  # [s]

@@ -1,0 +1,219 @@
+"""Text of columns as a table: header lines, and rows of equally many numbers."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .component import RecordFile
+from .numbers import is_number, only_numbers, parse_number, parted, plain_numbers, touching
+
+_COMMENTS = ("#", "%", "!", "//")
+_COMMA_NUMBER = re.compile(r"[-+]?\d*,\d+(?:[EeDd][-+]?\d+)?")
+_BEGIN_OF_NUMBER = frozenset("0123456789+-.,nNiI")
+_EMPTY_CELL = re.compile(r"[,;][ \t]*[,;]|(?:^|\n)[ \t]*[,;]")
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows of numbers under a header.
+
+    Attributes
+    ----------
+    header : tuple of str
+        Lines above the first row, without marks of comments.
+    values : ndarray, shape (n, columns)
+    lines : sequence of int
+        Number of the line of each row, from 1.
+    """
+
+    header: tuple[str, ...]
+    values: NDArray[np.float64]
+    lines: Sequence[int]
+
+
+def uncommented(line: str) -> str:
+    """Return a line of a header without quotation marks, blanks and the mark of a comment."""
+    return re.sub(r"^(?:[#%!]+|//+)", "", line.replace('"', "").strip()).strip()
+
+
+def is_comment(text: str) -> bool:
+    """Return whether a line, without blanks at its begin, is a comment."""
+    return text.startswith(_COMMENTS)
+
+
+def cells_of(line: str) -> list[str]:
+    """Return the cells of a row of numbers, with points for decimal commas.
+
+    Examples
+    --------
+    >>> cells_of("0,01; 1,5"), cells_of("0.01, 1.5,"), cells_of("0.01 1.5"), cells_of("0,01 1,5")
+    (['0.01', '1.5'], ['0.01', '1.5'], ['0.01', '1.5'], ['0.01', '1.5'])
+    """
+    text = line.replace('"', "").strip().rstrip(",;\t ")
+    separator, comma = _form(text)
+    if comma:
+        text = text.replace(",", ".")
+    return [cell.strip() for cell in text.split(separator)] if text else []
+
+
+def _form(text: str) -> tuple[str | None, bool]:
+    """Return what separates the cells of a row (None: blanks), and whether a comma is its decimal point."""
+    if ";" in text:
+        return ";", "," in text and "." not in text
+    cells = text.split()
+    if "," not in text:
+        return None, False
+    comma = len(cells) > 1 and all(_COMMA_NUMBER.fullmatch(cell) or is_number(cell) for cell in cells)
+    return (None, True) if comma else (",", False)
+
+
+def _is_row(text: str) -> bool:
+    """Return whether a line holds nothing but numbers, which may touch."""
+    if text[:1] not in _BEGIN_OF_NUMBER:
+        return False
+    cells = cells_of(text)
+    return all(map(is_number, cells)) or (not re.search("[,;]", text) and only_numbers(text))
+
+
+def first_row(lines: Sequence[str]) -> int:
+    """Return the place of the first row; the number of lines where there is none.
+
+    A line of numbers alone among words, or above rows of another width, such as "4096 0.025", belongs to the
+    header.
+    """
+    candidate, width = None, 0
+    for place, line in enumerate(lines):
+        text = line.replace('"', "").strip()
+        if not text or is_comment(text):
+            continue
+        if not _is_row(text):
+            candidate = None
+            continue
+        count = len(cells_of(text))
+        # rows of touching numbers differ in what blanks part, and the last may be shorter
+        if candidate is not None and not (count > width and _may_be_count(lines[candidate])):
+            return candidate
+        candidate, width = place, count
+    return len(lines) if candidate is None else candidate
+
+
+def _may_be_count(line: str) -> bool:
+    """Return whether a line may hold the number of samples, and their time step: "240", "4096 0.025"."""
+    cells = cells_of(line)
+    return len(cells) <= 2 and cells[0].isdecimal() and int(cells[0]) > 1
+
+
+def rows_of(file: RecordFile, first: int) -> tuple[list[int], list[str]]:
+    """Return number (from 1) and text of the lines from `first` on that are neither comments nor blank."""
+    numbers, rows = [], []
+    for number, line in enumerate(file.text[first:], start=first + 1):
+        text = line.replace('"', "").strip() if '"' in line else line.strip()
+        if text and not text.startswith(_COMMENTS):
+            numbers.append(number)
+            rows.append(text)
+    return numbers, rows
+
+
+def table_of(file: RecordFile) -> Table:
+    """Return the header and the rows of a file.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two rows, one has another width than the first, a cell is empty or no finite
+        number, or numbers touch and cannot be parted.
+    """
+    lines = file.text
+    first = first_row(lines)
+    header = tuple(text for line in lines[:first] if (text := uncommented(line)))
+    numbers, rows = rows_of(file, first)
+    _refuse_damaged_row(file, first)
+    if len(rows) < 2:
+        raise ValueError(f"{file.name} must hold at least two samples, got {len(rows)}")
+    text, width = _blank_separated(file, numbers, rows)
+    values = plain_numbers(text)
+    if values is None and ("." in text):
+        text = _parted_rows(file, numbers, rows, text)
+        values = plain_numbers(text)
+        width = len(text[: text.find("\n")].split())
+    counts = [len(row.split()) for row in text.split("\n")]
+    wrong = next((at for at, count in enumerate(counts) if count != width), None)
+    if values is None or wrong is not None:
+        raise ValueError(_damage(file, numbers, rows, text.split("\n"), width))
+    return Table(header, values.reshape(len(rows), width), numbers)
+
+
+def _blank_separated(file: RecordFile, numbers: Sequence[int], rows: list[str]) -> tuple[str, int]:
+    """Return the rows with blanks between the cells, and how many cells the first has."""
+    first = rows[0].replace('"', "").strip().rstrip(",;\t ")
+    separator, comma = _form(first)
+    if not comma and len(rows) > 1:  # the first may hold whole numbers only
+        separator, comma = _form(rows[1].replace('"', "").strip().rstrip(",;\t "))
+    text = "\n".join(rows)
+    if '"' in text:
+        text = text.replace('"', "")
+    if separator is not None:
+        if re.search(r"[,;][ \t]*(?:\n|\Z)", text):
+            text = "\n".join(row.rstrip(",;\t ") for row in text.split("\n"))
+        empty = _EMPTY_CELL.search(text)
+        if empty:
+            at = text.count("\n", 0, empty.end() - 1)
+            raise ValueError(f"{file.name}, line {numbers[at]}: a cell is empty, got {rows[at][:60]!r}")
+    if comma:
+        text = text.replace(",", ".")
+    if separator is not None:
+        text = text.replace(separator, " ")
+    return text, len(text.split("\n", 1)[0].split())
+
+
+def _parted_rows(file: RecordFile, numbers: Sequence[int], rows: list[str], text: str) -> str:
+    """Return rows of which some hold numbers that touch with blanks between them."""
+    lines = text.split("\n")
+    damaged = next((at for at, line in enumerate(lines) if not only_numbers(line)), None)
+    if damaged is not None:
+        return text
+    answer = parted(text)
+    if answer is None or plain_numbers(answer) is None:
+        at = next((at for at, line in enumerate(lines) if plain_numbers(line) is None), 0)
+        raise ValueError(touching(file, numbers[at], rows[at]))
+    return answer
+
+
+def _damage(
+    file: RecordFile, numbers: Sequence[int], rows: Sequence[str], texts: Sequence[str], width: int
+) -> str:
+    """Return what is wrong with the first damaged row."""
+    for number, row, text in zip(numbers, rows, texts, strict=True):
+        cells = text.split()
+        if len(cells) != width or not all(map(is_number, cells)):
+            return (
+                f"{file.name}, line {number}: expected {width} number{'s' * (width > 1)} as in line "
+                f"{numbers[0]}, got {row[:60]!r}"
+            )
+        try:
+            for cell in cells:
+                parse_number(file.path, number, cell)
+        except ValueError as error:
+            return str(error)
+    return f"{file.name} holds something else than numbers"
+
+
+def _refuse_damaged_row(file: RecordFile, first: int) -> None:
+    """Refuse a header whose last line is a damaged first row: without it the record would be another."""
+    for number in range(first, 0, -1):
+        text = file.text[number - 1].replace('"', "").strip()
+        if not text:
+            continue
+        cells = re.split(r"\s*[,;]\s*", text) if re.search("[,;]", text) else text.split()
+        known = sum(map(is_number, cells))
+        damaged = 2 * known >= len(cells) and is_number(cells[0]) and not all(map(str.isdecimal, cells))
+        if damaged and not is_comment(text) and not _may_be_count(text):
+            if "" in cells:
+                raise ValueError(f"{file.name}, line {number}: a cell is empty, got {text[:60]!r}")
+            raise ValueError(f"{file.name}, line {number}: expected numbers alone, got {text[:60]!r}")
+        return

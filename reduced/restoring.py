@@ -1,0 +1,310 @@
+"""What holds a body down: its weight, and a tendon along its axis.
+
+The tendon runs from an anchor in the foundation, at O, up the axis to the top of the column, or through
+a second gap into the slab: n gaps, of which a tilt opens each by 2 b sin(theta/2). So its elongation is
+e = 2 n b sin(theta/2) in the recess and in a plane, its tension P0 + kt e, and the couple
+
+    V'(theta) = w m g (b cos theta - h sin theta) + (P0 + kt e) n b cos(theta/2).
+
+All is per unit of the mass w m, w = 1 + 2 gamma under a slab (`body`):
+
+======= ======== ==============================================================
+symbol  unit     meaning
+======= ======== ==============================================================
+V'      m^2/s^2  restoring couple; r = V'/R is what the equations take
+q       m/s^2    n P0/(w m), `prestress`
+k       m/s^2    n^2 kt b/(w m), `stiffness`
+r       m/s^2    (g + az) sin(alpha - theta) + sin(alpha) [q u + k s]
+u       -        cos(theta/2)
+V       m^2/s^2  g (b s - h v) + b [2 q sin(theta/2) + k v], v = 1 - cos theta
+T       m/s^2    n times the tension, q + 2 k sin(theta/2)
+======= ======== ==============================================================
+
+At the base the tendon pulls from the base centre B to O, which is 2 b sin(theta/2) away in the direction
+theta/2 from the vertical: down with T cos(theta/2)/n and inward with T sin(theta/2)/n. At the top it does the
+mirror image of that to the slab; inside the column its forces cancel. It never goes slack.
+
+Each function is there twice, for a body without a tendon and for one with it (`_compile.by_body`).
+"""
+
+from __future__ import annotations
+
+from math import cos, inf, pi, sin, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import Cylinder
+from rockwobble.models.tendon import Tendon
+
+from ._compile import by_body, inlined, jit
+from .body import Body, TiedBody
+
+
+@inlined
+def _weight(body: Body, s: float, c: float, gravity: float) -> float:
+    """Return r [m/s^2] under `gravity` = g + az [m/s^2], from sine and cosine of the tilt."""
+    return gravity * (body.sin_alpha * c - body.cos_alpha * s)
+
+
+@inlined
+def _tendon(body: TiedBody, s: float, u: float) -> float:
+    return body.sin_alpha * (body.prestress * u + body.stiffness * s)
+
+
+@inlined
+def _weight_and_tendon(body: TiedBody, s: float, c: float, gravity: float) -> float:
+    weight = gravity * (body.sin_alpha * c - body.cos_alpha * s)
+    return weight + _tendon(body, s, sqrt(0.5 * (1.0 + c)))
+
+
+restoring = by_body(_weight, _weight_and_tendon)
+
+
+@inlined
+def _as_it_is(body: Body, acceleration: float, s: float, c: float) -> float:
+    """Return theta'' [rad/s^2], from that without a tendon."""
+    return acceleration
+
+
+@inlined
+def _held_back(body: TiedBody, acceleration: float, s: float, c: float) -> float:
+    return acceleration - body.p2 / body.g * _tendon(body, s, sqrt(0.5 * (1.0 + c)))
+
+
+with_tendon = by_body(_as_it_is, _held_back)
+
+
+@inlined
+def _no_energy(body: Body, energy: float, c: float) -> float:
+    """Return an energy [m^2/s^2] with what the tendon has stored since upright."""
+    return energy
+
+
+@inlined
+def _tendon_energy(body: TiedBody, energy: float, c: float) -> float:
+    half = 0.5 * (1.0 - c)
+    return energy + 2.0 * body.b * (body.prestress * sqrt(max(0.0, half)) + body.stiffness * half)
+
+
+with_tendon_energy = by_body(_no_energy, _tendon_energy)
+
+
+@inlined
+def _no_pull(body: Body, c: float) -> tuple[float, float]:
+    """Return the force of the tendon on the base, downward and inward, over (1 + gamma) m [m/s^2]."""
+    return 0.0, 0.0
+
+
+@inlined
+def _pull(body: TiedBody, c: float) -> tuple[float, float]:
+    s_half, u = sqrt(max(0.0, 0.5 * (1.0 - c))), sqrt(0.5 * (1.0 + c))
+    force = (body.prestress + 2.0 * body.stiffness * s_half) * (body.nu / body.gaps)
+    return force * u, force * s_half
+
+
+tendon_pull = by_body(_no_pull, _pull)
+
+
+@inlined
+def _weight_alone(body: Body, az: float) -> float:
+    """Return the normal force on a body that stands, at base and top together [m/s^2]."""
+    return body.g + az
+
+
+@inlined
+def _weight_and_prestress(body: TiedBody, az: float) -> float:
+    return body.g + az + body.prestress
+
+
+standing_force = by_body(_weight_alone, _weight_and_prestress)
+
+
+@inlined
+def _slope_alone(body: Body, Q: float) -> float:
+    """Return the growth of theta'' with the tilt at uplift [1/s^2], from that without a tendon."""
+    return Q
+
+
+@inlined
+def _slope_tied(body: TiedBody, Q: float) -> float:
+    # |a| cos(alpha) = (g + az + q) sin(alpha), and dr/dtheta of the tendon is k sin(alpha)
+    return Q + body.p2 / body.g * body.sin_alpha * (
+        body.prestress * body.sin_alpha / body.cos_alpha - body.stiffness
+    )
+
+
+with_tendon_slope = by_body(_slope_alone, _slope_tied)
+
+
+@inlined
+def _share_alone(body: Body, share: float, held: float) -> float:
+    """Return the couple left by the ground at rest over that without it, from weight and ground.
+
+    `held` is what a unit of g counts in `share`, with rolling resistance.
+    """
+    return share
+
+
+@inlined
+def _share_tied(body: TiedBody, share: float, held: float) -> float:
+    prestress = body.prestress / body.g
+    return (share + held * prestress) / (1.0 + prestress)
+
+
+with_prestress_share = by_body(_share_alone, _share_tied)
+
+
+@inlined
+def _at_alpha(body: Body) -> float:
+    """Return the balance tilt [rad]: beyond it the body falls, if nothing moves it."""
+    return body.alpha
+
+
+@inlined
+def _at_balance(body: TiedBody) -> float:
+    return body.balance
+
+
+balance = by_body(_at_alpha, _at_balance)
+
+
+@inlined
+def _p(body: Body) -> float:
+    """Return the fastest rate of the couple near upright [1/s]."""
+    return body.p
+
+
+@inlined
+def _fastest(body: TiedBody) -> float:
+    return body.fastest
+
+
+fastest_rate = by_body(_p, _fastest)
+
+
+@jit
+def _overturns(body: Body, theta: float, strongest: float, lightest: float) -> bool:
+    """Return whether a tilt beyond the balance that does not decrease is bound to reach pi/2, without twist.
+
+    `strongest` is the largest |a| and `lightest` the least g + az to come: beyond the equilibrium tilt
+    under these two and the couple of rolling resistance, theta'' is positive and grows with theta. Spin
+    only adds to it, (18); a twist rate, which the flat-ground model has, may hold a cylinder up. With a
+    tendon the couple must also fall with the tilt: its slope is at most -[cos(theta) (g' cos(alpha) - k
+    sin(alpha)) + sin(theta) g' sin(alpha)], g' = `lightest`, and stays negative once this is.
+    """
+    beyond = theta - body.alpha
+    held = body.delta * body.sin_alpha / body.b
+    return lightest > 0.0 and lightest * (sin(beyond) - held) > strongest * cos(beyond)
+
+
+@jit
+def _tied_overturns(body: TiedBody, theta: float, strongest: float, lightest: float) -> bool:
+    if body.delta > 0.0 or lightest <= 0.0:
+        return False
+    s, c = sin(theta), cos(theta)
+    falling = c * (lightest * body.cos_alpha - body.stiffness * body.sin_alpha)
+    falling += s * lightest * body.sin_alpha
+    left = _weight_and_tendon(body, s, c, lightest)
+    return falling >= 0.0 and -left > strongest * cos(theta - body.alpha)
+
+
+surely_overturns = by_body(_overturns, _tied_overturns)
+
+
+# series of u = cos(theta/2) in the time integration by Taylor series: u u = 1 - v/2
+
+
+@inlined
+def _one(body: Body, v: float) -> float:
+    """Return u, for which nobody asks without a tendon."""
+    return 1.0
+
+
+@inlined
+def _half_cosine(body: TiedBody, v: float) -> float:
+    return sqrt(1.0 - 0.5 * v)
+
+
+half_cosine = by_body(_one, _half_cosine)
+
+
+@inlined
+def _term_alone(body: Body, weight: float, s: float, u: float) -> float:
+    """Return r [m/s^2], from that of the weight, sin(theta) and u."""
+    return weight
+
+
+@inlined
+def _term_tied(body: TiedBody, weight: float, s: float, u: float) -> float:
+    return weight + _tendon(body, s, u)
+
+
+with_tendon_term = by_body(_term_alone, _term_tied)
+
+
+@inlined
+def _coefficient_alone(
+    body: Body, weight: float, s: float, v: float, u0: float, order: int, c: NDArray[np.float64], place: int
+) -> float:
+    """Return the coefficient of `order` of r, from those of the weight, of s and of v.
+
+    That of u is written to `c` behind `place`, where those of lower order stand; `u0` is that of order 0.
+    """
+    return weight
+
+
+@inlined
+def _coefficient_tied(
+    body: TiedBody,
+    weight: float,
+    s: float,
+    v: float,
+    u0: float,
+    order: int,
+    c: NDArray[np.float64],
+    place: int,
+) -> float:
+    product = 0.0
+    for j in range(1, order):
+        product += c[place + j] * c[place + order - j]
+    u = -(0.5 * v + product) / (2.0 * u0)
+    c[place + order] = u
+    return weight + _tendon(body, s, u)
+
+
+with_tendon_coefficient = by_body(_coefficient_alone, _coefficient_tied)
+
+
+def balance_tilt(body: TiedBody) -> float:
+    """Return the tilt at which r vanishes for good [rad]; infinite where it is positive up to pi/2.
+
+    Beyond alpha: at alpha the weight has no couple, and the tendon has one. Only shaking or spin overturns
+    a body that has none.
+    """
+
+    def r(theta: float) -> float:
+        tendon = body.prestress * cos(0.5 * theta) + body.stiffness * sin(theta)
+        return body.g * sin(body.alpha - theta) + body.sin_alpha * tendon
+
+    low, high = body.alpha, 0.5 * pi
+    if r(high) >= 0.0:
+        return inf
+    while low < (middle := 0.5 * (low + high)) < high:
+        low, high = (middle, high) if r(middle) > 0.0 else (low, middle)
+    return low
+
+
+def tied(body: Body, cylinder: Cylinder, tendon: Tendon) -> TiedBody:
+    """Return the constants of a body that a tendon holds."""
+    gaps, w = tendon.gaps(cylinder), 1.0 + 2.0 * cylinder.slab_mass_ratio
+    stiffness = gaps**2 * tendon.stiffness * body.g / w
+    whole = TiedBody(
+        *body,
+        prestress=gaps * tendon.prestress * body.g / w,
+        stiffness=stiffness,
+        gaps=float(gaps),
+        balance=inf,
+        fastest=sqrt(body.p2 * (1.0 + stiffness * body.sin_alpha / body.g)),
+    )
+    return whole._replace(balance=balance_tilt(whole))

@@ -1,0 +1,88 @@
+"""Hazard, probability of overturning and their product, which is where the annual frequency comes from."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockwobble.compare import Fragility
+
+from .palette import DARK, GREY, ORDER, Style, mark_styles
+from .picture import Axis, Line, Panel, Picture, Rule
+
+_MOST = 4  # methods of a panel: more lines cannot be told apart
+_COLOURS = (DARK, *ORDER)
+_LEAST = 0.01  # of the largest contribution: what is less is not looked for
+
+
+def risk_pictures(found: Fragility) -> list[Picture]:
+    """Return a picture for each cylinder; none without a hazard."""
+    if "risk" not in found.tables:
+        return []
+    return [_picture(found, str(name), place) for place, name in enumerate(found.facts["cylinders"], start=1)]
+
+
+def _picture(found: Fragility, cylinder: str, place: int) -> Picture:
+    hazard = found.facts["hazard"]
+    table = found.contributions[found.contributions["cylinder"] == cylinder]
+    labels = list(dict.fromkeys(table["method"]))[:_MOST]
+    first = table[table["method"] == labels[0]]
+    x = first["intensity"].to_numpy(float)
+    shares: list[Line | Rule] = []
+    products: list[Line | Rule] = []
+    for index, (label, style) in enumerate(mark_styles(labels).items()):
+        own, colour = table[table["method"] == label], _COLOURS[index % len(_COLOURS)]
+        line = Style(colour=colour, dash=style.dash)
+        pale = Style(colour=colour, dash="dot")
+        shares.append(Line(x=x, y=own["probability"].to_numpy(float), name=label, style=line, width=1.8))
+        products.append(Line(x=x, y=_scaled(own, "contribution"), name=label, style=line, width=1.8))
+        if index == 0:
+            name = "lognormal curve"
+            shares.append(Line(x=x, y=own["probability_fit"].to_numpy(float), name=name, style=pale))
+            products.append(Line(x=x, y=_scaled(own, "contribution_fit"), name=name, style=pale))
+    words, _, unit = str(hazard["title"]).rpartition(" [")
+    drawn = table[table["method"].isin(labels)].groupby("intensity")["contribution"].max()
+    shown = drawn.index[drawn >= _LEAST * drawn.max()]
+    low = max(float(shown.min()) / 3.0, float(x[0]))
+    axis = Axis(label=words, unit=unit.rstrip("]"), log=True, low=low, high=float(x[-1]))
+    rate = first["annual_frequency"].to_numpy(float)
+    curve = Line(x=x, y=rate, name="hazard", style=Style(colour=GREY, dash="solid"), width=1.8)
+    panels = [
+        Panel(
+            x=axis,
+            y=Axis(label="exceeded", unit="1/year", log=True),
+            layers=[curve],
+            title="Hazard",
+            height=2.6,
+        ),
+        Panel(
+            x=axis,
+            y=Axis(label="overturn", unit="-", low=-0.02, high=1.02),
+            layers=shares,
+            title="Fragility",
+            height=2.6,
+        ),
+        Panel(
+            x=axis,
+            y=Axis(label="contribution", unit="1e-4/year", low=0.0),
+            layers=products,
+            title="Their product",
+            height=2.6,
+        ),
+    ]
+    return Picture(
+        name=f"risk-{place}",
+        title=f"Which intensities overturn {cylinder}",
+        caption="Annual frequency with which an intensity is exceeded; share of the motions that overturn "
+        "there, without a fitted curve; and their product per unit of the logarithm of the intensity, the "
+        "area below which is the annual frequency of overturning."
+        + (" The first methods are drawn." if len(set(table["method"])) > _MOST else ""),
+        panels=panels,
+        columns=2,
+        legend="panels",
+    )
+
+
+def _scaled(table: pd.DataFrame, column: str) -> NDArray[np.float64]:
+    return 1e4 * table[column].to_numpy(float)

@@ -1,0 +1,233 @@
+"""Annual frequency of overturning: closed form, brute force, tails, resamples and pairs."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import rockwobble as rw
+from rockwobble.compare.studies.fragility.fit import resamples
+from rockwobble.compare.studies.fragility.intensity import uplift_scale
+from rockwobble.compare.studies.fragility.risk import (
+    Exposure,
+    frequencies_of,
+    lognormal_frequency,
+    mean_over,
+)
+from rockwobble.models import GroundMotion, HazardCurve
+
+K, K0 = 2.5, 1e-4
+
+
+def power_law(count: int = 40, low: float = 1e-3, high: float = 1e3) -> HazardCurve:
+    x = np.geomspace(low, high, count)
+    return HazardCurve(x, K0 * x**-K, measure="pga")
+
+
+@pytest.mark.parametrize(("median", "dispersion"), [(0.5, 0.4), (2.0, 0.2), (1.0, 0.7), (0.3, 0.05)])
+def test_of_a_power_law_the_frequency_is_the_closed_form(median: float, dispersion: float) -> None:
+    # k0 theta^-k exp(k^2 beta^2 / 2); the ends of the curve are 9 and more dispersions away
+    exact = K0 * median**-K * math.exp(0.5 * (K * dispersion) ** 2)
+    assert lognormal_frequency(power_law(), math.log(median), dispersion) == pytest.approx(exact, rel=1e-12)
+
+
+def test_a_sum_over_the_points_of_a_hazard_is_short_by_half_of_slope_times_step() -> None:
+    hazard = power_law(100, 1e-3, 2.0)
+    share = np.array([0.5 * math.erfc(-math.log(x / 0.4) / 0.4 / math.sqrt(2.0)) for x in hazard.intensity])
+    steps = np.append(-np.diff(hazard.annual_frequency), hazard.annual_frequency[-1])
+    short = 1.0 - float(share @ steps) / lognormal_frequency(hazard, math.log(0.4), 0.4)
+    # the guide says 10 %; the next order is a tenth of it
+    assert short == pytest.approx(0.5 * K * math.log(2000.0) / 99, rel=0.15)
+
+
+def test_many_motions_that_follow_a_lognormal_curve_give_its_frequency_without_a_fit() -> None:
+    rng = np.random.default_rng(5)
+    capacity = np.exp(rng.normal(math.log(0.8), 0.4, 4000))
+    x = np.tile(np.log(np.geomspace(0.1, 8.0, 60)), (len(capacity), 1))
+    y = (x >= np.log(capacity)[:, None]).astype(float)
+    found = frequencies_of(power_law(), x, y, np.full(len(x), -5.0), np.full(len(x), 9.0))
+    # levels a factor e^d apart spread each capacity over such a step: an error of the order (k d)^2/12
+    step = K * (x[0, 1] - x[0, 0])
+    assert found.total.mean() == pytest.approx(K0 * np.mean(capacity**-K), rel=1.5 * step**2 / 12.0)
+
+
+def brute_force(hazard: HazardCurve, x: np.ndarray, y: np.ndarray, uplift: float, low: float) -> float:
+    nodes = np.concatenate([[min(uplift, x[0])], x])
+    values = np.concatenate([[0.0 if uplift < x[0] else y[0]], y])
+    begin, end = np.log(hazard.intensity[[0, -1]])
+    grid = np.linspace(max(nodes[0], begin, low), min(x[-1], end), 400_001)
+    rate = hazard.exceedance(np.exp(np.clip(grid, begin + 1e-15, end - 1e-15)))
+    p = np.interp(grid, nodes, values)
+    return float(np.sum(0.5 * (p[1:] + p[:-1]) * (rate[:-1] - rate[1:])) + p[-1] * rate[-1])
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_indicators_with_gaps_on_an_uneven_curve_are_integrated_exactly(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    points = np.sort(rng.uniform(math.log(0.05), math.log(3.0), 12))
+    hazard = HazardCurve(np.exp(points), 0.02 * np.exp(-np.cumsum(rng.uniform(0.05, 1.2, 12))), measure="pga")
+    x = np.sort(rng.uniform(math.log(0.1), math.log(2.5), (5, 7)), axis=1)
+    y = rng.integers(0, 2, (5, 7)).astype(float)
+    uplift, far = x[:, 0] - rng.uniform(-0.1, 0.5, 5), rng.uniform(-1.5, 0.5, 5)
+    found = frequencies_of(hazard, x, y, uplift, far)
+    for row in range(5):
+        expected = brute_force(hazard, x[row], y[row], uplift[row], -math.inf)
+        assert found.total[row] == pytest.approx(expected, rel=1e-7, abs=1e-12)  # of the fine grid
+        if far[row] < min(x[row, -1], points[-1]):
+            expected = brute_force(hazard, x[row], y[row], uplift[row], far[row])
+            assert found.far[row] == pytest.approx(expected, rel=1e-7, abs=1e-12)
+
+
+def test_a_finer_curve_of_the_same_power_law_changes_nothing() -> None:
+    x, y = np.log([[0.2, 0.5, 1.0]]), np.array([[0.0, 1.0, 1.0]])
+    ends = np.array([-2.0]), np.array([9.0])
+    coarse, fine = (frequencies_of(power_law(count), x, y, *ends).total[0] for count in (2, 300))
+    assert coarse == pytest.approx(fine, rel=1e-12)
+
+
+def test_mean_of_the_frequency_between_equal_ends_is_the_frequency_there() -> None:
+    at = np.log(np.array([0.3, 0.3]))
+    assert mean_over(power_law(), at, at) == pytest.approx(K0 * 0.3**-K, rel=1e-12)
+
+
+def test_what_lies_beyond_the_last_level_or_point_is_stated_and_bounded() -> None:
+    x = np.log([[0.2, 0.5, 1.0]])
+    ends = np.array([-9.0]), np.array([9.0])
+    stands, falls = (frequencies_of(power_law(), x, np.array([y]), *ends) for y in ([0, 0, 0], [0, 0, 1]))
+    assert stands.total[0] == 0.0
+    assert stands.missing[0] == pytest.approx(K0)  # all that is above 1
+    assert falls.tail[0] == pytest.approx(K0)
+    assert falls.missing[0] == 0.0
+    short = power_law(high=0.7)
+    cut = frequencies_of(short, x, np.array([[0.0, 0.0, 1.0]]), *ends)
+    share = math.log(0.7 / 0.5) / math.log(1.0 / 0.5)
+    assert cut.tail[0] == pytest.approx(share * K0 * 0.7**-K)
+    assert cut.missing[0] == pytest.approx((1.0 - share) * K0 * 0.7**-K)
+    above = power_law(low=2.0)
+    beyond = frequencies_of(above, x, np.array([[0.0, 0.0, 1.0]]), *ends)
+    assert beyond.total[0] == beyond.tail[0] == pytest.approx(K0 * 2.0**-K)
+    below = power_law(high=0.1)
+    none = frequencies_of(below, x, np.array([[0.0, 0.0, 1.0]]), np.log([0.15]), np.array([9.0]))
+    assert none.total[0] == 0.0
+    assert none.missing[0] == pytest.approx(K0 * 0.1**-K)
+
+
+def test_nothing_below_uplift_overturns() -> None:
+    x, y = np.log([[0.5, 1.0]]), np.array([[1.0, 1.0]])
+    at = [frequencies_of(power_law(), x, y, np.log([lift]), np.array([9.0])).total[0] for lift in (0.1, 0.4)]
+    assert at[1] < at[0] < K0 * 0.1**-K
+    assert at[1] > K0 * 0.5**-K
+
+
+@pytest.mark.parametrize("vertical", [0.0, 1.0])
+def test_the_scale_of_uplift_is_where_the_model_begins_to_uplift(vertical: float) -> None:
+    rng = np.random.default_rng(3)
+    a = rng.normal(size=(300, 3)) * [1.0, 1.0, vertical]
+    motion = GroundMotion(a if vertical else a[:, :2], 0.01, "noise")
+    pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    scale = uplift_scale(motion, pier)
+    below, above = (
+        rw.simulate(rw.Case(pier, motion.scaled(factor * scale))).peak_tilt for factor in (1 - 1e-3, 1 + 1e-3)
+    )
+    assert below == 0.0 < above
+
+
+def test_intervals_of_resampled_motions_cover_the_truth() -> None:
+    hazard, levels = power_law(), np.log(np.geomspace(0.15, 5.0, 15))
+    rng = np.random.default_rng(11)
+    motions, trials, covered = 40, 400, 0
+    weights = resamples(motions, 500, 1)
+    fine = np.exp(rng.normal(math.log(0.9), 0.35, 200_000))
+    share = np.array([(fine <= math.exp(level)).mean() for level in levels])
+    far = np.array([9.0])
+    truth = frequencies_of(hazard, levels[None], share[None], np.array([-9.0]), far).total[0]
+    from rockwobble.compare.studies.fragility.fit import interval
+
+    for _ in range(trials):
+        capacity = rng.normal(math.log(0.9), 0.35, motions)
+        x = np.tile(levels, (motions, 1))
+        y = (x >= capacity[:, None]).astype(float)
+        sample = Exposure(x=x, y=y, uplift=np.full(motions, -9.0), far=np.full(motions, 9.0))
+        single = sample.frequencies(hazard).total
+        found = interval(single.mean(), sample.resampled(hazard, single, weights), motions)
+        covered += found.low <= truth <= found.high
+    # 95 %, with 2.2 % of the standard error of 400 trials
+    assert 0.93 - 0.022 <= covered / trials <= 0.97 + 0.011
+
+
+@pytest.fixture(scope="module")
+def found() -> rw.compare.Fragility:
+    pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    motions = rw.synthetic_motions(12, peak=1.0, seed=4)
+    methods = ["recess", "planar-x"]
+    return rw.fragility(
+        pier, motions, methods=methods, levels=[1.5, 2, 3, 4.5, 7, 10], resamples=200, workers=1
+    )
+
+
+SITE = HazardCurve(np.geomspace(0.05, 5.0, 30), 1e-3 * np.geomspace(0.05, 5.0, 30) ** -2.0, measure="pga")
+
+
+def test_risk_has_a_row_for_each_cylinder_and_method(found: rw.compare.Fragility) -> None:
+    table = found.risk(SITE)
+    assert list(table["method"]) == ["recess model", "planar x"]
+    assert table["ratio"].iloc[0] == 1.0
+    rate = table["annual_frequency"].iloc[0]
+    assert table["annual_frequency_low"].iloc[0] <= rate <= table["annual_frequency_high"].iloc[0]
+    assert table["probability"].iloc[0] == pytest.approx(-math.expm1(-50.0 * rate), rel=1e-12)
+    assert found.risk(SITE, years=1.0)["probability"].iloc[0] == pytest.approx(-math.expm1(-rate), rel=1e-12)
+
+
+def test_the_mean_over_motions_is_that_of_their_indicators(found: rw.compare.Fragility) -> None:
+    points = found.points
+    for method, rate in found.risk(SITE)[["method", "annual_frequency"]].itertuples(index=False):
+        totals = []
+        for motion, own in points.groupby("motion"):
+            runs = found.runs[(found.runs["motion"] == motion) & (found.runs["method"] == method)]
+            y = (runs.sort_values("step")["outcome"] == "overturned").to_numpy(float)
+            own = own.sort_values("step")
+            x = np.log(own["pga"].to_numpy())
+            lift = math.log(own["pga"].iloc[0] / own["peak_acceleration"].iloc[0])
+            totals.append(brute_force(SITE, x, y, lift, -math.inf))
+        assert rate == pytest.approx(np.mean(totals), rel=1e-6)
+
+
+def test_every_measure_of_a_hazard_is_reached(found: rw.compare.Fragility) -> None:
+    by_resultant = HazardCurve(SITE.intensity, SITE.annual_frequency, measure="pga_resultant")
+    ratio = found.points["peak_acceleration"] * 0.2 / found.points["pga"]
+    assert (ratio >= 1.0 - 1e-12).sum() > 0
+    assert (
+        found.risk(by_resultant)["annual_frequency"].iloc[0] != found.risk(SITE)["annual_frequency"].iloc[0]
+    )
+    for measure in ("pgv", "pgv_resultant"):
+        assert (
+            found.risk(HazardCurve(SITE.intensity, SITE.annual_frequency, measure=measure))
+            .notna()
+            .all()
+            .all()
+        )
+
+
+def test_a_hazard_of_another_period_is_refused(found: rw.compare.Fragility) -> None:
+    other = HazardCurve(SITE.intensity, SITE.annual_frequency, measure="sa", period=0.5)
+    with pytest.raises(ValueError, match=r"Sa at 0\.5 s, the fragility has it at 1 s: .*--period 0\.5"):
+        found.risk(other)
+
+
+def test_a_total_dispersion_raises_the_frequency_of_the_curve_alone(found: rw.compare.Fragility) -> None:
+    plain, wide = found.risk(SITE), found.risk(SITE, total_dispersion=0.8)
+    assert (wide["annual_frequency_fit"] > plain["annual_frequency_fit"]).all()
+    pd.testing.assert_series_equal(plain["annual_frequency"], wide["annual_frequency"])
+
+
+def test_where_no_motion_overturns_a_bound_is_given() -> None:
+    pier = rw.Cylinder(semidiagonal=30.0, tan_alpha=0.3)
+    motions = rw.synthetic_motions(8, peak=1.0, seed=4)
+    none = rw.fragility(pier, motions, methods=["recess"], levels=[1.1, 1.3], resamples=50, workers=1)
+    row = none.risk(SITE).iloc[0]
+    assert row["overturning_motions"] == 0
+    assert row["annual_frequency"] == row["annual_frequency_low"] == 0.0
+    assert 0.0 < row["annual_frequency_most"] <= row["annual_frequency_high"]

@@ -1,0 +1,77 @@
+"""Releases on the balance and next to it: what falls, what turns back, and what only rounding decides."""
+
+import math
+
+import pytest
+
+from rockwobble.models import Case, Cylinder, InitialState, WobblingFrame
+from rockwobble.reduced import simulate, steady_wobble_rate
+from rockwobble.reduced.body import body_of
+
+SHAPES = [(0.5, 0.05), (2.0, 0.2), (math.hypot(0.5, 2.5), 0.2), (30.0, 1.0)]
+
+
+def case(
+    size: float, tan_alpha: float, tilts: float, times: float, *, slab: float = 0.0, **start: float
+) -> Case:
+    """Return a release at so many alpha that runs for so many 1/p."""
+    cylinder = WobblingFrame(Cylinder(semidiagonal=size, tan_alpha=tan_alpha), slab)
+    duration = times / body_of(cylinder, 9.81).p
+    return Case(cylinder, initial=InitialState(tilts * cylinder.alpha, **start), duration=duration)
+
+
+@pytest.mark.parametrize("times", [1.0, 17.0, 34.0, 200.0])
+@pytest.mark.parametrize(("size", "tan_alpha"), SHAPES)
+def test_what_sits_on_its_balance_is_undecided_however_long_it_runs(
+    size: float, tan_alpha: float, times: float
+) -> None:
+    for slab in (0.0, 1.0):
+        trace = simulate(case(size, tan_alpha, 1.0, times, slab=slab))
+        assert trace.outcome == "undecided"
+        assert math.isnan(trace.peak_tilt)
+        assert [fact.code for fact in trace.facts] == ["undecided"]
+
+
+@pytest.mark.parametrize("support", ["recess", "flat"])
+@pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize(("size", "tan_alpha"), SHAPES)
+def test_next_to_the_balance_the_side_of_it_decides(
+    size: float, tan_alpha: float, distance: float, support: str
+) -> None:
+    for times in (1.0, 15.0, 200.0):
+        above = simulate(case(size, tan_alpha, 1.0 + distance, times), support=support)
+        assert (above.outcome, above.peak_tilt) == ("overturned", 0.5 * math.pi)
+    below = case(size, tan_alpha, 1.0 - distance, 1.0)
+    trace = simulate(below, support=support)
+    assert (trace.outcome, trace.peak_tilt) == ("stands", below.initial.tilt if below.initial else 0.0)
+
+
+@pytest.mark.parametrize("support", ["recess", "flat"])
+@pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_a_release_below_the_balance_is_never_said_to_fall_or_to_stand_beyond_it(
+    distance: float, support: str
+) -> None:
+    # in an undamped motion each swing comes back to the balance, which the error of the solution may pass
+    for times in (10.0, 17.0, 30.0, 60.0, 200.0):
+        for rate in (0.0, 1e-7):
+            trace = simulate(case(2.0, 0.2, 1.0 - distance, times, rolling_rate=rate), support=support)
+            assert trace.outcome in ("stands", "undecided")
+            if trace.outcome == "stands":
+                assert trace.peak_tilt <= trace.case.cylinder.alpha
+
+
+@pytest.mark.parametrize("tilts", [0.1, 0.3])
+@pytest.mark.parametrize("times", [10.0, 200.0])
+def test_a_stable_steady_wobble_stands(tilts: float, times: float) -> None:
+    cylinder = Cylinder(semidiagonal=2.0, tan_alpha=1.0)
+    tilt = tilts * cylinder.alpha
+    rate = float(steady_wobble_rate(cylinder, tilt))
+    trace = simulate(case(2.0, 1.0, tilts, times, rolling_rate=rate))
+    assert trace.outcome == "stands"
+    assert trace.peak_tilt == pytest.approx(tilt, rel=1e-6)  # what the tolerance of 1e-8 lets it drift
+
+
+def test_rolling_resistance_holds_what_sits_on_its_balance() -> None:
+    on = case(2.0, 0.2, 1.0, 100.0)
+    trace = simulate(Case(on.cylinder, initial=on.initial, duration=on.duration, rolling_resistance=0.01))
+    assert (trace.outcome, trace.peak_tilt) == ("stands", trace.tilt[0])

@@ -1,0 +1,240 @@
+"""A tendon along the axis, in the recess and in a plane, against places and springs in space."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from tendon import Pier, accelerations, potential, released
+
+import rockwobble as rw
+from rockwobble import reduced
+from rockwobble.models import GroundMotion, Tendon
+
+G = 9.81
+PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+BODIES = {"column": 0.0, "under a slab": 1.3}
+TENDONS = [Tendon(prestress=0.7), Tendon(stiffness=4.0), Tendon(prestress=0.4, stiffness=9.0)]
+
+
+def body_of(cylinder: rw.Cylinder, gamma: float) -> rw.Cylinder:
+    return rw.WobblingFrame(cylinder, gamma) if gamma else cylinder
+
+
+def apart(cylinder: rw.Cylinder, tendon: Tendon, gamma: float) -> Pier:
+    b = cylinder.base_radius
+    return Pier(
+        b=b,
+        h=cylinder.mass_centre_height,
+        slab=gamma,
+        prestress=tendon.prestress * G,
+        stiffness=tendon.stiffness * G / b,
+        g=G,
+    )
+
+
+@pytest.mark.parametrize("gamma", BODIES.values(), ids=BODIES)
+@pytest.mark.parametrize("tendon", TENDONS, ids=repr)
+@pytest.mark.parametrize("tan_alpha", [0.12, 0.35, 0.9])
+def test_a_release_follows_springs_in_space(tan_alpha: float, tendon: Tendon, gamma: float) -> None:
+    cylinder = rw.Cylinder(semidiagonal=2.0, tan_alpha=tan_alpha)
+    release = rw.InitialState(0.55 * cylinder.alpha, rolling_rate=0.8)
+    case = rw.Case(body_of(cylinder, gamma), initial=release, duration=2.5, tendon=tendon)
+    trace = reduced.simulate(case, rtol=1e-11)
+    tilt, azimuth = released(apart(cylinder, tendon, gamma), release.tilt, release.rolling_rate, trace.time)
+    # of the differences in the reference
+    assert np.abs(trace.tilt - tilt).max() < 2e-8 * cylinder.alpha
+    assert np.abs(trace.rolling_angle - azimuth).max() < 1e-6
+
+
+@pytest.mark.parametrize("gamma", BODIES.values(), ids=BODIES)
+def test_under_shaking_the_trace_solves_the_equations_of_the_reference(gamma: float) -> None:
+    tendon = Tendon(prestress=0.3, stiffness=3.0)
+    motion = rw.el_centro_1940(vertical=True).scaled(3.0)
+    case = rw.Case(body_of(PIER, gamma), motion, duration=8.0, tendon=tendon)
+    step = 1e-3
+    trace = reduced.simulate(case, rtol=1e-11, sample_step=step)
+    acceleration = np.gradient(trace.tilt_rate, step, edge_order=2)
+    pier = apart(PIER, tendon, gamma)
+    samples = np.flatnonzero(trace.tilt > 0.2 * trace.tilt.max())[::97]
+    kinks = np.abs(trace.time / motion.time_step - np.rint(trace.time / motion.time_step)) < 0.2
+    compared = [i for i in samples if not kinks[i]]
+    assert len(compared) > 10
+    for i in compared:
+        at = trace.time[i] / motion.time_step
+        low = int(at)
+        ground = motion.acceleration[low] + (at - low) * (
+            motion.acceleration[low + 1] - motion.acceleration[low]
+        )
+        own = accelerations(
+            pier, trace.tilt[i], trace.tilt_rate[i], trace.rolling_rate[i], ground, trace.rolling_angle[i]
+        )[0]
+        assert acceleration[i] == pytest.approx(own, abs=2e-3)  # differences over 1 ms
+
+
+@pytest.mark.parametrize("gamma", BODIES.values(), ids=BODIES)
+def test_energy_is_that_of_places_and_springs_and_is_kept(gamma: float) -> None:
+    tendon = TENDONS[2]
+    release = rw.InitialState(0.8 * PIER.alpha, rolling_rate=0.3)
+    case = rw.Case(body_of(PIER, gamma), initial=release, duration=10.0, tendon=tendon)
+    trace = reduced.simulate(case, rtol=1e-12)
+    assert np.ptp(trace.energy) < 1e-11 * trace.energy[0]
+    still = rw.Case(body_of(PIER, gamma), initial=rw.InitialState(release.tilt), duration=0.1, tendon=tendon)
+    # per unit of the mass of a column and twice its share of the slab
+    whole = reduced.simulate(still).energy[0] * (1.0 + 2.0 * gamma)
+    assert whole == pytest.approx(potential(apart(PIER, tendon, gamma), release.tilt), rel=1e-12)
+
+
+@pytest.mark.parametrize("gamma", BODIES.values(), ids=BODIES)
+@pytest.mark.parametrize("vertical", [0.0, -0.3])
+def test_it_uplifts_at_the_threshold_that_the_prestress_raises(gamma: float, vertical: float) -> None:
+    tendon = Tendon(prestress=0.6, stiffness=2.0)
+    body = body_of(PIER, gamma)
+    gaps, w = (2, 1.0 + 2.0 * gamma) if gamma else (1, 1.0)
+    threshold = (G * (1.0 + vertical) + gaps * tendon.prestress * G / w) * PIER.tan_alpha
+    ramp = np.linspace(0.0, 1.2 * threshold, 241)
+    motion = GroundMotion(np.column_stack([0.6 * ramp, 0.8 * ramp, np.full(241, vertical * G)]), 0.01, "ramp")
+    trace = reduced.simulate(rw.Case(body, motion, tendon=tendon))
+    assert trace.uplift_time == pytest.approx(2.4 / 1.2, abs=1e-12)
+    if not vertical:
+        assert tendon.uplift_factor(body) * G * PIER.tan_alpha == pytest.approx(threshold, rel=1e-14)
+
+
+@pytest.mark.parametrize("plane", [None, 0.4])
+def test_a_tendon_without_prestress_and_stiffness_is_none(plane: float | None) -> None:
+    motion = rw.el_centro_1940().scaled(2.0)
+    with_it, without = (
+        reduced.simulate(rw.Case(PIER, motion, duration=10.0, tendon=tendon), plane=plane, rtol=1e-10)
+        for tendon in (Tendon(), None)
+    )
+    # compiled apart, so rounded apart: to where 1e-15 has grown
+    first = with_it.time < 5.0
+    assert np.abs(with_it.tilt - without.tilt)[first].max() < 1e-9 * PIER.alpha
+    assert with_it.uplift_time == pytest.approx(without.uplift_time, rel=1e-12)
+
+
+def test_size_scales_as_froude_has_it() -> None:
+    tendon, factor = Tendon(prestress=0.5, stiffness=3.0), 16.0
+    motion = rw.el_centro_1940().scaled(2.5)
+    large = rw.Cylinder(semidiagonal=factor * 6.0, tan_alpha=0.2)
+    slower = GroundMotion(motion.acceleration, motion.time_step * math.sqrt(factor), "slower")
+    small = reduced.simulate(rw.Case(PIER, motion, duration=10.0, tendon=tendon), rtol=1e-12)
+    same = reduced.simulate(
+        rw.Case(large, slower, duration=40.0, tendon=tendon), rtol=1e-12, sample_step=0.04
+    )
+    # powers of two scale without rounding
+    assert np.array_equal(small.tilt, same.tilt)
+    assert np.array_equal(small.contact_force, same.contact_force)
+
+
+@pytest.mark.parametrize("stiffness", [0.0, 3.0])
+def test_beyond_the_balance_it_falls_and_within_it_comes_back(stiffness: float) -> None:
+    tendon = Tendon(prestress=0.8, stiffness=stiffness)
+    pier = apart(PIER, tendon, 0.0)
+    tilts = np.linspace(0.01, 1.55, 4000)
+    energy = np.array([potential(pier, tilt) for tilt in tilts])
+    top = tilts[int(np.argmax(energy))]
+    assert top > 1.3 * PIER.alpha
+    for factor, word in ((0.99, "stands"), (1.01, "overturned")):
+        case = rw.Case(PIER, initial=rw.InitialState(factor * top), duration=30.0, tendon=tendon)
+        assert reduced.simulate(case).outcome == word
+
+
+def test_where_stiffness_outweighs_the_column_nothing_but_shaking_overturns() -> None:
+    tendon = Tendon(stiffness=1.3 / PIER.tan_alpha)
+    assert tendon.initial_stiffness(PIER) > 0.0
+    case = rw.Case(PIER, initial=rw.InitialState(1.4), duration=20.0, tendon=tendon)
+    assert reduced.simulate(case).outcome == "stands"
+    shaken = rw.Case(PIER, rw.el_centro_1940().scaled(60.0), tendon=Tendon(stiffness=0.2))
+    assert reduced.simulate(shaken).outcome == "overturned"
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_fall_that_is_cut_short_is_a_fall(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    tendon = Tendon(prestress=rng.uniform(0, 1), stiffness=rng.uniform(0, 6))
+    scales = np.geomspace(1.5, 30.0, 12)
+    motion = rw.el_centro_1940(vertical=True)
+    peaks = reduced.peak_tilts([PIER.semidiagonal], 0.2, motion, scales, tendon=tendon)[0]
+    for scale, peak in zip(scales, peaks, strict=True):
+        # the same with the exit from a fall out of reach: a pulse at the very end keeps it open
+        a = np.vstack([motion.acceleration * scale, np.zeros((500, 3)), [[1e4, 0.0, 0.0]], np.zeros((2, 3))])
+        open_end = rw.Case(
+            PIER, GroundMotion(a, motion.time_step, "open"), duration=motion.duration, tendon=tendon
+        )
+        trace = reduced.simulate(open_end, rtol=1e-7)
+        assert (peak == 0.5 * math.pi) == (trace.outcome == "overturned")
+
+
+@pytest.mark.parametrize("gamma", BODIES.values(), ids=BODIES)
+def test_forces_balance_momentum_of_column_and_slab(gamma: float) -> None:
+    tendon = Tendon(prestress=0.5, stiffness=6.0)
+    release = rw.InitialState(0.7 * PIER.alpha, rolling_rate=0.6)
+    body = body_of(PIER, gamma)
+    case = rw.Case(body, initial=release, duration=2.0, tendon=tendon)
+    step = 1e-3
+    trace = reduced.simulate(case, rtol=1e-12, sample_step=step)
+    velocity = np.gradient(trace.centre_of_mass, step, axis=0, edge_order=2)
+    acceleration = np.gradient(velocity, step, axis=0, edge_order=2)[5:-5]
+    phi, half = trace.rolling_angle[5:-5], 0.5 * trace.tilt[5:-5]
+    tension = trace.tendon_force[5:-5] * G  # N for 1 kg
+    towards = np.column_stack([np.sin(half) * np.cos(phi), np.sin(half) * np.sin(phi), np.cos(half)])
+    pull = -tension[:, None] * towards  # of the anchor on the base
+    weight = np.array([0.0, 0.0, -G])
+    whole = (1.0 + gamma) * G * trace.contact_force[5:-5]
+    # column and slab together; second differences over 1 ms
+    left = whole + pull + (1.0 + gamma) * weight - (1.0 + 2.0 * gamma) * acceleration
+    assert np.abs(left).max() < 2e-4 * G
+    if gamma:
+        top = gamma * G * trace.top_contact_force[5:-5]
+        slab = top + pull + gamma * weight - 2.0 * gamma * acceleration
+        assert np.abs(slab).max() < 2e-4 * G
+
+
+def test_at_rest_the_ground_carries_weight_and_prestress() -> None:
+    tendon = Tendon(prestress=0.5)
+    case = rw.Case(PIER, rw.el_centro_1940().scaled(0.1), duration=1.0, tendon=tendon)
+    assert np.allclose(reduced.simulate(case).contact_force[:, 2], 1.5, rtol=1e-14)
+
+
+def test_tension_and_elongation_are_columns_and_survive_a_file(tmp_path: object) -> None:
+    tendon = Tendon(prestress=0.5, stiffness=2.0, yield_force=0.9)
+    frame = rw.WobblingFrame(PIER, 1.0)
+    release = rw.InitialState(0.5 * PIER.alpha)
+    trace = reduced.simulate(rw.Case(frame, initial=release, duration=3.0, tendon=tendon))
+    assert trace.elongation[0] == pytest.approx(4.0 * PIER.base_radius * math.sin(0.25 * PIER.alpha))
+    assert trace.tendon_force[0] == pytest.approx(0.5 + 2.0 * trace.elongation[0] / PIER.base_radius)
+    assert trace.peak_tendon_force == pytest.approx(trace.tendon_force.max(), rel=1e-9)
+    path = tmp_path / "trace.parquet"  # type: ignore[operator]
+    trace.save(path)
+    again = rw.Trace.load(path)
+    assert again.case.tendon == tendon
+    assert np.array_equal(again.tendon_force, trace.tendon_force)
+    assert "tendon_force" in trace.to_frame()
+    assert "tendon_force" not in reduced.simulate(rw.Case(PIER, initial=release, duration=1.0)).to_frame()
+
+
+def test_yield_is_said_at_the_tilt_at_which_it_begins() -> None:
+    motion = rw.el_centro_1940().scaled(2.5)
+    free = reduced.simulate(rw.Case(PIER, motion, tendon=Tendon(prestress=0.2, stiffness=4.0)), rtol=1e-10)
+    force = 0.2 + 0.6 * (free.peak_tendon_force - 0.2)
+    tendon = Tendon(prestress=0.2, stiffness=4.0, yield_force=force)
+    trace = reduced.simulate(rw.Case(PIER, motion, tendon=tendon), rtol=1e-10)
+    fact = next(each for each in trace.diagnostics if each.code == "tendon_yield")
+    assert fact.size == pytest.approx(trace.peak_tendon_force)
+    assert fact.bound == force
+    before = trace.time < fact.time
+    assert (trace.tendon_force[before] <= force * (1.0 + 1e-9)).all()
+    assert np.interp(fact.time, trace.time, trace.tendon_force) == pytest.approx(force, rel=1e-3)
+    assert not [each for each in free.diagnostics if each.code == "tendon_yield"]
+
+
+def test_what_is_not_modelled_is_refused_in_one_line() -> None:
+    tendon = Tendon(prestress=0.5)
+    case = rw.Case(PIER, initial=rw.InitialState(0.1), duration=1.0, tendon=tendon)
+    with pytest.raises(ValueError, match="in the recess and in a plane, got support 'flat'"):
+        reduced.simulate(case, support="flat")
+    lossy = rw.Case(PIER, initial=rw.InitialState(0.1), duration=1.0, tendon=tendon, rolling_resistance=0.01)
+    with pytest.raises(ValueError, match="without rolling resistance"):
+        reduced.simulate(lossy)
