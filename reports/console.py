@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING
 import typer
 
 import rockwobble.compare as rc
-import rockwobble.compare.storage as rs
 
 from .pages.table import number
 
@@ -201,19 +200,6 @@ def _lines(what: str) -> Iterator[ProgressCallback]:
             _say(sentence(event, what))
 
     yield show_progress
-
-
-@contextmanager
-def results_in(out: Path, what: str = "runs", *, resumes: bool = True) -> Iterator[ProgressCallback]:
-    """Yield the progress callback of a study that writes to a folder, in which one that `resumes` keeps runs.
-
-    An interrupt and a folder that cannot be written end the command.
-    """
-    with interruptible(out if resumes else None):
-        with user_input():
-            rs.require_writable(out)
-        with shown_progress(what) as progress:
-            yield progress
 
 
 def print_facts(heading: Sequence[str | Text], facts: Mapping[str, str]) -> None:

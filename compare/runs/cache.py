@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from rockwobble.models import plain_json
 from rockwobble.models.parquet_file import pack, read
 
+from ..storage.claim import CACHE, claim_on
 from ..storage.files import remove_folders, remove_leftovers, sole_writer, write_whole
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 R = TypeVar("R")
 
-CACHE = "finished"
 _PLAN = "tasks.json"  # there only until all tasks are done
 
 
@@ -107,9 +107,9 @@ class Cache(Generic[T, R]):
             plan = {"kind": self._kind, "total": count}
             write_whole(self._folder / _PLAN, plain_json.dumps(plan).encode())
 
-    def complete(self) -> None:
-        """Remove the results that nobody has asked for since this was opened."""
-        for path in set(self._folder.glob("*.parquet")) - self._used:
+    def complete(self, *, alone: bool) -> None:
+        """Note that all tasks are done; where the folder is theirs alone, remove the results of others."""
+        for path in set(self._folder.glob("*.parquet")) - self._used if alone else ():
             path.unlink()
         (self._folder / _PLAN).unlink(missing_ok=True)
 
@@ -129,9 +129,9 @@ def open_cache(
 ) -> Iterator[Cache[T, R]]:
     """Open the finished tasks of one kind of results in `folder`; nobody else can meanwhile.
 
-    What was left half-written is removed. If the block ends well, so are the results that it did not ask
-    for; if it does not, all are kept, and where there are none the folders that were made for them go. See
-    `Cache` for the parameters.
+    What was left half-written is removed. If the block ends well, and this process has claimed the folder for
+    one plan, so are the results that it did not ask for, such as those of an older version; else all are
+    kept, and where there are none the folders that were made for them go. See `Cache` for the parameters.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def open_cache(
             remove_leftovers(path)
             cache: Cache[T, R] = Cache(path, kind, name=name, pack=pack, unpack=unpack)
             yield cache
-            cache.complete()
+            cache.complete(alone=claim_on(folder) is not None)
     except BaseException:
         if made and not any(path.glob("*.parquet")):
             remove_folders(made, without=(_PLAN,))

@@ -128,10 +128,10 @@ def remove_leftovers(folder: Path) -> None:
 
 
 def remove_folders(folders: Sequence[Path], *, without: Sequence[str] = ()) -> None:
-    """Remove folders, the innermost first, if they hold nothing but a lock and files of these names."""
+    """Remove folders, the innermost first, if they hold nothing but files of these names."""
     with contextlib.suppress(OSError):
         for folder in folders:
-            for name in (_LOCK, *without):
+            for name in without:
                 (folder / name).unlink(missing_ok=True)
             folder.rmdir()
 
@@ -140,26 +140,42 @@ def remove_folders(folders: Sequence[Path], *, without: Sequence[str] = ()) -> N
 def sole_writer(folder: Path) -> Iterator[None]:
     """Lock `folder`, made where it does not exist, for this process alone.
 
-    The hold ends with the process, however that ends. Where the system has no such locks there is none.
+    The lock ends with the process, however that ends. Where the system has no such locks there is none.
 
     Raises
     ------
     ValueError
-        If another process holds it.
+        If another process has locked it.
     """
     path = require_folder(folder)
-    path.mkdir(parents=True, exist_ok=True)
     try:
         import fcntl
     except ImportError:  # Windows
+        path.mkdir(parents=True, exist_ok=True)
         yield
         return
-    with (path / _LOCK).open("a") as lock:
+    place = path / _LOCK
+    while True:
+        path.mkdir(parents=True, exist_ok=True)
+        try:
+            lock = place.open("a")
+        except FileNotFoundError:  # whoever made the folder has just removed it
+            continue
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
+            lock.close()
             raise ValueError(f"another process is writing to {path}, wait for its end") from None
+        # whoever held it removes it at the end: then this one is of a name that is gone, or another's
+        if place.exists() and os.fstat(lock.fileno()).st_ino == place.stat().st_ino:
+            break
+        lock.close()
+    try:
         yield
+    finally:
+        with contextlib.suppress(OSError):
+            place.unlink(missing_ok=True)
+        lock.close()
 
 
 def _is_stream(target: Path) -> bool:

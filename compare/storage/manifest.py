@@ -8,7 +8,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import io
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -40,6 +40,8 @@ class Manifest(Brief):
         Hash of all that they depend on, see `fingerprint`.
     command : str
         That asked for them; empty where it was a program.
+    plan : str
+        Hash of the plan that the command stated, see `claimed`; empty where it was a program.
     date : str
         Of the day on which they were complete (UTC).
     commit : str
@@ -62,6 +64,7 @@ class Manifest(Brief):
     kind: str
     inputs: str = field(default="", repr=False)
     command: str = ""
+    plan: str = ""
     date: str = ""
     commit: str = ""
     processor: str = ""
@@ -105,7 +108,7 @@ def require_writable(folder: str | Path) -> Path:
     """
     path = require_folder(folder)
     try:
-        _read_all(path)
+        manifests_in(path)
     except ValueError:
         raise ValueError(
             f"the output folder must have no {MANIFEST} but one of rockwobble, got {path / MANIFEST}: "
@@ -147,7 +150,7 @@ def write_results(
     hashes = {name: hashlib.sha256(content).hexdigest() for name, content in data.items()}
     whole = dataclasses.replace(manifest, files=hashes, pages=tuple(pages or ()))
     place = Path(folder)
-    before = _read_all(place)
+    before = manifests_in(place)
     written = {**data, **(pages or {})}
     # a result that lost a file to this one is not whole any more
     others = [each for each in before if each.kind != manifest.kind and not written.keys() & {*each.files}]
@@ -170,7 +173,7 @@ def write_pages(folder: str | Path, kind: str, pages: Mapping[str, bytes]) -> No
     place = Path(folder)
     drawn = [
         dataclasses.replace(each, pages=tuple(pages)) if each.kind == kind else each
-        for each in _read_all(place)
+        for each in manifests_in(place)
     ]
     replace_files(place, {**pages, **({MANIFEST: _packed(drawn)} if drawn else {})})
 
@@ -247,13 +250,37 @@ def read_manifests(folder: str | Path) -> list[Manifest]:
     ValueError
         If there is none, or it cannot be read.
     """
-    found = _read_all(Path(folder))
+    found = manifests_in(Path(folder))
     if not found:
         raise ValueError(f"{folder} does not hold results of rockwobble: it has no {MANIFEST}")
     return found
 
 
-def _read_all(folder: Path) -> list[Manifest]:
+def keep_results(folder: Path, kinds: Collection[str]) -> None:
+    """Remove the results of all other kinds from a folder, but for files that those kept have, too.
+
+    Raises
+    ------
+    ValueError
+        If the manifest cannot be read or written.
+    """
+    there = manifests_in(folder)
+    kept, gone = ([each for each in there if (each.kind in kinds) is wanted] for wanted in (True, False))
+    if kept and gone:
+        replace_files(folder, {MANIFEST: _packed(kept)})
+        names = {name for each in gone for name in (*each.files, *each.pages)}
+        for name in names - {name for each in kept for name in (*each.files, *each.pages)}:
+            (folder / name).unlink(missing_ok=True)
+
+
+def manifests_in(folder: Path) -> list[Manifest]:
+    """Return the manifests in `folder`, the last written first; none where there is no manifest.json.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read.
+    """
     path = folder / MANIFEST
     if not path.is_file():
         return []

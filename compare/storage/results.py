@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 from rockwobble.models import plain_json
 from rockwobble.models.shown import Shown, brief
 
+from .claim import claim_on
 from .manifest import Manifest, Number, Stored, read_results, with_provenance, write_results
 
 if TYPE_CHECKING:
@@ -98,8 +99,10 @@ class Results(Shown):
         ValueError
             If the folder cannot be written.
         """
-        manifest = self.manifest or self.made_by().manifest
-        write_results(folder, cast("Manifest", manifest), self.tables, files=self.sheets(), pages=pages)
+        manifest = cast("Manifest", self.manifest or self.made_by().manifest)
+        if claim := claim_on(folder):
+            manifest = dataclasses.replace(manifest, plan=claim.plan)
+        write_results(folder, manifest, self.tables, files=self.sheets(), pages=pages)
 
     @classmethod
     def load(cls, folder: str | Path) -> Self:

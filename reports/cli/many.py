@@ -13,13 +13,13 @@ import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
-import rockwobble.compare.storage as rs
 from rockwobble.compare.studies.plans import Copies, FragilityPlan, SpectrumPlan
 
 from ..console import echo, interruptible, save_with_page, show_and_save, shown_progress, user_input
 from ..pages.cases import case_warnings, describe, record_lines, warnings_about
 from . import options
 from .command import takes_options
+from .outputs import claim_folder
 from .problem import BODY, Body, Problem, Record, refuse, refuse_options_of_engines, unread
 from .several import GridOptions, Hazard, ManyMethods, ManyMotions, cylinders_of
 from .suite_choice import chosen_runs, refuse_problem_options, without_missing
@@ -48,6 +48,7 @@ def fragility(
     workers: options.Workers = None,
     scheduler: options.Scheduler = None,
     out: options.Out = Path("rockwobble-fragility"),
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Say how probable it is that shaking of an intensity overturns a cylinder, by several methods.
 
@@ -71,7 +72,7 @@ def fragility(
         with user_input():
             from rockwobble.compare.studies.fragility.runs import methods_of
 
-            rs.require_writable(out)
+            claim_folder(context)
             if cylinder:
                 of_body = BODY - {"slab_mass_ratio", "columns"}
                 refuse(context, of_body, "does not go with --cylinder, which states the cylinder")
@@ -109,11 +110,13 @@ def fragility(
 
 @takes_options
 def spectrum(
+    context: typer.Context,
     record: Record,
     plan: SpectrumPlan,
     tan_alpha: Annotated[float, options.body(options.SLENDERNESS)] = 0.1,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-spectrum"),
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Map the peak tilt over size and intensity, in 3D and by planar analysis of each component.
 
@@ -141,7 +144,7 @@ def spectrum(
             slender = rw.Case(
                 rw.Cylinder(semidiagonal=1.0, tan_alpha=tan_alpha), motion, gravity=plan.gravity
             )
-            rs.require_writable(out)
+            claim_folder(context)
         print(
             f"Cylinders: tan alpha = {tan_alpha:g} (alpha = {math.degrees(slender.cylinder.alpha):.4g} deg)"
         )
@@ -178,6 +181,7 @@ def ensemble(
     support: options.Supports = None,
     time_step: options.TimeStep = None,
     out: options.Out = Path("rockwobble-ensemble"),
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Compare the peak tilts of many members by each method, member by member.
 
@@ -194,7 +198,7 @@ def ensemble(
     """
     with interruptible(out):
         with user_input():
-            rs.require_writable(out)
+            claim_folder(context)
             refuse_options_of_engines(context, engine)
             stated: rw.Case | rw.Suite | list[rw.Case]
             given: rw.Suite | None = None
@@ -283,6 +287,7 @@ def sweep(
     scheduler: options.Scheduler = None,
     chunk: ChunkSize = None,
     out: options.Out = Path("rockwobble-sweep"),
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Run every combination, and keep each chunk of runs as soon as it is finished.
 
@@ -303,7 +308,7 @@ def sweep(
             stated = {each.name for each in fields(GridOptions)}
             refuse(context, stated, f"does not go with a suite, got {suite}: the file states the problems")
             plan = _suite(suite, model)
-        rs.require_writable(out)
+        claim_folder(context)
     echo(_echo(plan))
     shows: list[Callable[[], None]] = []
     with interruptible(out), user_input(), shown_progress("chunks") as progress:

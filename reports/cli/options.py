@@ -228,3 +228,10 @@ Scheduler = Annotated[
     ),
 ]
 Out = Annotated[Path, output("Folder for the results.")]
+Overwrite = Annotated[
+    bool,
+    output(
+        "Replace what another command, or this one with other options, has left there. Default: refused.",
+        "--overwrite",
+    ),
+]

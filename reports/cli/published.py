@@ -9,16 +9,19 @@ import typer
 
 from rockwobble.compare.studies.plans import QuickPlan, ValidityPlan
 
-from ..console import FAILED, results_in, show_and_save, user_input
+from ..console import FAILED, show_and_save, user_input
 from . import options
 from .command import takes_options
+from .outputs import results_in
 
 
 @takes_options
 def validity(
+    context: typer.Context,
     plan: ValidityPlan,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-validity"),
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Report the limits of the reduced model: what must hold, what error to expect, where it matters.
 
@@ -34,7 +37,7 @@ def validity(
 
     Example: rockwobble validity --quick --out validity
     """
-    with user_input(), results_in(out, "tasks") as progress:
+    with user_input(), results_in(context, "tasks") as progress:
         from rockwobble.compare.studies.validity.study import measure_validity
 
         found = measure_validity(out, plan, workers=workers, progress=progress)
@@ -42,7 +45,12 @@ def validity(
 
 
 @takes_options
-def tradeoff(plan: QuickPlan, out: options.Out = Path("rockwobble-tradeoff")) -> None:
+def tradeoff(
+    context: typer.Context,
+    plan: QuickPlan,
+    out: options.Out = Path("rockwobble-tradeoff"),
+    overwrite: options.Overwrite = False,
+) -> None:
     """Measure what accuracy costs: the reduced models, scipy's solvers and the engines on three problems.
 
     The angle of turn in free response, two times El Centro until ten seconds after uplift, and the
@@ -54,7 +62,7 @@ def tradeoff(plan: QuickPlan, out: options.Out = Path("rockwobble-tradeoff")) ->
 
     Example: rockwobble tradeoff --quick --out tradeoff
     """
-    with results_in(out, "rounds", resumes=False) as progress:
+    with results_in(context, "rounds", resumes=False) as progress:
         from rockwobble.compare.studies.tradeoff.study import measure_tradeoff
 
         found = measure_tradeoff(plan, progress=progress)
@@ -63,9 +71,11 @@ def tradeoff(plan: QuickPlan, out: options.Out = Path("rockwobble-tradeoff")) ->
 
 @takes_options
 def extremes(
+    context: typer.Context,
     plan: QuickPlan,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-extremes"),
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Take one thing at a time to its extreme: is the answer right, and if not, does the run say so.
 
@@ -78,7 +88,7 @@ def extremes(
 
     Example: rockwobble extremes --quick --out extremes
     """
-    with user_input(), results_in(out) as progress:
+    with user_input(), results_in(context) as progress:
         from rockwobble.compare.studies.extremes import measure_extremes
 
         found = measure_extremes(out, plan, workers=workers, progress=progress)
@@ -88,6 +98,7 @@ def extremes(
 
 
 def figures(
+    context: typer.Context,
     grid: Annotated[
         int,
         typer.Option(
@@ -96,6 +107,7 @@ def figures(
         ),
     ] = 100,
     out: options.Out = Path("rockwobble-figures"),
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Compute figures 3 to 6 of the paper again, and compare its statements with the numbers.
 
@@ -104,7 +116,7 @@ def figures(
 
     Example: rockwobble figures --out paper
     """
-    with results_in(out, "figures", resumes=False) as progress:
+    with results_in(context, "figures", resumes=False) as progress:
         from ..paper.page import compute
 
         found = compute(grid, progress)

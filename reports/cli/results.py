@@ -21,6 +21,7 @@ from ..pages.table import number
 from . import options
 from .command import takes_options
 from .options import settings
+from .outputs import claim_folder
 from .problem import Problem, given_options, refuse
 
 if TYPE_CHECKING:
@@ -103,7 +104,7 @@ Out = Annotated[
 ]
 
 
-def report(folder: Folder, out: Out = None) -> None:
+def report(folder: Folder, out: Out = None, overwrite: options.Overwrite = False) -> None:
     """Draw the pages and pictures again of results that are stored. Nothing runs again.
 
     They say what they said: which engines and records are installed here has no part in it. The results
@@ -113,15 +114,23 @@ def report(folder: Folder, out: Out = None) -> None:
     """
     place = folder if out is None else out
     with interruptible(), user_input():
-        from rockwobble.compare.storage.manifest import read_manifests, write_pages
+        from rockwobble.compare.storage.files import sole_writer
+        from rockwobble.compare.storage.manifest import manifests_in, read_manifests, write_pages
 
         rs.require_writable(place)
         kinds = [made.kind for made in read_manifests(folder) if made.kind in KINDS]
         if not kinds:
             raise ValueError(f"pages are drawn of {', '.join(KINDS)}; {folder} holds none of them")
+        others = [] if overwrite or place.resolve() == folder.resolve() else manifests_in(place)
+        if others:
+            there = "; ".join(f"{each.kind} of `{each.command or 'another program'}`" for each in others)
+            raise ValueError(
+                f"the folder {place} holds {there}: choose another by --out, or write there by --overwrite"
+            )
         drawn = {kind: stored_page(kind, folder).files() for kind in kinds}
-        for kind, pages in drawn.items():
-            write_pages(place, kind, pages)
+        with sole_writer(place):
+            for kind, pages in drawn.items():
+                write_pages(place, kind, pages)
     names = dict.fromkeys(name for pages in drawn.values() for name in pages)
     print(f"Written to {place}: {', '.join(names)}")
 
@@ -154,6 +163,7 @@ def view(
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
     out: options.Out = Path("rockwobble-view"),
+    overwrite: options.Overwrite = False,
     opened: Open = None,
 ) -> None:
     """Play one case in three dimensions: the engine's cylinder, and the reduced model translucent over it.
@@ -167,7 +177,7 @@ def view(
     with interruptible():
         with user_input():
             if folder is not None:
-                others = set(given_options(context)) - {"folder", "case_name", "out", "opened"}
+                others = set(given_options(context)) - {"folder", "case_name", "out", "overwrite", "opened"}
                 refuse(context, others, "states a run and does not go with a stored one")
                 comparison = rw.Comparison.load(folder)
                 name = _chosen_case(comparison, case_name)
@@ -179,7 +189,7 @@ def view(
                 (run,) = rr.with_settings(case, [asked], settings(setting))
                 rr.require_runnable(case, run)
                 name = case.name
-            rs.require_writable(out)
+            claim_folder(context)
         if folder is None:
             echo(describe(case))
             with user_input(), shown_progress() as progress:

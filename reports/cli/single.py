@@ -14,7 +14,6 @@ import typer
 import rockwobble as rw
 import rockwobble.compare as rc
 import rockwobble.compare.runs as rr
-import rockwobble.compare.storage as rs
 from rockwobble.compare.runs.plan import Plan, options_in
 from rockwobble.compare.studies.plans import AdvicePlan, ModelPlan
 
@@ -23,6 +22,7 @@ from ..pages.cases import case_warnings, describe, record_lines
 from . import options
 from .command import takes_options
 from .options import settings
+from .outputs import claim_folder
 from .problem import Problem, given_options, refuse_options_of_engines, restated
 from .suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
 
@@ -96,6 +96,7 @@ def compare(
         ),
     ] = False,
     out: options.Out = Path("rockwobble-compare"),
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Run the reduced model and the engines on one problem, and report how long they agree.
 
@@ -127,7 +128,7 @@ def compare(
                 runs = _runs(cases[0], engine, support, time_step, alone=bool(external.trajectory))
             if setting:
                 runs = list(rr.with_settings(cases[0], runs, settings(setting)))
-            rs.require_writable(out)
+            claim_folder(context)
             for each in cases:
                 for run in runs:
                     rr.require_runnable(each, run)
@@ -206,6 +207,7 @@ def simulate(
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
     out: options.Out = Path("rockwobble-simulate"),
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Run the reduced model, or one engine, on one problem.
 
@@ -228,7 +230,7 @@ def simulate(
                 raise ValueError("--plane is the azimuth of the lean, got --release-azimuth-deg beside it")
             if model.plane is not None and case.initial is not None:  # it leans in the plane that holds it
                 case = replace(case, initial=replace(case.initial, rolling_angle=model.plane))
-            rs.require_writable(out)
+            claim_folder(context)
             named = None if engine == options.NO_ENGINE else engine
             run = _with_settings(case, rw.Run(named, support, time_step), setting, dataclasses.asdict(model))
             rr.require_runnable(case, run)
@@ -278,6 +280,7 @@ def advise(
     time_step: options.TimeStep = None,
     details: Details = False,
     out: options.Out = Path("rockwobble-advise"),
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Say how one case ends, how far its results can be trusted, and what its support must supply.
 
@@ -296,7 +299,7 @@ def advise(
         with user_input():
             case = problem.case()
             run = _run(case, engine, plan.support, time_step)
-            rs.require_writable(out)
+            claim_folder(context)
         echo([*record_lines([case.motion]), *case_warnings([case])])
         with shown_progress("stages") as progress:
             found = rw.advise(

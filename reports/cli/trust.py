@@ -19,6 +19,7 @@ from rockwobble.compare.runs.plan import Plan, options_in
 from ..console import FAILED, complain, interruptible, shown_progress, user_input
 from . import options
 from .command import takes_options
+from .outputs import plan_in_json, plan_of, require_own_file
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -101,15 +102,26 @@ class OutputOptions(Plan):
     junit: Path | None = _output(None, "Write a JUnit report (XML).")
     markdown: Path | None = _output(None, "Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.")
 
-    def require_writable(self) -> None:
-        """Refuse, by a ValueError, a file that cannot be written."""
+    overwrite: options.Overwrite = False
+
+    def require_writable(self, plan: str) -> None:
+        """Refuse, by a ValueError, a file that cannot be written, or is of another plan."""
         from rockwobble.compare.storage.files import require_file
 
-        for path in (self.json, self.junit, self.markdown):
-            if path is not None:
-                require_file("a report", path)
+        from ..pages.check import plan_in_junit
 
-    def write(self, found: Checks, seconds: float) -> None:
+        for option, path, plan_in in (
+            ("--json", self.json, plan_in_json({"passed", "counts", "results"})),
+            ("--junit", self.junit, plan_in_junit),
+        ):
+            if path is not None and self.overwrite:
+                require_file("a report", path)
+            elif path is not None:
+                require_own_file(option, path, plan, plan_in)
+        if self.markdown is not None:  # to which a page is added
+            require_file("a report", self.markdown)
+
+    def write(self, found: Checks, seconds: float, plan: str) -> None:
         """Write the files.
 
         Raises
@@ -121,7 +133,7 @@ class OutputOptions(Plan):
 
         for path, text_of in ((self.json, as_json), (self.junit, as_junit)):
             if path is not None:
-                rs.replace_files(path.parent, {path.name: text_of(found, seconds).encode()})
+                rs.replace_files(path.parent, {path.name: text_of(found, seconds, plan).encode()})
         if self.markdown is not None:
             try:  # the summary of a CI job may hold pages of other steps
                 with self.markdown.open("a", encoding="utf-8") as file:
@@ -132,6 +144,7 @@ class OutputOptions(Plan):
 
 @takes_options
 def check(
+    context: typer.Context,
     subject: SubjectOptions,
     output: OutputOptions,
     only: Annotated[
@@ -175,7 +188,7 @@ def check(
 
             if reason is not None and not update_baseline:
                 raise ValueError("--reason belongs to --update-baseline, got it alone")
-            output.require_writable()
+            output.require_writable(plan := plan_of(context))
             given = subject.subject()
             if update_baseline:
                 if given or only:
@@ -185,7 +198,7 @@ def check(
             found = _run(given, only)
             seconds = time.monotonic() - begun
             print(headline(found, seconds))
-            output.write(found, seconds)
+            output.write(found, seconds, plan)
     if not found.passed:
         raise typer.Exit(FAILED)
 
@@ -250,6 +263,7 @@ def _shown(changed: Sequence[tuple[str, str, float | None, float | None]]) -> li
 
 
 def certify(
+    context: typer.Context,
     out: Annotated[Path, typer.Option(help="File to write.")] = Path("certificate.json"),
     engine: Annotated[
         str | None, typer.Option(help="Engine to certify. Default: the reduced models.")
@@ -263,6 +277,7 @@ def certify(
             "and baseline.",
         ),
     ] = None,
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Write a certificate: claims with their evidence, and a fingerprint of short cases.
 
@@ -288,6 +303,9 @@ def certify(
         for group in only or ():
             require_one_of("--only", group, CLAIMING)
         require_file("--out", out)
+        plan = plan_of(context)
+        if not overwrite:
+            require_own_file("--out", out, plan, plan_in_json({"kind", "format", "fingerprint"}))
         subject = models() if engine is None else engine_subject(engine, time_step)
         if not any(SUPPORTS[name].guided for name in subject.supports):
             given = f"{engine} with {', '.join(subject.supports)}"
@@ -298,7 +316,7 @@ def certify(
             complain(f"a check failed, and nothing is certified: {failed[0]}")
             raise typer.Exit(FAILED)
         found = make(subject, results)
-        write_certificate(found, out)
+        write_certificate({**found, "plan": plan}, out)
     print(f"{out}: {len(found['claims'])} claims, {len(found['fingerprint'])} cases")
 
 

@@ -52,22 +52,40 @@ def check_page(found: Checks, seconds: float) -> Page:
     return Page(name="check", template="check", values=values)
 
 
-def as_json(found: Checks, seconds: float) -> str:
-    """Return everything, with the floats to the last bit."""
+def as_json(found: Checks, seconds: float, plan: str = "") -> str:
+    """Return everything, with the floats to the last bit, and the hash of the command."""
     from rockwobble.models.plain_json import dumps
 
     content = {
         "passed": found.passed,
         "counts": found.headline(),
         "seconds": seconds,
+        **({"plan": plan} if plan else {}),
         **found.facts,
         "results": found.results,
     }
     return dumps(content, indent=1) + "\n"
 
 
-def as_junit(found: Checks, seconds: float) -> str:
-    """Return a JUnit report with one test case for each check, in a suite for each group."""
+def plan_in_junit(content: bytes) -> str | None:
+    """Return the hash of the command in a JUnit report of checks: empty without one, None in other files."""
+    from xml.etree import ElementTree
+
+    try:
+        root = ElementTree.fromstring(content)
+    except ElementTree.ParseError:
+        return None
+    if root.get("name") != "rockwobble check":
+        return None
+    found = root.find(".//property[@name='plan']")
+    return "" if found is None else found.get("value")
+
+
+def as_junit(found: Checks, seconds: float, plan: str = "") -> str:
+    """Return a JUnit report with one test case for each check, in a suite for each group.
+
+    The hash of the command is a property of each suite.
+    """
     from xml.etree import ElementTree
 
     root = ElementTree.Element("testsuites", name="rockwobble check", time=f"{seconds:.3f}")
@@ -80,6 +98,9 @@ def as_junit(found: Checks, seconds: float) -> str:
             **{key: str(value) for key, value in counts.items()},
         }
         suite = ElementTree.SubElement(root, "testsuite", said)
+        if plan:
+            properties = ElementTree.SubElement(suite, "properties")
+            ElementTree.SubElement(properties, "property", name="plan", value=plan)
         for result in of_group:
             kind = _kind(result)
             case = ElementTree.SubElement(

@@ -65,7 +65,7 @@ BAD = {
         record("nan.csv"),
         "line 3: a sample must be a finite number, got 'nan'",
     ),
-    "text cell in a record": (record("text.csv"), "text.csv, line 3: expected two numbers"),
+    "text cell in a record": (record("text.csv"), "text.csv, line 3: expected numbers alone"),
     "different time steps": (record("slow.csv"), "must have one time step, got 0.02 s in slow.csv"),
     "no units": (
         record("silent.csv", "silent.csv"),
@@ -85,8 +85,8 @@ BAD = {
         ["--record-y", "good.csv"],
         "got --record-y without --record-x: for planar",
     ),
-    "one component as all": (["--record", "good.csv"], "zero for planar motion"),
-    "one file resampled": (["--record", "good.csv", "--resample"], "--resample goes with --record-x"),
+    "one component as all": (["--record", "good.csv"], "zero for the other (planar motion)"),
+    "one file resampled": (["--record", "good.csv", "--resample"], "holds one component"),
     "nothing to resample": (["--resample"], "--resample belongs to a record"),
     "only z": (["--record-z", "good.csv"], "--record-z belongs to a record, give --record-x and --record-y"),
     "units of nothing": (["--units", "g"], "--units belongs to a record, give --record-x and --record-y"),
@@ -254,7 +254,8 @@ def test_simulate_says_from_when_on_its_trace_is_one_of_many(folder, in_this_pro
     assert set(about["answer"].split()) == {"rockwobble", "advise", *given}
     words = " ".join(capsys.readouterr().out.split())
     assert f"From {about['until']:.4g} s on, before its largest tilt, a single trace is not" in words
-    assert call("simulate", "--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2") == 0
+    release = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2"]
+    assert call("simulate", *release, "--out", "released") == 0
     assert "not reproducible" not in capsys.readouterr().out
 
 
@@ -289,7 +290,7 @@ def test_nothing_is_ignored_in_silence(folder, monkeypatch, capsys, kind):
 
 
 def result(*arguments: str) -> dict[str, Any]:
-    assert call("simulate", *arguments) == 0
+    assert call("simulate", *arguments, "--overwrite") == 0
     made = json.loads(Path("rockwobble-simulate/manifest.json").read_text())
     return made["about"] | {"inputs": made["inputs"]}
 

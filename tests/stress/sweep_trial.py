@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockwobble.compare.runs.cache import CACHE
 from rockwobble.compare.runs.progress import Progress
+from rockwobble.compare.storage.claim import CACHE
 from rockwobble.compare.studies.grid import Grid
 from rockwobble.compare.studies.sweep import KIND, sweep
 from rockwobble.models import el_centro_1940
