@@ -67,6 +67,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
     lifted, lift_in, at_beginning, at_rest, stood, moved = make_progress(system, stepper)
     workspace, derivative = stepper.workspace, system.derivative
     resists, hold, momenta, grows = system.resists, system.hold, system.momenta, system.grows
+    sense = system.sense
 
     @once
     def integrate(body: Body, options: Options, task: Task) -> IntegrationResult:
@@ -81,7 +82,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         uplift = (np.nan, np.nan) if resting else (0.0, initial[2])  # time and direction
         h_next = _FIRST_STEP / body.p
         run = Stage(0.0, initial, initial, h_next, True, resting, initial[0], _FIRST_SAMPLE, 0, COMPLETED)
-        now, index, turned = 0.0, 0, np.nan
+        now, index, turned, spent = 0.0, 0, np.nan, np.nan
         still = still_from(record, time_step)
         end, following, mark = options.duration, False, mark_of(run.y, log)
 
@@ -97,7 +98,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     break
                 if has_turned(log, still) and not (grows and may_rise_above(body, momenta, run.y, run.peak)):
                     break
-                if resists and hold(body, run.y, _STILL_GROUND, _STILL_GROUND) == inf:
+                if resists and hold(body, options.rtol, run.y, _STILL_GROUND, _STILL_GROUND) == inf:
                     break
                 end, following, mark = now + _LONGEST / body.p, True, mark_of(run.y, log)
                 index, jumps = len(record), True
@@ -129,6 +130,8 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     log.extrema.append((turned, turn.tilt, turn.angle, turn.kind))
                 if landing.kind != NO_TURN:
                     log.extrema.append((now, landing.tilt, landing.angle, landing.kind))
+                    if resists and np.isnan(spent) and sense(run.y) != 0.0:
+                        spent = now
                 if options.record_steps and now > begin:
                     log.steps.append((now, *run.y))
                 if run.resting:
@@ -140,7 +143,8 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         if following:
             followed = turned if status == TURNED else log.rests[-1][0] if run.resting else now
         falls = status == OVERTURNED
-        moves = not run.resting and not (resists and hold(body, run.y, _STILL_GROUND, _STILL_GROUND) == inf)
+        stuck = resists and hold(body, options.rtol, run.y, _STILL_GROUND, _STILL_GROUND) == inf
+        moves = not run.resting and not stuck
         if moves and now >= still and status in (OVERTURNED, COMPLETED, TURNED):
             L = momenta(run.y)[0]
             if undecided(body, run.y[0], L, log, still, now, falls, grows):
@@ -158,6 +162,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
             status,
             now,
             followed,
+            spent,
             run.peak,
             uplift[0],
             uplift[1],

@@ -204,7 +204,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     momenta, is_flat = system.momenta, make_is_flat(system.momenta)
     placed: Callable[..., State] = system.placed
     resists, hold, set_off, stopped = system.resists, system.hold, system.set_off, system.stopped
-    rebound, grows = system.rebound, system.grows
+    ready, rebound, grows = system.ready, system.rebound, system.grows
 
     @jit
     def lifted(body: Body, time_step: float, piece: Piece, at: float, time: float, last: State) -> State:
@@ -301,11 +301,15 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         """
         elapsed, y, k, h_next, restart, _, peak, sample, step_count, status = run
         a = ground(piece.a, piece.slope, elapsed)
+        if resists:
+            spun = not is_flat(y)
+            y = ready(body, options.rtol, y, a, piece.slope)
+            restart = restart or (spun and is_flat(y))
         if resists and (is_still(y) or y[-1] == PIVOTS):
-            wait = hold(body, y, a, piece.slope) if is_still(y) else 0.0
+            wait = hold(body, options.rtol, y, a, piece.slope) if is_still(y) else 0.0
             if wait > 0.0:
                 return Step(held(piece, wait, wanted, run), NONE, NONE)
-            y, longest = set_off(body, y, a, piece.slope)
+            y, longest = set_off(body, options.rtol, y, a, piece.slope)
             h_next, restart = min(h_next, longest), True
         if restart:
             k = restarted(body, y, a, work)
