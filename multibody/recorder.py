@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from rockwobble.models.plain_json import fields_of
 from rockwobble.models.support import SUPPORTS
 
-from .guard import EnergyWatch, energy_scale, first_breach
+from .guard import EnergyWatch, couple_power, energy_scale, first_breach
 from .kinematics import Kinematics, kinematics, rim, rolling_momentum, tilt_of, unwrap, unwrap_twist
 from .passes import RestWatch, TurningPoint, turning_points
 from .protocol import Steps, Wall
@@ -37,8 +37,8 @@ _LEAST_ENERGY = 2e-4
 _ROUNDING = 1e-6  # of a step
 COLUMNS = (
     "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_x", "contact_y",
-    "base_x", "base_y", "x", "y", "z", "energy", "energy_error", "slip", "wall_contact",
-    "wall_impulse",
+    "base_x", "base_y", "x", "y", "z", "energy", "energy_error", "energy_lost", "slip",
+    "wall_contact", "wall_impulse",
 )  # fmt: skip
 
 
@@ -99,7 +99,6 @@ class Recorder:
             scene.time_step,
             _LEAST_ENERGY * balance if start.standing else 0.0,
             balance if lean > math.atan(body.tan_alpha) else 0.0,
-            loses=scene.rolling_resistance > 0.0,
         )
         self.looks = 0  # at the solver, and how often it had not converged
         self.unsolved = 0
@@ -159,13 +158,21 @@ class Recorder:
         state = kinematics(poses, after, body, self._scene.gravity)
         state = replace(state, twist=unwrap_twist(state.twist, self._twist))
         gained = self.energy.error(state, poses, after, acceleration)
+        # before the couple, whose part is not known well enough to end a run by
         stop = self._stop(time, state, gained, wall)
         if not stop:
             return
+        lost = self._rolling_loss(poses, after, acceleration)
+        gained = gained + lost
         if stop < count:
             # whatever the engine did after the end, the side on the ground included, is no part of the run
             inside = slice(stop)
-            time, gained, acceleration = time[inside], gained[inside], acceleration[inside]
+            time, gained, lost, acceleration = (
+                time[inside],
+                gained[inside],
+                lost[inside],
+                acceleration[inside],
+            )
             poses, after, state = _rows(poses, inside), _rows(after, inside), _rows(state, inside)
             wall = wall and _rows(wall, inside)
         if self._watch is not None and self.uplift is None:
@@ -190,7 +197,7 @@ class Recorder:
             return np.column_stack(
                 [time[at], state.tilt[at], state.tilt_rate[at], angle[at], place.rolling_rate,
                  state.twist[at], place.contact_point, place.base_centre[:, :2], some.position,
-                 state.energy[at], gained[at], slip[at], wall_contact[at], wall_impulse[at]]
+                 state.energy[at], gained[at], lost[at], slip[at], wall_contact[at], wall_impulse[at]]
             )  # fmt: skip
 
         self._depths.append(float(np.median(state.depth)))
@@ -248,6 +255,22 @@ class Recorder:
         )
         self._last = _rows(joined, slice(-1, None))
         return _rows(joined, slice(0, -1)), _rows(joined, slice(1, None))
+
+    def _rolling_loss(self, poses: Steps, after: Steps, ground: Array) -> Array:
+        """Energy that the rolling resistance has taken until each pose, shape (n,) [m^2/s^2]."""
+        scene, body = self._scene, self._scene.body
+        if scene.rolling_resistance == 0.0:
+            return np.zeros(len(poses.position))
+        slab = body.slab_mass_ratio
+        # the base carries a column and its share of the slab, the top the share
+        carried = (1.0 + slab, slab)
+        forces = [
+            (mass * scene.gravity / body.driven_mass,
+             force_of_steps(poses, after, ground, scene.time_step, scene.gravity, gain))
+            for mass, gain in zip(carried, body.gains, strict=False)
+        ]  # fmt: skip
+        power = couple_power(poses, after, forces, scene.rolling_resistance)
+        return self.energy.lost(power)
 
     def _slip(self, time: Array, state: Kinematics) -> Array:
         """Distance that the contact has slipped until each pose [m]; note slip and flight."""
