@@ -217,7 +217,7 @@ def with_side(y: State, side: float) -> State:
 @inlined
 def _series_time(body: Body, rtol: float) -> float:
     """Return for how long the series of a motion that the couple lets go is used [s]."""
-    return min(_SERIES * rtol ** (1.0 / 3.0), _LONGEST_SERIES) / body.p
+    return min(_SERIES * float(rtol ** (1.0 / 3.0)), _LONGEST_SERIES) / body.p
 
 
 @jit
