@@ -19,7 +19,7 @@ from rockwobble.models.plain_json import fields_of
 from rockwobble.models.support import SUPPORTS
 
 from .guard import EnergyWatch, energy_scale, first_breach
-from .kinematics import Kinematics, kinematics, rim, rolling_momentum, tilt_of, unwrap, unwrap_twist
+from .kinematics import Kinematics, base_centre, kinematics, rim, rolling_momentum, tilt_of, unwrap, unwrap_twist
 from .passes import RestWatch, TurningPoint, turning_points
 from .protocol import Steps, Wall
 from .reaction import ForceSamples, UpliftWatch, begun_at, first_grip, first_pull, force_of_steps, sure_tilt
@@ -38,7 +38,7 @@ _ROUNDING = 1e-6  # of a step
 COLUMNS = (
     "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_x", "contact_y",
     "base_x", "base_y", "x", "y", "z", "energy", "energy_error", "slip", "wall_contact",
-    "wall_impulse",
+    "wall_impulse", "elongation",
 )  # fmt: skip
 
 
@@ -77,7 +77,7 @@ class Recorder:
         self.off_grid = False  # whether it is no sample of a run that is extended
         self._watch: UpliftWatch | None = None
         if start.standing:
-            self._watch = UpliftWatch(body, scene.gravity, scene.time_step, rounding)
+            self._watch = UpliftWatch(body, scene.tipping_gravity, scene.time_step, rounding)
         self._start: Start | None = start
         self._last: Steps | None = None  # the pose whose next velocity is still to come
         self._count = 0  # poses analysed
@@ -98,7 +98,7 @@ class Recorder:
         self.energy = EnergyWatch(
             scene.time_step,
             _LEAST_ENERGY * balance if start.standing else 0.0,
-            balance if lean > math.atan(body.tan_alpha) else 0.0,
+            balance if lean > scene.balance_tilt else 0.0,
             loses=scene.rolling_resistance > 0.0,
         )
         self.looks = 0  # at the solver, and how often it had not converged
@@ -112,6 +112,9 @@ class Recorder:
         self._at_turn = not start.standing and starts_at_turn
         self.points: list[TurningPoint] = []
         self.peak = 0.0
+        self.elongation = 0.0  # largest so far [m]
+        self.yield_time = math.nan  # when the tendon would first have yielded [s]
+        self._balance = scene.balance_tilt
         self.fastest = 0.0
         self.uplift: tuple[float, float] | None = None if start.standing else (0.0, rolling_angle)
         self.ended: str = ""
@@ -156,7 +159,8 @@ class Recorder:
         count, wall = len(poses.position), steps.wall
         time: Array = self._scene.time_step * np.arange(self._count, self._count + count, dtype=float)
         body = self._scene.body
-        state = kinematics(poses, after, body, self._scene.gravity)
+        tendon = self._scene.tendon
+        state = kinematics(poses, after, body, self._scene.gravity, tendon)
         state = replace(state, twist=unwrap_twist(state.twist, self._twist))
         gained = self.energy.error(state, poses, after, acceleration)
         stop = self._stop(time, state, gained, wall)
@@ -183,6 +187,8 @@ class Recorder:
             self._watch = None
         slip = self._slip(time, state)
         wall_contact, wall_impulse = self.walls.take(time, wall)
+        elongation = np.zeros(stop) if state.elongation is None else state.elongation
+        self._watch_tendon(time, elongation)
 
         def rows(at: Indices) -> Array:
             some, later = _rows(poses, at), _rows(after, at)
@@ -190,7 +196,8 @@ class Recorder:
             return np.column_stack(
                 [time[at], state.tilt[at], state.tilt_rate[at], angle[at], place.rolling_rate,
                  state.twist[at], place.contact_point, place.base_centre[:, :2], some.position,
-                 state.energy[at], gained[at], slip[at], wall_contact[at], wall_impulse[at]]
+                 state.energy[at], gained[at], slip[at], wall_contact[at], wall_impulse[at],
+                 elongation[at]]
             )  # fmt: skip
 
         self._depths.append(float(np.median(state.depth)))
@@ -198,7 +205,7 @@ class Recorder:
         self.energy.take(time, state.energy, gained)
         self.rests.take(time, state.tilt)
         # a fall beyond the balance is faster than any pass, and none comes after it
-        within = state.tilt < math.atan(body.tan_alpha)
+        within = state.tilt < self._balance
         self.fastest = max(self.fastest, float(np.abs(state.tilt_rate[within]).max(initial=0.0)))
         self._sample(time, rows)
         # on the base, and on a slab that keeps to the top
@@ -206,6 +213,11 @@ class Recorder:
             force_of_steps(poses, after, acceleration, self._scene.time_step, self._scene.gravity, gain)
             for gain in self._gains
         ]
+        if tendon is not None:
+            # of what the base carries, and of the slab, the tendon takes hold as well as contact does
+            pulls = tendon.pulls(base_centre(poses, body), elongation) / self._scene.gravity
+            for end, mass in zip(ends, (1.0 + body.slab_mass_ratio, body.slab_mass_ratio), strict=False):
+                end -= pulls / mass
         self.forces.add(ends[0])
         # a wall may well push the cylinder down, by its friction or where the rim is below it
         if math.isnan(self.pull_time) and wall is None:
@@ -259,6 +271,15 @@ class Recorder:
             if math.isnan(getattr(self, name)) and happens.any():
                 setattr(self, name, float(time[np.argmax(happens)]))
         return slipped
+
+    def _watch_tendon(self, time: Array, elongation: Array) -> None:
+        """Follow the tendon; note where it would yield."""
+        if self._scene.tendon is None:
+            return
+        self.elongation = max(self.elongation, float(elongation.max()))
+        yields = elongation > self._scene.tendon.yield_elongation
+        if math.isnan(self.yield_time) and yields.any():
+            self.yield_time = float(time[np.argmax(yields)])
 
     def _stop(self, time: Array, state: Kinematics, gained: Array, wall: Wall | None) -> int:
         """Number of steps of this chunk that belong to the result."""
