@@ -19,7 +19,16 @@ from rockwobble.models.plain_json import fields_of
 from rockwobble.models.support import SUPPORTS
 
 from .guard import EnergyWatch, energy_scale, first_breach
-from .kinematics import Kinematics, base_centre, kinematics, rim, rolling_momentum, tilt_of, unwrap, unwrap_twist
+from .kinematics import (
+    Kinematics,
+    base_centre,
+    kinematics,
+    rim,
+    rolling_momentum,
+    tilt_of,
+    unwrap,
+    unwrap_twist,
+)
 from .passes import RestWatch, TurningPoint, turning_points
 from .protocol import Steps, Wall
 from .reaction import ForceSamples, UpliftWatch, begun_at, first_grip, first_pull, force_of_steps, sure_tilt

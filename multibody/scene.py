@@ -230,13 +230,17 @@ class Scene:
         tips a frame are twice the forces of its slab.
         """
         tendon = self.tendon
-        return self.gravity + (0.0 if tendon is None else tendon.gaps * tendon.prestress / self.body.driven_mass)
+        return self.gravity + (
+            0.0 if tendon is None else tendon.gaps * tendon.prestress / self.body.driven_mass
+        )
 
     @property
     def pressing_gravity(self) -> float:
         """Gravity whose weight would press a closed base on the ground as weight and prestress do [m/s^2]."""
         tendon = self.tendon
-        return self.gravity + (0.0 if tendon is None else tendon.prestress / (1.0 + self.body.slab_mass_ratio))
+        return self.gravity + (
+            0.0 if tendon is None else tendon.prestress / (1.0 + self.body.slab_mass_ratio)
+        )
 
     @property
     def balance_tilt(self) -> float:

@@ -174,9 +174,7 @@ def _add_tendon(spec: mujoco.MjSpec, shape: Body, tendon: SceneTendon) -> None:
     if tendon.gaps > 1:
         body.add_site(name="tendon_top", pos=[0.0, 0.0, base + shape.height])
         sites, rest = [*sites, "tendon_top", "tendon_slab"], 2.0 * tendon.depth + shape.height
-    cable = spec.add_tendon(
-        name="tendon", stiffness=[tendon.stiffness, 0.0, 0.0], springlength=[rest, rest]
-    )
+    cable = spec.add_tendon(name="tendon", stiffness=[tendon.stiffness, 0.0, 0.0], springlength=[rest, rest])
     for site in sites:
         cable.wrap_site(site)
     force = spec.add_actuator(name="prestress", target="tendon", trntype=mujoco.mjtTrn.mjTRN_TENDON)
