@@ -229,18 +229,16 @@ class Scene:
         Without vertical motion the base opens at b/h of it: n P0/(1 + 2 gamma) above gravity, since what
         tips a frame are twice the forces of its slab.
         """
-        tendon = self.tendon
-        return self.gravity + (
-            0.0 if tendon is None else tendon.gaps * tendon.prestress / self.body.driven_mass
-        )
+        if self.tendon is None:
+            return self.gravity
+        return self.gravity + self.tendon.gaps * self.tendon.prestress / self.body.driven_mass
 
     @property
     def pressing_gravity(self) -> float:
         """Gravity whose weight would press a closed base on the ground as weight and prestress do [m/s^2]."""
-        tendon = self.tendon
-        return self.gravity + (
-            0.0 if tendon is None else tendon.prestress / (1.0 + self.body.slab_mass_ratio)
-        )
+        if self.tendon is None:
+            return self.gravity
+        return self.gravity + self.tendon.prestress / (1.0 + self.body.slab_mass_ratio)
 
     @property
     def balance_tilt(self) -> float:

@@ -21,12 +21,16 @@ is pulled by -T v/|v| as well, and the column by T v/|v| at the top. On the colu
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockwobble.models.shown import Brief
 from rockwobble.models.tendon import Tendon
+
+Array = NDArray[np.float64]
 
 # of b: at 1e-3 a release in MuJoCo is off by 2e-5 alpha, at 1e-4 by a tenth of that, and here by no more than
 # it is without a tendon
@@ -64,36 +68,35 @@ class SceneTendon(Brief):
         return share * x, share * y, share * z
 
     def loads(
-        self, x: float, y: float, z: float, axis_x: float, axis_y: float, axis_z: float, height: float
-    ) -> tuple[float, float, float, float, float, float]:
-        """Return the force on the base, and the torque on the column about its mass centre [m/s^2], [m^2/s^2].
+        self, place: Sequence[float], axis: Sequence[float], height: float
+    ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """Return force on the base and torque on the column about its mass centre [m/s^2], [m^2/s^2].
 
-        The mass centre is at (x, y, z) [m], and by `height` [m] above the base along the axis. Under a slab
-        the force at the top is the opposite of that on the base, which the slab has as well.
+        The mass centre is at `place` (3,) [m], and by `height` [m] above the base along the axis (3,). Under
+        a slab the force at the top is the opposite of that on the base, which the slab has as well.
         """
+        x, y, z = place
+        axis_x, axis_y, axis_z = axis
         a, b, c = self.pull(x - height * axis_x, y - height * axis_y, z - height * axis_z)
         arm = self.gaps * height
-        return (
-            a,
-            b,
-            c,
+        return (a, b, c), (
             arm * (b * axis_z - c * axis_y),
             arm * (c * axis_x - a * axis_z),
             arm * (a * axis_y - b * axis_x),
         )
 
-    def elongation(self, base_centre: np.ndarray) -> np.ndarray:
+    def elongation(self, base_centre: Array) -> Array:
         """Return the elongations (n,) where the centre of the base is at places (n, 3) [m]."""
         x, y, z = base_centre.T
         return np.asarray(self.gaps * (np.sqrt(x * x + y * y + (z + self.depth) ** 2) - self.depth))
 
-    def energy(self, elongation: np.ndarray) -> np.ndarray:
+    def energy(self, elongation: Array) -> Array:
         """Return the energy that elongations (n,) [m] store, per unit mass of the column [m^2/s^2]."""
         return np.asarray((self.prestress + 0.5 * self.stiffness * elongation) * elongation)
 
-    def pulls(self, base_centre: np.ndarray, elongation: np.ndarray) -> np.ndarray:
+    def pulls(self, base_centre: Array, elongation: Array) -> Array:
         """Return the forces (3, n) on the base at places (n, 3) [m], and on the slab [m/s^2]."""
-        way = base_centre.T + [[0.0], [0.0], [self.depth]]
+        way = base_centre.T + np.array([[0.0], [0.0], [self.depth]])
         tension = self.prestress + self.stiffness * elongation
         return np.asarray(-tension / np.linalg.norm(way, axis=0) * way)
 

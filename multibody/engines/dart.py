@@ -306,10 +306,10 @@ class _DartStepper(Leapfrog):
         if tendon is None:
             return
         x, y, z = place
-        loads = tendon.loads(x, y, z + depth, *axis, self._scene.body.mass_centre_height)
-        self._cylinder.addExtTorque(loads[3:])
+        force, torque = tendon.loads((x, y, z + depth), axis, self._scene.body.mass_centre_height)
+        self._cylinder.addExtTorque(torque)
         body = self._cylinder if self._slab is None else self._slab.getChildBodyNode()
-        body.addExtForce(loads[:3])
+        body.addExtForce(force)
 
     def _step_on(self, beyond: list[float]) -> None:
         """Take a step, in which the slab has a velocity beyond its own; it keeps what the step changed."""

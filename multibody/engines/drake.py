@@ -353,11 +353,12 @@ class _DrakeStepper(Leapfrog):
         """Return torque and forces of a step with those of the tendon."""
         tendon, rim = self._scene.tendon, self._rim
         if tendon is not None:
-            _, x, y, _, *place, height = self._place[:7]
+            _, x, y, _, *place = self._place[:7]
+            place[2] += self._depth
             axis = rim.axis_x, rim.axis_y, 1.0 - 2.0 * (x * x + y * y)
-            loads = tendon.loads(*place, height + self._depth, *axis, self._scene.body.mass_centre_height)
-            force[:3] += loads[3:]
-            force[-3:] += loads[:3]  # of the slab, or the cylinder alone
+            pull, couple = tendon.loads(place, axis, self._scene.body.mass_centre_height)
+            force[:3] += couple
+            force[-3:] += pull  # of the slab, or the cylinder alone
         return force
 
     def _advance_once(self, force: Array) -> None:

@@ -256,7 +256,7 @@ def _warnings(data: mujoco.MjData) -> list[str]:
 
 
 def _depth(scene: Scene, settings: MujocoSettings) -> float:
-    """Depth at which one contact carries weight and prestress [m]: what the impedance leaves for the spring."""
+    """Depth at which one contact carries weight and prestress [m]: what the impedance leaves its spring."""
     time = settings.contact_time_constant / scene.unit_time
     return scene.pressing_gravity * time**2 * (1.0 - settings.impedance) / settings.impedance
 

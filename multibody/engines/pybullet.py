@@ -312,13 +312,13 @@ class _PybulletStepper(Leapfrog):
             return
         x, y, z, w = turn
         axis = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)
-        force_x, force_y, force_z, *torque = tendon.loads(*place, *axis, self._lengths[1])
+        force, torque = tendon.loads(place, axis, self._lengths[1])
         bullet, client, world = self._bullet, self._client, self._bullet.WORLD_FRAME
         bullet.applyExternalTorque(self._body, -1, torque, world, client)
         body, at = self._body, place
         if self._slab is not None:
             body, at = self._slab, bullet.getBasePositionAndOrientation(self._slab, client)[0]
-        bullet.applyExternalForce(body, -1, (force_x, force_y, force_z), at, world, client)
+        bullet.applyExternalForce(body, -1, force, at, world, client)
 
     def _let_go(self) -> None:
         """Go on with the cylinder in place of the point of its rim; its pose is still to be set."""

@@ -145,14 +145,10 @@ class _RapierStepper(Leapfrog):
                     (pair * (i * k + w * j), pair * (j * k - w * i), pair * (1.0 - i * i - j * j))
                 )
             if tendon is not None:
-                axis_x, axis_y, axis_z = (
-                    2.0 * (i * k + w * j),
-                    2.0 * (j * k - w * i),
-                    1.0 - 2.0 * (i * i + j * j),
-                )
-                *force, turn_x, turn_y, turn_z = tendon.loads(x, y, z + depth, axis_x, axis_y, axis_z, h)
-                body.add_torque((turn_x, turn_y, turn_z))
-                carried.add_force(tuple(force))
+                axis = 2.0 * (i * k + w * j), 2.0 * (j * k - w * i), 1.0 - 2.0 * (i * i + j * j)
+                force, torque = tendon.loads((x, y, z + depth), axis, h)
+                body.add_torque(torque)
+                carried.add_force(force)
             step()
             body.reset_torques()
             if tendon is not None:
