@@ -98,7 +98,8 @@ class Cylinder(Brief):
     def from_dimensions(
         cls,
         *,
-        base_radius: float,
+        base_radius: float | None = None,
+        diameter: float | None = None,
         height: float,
         mass_centre_height: float | None = None,
         transverse_inertia: float | None = None,
@@ -108,8 +109,8 @@ class Cylinder(Brief):
 
         Parameters
         ----------
-        base_radius : float
-            b [m].
+        base_radius, diameter : float
+            b or 2b [m], one of them.
         height : float
             2h, height of the outline [m].
         mass_centre_height : float, optional
@@ -120,9 +121,15 @@ class Cylinder(Brief):
         Raises
         ------
         ValueError
-            If a value is not a positive finite number.
+            If a value is not a positive finite number, or unless one of base_radius and diameter is given.
         """
-        b = require_positive("base_radius", base_radius, "m")
+        if base_radius is not None and diameter is None:
+            b = require_positive("base_radius", base_radius, "m")
+        elif diameter is not None and base_radius is None:
+            b = 0.5 * require_positive("diameter", diameter, "m")
+        else:
+            pair = "neither" if base_radius is None else "both"
+            raise ValueError(f"base_radius or diameter must be given [m], one of them, got {pair}")
         outline = require_positive("height", height, "m")
         h = 0.5 * outline
         if mass_centre_height is not None:

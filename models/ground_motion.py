@@ -8,9 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .number_checks import require_finite, require_positive
+from .diagnostic import Diagnostic
+from .number_checks import quoted, require_finite, require_positive
 from .record_source import RecordSource
 from .shown import brief, line
+
+_FULL_TURN = 2.0 * math.pi * (1.0 + 1e-9)  # [rad]; 360 deg may round to more than 2 pi
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -95,6 +98,16 @@ class GroundMotion:
         return GroundMotion, (self.acceleration, self.time_step, self.name, self.source)
 
     @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What makes a record improbable as it was read, see `RecordSource.doubts`; none without a source."""
+        return self.source.doubts if self.source else ()
+
+    @property
+    def synthetic(self) -> bool:
+        """Whether it says that nobody recorded it: a synthetic motion, or a pulse."""
+        return self.source is not None and self.source.synthetic
+
+    @property
     def duration(self) -> float:
         """Time from the first to the last sample, (n - 1) time_step [s]."""
         return (len(self.acceleration) - 1) * self.time_step
@@ -132,13 +145,23 @@ class GroundMotion:
         Parameters
         ----------
         angle : float
-            Counter-clockwise as seen from above [rad].
+            Counter-clockwise as seen from above [rad], from -2 pi to 2 pi.
 
         Returns
         -------
         GroundMotion
+
+        Raises
+        ------
+        ValueError
+            If the angle is no finite number or is beyond a full turn, as one in degrees is.
         """
         angle = require_finite("angle", angle, "rad")
+        if abs(angle) > _FULL_TURN:
+            raise ValueError(
+                f"angle must be from -2 pi to 2 pi [rad], got {quoted(angle)}: if that is in degrees, "
+                f"give math.radians({angle:g})"
+            )
         turned = np.array(self.acceleration)
         x, y = self.acceleration[:, 0], self.acceleration[:, 1]
         turned[:, 0] = x * math.cos(angle) - y * math.sin(angle)

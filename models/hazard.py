@@ -67,9 +67,9 @@ class HazardCurve(Brief):
     >>> site
     HazardCurve(intensity=array(3,), annual_frequency=array(3,), measure='pga', name='site')
     >>> site.exceedance([0.05, 0.2, 0.3])
-    array([          nan, 0.002     , 0.00052002])
+    array([       nan, 0.002     , 0.00052008])
     >>> round(site.intensity_at(-math.log(0.98) / 50.0), 4)
-    0.3236
+    0.3237
     """
 
     intensity: Array

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from .diagnostic import Diagnostic
 
 # a mean above this part of the peak is said beside it, and doubted: an offset that was not removed
 LARGEST_MEAN = 0.05
+STANDARD_GRAVITY = 9.81  # [m/s^2], the g of files of records
+SYNTHETIC, PULSE = "synthetic", "pulse"  # formats of motions that nobody recorded
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,6 +86,16 @@ class RecordSource:
         return self.line
 
     @property
+    def synthetic(self) -> bool:
+        """Whether nobody recorded it."""
+        return self.format in (SYNTHETIC, PULSE)
+
+    @property
+    def from_files(self) -> bool:
+        """Whether a file of the user holds it."""
+        return any(part.file for part in self.components)
+
+    @property
     def duration(self) -> float:
         """Time from the first to the last sample as read [s]."""
         return (self.samples - 1) * self.time_step
@@ -97,6 +112,30 @@ class RecordSource:
     def changed(self, change: str) -> RecordSource:
         """Return the source of a motion that was made of this one by `change`."""
         return replace(self, changes=(*self.changes, change))
+
+
+def source_of_samples(
+    kind: str, acceleration: NDArray[np.float64], time_step: float, *, labels: Sequence[str] = ("", "", "")
+) -> RecordSource:
+    """Return the source of samples that no file of the user holds.
+
+    Parameters
+    ----------
+    kind : str
+        What they are: "synthetic", "pulse", or a data set.
+    acceleration : ndarray, shape (n, 2) or (n, 3)
+        [m/s^2]
+    time_step : float
+        [s]
+    labels : sequence of str
+        Of the components.
+    """
+    values = acceleration / STANDARD_GRAVITY
+    parts = [
+        ComponentSource(axis=axis, label=label, peak=float(np.abs(part).max()), mean=float(part.mean()))
+        for axis, label, part in zip("xyz", labels, values.T, strict=False)
+    ]
+    return RecordSource(format=kind, time_step=time_step, samples=len(acceleration), components=tuple(parts))
 
 
 def _component(part: ComponentSource, *, named: bool) -> str:

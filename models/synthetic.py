@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from .ground_motion import GroundMotion
 from .number_checks import require_finite, require_one_of, require_positive
+from .record_source import PULSE, SYNTHETIC, source_of_samples
 
 # name: periods that it lasts; the rest is still ground
 _LENGTHS = {"one-sine": 1.0, "one-cosine": 1.0, "half-sine": 0.5}
@@ -68,9 +69,8 @@ def pulse(
     if kind != "one-cosine":
         shape[-1] = 0.0  # and not 1e-16
     values = amplitude * np.concatenate([np.zeros(still), shape])
-    return GroundMotion(
-        np.column_stack([values * math.cos(azimuth), values * math.sin(azimuth)]), step, f"{kind} pulse"
-    )
+    samples = np.column_stack([values * math.cos(azimuth), values * math.sin(azimuth)])
+    return GroundMotion(samples, step, f"{kind} pulse", source_of_samples(PULSE, samples, step))
 
 
 # of the Kanai-Tajimi filter, firm soil: K. Kanai 1957, H. Tajimi 1960
@@ -128,7 +128,12 @@ def synthetic_motions(count: int, *, peak: float, seed: int, duration: float = 2
     shaped = filtered * envelope[None, :, None]
     shaped *= peak / np.hypot(shaped[..., 0], shaped[..., 1]).max(axis=1)[:, None, None]
     return [
-        GroundMotion(samples, _TIME_STEP, f"synthetic {seed}-{index + 1}")
+        GroundMotion(
+            samples,
+            _TIME_STEP,
+            f"synthetic {seed}-{index + 1}",
+            source_of_samples(SYNTHETIC, samples, _TIME_STEP),
+        )
         for index, samples in enumerate(shaped)
     ]
 

@@ -97,7 +97,7 @@ def by_body(plain: F, tied: Callable[..., object]) -> F:
     scope: dict[str, Any] = {"plain": plain, "tied": tied}
     # the parameters of an overload must have the names of those of the function
     exec(
-        f"def function({names}): return (tied if hasattr({first}, 'prestress') else plain)({names})\n"
+        f"def function({names}): return (tied if hasattr({first}, 'prestress') else plain).py_func({names})\n"
         f"def choice({names}): return (tied if 'prestress' in {first}.fields else plain).py_func\n",
         scope,
     )

@@ -77,6 +77,32 @@ def test_no_name_of_a_package_hides_its_module() -> None:
         assert not made & beside, name
 
 
+def test_no_module_binds_a_name_twice() -> None:
+    # a second table of one name replaces the first without a word
+    twice = []
+    for path in (path for folder in FOLDERS for path in (CHECKOUT / folder).rglob("*.py")):
+        names: set[str] = set()
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            targets = node.targets if isinstance(node, ast.Assign) else [node]
+            for each in (part for target in targets for part in _bound(target)):
+                if each in names:
+                    twice.append(f"{path.relative_to(CHECKOUT)}: {each}")
+                names.add(each)
+    assert twice == []
+
+
+def _bound(node: ast.AST) -> list[str]:
+    """Names that an assignment, a function or a class binds in its module."""
+    if isinstance(node, ast.FunctionDef | ast.ClassDef):
+        overload = any(ast.unparse(each).split(".")[-1] == "overload" for each in node.decorator_list)
+        return [] if overload else [node.name]
+    if isinstance(node, ast.AnnAssign):
+        node = node.target
+    if isinstance(node, ast.Name | ast.Tuple | ast.List):
+        return [part.id for part in ast.walk(node) if isinstance(part, ast.Name)]
+    return []
+
+
 def test_the_records_are_data_of_the_package() -> None:
     names = {entry.name for entry in (files("rockwobble.models") / "records").iterdir()}
     assert {name[-8:] for name in names if name.endswith(".AT2")} == {"hor1.AT2", "hor2.AT2", "C-UP.AT2"}

@@ -199,10 +199,13 @@ def column_name(text: str) -> ColumnName:
     return found
 
 
+_NORTH_SOUTH = "ns"  # a direction, unless it stands in brackets or behind a time: then nanoseconds
+
+
 def _unit_apart(text: str) -> tuple[str, str]:
     """Return the words of a name and its unit: in brackets, behind "in", an underscore or a blank."""
     unit = ""
-    if len(text.strip()) > 1 and _quantity_of_unit(text):
+    if len(text.strip()) > 1 and _quantity_of_unit(text) and text.strip().casefold() != _NORTH_SOUTH:
         return "", text.strip()
 
     def kept(match: re.Match[str]) -> str:
@@ -221,6 +224,8 @@ def _unit_apart(text: str) -> tuple[str, str]:
         rest = words.strip()[: behind.start()]
         # a_g is a symbol; "acc g", "time_ms" and "acc_E cm/s2" state units; V E N S W D are directions
         letters = re.sub(r"[^\w]|_", "", rest)
+        if behind[1].casefold() == _NORTH_SOUTH and _by_words(rest).kind != "time":
+            return words.strip(), ""
         if len(behind[1]) > 1 or (behind[1].casefold() in "sg" and len(letters) > 2):
             return rest, behind[1]
     return words.strip(), ""

@@ -71,6 +71,9 @@ class ReadingOptions:
         return stated
 
 
+_LONGEST_LINE = 300_000  # characters: a record of 30,000 samples in one line; patterns go over each line
+
+
 @dataclass(frozen=True)
 class RecordFile:
     """A file of a record, read once: its bytes, and its lines where it is text.
@@ -126,7 +129,8 @@ def open_record(path: Path) -> RecordFile:
     Raises
     ------
     ValueError
-        If it cannot be read, is empty, no regular file, text in UTF-16, or beyond 200 MB.
+        If it cannot be read, is empty, no regular file, text in UTF-16, beyond 200 MB, or has a line that is
+        longer than any record in one line.
     """
     try:
         content = _bytes(path)
@@ -138,6 +142,11 @@ def open_record(path: Path) -> RecordFile:
     file = RecordFile(path, content)
     if not content or (file.lines is not None and not any(line.strip() for line in file.lines)):
         raise ValueError(f"the record {path} is empty")
+    longest = max(map(len, file.lines or ("",)))
+    if longest > _LONGEST_LINE:
+        raise ValueError(
+            f"the record {path} has a line of {longest:,} characters, allowed are {_LONGEST_LINE:,}: break it"
+        )
     return file
 
 

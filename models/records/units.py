@@ -115,7 +115,7 @@ def doubts(motion: GroundMotion) -> tuple[Diagnostic, ...]:
     >>> [(fact.code, fact.detail) for fact in doubts(motion)]
     [('large_peak', 'cm/s2'), ('unlike_components', 'x')]
     """
-    if motion.source is None:
+    if motion.source is None or not motion.source.from_files:
         return tuple(peak_doubts(motion.acceleration))
     facts = motion.source.doubts
     if any(fact.code == "large_peak" for fact in facts):
@@ -127,9 +127,11 @@ def doubts(motion: GroundMotion) -> tuple[Diagnostic, ...]:
 
 
 def sources_of(motions: Iterable[GroundMotion | None]) -> list[str]:
-    """Return what each ground motion is read from, in a line; each once, those made of arrays left out."""
+    """Return what each ground motion is read from, in a line; each once, those of no file left out."""
     lines = (
-        f"{motion.name or 'record'}: {motion.source.line}" for motion in motions if motion and motion.source
+        f"{motion.name or 'record'}: {motion.source.line}"
+        for motion in motions
+        if motion and motion.source and motion.source.from_files
     )
     return list(dict.fromkeys(lines))
 

@@ -171,7 +171,7 @@ def build_motion(
         motion = motion.scaled(values["times_uplift"] * uplift / motion.peak)
     motion = motion.scaled(values.get("scale", 1.0))
     if "rotation_deg" in values:
-        motion = motion.rotated(math.radians(values["rotation_deg"]))
+        motion = motion.rotated(math.radians(math.fmod(values["rotation_deg"], 360.0)))
     return _shifted(motion, values.get("time_shift", 0.0))
 
 

@@ -58,7 +58,7 @@ _DIVERGENCE = {
 }
 Row = dict[str, object]
 
-_ENDS = {"failed": "failed", "undecided": "is undecided"}  # of a run without a peak
+_NO_PEAK = {"failed": "failed", "undecided": "is undecided"}  # of a run without a peak
 
 
 def page_of(found: Advice) -> Page:
@@ -95,7 +95,7 @@ def page_of(found: Advice) -> Page:
 def _reasons(found: Advice) -> dict[str, str]:
     """What the grade of each topic rests on in this case."""
     if found.response["outcome"] in NO_PEAK:
-        return {"trace": f"the run {_ENDS[found.response['outcome']]}"}
+        return {"trace": f"the run {_NO_PEAK[found.response['outcome']]}"}
     slip, lost = found.missing
     few = f"fewer than {FEWEST} runs differ"
     contact = "never lost in 95 % of all runs" if found.grades["contact"] == "satisfied" else few
@@ -178,7 +178,7 @@ def _reason_of_engine(found: Advice) -> str:
     if engine is None:
         return "not run"
     if engine.outcome in NO_PEAK:
-        return f"it {_ENDS[engine.outcome]}: {_failure(engine)}"
+        return f"it {_NO_PEAK[engine.outcome]}: {_failure(engine)}"
     agrees = f"agrees until {_agreed_until(engine)}, predicted until {_predicted_until(found)}"
     if engine.divergence == "earlier":
         return f"{agrees}: less than half as long"

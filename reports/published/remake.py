@@ -70,6 +70,11 @@ STUDIES = {
     "--engine mujoco --support recess --support flat --support ring "
     "--set ring_clearance=0.01 --set ring_inclination=0.5",
     "fragility/synthetic": f"fragility --synthetic 2000 --seed 16 {_BODIES}",
+    # the hazard: EN 1998-1:2004, 2.1(4), k = 3, 0.3 g once in 475 years
+    "risk/p695": "fragility --p695 --cylinder pier=6,0.2 --cylinder column=3,0.15 --cylinder tower=10,0.1 "
+    "--levels 1.25,1.5,1.75,2.1,2.5,3,3.6,4.3,5.2,6.3,7.6,9.2,12 --limit overturned --friction 3 "
+    "--step-factor 8 --engine mujoco --support recess --support flat --hazard risk/en1998-k3.csv "
+    "--hazard-measure pga",
     "extremes": "extremes",
     "tradeoff": "tradeoff --quick",  # the full extent takes an hour of one core
     "validity": "validity",

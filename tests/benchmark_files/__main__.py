@@ -1,7 +1,7 @@
 """The command `python tests/benchmark_files`: write reports/published/benchmark, or parts of it.
 
 python tests/benchmark_files cases [CASE ...]       the references, and how well each is known
-python tests/benchmark_files check                  check.py alone, of the modules that it is made of
+python tests/benchmark_files check                  the modules of compare/external beside check.py
 python tests/benchmark_files results [ENGINE ...]   what check.py says of our models and engines, scoreboard
                                      [--only CASE]  these cases alone; the results of the others stay
 """
@@ -36,11 +36,11 @@ def cases(names: list[str], only: list[str]) -> None:
 
 
 def check(names: list[str], only: list[str]) -> None:
-    """Write check.py."""
+    """Write the modules that check.py imports."""
     del names, only
-    from benchmark_files.write import PUBLISHED, program
+    from benchmark_files.write import PUBLISHED, write_modules
 
-    (PUBLISHED / "check.py").write_text(program(), encoding="utf-8")
+    write_modules(PUBLISHED / "trajectory")
 
 
 def results(names: list[str], only: list[str]) -> None:

@@ -12,7 +12,7 @@ import io
 import json
 import shutil
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -47,10 +47,11 @@ def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def check(copied: Path, tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+def check(copied: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[ModuleType]:
     """check.py of that folder, among its cases and one of a single run."""
     folder = tmp_path_factory.mktemp("judging")
     shutil.copy(copied / "check.py", folder)
+    shutil.copytree(copied / "trajectory", folder / "trajectory")
     shutil.copytree(copied / "cases", folder / "cases")
     single = shutil.copytree(folder / "cases" / "turn-recess", folder / "cases" / SINGLE) / "case.json"
     given = json.loads(single.read_text())
@@ -60,8 +61,10 @@ def check(copied: Path, tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module  # its dataclasses look there
+    sys.path.insert(0, str(folder))  # as where a program is run
     spec.loader.exec_module(module)
-    return module
+    yield module
+    sys.path.remove(str(folder))
 
 
 @pytest.fixture

@@ -102,7 +102,11 @@ def measured(name: str, run: BenchmarkRun, trace: Sampled) -> float:
         return _root(time, excess, int(np.flatnonzero(excess > 0.0)[0]) - 1)
     excess = trace.tilt - run.levels["lean_level"] * alpha
     at = _root(time, excess, int(np.flatnonzero(excess > 0.0)[0]) - 1)
-    return at if name == "lean_time" else _value(time, trace.azimuth, at) % (2.0 * math.pi)
+    if name == "lean_time":
+        return at
+    azimuth = _value(time, trace.azimuth, at) % (2.0 * math.pi)
+    # an azimuth of 0 may round to one turn less a rounding
+    return azimuth - 2.0 * math.pi if 2.0 * math.pi - azimuth < 1e-9 else azimuth
 
 
 def _around(time: Array, values: Array, i: int) -> Callable[[float], float]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import ast
 import json
 import math
+import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,8 @@ from .references import FIRST, SECOND, Reference
 
 PUBLISHED = Path(__file__).resolve().parents[2] / "reports" / "published" / "benchmark"
 COMPARED = Path(external.__file__).parent
-NUMPY = ("import numpy as np", "from numpy.typing import NDArray")
+MODULES = ("table", "motion", "mistakes", "explanation")
+ABOUT_MODULES = "Trajectories: their files, differences and likely mistakes. Copies of compare/external."
 _MANY = 100  # samples of a ground motion that has a file of its own
 
 
@@ -158,45 +159,12 @@ def _motion(definition: Definition, run: BenchmarkRun) -> dict[str, Any]:
     return {"kind": "file", "file": "motion.csv", "columns": [f"a{axis}{label}" for axis in "xy"]}
 
 
-def program() -> str:
-    """Return check.py: the modules that read, compare and explain, then what the benchmark asks for.
-
-    Their code stands there letter for letter; the imports are those of all of them, without the project.
-    """
-    sources = [
-        *(COMPARED / f"{name}.py" for name in ("table", "motion", "mistakes", "explanation")),
-        Path(__file__).with_name("program.py"),
-    ]
-    imports: dict[tuple[str, str], set[str]] = {}
-    bodies = []
-    for path in sources:
-        text = path.read_text(encoding="utf-8")
-        nodes = [node for node in ast.parse(text).body if isinstance(node, ast.Import | ast.ImportFrom)]
-        for node in nodes:
-            module = getattr(node, "module", None) or ""
-            if not (getattr(node, "level", 0) or module.startswith("rockwobble")):
-                for alias in node.names:
-                    name = f"{alias.name} as {alias.asname}" if alias.asname else alias.name
-                    imports.setdefault(("from", module) if module else ("import", name), set()).add(name)
-        bodies.append("\n".join(text.splitlines()[(nodes[-1].end_lineno or 0) :]).strip("\n"))
-    lines = {
-        kind: sorted(
-            f"import {name}"
-            if kind == "import"
-            else f"from {name} import {', '.join(sorted(names, key=_isort))}"
-            for (own, name), names in imports.items()
-            if own == kind and name != "__future__" and not name.startswith("numpy")
-        )
-        for kind in ("import", "from")
-    }
-    head = ast.get_docstring(ast.parse(sources[-1].read_text(encoding="utf-8")), clean=False)
-    top = ["from __future__ import annotations", "", *lines["import"], *lines["from"], "", *NUMPY]
-    return "\n".join([f'"""{head}"""', "", *top, "", "\n\n\n".join(bodies), ""])
-
-
-def _isort(name: str) -> tuple[bool, str]:
-    """Order of names as the linter wants it: constants, then classes, then functions."""
-    return name[0].islower(), name
+def write_modules(folder: Path) -> None:
+    """Write the modules of the project that check.py needs to read, compare and explain trajectories."""
+    folder.mkdir(exist_ok=True)
+    (folder / "__init__.py").write_text(f'"""{ABOUT_MODULES}"""\n', encoding="utf-8")
+    for name in MODULES:
+        shutil.copyfile(COMPARED / f"{name}.py", folder / f"{name}.py")
 
 
 def _write_json(path: Path, content: Mapping[str, Any]) -> None:

@@ -34,6 +34,20 @@ def test_dimensions_survive_the_round_trip_at_any_slenderness(tan_alpha: float) 
     assert again.tan_alpha == pytest.approx(tan_alpha, rel=ROUNDING)
 
 
+@pytest.mark.parametrize("diameter", [1e-3, 1.6, 300.0])
+def test_a_diameter_is_twice_the_base_radius(diameter: float) -> None:
+    named = Cylinder.from_dimensions(diameter=diameter, height=9.0)
+    assert named == Cylinder.from_dimensions(base_radius=0.5 * diameter, height=9.0)
+
+
+@pytest.mark.parametrize(
+    ("sizes", "number"), [({}, "neither"), ({"base_radius": 1.0, "diameter": 2.0}, "both")]
+)
+def test_one_of_base_radius_and_diameter_is_given(sizes: dict[str, float], number: str) -> None:
+    with pytest.raises(ValueError, match=rf"^base_radius or diameter must be given .* got {number}$"):
+        Cylinder.from_dimensions(height=9.0, **sizes)
+
+
 def test_a_general_body_keeps_its_outline_apart_from_its_mass_centre() -> None:
     deck_on_pier = Cylinder.from_dimensions(
         base_radius=1.0, height=10.0, mass_centre_height=8.0, transverse_inertia=12.0, axial_inertia=2.0
@@ -70,9 +84,9 @@ def test_refuses_a_property_that_is_no_positive_number(name: str, bad: Any) -> N
         Cylinder(semidiagonal=6.0, tan_alpha=0.2, **{name: bad})
 
 
-@pytest.mark.parametrize("name", ["base_radius", "height", "mass_centre_height"])
+@pytest.mark.parametrize("name", ["base_radius", "diameter", "height", "mass_centre_height"])
 def test_from_dimensions_names_its_own_argument(name: str) -> None:
-    given = {"base_radius": 1.0, "height": 10.0, name: -1.0}
+    given = {"height": 10.0, **({} if name == "diameter" else {"base_radius": 1.0}), name: -1.0}
     with pytest.raises(ValueError, match=rf"^{name} must be positive \[m\], got -1.0"):
         Cylinder.from_dimensions(**given)
 

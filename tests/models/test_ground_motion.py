@@ -119,6 +119,15 @@ def test_refuses_a_factor_or_an_angle_that_is_no_number(bad: Any) -> None:
         motion.rotated(bad)
 
 
+@pytest.mark.parametrize("degrees", [7.0, 45.0, 90.0, -90.0, 360.0])
+def test_an_angle_in_degrees_is_refused_with_its_likely_meaning(degrees: float) -> None:
+    motion = GroundMotion(SAMPLES, 0.1)
+    message = rf"^angle must be from -2 pi to 2 pi \[rad\], got {degrees}: .* math.radians\({degrees:g}\)$"
+    with pytest.raises(ValueError, match=message):
+        motion.rotated(degrees)
+    assert motion.rotated(math.radians(degrees)).peak == pytest.approx(motion.peak, rel=ROUNDING)
+
+
 def test_refuses_to_scale_beyond_what_a_float_holds() -> None:
     with pytest.raises(ValueError, match=r"^acceleration must be finite, got inf in sample 1 of component x"):
         GroundMotion(SAMPLES, 0.1).scaled(1e308)

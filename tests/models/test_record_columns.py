@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -255,3 +256,37 @@ def test_the_user_names_columns_by_name_or_number(write: Write, columns: str | l
     assert motion.acceleration[:, 0] == pytest.approx(np.cos(np.arange(30)), abs=1e-4)
     with pytest.raises(ValueError, match=r"no column 'Hoch' of --record-columns .* it has 1 time, 2 Laengs"):
         read_record(write(f"time,Laengs,Quer\n{NUMBERS}\n"), units="m/s2", columns="time,Hoch,Quer")
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "time,NS,EW,UD",
+        "UD,time,NS,EW",
+        "Time EW NS",
+        "time,acc_NS,acc_EW",
+        "time (s),NS (g),EW (g)",
+    ],
+)
+def test_ns_is_north_south_and_no_nanosecond(header: str, tmp_path: Path) -> None:
+    names = re.split(r"[ ,](?!\()", header)
+    values = {"n": 0.3, "e": 0.2, "u": 0.1}
+    rows = []
+    for step in range(5):
+        row = []
+        for name in names:
+            key = next((each for each in ("ns", "ew", "ud") if each in name.lower()), "")
+            row.append(f"{0.01 * step:.2f}" if not key else f"{values[key[0]] * (step % 2):.3f}")
+        rows.append((" " if " EW" in header else ",").join(row))
+    path = tmp_path / "record.csv"
+    path.write_text("\n".join([header, *rows]))
+    motion = read_record(path, units="g")
+    peaks = np.abs(motion.acceleration).max(axis=0) / 9.81
+    assert peaks[:2] == pytest.approx([0.2, 0.3])
+    assert motion.time_step == pytest.approx(0.01)
+
+
+def test_ns_behind_a_time_are_nanoseconds(tmp_path: Path) -> None:
+    path = tmp_path / "record.csv"
+    path.write_text("time_ns,E,N\n0,0,0\n10000000,0.1,0.2\n20000000,0,0\n")
+    assert read_record(path, units="g").time_step == pytest.approx(0.01)

@@ -413,7 +413,7 @@ def test_a_damaged_file_of_10_megabytes_ends_in_its_refusal(tmp_path: Path) -> N
             path = tmp_path / name
             path.write_text("\n".join([*head, body]))
             begin = time.process_time()
-            with pytest.raises(ValueError, match=r"^big"):
+            with pytest.raises(ValueError, match="big"):
                 read_components(open_record(path), ReadingOptions())
             assert time.process_time() - begin < allowed, (head[0], body[:4])
 

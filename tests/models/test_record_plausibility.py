@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from rockwobble.models import GroundMotion, el_centro_1940
+from rockwobble.models import GroundMotion, el_centro_1940, read_record
 from rockwobble.models.records.plausibility import LARGEST_PEAK
 from rockwobble.models.records.units import doubts, doubts_of
 
@@ -49,3 +51,13 @@ def test_what_records_are_is_plausible() -> None:
 def test_doubts_of_one_record_are_said_once() -> None:
     found = doubts_of([times(981.0, 981.0), None, times(2000.0, 2000.0), RECORD])
     assert [(doubt["record"], doubt["code"]) for doubt in found] == [("made", "large_peak")]
+
+
+@pytest.mark.parametrize("degrees", [-450.0, 405.0, 1e4])
+def test_degrees_beyond_a_full_turn_are_the_same_rotation(degrees: float, tmp_path: Path) -> None:
+    path = tmp_path / "record.csv"
+    times = np.arange(50) * 0.01
+    np.savetxt(path, np.column_stack([times, np.sin(9.0 * times), np.cos(7.0 * times)]), delimiter=",",
+        header="time [s],x [m/s2],y [m/s2]", comments="")  # fmt: skip
+    beyond, within = (read_record(path, rotate=angle) for angle in (degrees, degrees % 360.0))
+    assert np.allclose(beyond.acceleration, within.acceleration, atol=1e-9)  # rounding of the angle

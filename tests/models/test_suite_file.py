@@ -220,7 +220,7 @@ WRONG = {
         "motion.record: must be one of el_centro_1940, p695, got 'el_centro'"
     ),
     replaced(STILL, 'motion = { record = "el_centro_1940", pulse = "one-sine" }'): (
-        "cases[0].motion: must have exactly one of record, x, pulse, got record and pulse"
+        "cases[0].motion: must have exactly one of record, x, files, pulse, got record and pulse"
     ),
     replaced(STILL, 'motion = { record = "el_centro_1940", pair = 3 }'): (
         'motion.pair: must be left out: it belongs to record = "p695"'

@@ -34,6 +34,11 @@ def jit(function):
 
 inlined = once = kernel = borrowed = jit
 
+def by_body(plain, tied):
+    def function(body, *arguments):
+        return (tied if hasattr(body, "prestress") else plain)(body, *arguments)
+    return function
+
 def in_memory(entry):
     return True
 

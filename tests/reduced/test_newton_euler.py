@@ -356,7 +356,7 @@ def test_force_on_the_slab(seed: int) -> None:
     states = np.array([[given.theta, given.omega, given.phi, given.Lambda, 0.3, given.S]])
     ground = np.array([given.ground])
     base = derived_quantities(given.body, states, ground, True)[:, 2:5]
-    found = top_force(given.body, base, ground)
+    found = top_force(given.body, base, ground, states, float(given.slab.share))
     with mp.workdps(DIGITS):
         state = state_of(given)
         motion = newton_euler(given.column, state, vector(*given.ground), False, given.slab)

@@ -22,6 +22,7 @@ BODIES = {"cylinder": PIER, "frame": WobblingFrame(PIER, 1.5)}
 MODELS: dict[str, dict[str, Any]] = {"recess": {}, "flat": {"support": "flat"}, "planar": {"plane": 0.3}}
 # of b/sample step: rounding of the positions, in a difference of two
 ROUNDING = 1e-13
+RESOLVED = 0.05  # azimuth [rad] of the contact from one sample to the next
 Array = NDArray[np.float64]
 
 
@@ -64,13 +65,16 @@ def slip_velocities(trace: Trace) -> tuple[Array, Array]:
 
 
 def smooth(trace: Trace) -> NDArray[np.bool_]:
-    """Return where (n - 4,) the body moves and its base meets the ground neither now nor next to it."""
+    """Return where (n - 4,) the body moves as its samples resolve, and no landing is next to it."""
     step = float(trace.time[1] - trace.time[0])
-    events = np.concatenate(
-        [[trace.uplift_time], trace.rest_intervals.ravel(), trace.extrema[trace.extrema[:, 1] <= 0.0, 0]]
-    )
+    landings = trace.extrema[trace.extrema[:, 1] <= 0.0, 0]
+    # what is slower than the tolerance stops at once, or begins at once: its rates jump
+    still = trace.tilt_rate == 0.0
+    stops = trace.time[1:][still[1:] != still[:-1]]
+    events = np.concatenate([[trace.uplift_time], trace.rest_intervals.ravel(), landings, stops])
     events = np.sort(events[np.isfinite(events)])
-    moves = np.isfinite(trace.rolling_angle)
+    # a pass within 1e-5 alpha of the ground may turn the contact by more than a radian from sample to sample
+    moves = np.isfinite(trace.rolling_angle) & (np.abs(trace.rolling_rate) * step < RESOLVED)
     moves = np.logical_and.reduce([moves[i : len(moves) - 4 + i] for i in range(5)])
     time = trace.time[2:-2]
     before = np.searchsorted(events, time - 3.0 * step)
@@ -105,7 +109,8 @@ def test_the_point_at_the_contact_stands_still(model: str, kind: str, share: flo
         trace = reduced.simulate(case, rtol=1e-10, sample_step=2e-4, **MODELS[model])
         checked = smooth(trace)
         velocity, error = (values[checked] for values in slip_velocities(trace))
-        allowed = 2.0 * error + ROUNDING * trace.case.cylinder.base_radius / 2e-4
+        # rounding of the positions, and the error of the solution where the couple turns at small tilts
+        allowed = 2.0 * error + (ROUNDING / 2e-4 + 1e-6) * trace.case.cylinder.base_radius
         size = np.abs(velocity).max(axis=1)
         assert (size <= allowed).all(), (case, trace.time[2:-2][checked][np.argmax(size - allowed)])
         moving += int(checked.sum())

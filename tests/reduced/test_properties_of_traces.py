@@ -87,7 +87,7 @@ def test_demands_are_the_extrema_of_dense_samples(seed):
     needed = 0.5 * given.cylinder.tan_alpha
     duration = min(given.motion.duration, 8.0)
     dense = given.simulate(duration=duration, sample_step=DENSE, friction=needed)
-    moving = ~np.isnan(dense.rolling_angle)
+    moving = dense.open_base
     normal, friction = dense.contact_force[moving, 2], dense.friction_needed[moving]
     found = dense.assumptions
     least = 1e-9

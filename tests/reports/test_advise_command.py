@@ -25,7 +25,7 @@ from rockwobble.reports.pages import page, stored_page
 from rockwobble.reports.pages.advice import page_of
 
 PAGE_LIMIT = 2e6  # bytes, of every page
-SCREEN = 30  # lines of the longest verdict at 100 columns
+SCREEN = 36  # lines: five of an answer, its numbers, the record as it was read, and what to do next
 PRINTED = 5e-3  # three digits
 FAST = ["--engine", "none", "--copies", "20"]
 TABLES = ("members", "groups", "demands", "band", "scales", "lowest", "planar", "trace", "engine")

@@ -103,7 +103,7 @@ def test_failures_alone_are_printed_and_end_with_1(
             ["--update-baseline", "--only", "exact"],
             "--update-baseline goes with no subject and not with --only",
         ),
-        (["--json", "no/such/folder/a.json"], "a report must be a file in a folder that exists, got no/such"),
+        (["--json", "no/such/folder/a.json"], "--json must be a file in a folder that exists, got no/such"),
         (["--only", "exact", "--json", "/proc/a.json"], "the output folder /proc cannot be written"),
         (["--only", "exact", "--markdown", "/proc/a.md"], "the output folder /proc cannot be written"),
     ],

@@ -232,13 +232,29 @@ WORDS = {
         {"detail": "diverged"},
     ),
     "large_peak": (
-        "its peak is 1.53e+03 g, more than any record has (5 g): it would be 1.6 g with its numbers in cm/s2",
+        "its peak is 1.53e+03 g, more than 5 g, which few records have: it would be 1.6 g with its numbers "
+        "in cm/s2",
         {"size": 1532.0, "bound": 5.0, "detail": "cm/s2"},
     ),
     "unlike_components": (
         "the peaks of its components differ by a factor of 981, y is the larger",
         {"size": 981.0, "detail": "y"},
     ),
+    "one_column": ("the engine runs one of the 4 columns", {"size": 4.0}),
+    "same_components": ("its components x and y are the same", {"detail": "x and y"}),
+    "unlikely_length": (
+        "a length of 9000 m is that of no structure (above 300 m): with the number in mm it would be 9 m",
+        {"size": 9000.0, "bound": 300.0, "detail": "mm"},
+    ),
+    "unlikely_gravity": (
+        "32.2 m/s2 is the gravity of no planet (above 25 m/s2): with the number in ft/s2 it would be 9.815",
+        {"size": 32.2, "bound": 25.0, "detail": "ft/s2"},
+    ),
+    "offset": ("the mean of x is 67 % of its peak", {"size": 0.67, "detail": "x"}),
+    "gravity_in_record": ("the mean of z is 1 g: gravity is in the record", {"size": 1.0, "detail": "z"}),
+    "unlikely_step": ("its time step is 1 s, above 0.1 s", {"size": 1.0, "bound": 0.1}),
+    "ends_in_strong_motion": ("it ends in strong motion, 40 % of its peak", {"size": 0.4}),
+    "other_direction": ("by its file, what stands in the place of x is y", {"detail": "x is y"}),
     "missed_pass": ("2 near passes fell between two samples, first at 2 s", {"size": 2}),
     "note": ("positions are in mm", {"detail": "positions are in mm"}),
 }
@@ -260,7 +276,12 @@ def test_each_code_has_words_with_its_numbers(code):
 
 @pytest.mark.parametrize(("code", "reason"), [(code, each) for code in REASONS for each in REASONS[code]])
 def test_each_reason_has_words_and_others_are_refused(code, reason):
-    assert sentence(Diagnostic(code=code, time=2.0, detail=reason)).split(": ")[1] not in ("", reason)
+    words, others = (
+        sentence(Diagnostic(code=code, time=2.0, size=2.0, bound=1.0, detail=each))
+        for each in (reason, next(each for each in REASONS[code] if each != reason))
+    )
+    assert words
+    assert words != others  # each is said in its own words
     with pytest.raises(ValueError, match=f"detail must be one of .*{reason}.*, got 'because'"):
         Diagnostic(code=code, detail="because")
 

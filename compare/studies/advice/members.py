@@ -58,11 +58,11 @@ def demands_of(trace: Trace) -> dict[str, float]:
     dict
         friction [-], shear and (normal) force [weights] at the base and, as top_friction, top_shear and
         top_force, under the slab of a frame [weights of the share of the slab]; moment of the recess [weights
-        times b]: each not exceeded in 99 % of the moving time. slip and lost, shares of that time in which
-        the friction of the case does not suffice and in which contact is lost, at base or top. All zero, and
-        a force of one weight, where nothing moves.
+        times b]: each not exceeded in 99 % of the time in which the base is open (`Trace.open_base`). slip
+        and lost, shares of that time in which the friction of the case does not suffice and in which contact
+        is lost, at base or top. All zero, and a force of one weight, where nothing moves.
     """
-    moving = (trace.tilt > 0.0) & (trace.time <= fall_of(trace))
+    moving = trace.open_base & (trace.time <= fall_of(trace))
     ends = [(_BASE, trace.contact_force, trace.friction_needed)]
     if trace.case.cylinder.slab_mass_ratio > 0.0:
         ends.append((_TOP, trace.top_contact_force, trace.top_friction_needed))

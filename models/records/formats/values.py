@@ -18,6 +18,9 @@ NAME = "values without times"
 ROW_BY_ROW = "values"
 _MOST_COMPONENTS = 4  # columns of a table of components with times; more numbers in a line are samples
 _QUANTITIES = ("acceleration", "velocity", "displacement")
+_COMMENTS = ("#", "%", "!", "//")
+_MARKS = (*_COMMENTS, *',;"{}')
+_SEPARATORS = str.maketrans(dict.fromkeys(',;"{}', " "))
 _SEEN = 50  # rows that are looked at to tell values from columns
 
 
@@ -101,8 +104,14 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
 
 def _samples(file: RecordFile, first: int) -> NDArray[np.float64]:
     """Return all numbers from a line on; comments, braces and separators between them are passed over."""
+    whole = file.text[first:]
+    text = "\n".join(whole)
+    if not any(mark in text for mark in _MARKS):
+        return numbers_of_lines(file, whole, first + 1)
+    if not any(mark in text for mark in (*_COMMENTS, " ", "\t")):  # so a comma is no decimal point
+        return numbers_of_lines(file, text.translate(_SEPARATORS).split("\n"), first + 1)
     lines = []
-    for line in file.text[first:]:
+    for line in whole:
         text = line.strip()
         if is_comment(text):
             lines.append("")

@@ -71,6 +71,7 @@ class Certificate(TypedDict):
     claims: list[dict[str, object]]
     not_covered: list[str]
     fingerprint: list[Entry]
+    plan: NotRequired[str]  # hash of the command
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""Trajectories: their files, differences and likely mistakes. Copies of compare/external."""
