@@ -355,7 +355,13 @@ def _stated(
         rolling_resistance=case.rolling_resistance / scale.length,
         tendon=None
         if tendon is None
-        else scaled_tendon(tendon, tendon.gaps(case.cylinder), body.base_radius, REFERENCE_GRAVITY),
+        else scaled_tendon(
+            tendon,
+            tendon.gaps(case.cylinder),
+            body.base_radius,
+            REFERENCE_GRAVITY,
+            backend.facts.rounding,
+        ),
     )
     return backend, scene, backend.settings(settings, scene)
 

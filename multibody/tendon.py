@@ -32,9 +32,12 @@ from rockwobble.models.tendon import Tendon
 
 Array = NDArray[np.float64]
 
-# of b: at 1e-3 a release in MuJoCo is off by 2e-5 alpha, at 1e-4 by a tenth of that, and here by no more than
-# it is without a tendon
+# of b: a release in MuJoCo is off by 7e-7 alpha at 1e-4, by 7e-8 at 1e-5 and at 1e-6, where 5e-8 remain without
+# a tendon; at 1e-7 it uplifts too early
 ANCHOR_DEPTH = 1e-5
+# the least depth in roundings of b, so that the direction of v at rest is not noise: Rapier (2^-24) uplifts by
+# 26 ms too early at 1e-5 b, by 6 ms at this depth of 1e-3 b, by 4 ms without a tendon
+_ROUNDINGS = 2.0**14
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -101,8 +104,13 @@ class SceneTendon(Brief):
         return np.asarray(-tension / np.linalg.norm(way, axis=0) * way)
 
 
-def scaled_tendon(tendon: Tendon, gaps: int, base_radius: float, gravity: float) -> SceneTendon:
-    """Return a tendon at the size of a scene of a base radius [m] and a gravity [m/s^2]."""
+def scaled_tendon(
+    tendon: Tendon, gaps: int, base_radius: float, gravity: float, rounding: float = 0.0
+) -> SceneTendon:
+    """Return a tendon at the size of a scene of a base radius [m] and a gravity [m/s^2].
+
+    `rounding` is that of the engine, relative: its anchor lies deep enough for it.
+    """
     stiffness, force = tendon.stiffness * gravity / base_radius, tendon.yield_force
     yields = math.inf
     if force is not None and stiffness > 0.0:
@@ -111,6 +119,6 @@ def scaled_tendon(tendon: Tendon, gaps: int, base_radius: float, gravity: float)
         prestress=tendon.prestress * gravity,
         stiffness=stiffness,
         gaps=gaps,
-        depth=ANCHOR_DEPTH * base_radius,
+        depth=max(ANCHOR_DEPTH, _ROUNDINGS * rounding) * base_radius,
         yield_elongation=yields,
     )
