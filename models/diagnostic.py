@@ -34,6 +34,7 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "friction_needed": ("", "the rim would slip: more friction is needed than there is"),
         "wall_contact": ("", "the cylinder touched a wall"),
         "energy": ("", "contact made (above 0) or took (below 0) of the energy of the motion"),
+        "rolling_loss": ("", "rolling resistance took of the energy of the motion, besides"),
         "undecided": ("", "it stays by its balance: rounding decides whether it falls or turns back"),
         "solver": ("steps", "the solver had not converged in some of the steps looked at"),
         "unresolved_pass": ("passes", "passes are closer to upright than contact resolves"),

@@ -100,9 +100,10 @@ class Trace(Shown):
         Kappa of the moment kappa (z_world + z_body) that the recess supplies, over the weight [m]; about the
         vertical, as about the axis, that is 1 + cos(tilt) times kappa.
     energy_lost : ndarray, shape (n,)
-        Energy that rolling resistance and impacts took so far, per unit mass [m^2/s^2].
+        Energy that rolling resistance and impacts took so far, per unit mass [m^2/s^2]; of an engine what
+        its couple took by its law, from the load and the turning of each step.
     energy_error : ndarray, shape (n,)
-        Energy that neither the start nor the excitation supplied [m^2/s^2].
+        Energy that neither the start nor the excitation supplied, nor rolling resistance took [m^2/s^2].
     slip, wall_contact, wall_impulse : ndarray, shape (n,)
         Distance slipped so far [m], time in contact with walls so far [s], size of the force of the walls
         summed over time so far, per unit mass [m/s].

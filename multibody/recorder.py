@@ -8,7 +8,7 @@ long, and would not know the force.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from rockwobble.models.plain_json import fields_of
 from rockwobble.models.support import SUPPORTS
 
-from .guard import EnergyWatch, energy_scale, first_breach
+from .guard import EnergyWatch, couple_power, energy_scale, first_breach
 from .kinematics import (
     Kinematics,
     base_centre,
@@ -46,8 +46,8 @@ _LEAST_ENERGY = 2e-4
 _ROUNDING = 1e-6  # of a step
 COLUMNS = (
     "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_x", "contact_y",
-    "base_x", "base_y", "x", "y", "z", "energy", "energy_error", "slip", "wall_contact",
-    "wall_impulse", "elongation",
+    "base_x", "base_y", "x", "y", "z", "energy", "energy_error", "energy_lost", "slip",
+    "wall_contact", "wall_impulse", "elongation",
 )  # fmt: skip
 
 
@@ -108,7 +108,6 @@ class Recorder:
             scene.time_step,
             _LEAST_ENERGY * balance if start.standing else 0.0,
             balance if lean > scene.balance_tilt else 0.0,
-            loses=scene.rolling_resistance > 0.0,
         )
         self.looks = 0  # at the solver, and how often it had not converged
         self.unsolved = 0
@@ -172,13 +171,21 @@ class Recorder:
         state = kinematics(poses, after, body, self._scene.gravity, tendon)
         state = replace(state, twist=unwrap_twist(state.twist, self._twist))
         gained = self.energy.error(state, poses, after, acceleration)
+        # before the couple, whose part is not known well enough to end a run by
         stop = self._stop(time, state, gained, wall)
         if not stop:
             return
+        lost = self._rolling_loss(poses, after, acceleration)
+        gained = gained + lost
         if stop < count:
             # whatever the engine did after the end, the side on the ground included, is no part of the run
             inside = slice(stop)
-            time, gained, acceleration = time[inside], gained[inside], acceleration[inside]
+            time, gained, lost, acceleration = (
+                time[inside],
+                gained[inside],
+                lost[inside],
+                acceleration[inside],
+            )
             poses, after, state = _rows(poses, inside), _rows(after, inside), _rows(state, inside)
             wall = wall and _rows(wall, inside)
         if self._watch is not None and self.uplift is None:
@@ -205,7 +212,7 @@ class Recorder:
             return np.column_stack(
                 [time[at], state.tilt[at], state.tilt_rate[at], angle[at], place.rolling_rate,
                  state.twist[at], place.contact_point, place.base_centre[:, :2], some.position,
-                 state.energy[at], gained[at], slip[at], wall_contact[at], wall_impulse[at],
+                 state.energy[at], gained[at], lost[at], slip[at], wall_contact[at], wall_impulse[at],
                  elongation[at]]
             )  # fmt: skip
 
@@ -218,15 +225,7 @@ class Recorder:
         self.fastest = max(self.fastest, float(np.abs(state.tilt_rate[within]).max(initial=0.0)))
         self._sample(time, rows)
         # on the base, and on a slab that keeps to the top
-        ends = [
-            force_of_steps(poses, after, acceleration, self._scene.time_step, self._scene.gravity, gain)
-            for gain in self._gains
-        ]
-        if tendon is not None:
-            # of what the base carries, and of the slab, the tendon takes hold as well as contact does
-            pulls = tendon.pulls(base_centre(poses, body), elongation) / self._scene.gravity
-            for end, mass in zip(ends, (1.0 + body.slab_mass_ratio, body.slab_mass_ratio), strict=False):
-                end -= pulls / mass
+        ends = self._contact_forces(poses, after, acceleration, self._gains)
         self.forces.add(ends[0])
         # a wall may well push the cylinder down, by its friction or where the rim is below it
         if math.isnan(self.pull_time) and wall is None:
@@ -269,6 +268,37 @@ class Recorder:
         )
         self._last = _rows(joined, slice(-1, None))
         return _rows(joined, slice(0, -1)), _rows(joined, slice(1, None))
+
+    @property
+    def _carried(self) -> tuple[float, float]:
+        """What the base carries, a column and its share of the slab, and the top, the share [columns]."""
+        slab = self._scene.body.slab_mass_ratio
+        return 1.0 + slab, slab
+
+    def _contact_forces(
+        self, poses: Steps, after: Steps, ground: Array, gains: Sequence[float]
+    ) -> list[Array]:
+        """Force of contact (3, n) on each end that has a gain, over the weight that it carries."""
+        scene = self._scene
+        ends = [force_of_steps(poses, after, ground, scene.time_step, scene.gravity, gain) for gain in gains]
+        if scene.tendon is not None:
+            # of what the base carries, and of the slab, the tendon takes hold as well as contact does
+            place = base_centre(poses, scene.body)
+            pulls = scene.tendon.pulls(place, scene.tendon.elongation(place)) / scene.gravity
+            for end, mass in zip(ends, self._carried, strict=False):
+                end -= pulls / mass
+        return ends
+
+    def _rolling_loss(self, poses: Steps, after: Steps, ground: Array) -> Array:
+        """Energy that the rolling resistance has taken until each pose, shape (n,) [m^2/s^2]."""
+        scene, body = self._scene, self._scene.body
+        if scene.rolling_resistance == 0.0:
+            return np.zeros(len(poses.position))
+        masses = (mass * scene.gravity / body.driven_mass for mass in self._carried)
+        ends = self._contact_forces(poses, after, ground, body.gains)
+        forces = list(zip(masses, ends, strict=False))
+        power = couple_power(poses, after, forces, scene.rolling_resistance)
+        return self.energy.lost(power)
 
     def _slip(self, time: Array, state: Kinematics) -> Array:
         """Distance that the contact has slipped until each pose [m]; note slip and flight."""

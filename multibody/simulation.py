@@ -202,8 +202,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         # the base wanders from the anchor, and the tilt alone does not tell it
         sampled["elongation"] = table["elongation"] * scale.length
     if scene.rolling_resistance > 0.0:
-        # all that contact took, of which the part of the couple is not known alone
-        sampled["energy_lost"] = -sampled["energy_error"]
+        sampled["energy_lost"] = table["energy_lost"] * scale.energy
     return Trace(
         time=table["time"] * scale.time,
         tilt=table["tilt"],
@@ -393,6 +392,9 @@ def diagnostics(
     since, share, bound = recorder.energy.remark(end)
     if not math.isnan(since):
         yield Diagnostic(code="energy", time=since * unit_time, size=share, bound=bound)
+        rolled = recorder.last_value("energy_lost") / recorder.energy.largest
+        if rolled > 0.0:
+            yield Diagnostic(code="rolling_loss", size=rolled)
     if recorder.undecided:
         yield Diagnostic(code="undecided", time=end * unit_time)
     if recorder.unsolved:

@@ -95,9 +95,10 @@ def _followed(
         if top is not None or ahead.resting:
             break
         acceleration[0] = at_pose[0] = 0.0
-    # a steady wobble, which keeps its tilt below the balance, has no maximum to come
+    # a steady wobble, which keeps its tilt below the balance, has no maximum to come, nor has what leans on a
+    # wall beyond it
     keeps = abs(ahead.last_value("tilt") - start.tilt) < _STEADY * min(
-        start.tilt, scene.balance_tilt - start.tilt
+        start.tilt, abs(scene.balance_tilt - start.tilt)
     )
     recorder.undecided = top is None and not ahead.resting and not keeps
     recorder.followed_until = float(ahead.last_row[0]) if top is None else top.time

@@ -13,6 +13,7 @@ from .exact import (
     planar_quarter_period,
     rocking_period,
     steady_wobble_rate,
+    wobble_stability,
     wobbling_period,
 )
 from .problem import REST_TILT, SUPPORTS
@@ -39,6 +40,7 @@ __all__ = [
     "rocking_period",
     "simulate",
     "steady_wobble_rate",
+    "wobble_stability",
     "wobbling_period",
 ]
 

@@ -30,6 +30,7 @@ Each function is there twice, for a body without a tendon and for one with it (`
 from __future__ import annotations
 
 from math import cos, inf, pi, sin, sqrt
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,8 @@ from rockwobble.models.tendon import Tendon
 
 from ._compile import by_body, inlined, jit
 from .body import Body, TiedBody
+
+T = TypeVar("T", float, NDArray[np.float64])
 
 
 @inlined
@@ -274,6 +277,68 @@ def _coefficient_tied(
 
 
 with_tendon_coefficient = by_body(_coefficient_alone, _coefficient_tied)
+
+
+# closed forms (`exact`), in t = tan(theta/2), of a number or of each in an array; R is the semidiagonal, and
+# `gap` is alpha - theta, which keeps its digits next to alpha
+
+
+def couple(body: Body, R: float, t: T, gap: T) -> T:
+    """Return V' [m^2/s^2]."""
+    weight: T = body.g * R * np.sin(gap)
+    if not isinstance(body, TiedBody):
+        return weight
+    n = 1.0 + t * t
+    return weight + body.b * (body.prestress / np.sqrt(n) + body.stiffness * 2.0 * t / n)
+
+
+def couple_slope(body: Body, R: float, t: T, gap: T) -> T:
+    """Return V'' [m^2/s^2]."""
+    weight: T = -body.g * R * np.cos(gap)
+    if not isinstance(body, TiedBody):
+        return weight
+    n = 1.0 + t * t
+    return weight + body.b * (body.stiffness * (1.0 - t * t) / n - 0.5 * body.prestress * t / np.sqrt(n))
+
+
+def potential(body: Body, R: float, tilt: float) -> float:
+    """Return V [m^2/s^2], zero upright."""
+    s_half = sin(0.5 * tilt)
+    weight = 2.0 * body.g * R * s_half * sin(body.alpha - 0.5 * tilt)
+    if not isinstance(body, TiedBody):
+        return weight
+    return weight + 2.0 * body.b * s_half * (body.prestress + body.stiffness * s_half)
+
+
+def sigma(body: Body, R: float, gap: float, y: float, drop: T) -> T:
+    """Return sigma(x, y) [m] at x = y - drop, where `gap` is that at y.
+
+    V(y) - V(x) = 2 g (y - x) sigma/(n_x n_y), n = 1 + t^2. The weight has R sqrt(n_x n_y) sin((gap_x +
+    gap_y)/2): gap and drop enter as they are, and do not have to be recovered from tilts next to alpha. In
+    the part of a tendon, (b/g)(x + y)[q/(sin(theta_x/2) + sin(theta_y/2)) + k], all is positive.
+    """
+    weight: T = R * (sin(gap) * (1.0 + y * (y - drop)) + cos(gap) * drop)
+    if not isinstance(body, TiedBody):
+        return weight
+    x = y - drop
+    halves = x / np.sqrt(1.0 + x * x) + y / sqrt(1.0 + y * y)
+    return weight + body.b / body.g * (x + y) * (body.prestress / halves + body.stiffness)
+
+
+def sigma_slope(body: Body, z: float, y: float, x: T) -> T | float:
+    """Return [sigma(z, y) - sigma(x, y)]/(x - z) [m]; of the weight, sigma is linear in x."""
+    weight = body.h + body.b * y
+    if not isinstance(body, TiedBody):
+        return weight
+    n_x, n_y, n_z = 1.0 + x * x, 1.0 + y * y, 1.0 + z * z
+    r_x, r_y, r_z = np.sqrt(n_x), sqrt(n_y), sqrt(n_z)
+    X, Y, Z = x / r_x, y / r_y, z / r_z  # sin(theta/2)
+    # (x + y)/(X + Y) - (z + y)/(Z + Y) over x - z, its differences of roots by their squares
+    by_z = x * (z * z * (1.0 + n_z) * n_x + (x - y) * (x + y)) / (n_z * r_x + r_y)
+    by_x = z * (x * x * (1.0 + n_x) * n_z + (z - y) * (z + y)) / (n_x * r_z + r_y)
+    secant = X * Z * (x + z) / (r_x + r_z) + y * (by_z + by_x) / (r_y * n_x * n_z * (X + Z))
+    secant = secant / ((X + Y) * (Z + Y))
+    return weight - body.b / body.g * (body.prestress * secant + body.stiffness)
 
 
 def balance_tilt(body: TiedBody) -> float:

@@ -3,7 +3,8 @@
 In t the potential energy and the inertia of the rolling angle are rational. Their differences between
 two tilts carry the difference of the tilts as an explicit factor, so nothing cancels when two tilts
 meet (steady wobble), at vanishing tilt (a near pass) or where the restoring moment vanishes (theta
-near alpha). Per unit mass, with the constants of `rockwobble.reduced.body` and
+near alpha). What holds the body down, sigma among it, is `rockwobble.reduced.restoring`'s. Per unit mass,
+with the constants of `rockwobble.reduced.body` and
 
 ====== ======== ==========================================================================
 symbol unit     meaning
@@ -26,16 +27,16 @@ With t1, t2 in place of energy and momentum, free response is
 
 from __future__ import annotations
 
-import math
-from typing import TypeVar
+from typing import TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder
+from rockwobble.models import Cylinder, Tendon
 from rockwobble.models.number_checks import require_positive
 
 from ..body import Body, body_of
+from ..restoring import sigma, sigma_slope, tied
 
 T = TypeVar("T", float, NDArray[np.float64])
 
@@ -48,15 +49,6 @@ def base_inertia(body: Body, t: T) -> T:
 def inertia_growth(body: Body, t: T) -> T:
     """Return K [m^2], positive for t < 1: dB/dtheta = 4 t K/n^2."""
     return body.J * (1.0 - t * t) + t * (body.E * (3.0 - t * t) + 2.0 * body.C * t)
-
-
-def sigma(R: float, gap: float, y: float, drop: T) -> T:
-    """Return sigma(x, y) [m] at x = y - drop, where `gap` is alpha - theta at y.
-
-    This is R sqrt(n_x n_y) sin((gap_x + gap_y)/2): gap and drop enter as they are, and do not have
-    to be recovered from tilts next to alpha.
-    """
-    return R * (math.sin(gap) * (1.0 + y * (y - drop)) + math.cos(gap) * drop)
 
 
 def _beta_in_first(body: Body, y: float) -> tuple[float, float, float, float]:
@@ -95,13 +87,14 @@ def deflated(body: Body, R: float, gap2: float, t1: float, t2: float, t: T, drop
     e1 = c2 + c0 + t1 * e2
     e0 = c1 + t1 * e1
     beta_slope = e0 + t * (e1 + t * (e2 + t * (e3 + t * c3)))
-    sigma_slope = body.h + body.b * t2  # of -sigma(., t2), which is linear
     G1 = t1 * t1 * base_inertia(body, t1)
-    positive = sigma(R, gap2, t2, drop) * G_slope * beta12 * n1
-    negative = G1 * (sigma_slope * beta12 * n1 + sigma(R, gap2, t2, t2 - t1) * beta_slope)
+    sigma12 = sigma(body, R, gap2, t2, t2 - t1)
+    positive = sigma(body, R, gap2, t2, drop) * G_slope * beta12 * n1
+    negative = G1 * (sigma_slope(body, t1, t2, t) * beta12 * n1 + sigma12 * beta_slope)
     return positive, negative
 
 
-def body_under(cylinder: Cylinder, gravity: float) -> Body:
+def body_under(cylinder: Cylinder, gravity: float, tendon: Tendon | None = None) -> Body:
     """Return the constants of `cylinder`, or raise ValueError unless gravity is positive and finite."""
-    return body_of(cylinder, require_positive("gravity", gravity, "m/s^2"))
+    body = body_of(cylinder, require_positive("gravity", gravity, "m/s^2"))
+    return body if tendon is None else cast("Body", tied(body, cylinder, tendon))

@@ -7,11 +7,13 @@ Energy and momentum confine the tilt where
 is positive. With theta0' = 0 the factor (t - t0) is divided out, so that the other turning tilt is a
 simple root however near or far it is. Steady wobble at t has the momentum
 
-    L^2 = 8 g R t^3 H^2 sin(gap)/(n^2 K),
+    L^2 = 8 V' t^3 H^2/(n^2 K),
 
-which rises from zero to its one maximum and falls to zero at alpha: on the falling side steady wobble
-is unstable, and is the top of the barrier beyond which a release of that momentum overturns. That the
-maximum is the only one is not proved; tests check it over all slendernesses and inertias.
+V' = g R sin(gap), which rises from zero to its one maximum and falls to zero at alpha: on the falling side
+steady wobble is unstable, and is the top of the barrier beyond which a release of that momentum overturns.
+That the maximum is the only one is not proved; tests check it over all slendernesses and inertias. With a
+tendon V' is zero at the balance tilt instead, or positive up to pi/2, where the side is down; then the
+momentum may rise all the way.
 """
 
 from __future__ import annotations
@@ -21,7 +23,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from ..body import Body
-from ._shape import base_inertia, beta, inertia_growth, sigma
+from ..restoring import balance, couple, couple_slope, sigma
+from ._shape import T, base_inertia, beta, inertia_growth
 
 _SMALLEST = 2.0**-1022  # absolute tolerance of the root finder: none, so that small tilts keep their digits
 _RTOL = 4.0 * 2.0**-52  # the least that the root finder allows
@@ -38,7 +41,7 @@ class Turning(NamedTuple):
 
 def turning_tilts(body: Body, R: float, tilt: float, tilt_rate: float, rolling_rate: float) -> Turning | None:
     """Return the turning tilts of a release with `rolling_rate` not zero, None where it overturns."""
-    if tilt >= body.alpha:  # beyond alpha both moments drive the tilt outward
+    if tilt >= _edge(body):  # beyond it both moments drive the tilt outward
         return None
     t0, gap0 = math.tan(0.5 * tilt), body.alpha - tilt
     kinetic = 0.5 * body.A * tilt_rate**2
@@ -58,7 +61,7 @@ def turning_tilts(body: Body, R: float, tilt: float, tilt_rate: float, rolling_r
 def _outward_push(body: Body, R: float, t: float, gap: float, rolling_rate: float) -> float:
     """Return A theta'' [m^2/s^2] in t."""
     n = 1.0 + t * t
-    return 2.0 * t * inertia_growth(body, t) * rolling_rate**2 / n**2 - body.g * R * math.sin(gap)
+    return 2.0 * t * inertia_growth(body, t) * rolling_rate**2 / n**2 - couple(body, R, t, gap)
 
 
 def _inner(body: Body, R: float, t0: float, gap0: float, kinetic: float, rolling_rate: float) -> float:
@@ -68,7 +71,7 @@ def _inner(body: Body, R: float, t0: float, gap0: float, kinetic: float, rolling
 
     # both per phi0'^2/t^2: the root goes with the spin, and the square of a spin may underflow
     def drive(x: float) -> float:
-        fall = body.g * sigma(R, gap0, t0, t0 - x) / ((1.0 + x * x) * n0)
+        fall = body.g * sigma(body, R, gap0, t0, t0 - x) / ((1.0 + x * x) * n0)
         return base_inertia(body, x) * (kinetic + 2.0 * (t0 - x) * fall if kinetic else fall)
 
     def centrifugal(x: float) -> float:
@@ -93,11 +96,26 @@ def _rise(
     def excess(rise: float) -> float:
         x = t0 + rise
         G_ratio = (t0 / x) ** 2 * H0 / base_inertia(body, x)
-        climb = body.g * sigma(R, gap0, t0, -rise) / ((1.0 + x * x) * n0)
+        climb = body.g * sigma(body, R, gap0, t0, -rise) / ((1.0 + x * x) * n0)
         climb -= beta(body, x, t0) * G_ratio * rolling_rate**2 / n0**4
         return 2.0 * rise * climb - kinetic if kinetic else climb
 
     return _first_root(excess, min(t0, limit), limit)
+
+
+def highest_without_spin(body: Body, R: float, tilt: float, tilt_rate: float) -> tuple[float, float] | None:
+    """Return the largest tilt of planar motion and its distance from alpha [rad], None if it overturns."""
+    t0, gap0 = math.tan(0.5 * tilt), body.alpha - tilt
+    rise = _rise(body, R, t0, gap0, 0.5 * body.A * tilt_rate**2, 0.0, math.tan(0.5 * _edge(body)) - t0)
+    if rise is None:
+        return None
+    risen = 2.0 * math.atan(rise / (1.0 + t0 * (t0 + rise)))
+    return tilt + risen, gap0 - risen
+
+
+def _edge(body: Body) -> float:
+    """Return the tilt beyond which nothing comes back [rad]: the balance, or where the side is down."""
+    return min(balance(body), 0.5 * math.pi)
 
 
 def _barrier(body: Body, R: float, t0: float, rolling_rate: float) -> float | None:
@@ -109,21 +127,25 @@ def _barrier(body: Body, R: float, t0: float, rolling_rate: float) -> float | No
 
     def surplus(x: float) -> float:
         H, n, K = base_inertia(body, x), 1.0 + x * x, inertia_growth(body, x)
-        return 0.5 * body.g * R * x**3 * H * H * math.sin(gap(x)) / (n * n * K) - momentum
+        return 0.5 * couple(body, R, x, gap(x)) * x**3 * H * H / (n * n * K) - momentum
 
     def growth(x: float) -> float:
-        """Return the logarithmic derivative of the momentum of steady wobble, times x sin(gap)."""
-        H, n, K = base_inertia(body, x), 1.0 + x * x, inertia_growth(body, x)
-        H_slope = 2.0 * (body.E + body.C * x)
-        K_slope = body.E * 3.0 * (1.0 - x * x) + 2.0 * x * (2.0 * body.C - body.J)
-        powers = 3.0 + x * (2.0 * H_slope / H - 4.0 * x / n - K_slope / K)
-        return math.sin(gap(x)) * powers - math.cos(gap(x)) * 2.0 * x / n
+        return momentum_growth(body, R, x, gap(x))
 
-    edge = math.tan(0.5 * body.alpha)
-    crest = _root(growth, 0.0, edge)
+    edge = math.tan(0.5 * _edge(body))
+    crest = edge if growth(edge) >= 0.0 else _root(growth, 0.0, edge)
     if surplus(crest) <= 0.0:
         return None
     return edge if surplus(edge) >= 0.0 else _root(surplus, crest, edge)
+
+
+def momentum_growth(body: Body, R: float, t: T, gap: T) -> T:
+    """Return the logarithmic derivative of the momentum L^2 of steady wobble by t, times t V' [m^2/s^2]."""
+    H, n, K = base_inertia(body, t), 1.0 + t * t, inertia_growth(body, t)
+    H_slope = 2.0 * (body.E + body.C * t)
+    K_slope = body.E * 3.0 * (1.0 - t * t) + 2.0 * t * (2.0 * body.C - body.J)
+    powers = 3.0 + t * (2.0 * H_slope / H - 4.0 * t / n - K_slope / K)
+    return couple(body, R, t, gap) * powers + couple_slope(body, R, t, gap) * 2.0 * t / n
 
 
 def _first_root(f: Callable[[float], float], guess: float, limit: float) -> float | None:

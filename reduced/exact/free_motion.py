@@ -7,33 +7,24 @@ tilt oscillates between a minimum and a maximum with
 
 No step is taken in time: the results depend on nothing but rounding, and serve as reference for
 everything that integrates.
-
-With the symbols of `_shape` and t = t1 + (t2 - t1) sin^2(u/2) both roots of the radicand cancel against dt:
-
-    dphi = (t1/t) sqrt(A sigma12 H1 G2 n^3/(H q)) du,    dtime = sqrt(A n1 n2 beta12 G/(g n q)) du.
-
-What is left is smooth but for two poles beyond the ends: upright t = 0 behind the minimum, and the
-far side of the overturning barrier behind the maximum. u = eps sinh v from either end resolves each
-on its own logarithmic scale, at any spin.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from functools import cache
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder, InitialState
+from rockwobble.models import Cylinder, InitialState, Tendon
 from rockwobble.models.shown import Brief
 
-from ..body import Body
-from ._shape import base_inertia, beta, body_under, deflated, sigma
-from ._turning import Turning, turning_tilts
+from ..body import Body, TiedBody
+from ..restoring import balance, potential
+from ._shape import base_inertia, body_under
+from ._turning import highest_without_spin, turning_tilts
 from .periods import quarter_period
+from .quadrature import half_cycle
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -72,7 +63,9 @@ class FreeResponse(Brief):
     angular_momentum: float
 
 
-def free_response(cylinder: Cylinder, initial: InitialState, *, gravity: float = 9.81) -> FreeResponse:
+def free_response(
+    cylinder: Cylinder, initial: InitialState, *, gravity: float = 9.81, tendon: Tendon | None = None
+) -> FreeResponse:
     """Solve the free response of the recess model exactly.
 
     Parameters
@@ -83,6 +76,8 @@ def free_response(cylinder: Cylinder, initial: InitialState, *, gravity: float =
         The release, at any point of the cycle; its rolling angle does not matter.
     gravity : float, optional
         g [m/s^2].
+    tendon : Tendon, optional
+        Along the axis.
 
     Returns
     -------
@@ -111,22 +106,20 @@ def free_response(cylinder: Cylinder, initial: InitialState, *, gravity: float =
     >>> round(response.period, 6), round(response.angle_of_turn, 6)
     (2.37841, 3.193531)
     """
-    body = body_under(cylinder, gravity)
+    body = body_under(cylinder, gravity, tendon)
     tilt, tilt_rate, rolling_rate = initial.tilt, initial.tilt_rate, initial.rolling_rate
     if tilt == 0.0:
         raise ValueError("initial must have a tilt above 0 for a free response, got 0: the cylinder stands")
     t, n = math.tan(0.5 * tilt), 1.0 + math.tan(0.5 * tilt) ** 2
     momentum = 4.0 * t * t * base_inertia(body, t) * rolling_rate / (n * n)
-    potential = (
-        2.0 * body.g * cylinder.semidiagonal * math.sin(0.5 * tilt) * math.sin(body.alpha - 0.5 * tilt)
-    )
-    energy = 0.5 * (body.A * tilt_rate**2 + momentum * rolling_rate) + potential
+    energy = 0.5 * (body.A * tilt_rate**2 + momentum * rolling_rate)
+    energy += potential(body, cylinder.semidiagonal, tilt)
     if rolling_rate == 0.0:
-        planar = _planar_maximum(body, initial)
+        planar = _planar_maximum(body, cylinder.semidiagonal, initial)
         if planar is None:
             raise _overturns(body, initial)
         maximum, gap = planar
-        half_period = float(quarter_period(body, np.asarray(maximum), np.asarray(gap)))
+        half_period = float(quarter_period(body, cylinder.semidiagonal, np.asarray(maximum), np.asarray(gap)))
         return FreeResponse(
             minimum_tilt=0.0,
             maximum_tilt=maximum,
@@ -156,7 +149,9 @@ def free_response(cylinder: Cylinder, initial: InitialState, *, gravity: float =
     )
 
 
-def angle_of_turn(cylinder: Cylinder, initial: InitialState, *, gravity: float = 9.81) -> float:
+def angle_of_turn(
+    cylinder: Cylinder, initial: InitialState, *, gravity: float = 9.81, tendon: Tendon | None = None
+) -> float:
     """Return the exact angle of turn of the recess model in free response.
 
     Parameters
@@ -167,6 +162,8 @@ def angle_of_turn(cylinder: Cylinder, initial: InitialState, *, gravity: float =
         The release, at any point of the cycle.
     gravity : float, optional
         g [m/s^2].
+    tendon : Tendon, optional
+        Along the axis.
 
     Returns
     -------
@@ -186,7 +183,7 @@ def angle_of_turn(cylinder: Cylinder, initial: InitialState, *, gravity: float =
     >>> round(math.degrees(angle_of_turn(can, InitialState(0.5 * can.alpha, rolling_rate=0.1))), 4)
     204.0166
     """
-    return free_response(cylinder, initial, gravity=gravity).angle_of_turn
+    return free_response(cylinder, initial, gravity=gravity, tendon=tendon).angle_of_turn
 
 
 def limiting_angle_of_turn(cylinder: Cylinder) -> float:
@@ -201,7 +198,8 @@ def limiting_angle_of_turn(cylinder: Cylinder) -> float:
     -------
     float
         pi sqrt(A/J) [rad], where A and J are the transverse inertias about a point of the rim and about
-        the centre of the base (Srinivasan and Ruina, 2008). It depends on neither gravity nor release.
+        the centre of the base (Srinivasan and Ruina, 2008). It depends on neither gravity nor release, and
+        neither on a tendon: near upright any couple is the same in all directions.
 
     Examples
     --------
@@ -214,12 +212,14 @@ def limiting_angle_of_turn(cylinder: Cylinder) -> float:
     return math.pi * math.sqrt(body.A / body.J)
 
 
-def _planar_maximum(body: Body, initial: InitialState) -> tuple[float, float] | None:
+def _planar_maximum(body: Body, R: float, initial: InitialState) -> tuple[float, float] | None:
     """Return the largest tilt of a release without spin and its distance from alpha [rad]."""
-    if initial.tilt >= body.alpha:
+    if initial.tilt >= balance(body):
         return None
     if initial.tilt_rate == 0.0:
         return initial.tilt, body.alpha - initial.tilt
+    if isinstance(body, TiedBody):
+        return highest_without_spin(body, R, initial.tilt, initial.tilt_rate)
     # energy conservation, once for sin(gap/2) and once for the tilt: each keeps its digits where it is small
     kinetic = 0.5 * initial.tilt_rate**2 / body.p2
     half_gap_squared = math.sin(0.5 * (body.alpha - initial.tilt)) ** 2 - 0.5 * kinetic
@@ -231,95 +231,8 @@ def _planar_maximum(body: Body, initial: InitialState) -> tuple[float, float] | 
 
 
 def _overturns(body: Body, initial: InitialState) -> ValueError:
+    tendon = " with this tendon" if isinstance(body, TiedBody) else ""
     return ValueError(
-        f"{initial!r} overturns a cylinder of alpha = {body.alpha!r} rad: it has no tilt maximum below "
-        "the barrier; give less tilt or less speed"
+        f"{initial!r} overturns a cylinder of alpha = {body.alpha!r} rad{tendon}: it has no tilt maximum "
+        "below the barrier; give less tilt or less speed"
     )
-
-
-_NODES = 64  # on each side; measured: 40 leave 1e-10 at the narrowest passes, 48 1e-12, 64 rounding
-_NARROWEST = 1e-20  # t1/t2: narrower passes differ from this one by less than rounding
-_WIDEST = 2.0  # eps: a pole farther away needs no clustering
-_ROUNDING = 8.0 * 2.0**-52  # of the difference of the two terms of q
-
-
-class HalfCycle(NamedTuple):
-    """From tilt minimum to tilt maximum."""
-
-    turn: float  # rolling angle, unsigned [rad]
-    time: float  # [s]
-
-
-def half_cycle(body: Body, R: float, turning: Turning) -> HalfCycle | None:
-    """Return angle and time from minimum to maximum, None if the maximum is on the overturning barrier."""
-    t2, gap2 = turning.t2, turning.gap2
-    t1 = max(turning.t1, _NARROWEST * t2)
-    span = t2 - t1
-    behind = _behind_maximum(body, R, gap2, t1, t2)
-    if behind is None:
-        return None
-    # a pole at distance d behind an end of the span lies at u = 2i sqrt(d/span) from it
-    u_min, du_min = _clustered(t1, span)
-    u_max, du_max = _clustered(behind, span)
-    u = np.concatenate([u_min, u_max])  # from the nearer end
-    near, far = span * np.sin(0.5 * u) ** 2, span * np.cos(0.5 * u) ** 2
-    at_minimum = np.arange(u.size) < u_min.size
-    t = t1 + np.where(at_minimum, near, far)
-    drop = np.where(at_minimum, far, near)
-    du = np.concatenate([du_min, du_max])
-
-    n, n1, n2 = 1.0 + t * t, 1.0 + t1 * t1, 1.0 + t2 * t2
-    H, H1, H2 = base_inertia(body, t), base_inertia(body, t1), base_inertia(body, t2)
-    positive, negative = deflated(body, R, gap2, t1, t2, t, drop)
-    q = positive - negative
-    sigma12, beta12 = sigma(R, gap2, t2, span), beta(body, t1, t2)
-    turn = t1 * t2 * np.sqrt(body.A * sigma12 * H1 * H2 * n * n * n / (H * q)) / t
-    time = t * np.sqrt(body.A * n1 * n2 * beta12 * H / (body.g * n * q))
-    return HalfCycle(float(np.sum(turn * du)), float(np.sum(time * du)))
-
-
-def _behind_maximum(body: Body, R: float, gap2: float, t1: float, t2: float) -> float | None:
-    """Return the distance in t from the maximum to the zero of q behind it, None if there is no room.
-
-    The zero is where the radicand turns positive again on the far side of the barrier. Only its
-    order of magnitude matters, and only when it is close: q is then linear.
-    """
-    positive, negative = deflated(body, R, gap2, t1, t2, t2, 0.0)
-    q2 = positive - negative
-    if q2 <= _ROUNDING * positive:
-        return None
-    step = 0.125 * (t2 - t1)
-    inside, outside = deflated(body, R, gap2, t1, t2, t2 - step, step)
-    fall = inside - outside - q2
-    return step * q2 / fall if fall > 0.0 else math.inf
-
-
-def _clustered(distance: float, span: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return nodes and weights in u on (0, pi/2), clustered at 0 on the scale of a pole behind it."""
-    eps = _WIDEST if span * _WIDEST**2 <= 4.0 * distance else 2.0 * math.sqrt(distance / span)
-    nodes, weights = _gauss()
-    end = math.asinh(0.5 * math.pi / eps)
-    v = end * nodes
-    return eps * np.sinh(v), eps * end * weights * np.cosh(v)
-
-
-@cache
-def _gauss() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the nodes and weights of Gauss and Legendre on (0, 1), to rounding also at the ends.
-
-    The clustering leans on the outermost weights, where the usual formulas leave 1e-12. As functions
-    of psi, with x = cos psi, they lose nothing: w = 2/(dP/dpsi)^2 at the zeros of P(cos psi).
-    """
-    psi = np.arccos(np.polynomial.legendre.leggauss(_NODES)[0][_NODES // 2 :])
-    slope = np.ones_like(psi)
-    for _ in range(2):  # Newton; the second step is below rounding
-        versine = 2.0 * np.sin(0.5 * psi) ** 2
-        P, rise = 1.0 - versine, -versine
-        for k in range(1, _NODES):
-            rise = (k * rise - (2 * k + 1) * versine * P) / (k + 1)
-            P = P + rise
-        # P of the order below is P - rise
-        slope = -_NODES * (versine * P - rise) / np.sin(psi)
-        psi = psi - P / slope
-    near, weights = np.sin(0.5 * psi) ** 2, 1.0 / slope**2
-    return np.concatenate([near, np.cos(0.5 * psi) ** 2]), np.concatenate([weights, weights])

@@ -7,10 +7,12 @@ maximum is an incomplete elliptic integral of the first kind,
 
     p T/4 = int_k^K dx/sqrt((1 - x^2)(x^2 - k^2)),    k = sin((alpha - tilt)/2),  K = sin(alpha/2),
 
-in Carlson's form (DLMF 19.29.4), which loses no digits at either end of 0 < tilt < alpha.
+in Carlson's form (DLMF 19.29.4), which loses no digits at either end of 0 < tilt < alpha. With a tendon it is
+the quadrature of a pass as near as can be (`quadrature`).
 
 Steady wobble is constant tilt, held by the rolling of the contact point around the rim: equation (24) without
-its misprints: W^2 = 2 m g (b cos theta - h sin theta)/B', where B' is the derivative of the inertia of the
+its misprints: W^2 = 2 V'/B', where V' = m g (b cos theta - h sin theta), with
+a tendon what that adds, and B' is the derivative of the inertia of the
 rolling angle. A thin disc in a recess has W^2 = 4 g cos theta/ (b sin theta (6 - 5 cos theta)).
 """
 
@@ -23,10 +25,13 @@ from typing import Any, Protocol, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockwobble.models import Cylinder
+from rockwobble.models import Cylinder, Tendon
 
-from ..body import Body
+from ..body import Body, TiedBody
+from ..restoring import balance, couple
 from ._shape import body_under, inertia_growth
+from ._turning import momentum_growth
+from .quadrature import half_period
 
 Array = NDArray[np.float64]
 
@@ -35,31 +40,45 @@ class _OfTilts(Protocol):
     """A function of one tilt, or of each in an array."""
 
     @overload
-    def __call__(self, cylinder: Cylinder, tilt: float, *, gravity: float = ...) -> float: ...
+    def __call__(
+        self, cylinder: Cylinder, tilt: float, *, gravity: float = ..., tendon: Tendon | None = ...
+    ) -> float: ...
     @overload
     def __call__(
-        self, cylinder: Cylinder, tilt: Array | Sequence[float], *, gravity: float = ...
+        self,
+        cylinder: Cylinder,
+        tilt: Array | Sequence[float],
+        *,
+        gravity: float = ...,
+        tendon: Tendon | None = ...,
     ) -> Array: ...
 
 
 def _of_tilts(function: Callable[..., Array]) -> _OfTilts:
-    """Let a function of an array take one tilt as well, and refuse those that are not between 0 and alpha."""
+    """Let a function of an array take one tilt as well, and refuse those that are not below the balance."""
 
     @wraps(function)
-    def checked(cylinder: Cylinder, tilt: ArrayLike, *, gravity: float = 9.81) -> Any:
-        theta, alpha = np.asarray(tilt, dtype=float), cylinder.alpha
-        outside = ~((theta > 0.0) & (theta < alpha))  # also where it is not a number
+    def checked(
+        cylinder: Cylinder, tilt: ArrayLike, *, gravity: float = 9.81, tendon: Tendon | None = None
+    ) -> Any:
+        theta, largest, name = np.asarray(tilt, dtype=float), cylinder.alpha, "alpha"
+        if tendon is not None:
+            largest = min(balance(body_under(cylinder, gravity, tendon)), 0.5 * np.pi)
+            name = "the balance tilt" if largest < 0.5 * np.pi else "pi/2"
+        outside = ~((theta > 0.0) & (theta < largest))  # also where it is not a number
         if np.any(outside):
             first = float(np.extract(outside, theta)[0])
-            raise ValueError(f"tilt must be above 0 and below alpha = {alpha!r} [rad], got {first!r}")
-        found = function(cylinder, theta, gravity=gravity)
-        return found if np.ndim(tilt) else float(found)
+            raise ValueError(f"tilt must be above 0 and below {name} = {largest!r} [rad], got {first!r}")
+        values = function(cylinder, theta, gravity=gravity, tendon=tendon)
+        return values if np.ndim(tilt) else float(values)
 
     return checked
 
 
 @_of_tilts
-def planar_quarter_period(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81) -> Array:
+def planar_quarter_period(
+    cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81, tendon: Tendon | None = None
+) -> Array:
     """Return the time of planar rocking from rest at `tilt` to the upright position.
 
     Parameters
@@ -67,9 +86,11 @@ def planar_quarter_period(cylinder: Cylinder, tilt: Array, *, gravity: float = 9
     cylinder : Cylinder
         The body.
     tilt : float or array_like
-        Tilt at release [rad], 0 < tilt < alpha.
+        Tilt at release [rad], 0 < tilt < alpha, or below the balance tilt of a tendon.
     gravity : float, optional
         g [m/s^2].
+    tendon : Tendon, optional
+        Along the axis.
 
     Returns
     -------
@@ -79,7 +100,7 @@ def planar_quarter_period(cylinder: Cylinder, tilt: Array, *, gravity: float = 9
     Raises
     ------
     ValueError
-        If a tilt is outside the open range from 0 to alpha, or gravity is not positive.
+        If a tilt is outside that open range, or gravity is not positive.
 
     Notes
     -----
@@ -91,12 +112,14 @@ def planar_quarter_period(cylinder: Cylinder, tilt: Array, *, gravity: float = 9
     >>> planar_quarter_period(pier, [0.2 * pier.alpha, 0.8 * pier.alpha]).round(6)
     array([0.626609, 2.068604])
     """
-    body = body_under(cylinder, gravity)
-    return quarter_period(body, tilt, body.alpha - tilt)
+    body = body_under(cylinder, gravity, tendon)
+    return quarter_period(body, cylinder.semidiagonal, tilt, body.alpha - tilt)
 
 
 @_of_tilts
-def rocking_period(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81) -> Array:
+def rocking_period(
+    cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81, tendon: Tendon | None = None
+) -> Array:
     """Return the period of planar rocking released from rest at `tilt`.
 
     Parameters
@@ -104,9 +127,11 @@ def rocking_period(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81) ->
     cylinder : Cylinder
         The body.
     tilt : float or array_like
-        Tilt at release [rad], 0 < tilt < alpha.
+        Tilt at release [rad], 0 < tilt < alpha, or below the balance tilt of a tendon.
     gravity : float, optional
         g [m/s^2].
+    tendon : Tendon, optional
+        Along the axis.
 
     Returns
     -------
@@ -118,7 +143,7 @@ def rocking_period(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81) ->
     Raises
     ------
     ValueError
-        If a tilt is outside the open range from 0 to alpha, or gravity is not positive.
+        If a tilt is outside that open range, or gravity is not positive.
 
     Examples
     --------
@@ -127,13 +152,16 @@ def rocking_period(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81) ->
     >>> round(rocking_period(pier, 0.5 * pier.alpha), 6)
     4.756815
     """
-    return 4.0 * planar_quarter_period(cylinder, tilt, gravity=gravity)
+    return 4.0 * planar_quarter_period(cylinder, tilt, gravity=gravity, tendon=tendon)
 
 
-def quarter_period(body: Body, theta: Array, gap: Array) -> Array:
+def quarter_period(body: Body, R: float, theta: Array, gap: Array) -> Array:
     """Return the quarter period [s] of a maximum tilt `theta`, where `gap` is alpha - theta."""
     from scipy.special import elliprf
 
+    if isinstance(body, TiedBody):
+        # that of a narrow pass, in the limit
+        return np.vectorize(lambda t2, gap2: half_period(body, R, t2, gap2))(np.tan(0.5 * theta), gap)
     k, k1 = np.sin(0.5 * gap), np.cos(0.5 * gap)
     K, K1 = np.sin(0.5 * body.alpha), np.cos(0.5 * body.alpha)
     width = np.sin(body.alpha - 0.5 * theta) * np.sin(0.5 * theta)  # K^2 - k^2
@@ -142,7 +170,9 @@ def quarter_period(body: Body, theta: Array, gap: Array) -> Array:
 
 
 @_of_tilts
-def steady_wobble_rate(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81) -> Array:
+def steady_wobble_rate(
+    cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81, tendon: Tendon | None = None
+) -> Array:
     """Return the rolling rate W at which the recess model wobbles with constant tilt.
 
     Parameters
@@ -150,9 +180,11 @@ def steady_wobble_rate(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81
     cylinder : Cylinder
         The body.
     tilt : float or array_like
-        The constant tilt [rad], 0 < tilt < alpha.
+        The constant tilt [rad], 0 < tilt < alpha, or below the balance tilt of a tendon.
     gravity : float, optional
         g [m/s^2].
+    tendon : Tendon, optional
+        Along the axis.
 
     Returns
     -------
@@ -162,7 +194,7 @@ def steady_wobble_rate(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81
     Raises
     ------
     ValueError
-        If a tilt is outside the open range from 0 to alpha, or gravity is not positive.
+        If a tilt is outside that open range, or gravity is not positive.
 
     Notes
     -----
@@ -175,15 +207,59 @@ def steady_wobble_rate(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81
     >>> round(steady_wobble_rate(pier, 0.5 * pier.alpha), 6)
     1.115452
     """
-    body = body_under(cylinder, gravity)
+    body = body_under(cylinder, gravity, tendon)
     t = np.tan(0.5 * tilt)
-    # 2 V'/B' with V' = g R sin(alpha - theta) and B' = 4 t K/n^2
-    moment = body.g * cylinder.semidiagonal * np.sin(body.alpha - tilt)
+    # 2 V'/B' with B' = 4 t K/n^2
+    moment = couple(body, cylinder.semidiagonal, t, body.alpha - tilt)
     return np.asarray((1.0 + t * t) * np.sqrt(0.5 * moment / (t * inertia_growth(body, t))))
 
 
 @_of_tilts
-def wobbling_period(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81) -> Array:
+def wobble_stability(
+    cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81, tendon: Tendon | None = None
+) -> Array:
+    """Return the squared frequency at which the tilt oscillates about a steady wobble.
+
+    Parameters
+    ----------
+    cylinder : Cylinder
+        The body.
+    tilt : float or array_like
+        The constant tilt [rad], 0 < tilt < alpha, or below the balance tilt of a tendon.
+    gravity : float, optional
+        g [m/s^2].
+    tendon : Tendon, optional
+        Along the axis.
+
+    Returns
+    -------
+    float or ndarray of the shape of `tilt`
+        Second derivative of V + L^2/2B by the tilt over A, at the momentum L of the wobble [1/s^2]. Negative
+        where the wobble is unstable: the tilt then leaves it as fast as exp of the root of its size.
+
+    Raises
+    ------
+    ValueError
+        If a tilt is outside that open range, or gravity is not positive.
+
+    Examples
+    --------
+    >>> from rockwobble.models import Cylinder, Tendon
+    >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> wobble_stability(pier, [0.5 * pier.alpha, 0.9 * pier.alpha]).round(4)
+    array([ 2.4674, -0.8175])
+    >>> round(wobble_stability(pier, 0.9 * pier.alpha, tendon=Tendon(stiffness=5.0)), 4)
+    3.9817
+    """
+    body = body_under(cylinder, gravity, tendon)
+    t, R = np.tan(0.5 * tilt), cylinder.semidiagonal
+    return np.asarray(momentum_growth(body, R, t, body.alpha - tilt) * (1.0 + t * t) / (2.0 * t * body.A))
+
+
+@_of_tilts
+def wobbling_period(
+    cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81, tendon: Tendon | None = None
+) -> Array:
     """Return the period of steady wobble, in which the contact point goes once around the rim.
 
     Parameters
@@ -191,9 +267,11 @@ def wobbling_period(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81) -
     cylinder : Cylinder
         The body.
     tilt : float or array_like
-        The constant tilt [rad], 0 < tilt < alpha.
+        The constant tilt [rad], 0 < tilt < alpha, or below the balance tilt of a tendon.
     gravity : float, optional
         g [m/s^2].
+    tendon : Tendon, optional
+        Along the axis.
 
     Returns
     -------
@@ -203,7 +281,7 @@ def wobbling_period(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81) -
     Raises
     ------
     ValueError
-        If a tilt is outside the open range from 0 to alpha, or gravity is not positive.
+        If a tilt is outside that open range, or gravity is not positive.
 
     Examples
     --------
@@ -212,4 +290,4 @@ def wobbling_period(cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81) -
     >>> round(wobbling_period(pier, 0.5 * pier.alpha), 6)
     5.632861
     """
-    return 2.0 * np.pi / steady_wobble_rate(cylinder, tilt, gravity=gravity)
+    return 2.0 * np.pi / steady_wobble_rate(cylinder, tilt, gravity=gravity, tendon=tendon)

@@ -42,6 +42,7 @@ _WORDS: Mapping[str, str] = {
     "where there is {bound:g}",
     "wall_contact": "the cylinder touched a wall{since}",
     "energy": "contact {made} {amount:.1e} of the energy of the motion, which shows{since}",
+    "rolling_loss": "rolling resistance took {amount:.1e} of it besides",
     "undecided": "it stays so near its balance that rounding or the error of the solution decides whether it "
     "falls or turns back: whether it overturns is not known",
     "solver": "the solver had not converged in {size:.0f} of the {bound:.0f} steps looked at",
@@ -82,6 +83,8 @@ _UNKNOWN: Mapping[str, str] = {
     "tension": "contact is lost{at}: a joint holds the rim down",
     "friction_needed": "a joint holds the rim{at}, where the friction of the case would let it slip",
     "unsettled": "the tilt has not settled by halving the step: {why}",
+    "rolling_loss": "rolling resistance took energy besides",
+    "one_column": "the engine runs one column, under a slab that only translates",
 }
 _INFINITE: Mapping[str, str] = {
     "friction_needed": "the rim would slip{at}, for {duration} in all: no friction suffices",

@@ -48,7 +48,8 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "measure": measure,
         "cylinders": [{"name": name, "slab_mass_ratio": 0.0, **body} for name, body in cylinders.items()],
         "answers": {
-            question: [row for row in rows if row["cylinder"] == whole] for question, rows in answers.items()
+            question: [{"ratio_most": math.nan, **row} for row in rows if row["cylinder"] == whole]
+            for question, rows in answers.items()
         },
         "contrasts": _by_cylinder([row for rows in answers.values() for row in rows], [*cylinders, ALL]),
         "several": len(cylinders) > 1,
@@ -68,7 +69,7 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "state_columns": [["method", "method", "words"]]
         + [[limit, limit.replace("_", " "), ".3g"] for limit in found.facts["limits"]],
         "walls": any(each["support"] in _WALLED for each in found.facts["methods"].values()),
-        "failed": [row for row in fallen if row["failed"]],
+        "failed": [{"median_if_not": math.nan, **row} for row in fallen if row["failed"]],
         "efficiency": efficiency,
         "gaps": found.gaps.to_dict("records"),
     }

@@ -194,6 +194,35 @@ def test_pairs_leave_out_what_failed_by_either(found):
     assert (own["failed"], own["runs"]) == (COUNT, 11 * COUNT)
 
 
+@pytest.mark.parametrize("fate", [0, 1])
+def test_what_failed_runs_would_have_done_lies_within_the_bounds(found: Fragility, fate: int) -> None:
+    """Runs that overturn, or that stand, are lost: what all of them say lies between the bounds."""
+    method, other = found.runs["method"].unique()[:2]
+    runs = found.runs.copy()
+    over = runs["outcome"] == "overturned"
+    lost = runs.index[(runs["method"] == method) & (over == bool(fate))][::3]
+    assert len(lost) > 1
+    runs.loc[lost, ["outcome", "peak_tilt"]] = ["failed", math.nan]
+    broken = fragility_of(runs, found.points, found.facts)
+
+    def of(table: pd.DataFrame, **values: str) -> pd.Series:
+        keys = {"cylinder": table["cylinder"].iloc[0], "limit": "overturned", **values}
+        return table[np.all([table[name] == value for name, value in keys.items()], axis=0)].iloc[0]
+
+    whole, fit = of(found.fits, method=method), of(broken.fits, method=method)
+    assert fit["failed"] == len(lost)
+    assert fit["median_if_exceeded"] < whole["median"] * (1 + 1e-9)
+    assert fit["median_if_not"] > whole["median"] * (1 - 1e-9)
+    # the fate of the lost runs is the one that is right
+    right = "median_if_exceeded" if fate else "median_if_not"
+    assert fit[right] == pytest.approx(whole["median"], rel=1e-9)
+    before = of(found.contrasts, method=other, against=method)
+    after = of(broken.contrasts, method=other, against=method)
+    assert before["ratio_least"] == before["ratio"] == before["ratio_most"]
+    assert after["ratio_least"] < after["ratio_most"]
+    assert after["ratio_most" if fate else "ratio_least"] == pytest.approx(before["ratio"], rel=1e-9)
+
+
 def test_the_mean_of_the_cylinders_is_geometric():
     bodies = {"column": COLUMN, "pier": Cylinder(semidiagonal=6.0, tan_alpha=0.2)}
     found = fragility(bodies, MOTIONS, methods=["recess", "planar-x"], levels=LEVELS, resamples=20, workers=1)

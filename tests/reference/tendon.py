@@ -110,3 +110,8 @@ def released(pier: Pier, tilt: float, spin: float, times: Array) -> Array:
     start = np.array([tilt, 0.0, 0.0, spin])
     found = solve_ivp(rates, (0.0, times[-1]), start, "DOP853", times, rtol=1e-12, atol=1e-13)
     return np.asarray(found.y[[0, 2]])
+
+
+def inertia_about_the_vertical(pier: Pier, tilt: float) -> float:
+    """Return the inertia of the azimuth at a tilt [kg m^2]."""
+    return 2.0 * _kinetic(pier, tilt, 0.0, 1.0)

@@ -65,14 +65,16 @@ class Fragility(Results, kind=KIND):
     fits : DataFrame
         One row for each cylinder, method and limit: kind ("fitted", "never", "always", "separated", "not
         increasing"; of fewer motions or levels than a curve takes "too few", and no number but counts; then
-        the tables below are empty), median, dispersion, runs, exceeded, failed, extrapolated, without_curve
-        (share of the resamples), and of the goodness of fit deviance, degrees, p and largest (difference of
+        the tables below are empty), median, median_if_exceeded and median_if_not (were all failed runs to
+        exceed the limit, or none), dispersion, runs, exceeded, failed, extrapolated, without_curve (share of
+        the resamples), and of the goodness of fit deviance, degrees, p and largest (difference of
         share and curve).
     curves : DataFrame
         The curves point by point: intensity, probability, low, high.
     contrasts : DataFrame
         One row for each two methods: ratio of the medians, dispersion_difference, within (least margin that
-        holds the interval of the ratio), verdict for the margin of the facts.
+        holds the interval of the ratio), verdict for the margin of the facts, ratio_least and ratio_most
+        (whatever the failed runs of both would have done).
     efficiency : DataFrame
         Dispersion of the first method by each measure, and over that of the best.
     gaps : DataFrame
@@ -272,6 +274,9 @@ def _inverted(row: Row) -> Row:
         "ratio": inverse(row["ratio"]),
         "ratio_low": inverse(row["ratio_high"]),
         "ratio_high": inverse(row["ratio_low"]),
+        # tables of earlier versions have no bounds
+        "ratio_least": inverse(row.get("ratio_most", math.nan)),
+        "ratio_most": inverse(row.get("ratio_least", math.nan)),
         "dispersion_difference": -row["dispersion_difference"],
         "dispersion_difference_low": -row["dispersion_difference_high"],
         "dispersion_difference_high": -row["dispersion_difference_low"],
@@ -316,7 +321,7 @@ def fragility(
     Returns
     -------
     Fragility
-        Failed runs are left out and counted.
+        Failed runs are left out and counted, with bounds of what they may have changed.
 
     Raises
     ------

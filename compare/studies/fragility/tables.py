@@ -212,6 +212,7 @@ def fit_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, 
                 "exceeded": int(k.sum()),
                 "failed": int(np.isnan(sample.y).sum()),
                 **median.exponential().columns("median"),
+                **dict(zip(MEDIANS_OF_FAILED, _bounds_of_failed(sample), strict=True)),
                 **spread.columns("dispersion"),
                 # beyond the intensities that were run the curve is a guess
                 "extrapolated": not x.min() <= centre <= x.max(),
@@ -220,6 +221,24 @@ def fit_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, 
             }
         )
     return pd.DataFrame(rows)
+
+
+# medians if all runs that failed exceed the limit, and if none does
+MEDIANS_OF_FAILED = ("median_if_exceeded", "median_if_not")
+# the least and the largest ratio of two medians, whatever the runs that failed would have done
+RATIOS_OF_FAILED = ("ratio_least", "ratio_most")
+
+
+def _bounds_of_failed(sample: Sample) -> tuple[float, float]:
+    """Return the medians if all runs that failed exceed the limit, and if none does."""
+    least, most = (Sample(x=sample.x, y=np.nan_to_num(sample.y, nan=fate)).curves() for fate in (1.0, 0.0))
+    return math.exp(least.centre[0]), math.exp(most.centre[0])
+
+
+def _ratio_bounds(pair: Sequence[Sample]) -> tuple[float, float]:
+    """Return the least and the largest logarithm of a ratio of medians, whatever failed runs would do."""
+    first, second = (np.log(_bounds_of_failed(each)) for each in pair)
+    return float(first[0] - second[1]), float(first[1] - second[0])
 
 
 def curve_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, Curves]) -> pd.DataFrame:
@@ -257,30 +276,46 @@ def contrast_table(
     """Return the ratio of the medians and the difference of the dispersions of every two methods.
 
     Of the same motions: a run that failed by one method leaves out that of the other, and both curves are of
-    the same resamples. Rows of the cylinder "all" are geometric means of the ratios over the cylinders.
+    the same resamples. Rows of the cylinder "all" are geometric means of the ratios over the cylinders. A run
+    may fail where the cylinder overturns, so that leaving it out is not neutral: the ratio lies between
+    ratio_least and ratio_most, for which the failed runs of one method exceed the limit and those of the
+    other do not.
     """
     rows: list[dict[str, float | str]] = []
     pairs = itertools.combinations(blocks.methods, 2)
     for limit, (against, method) in itertools.product(blocks.limits, pairs):
         about = {"limit": limit, "method": method, "against": against}
         found: list[tuple[Array, Array]] = []
+        ends: list[tuple[float, float]] = []
         for cylinder in blocks.cylinders:
             pair = [blocks.sample(cylinder, name, limit) for name in (method, against)]
             unknown = np.isnan(pair[0].y) | np.isnan(pair[1].y)
             if unknown.all():
                 continue
+            with np.errstate(divide="ignore", invalid="ignore"):  # of curves that have no median
+                ends.append(_ratio_bounds(pair))
             own, many = ([of[cylinder, name, limit] for name in (method, against)] for of in (fitted, drawn))
             if unknown.any():
                 pair = [Sample(x=each.x, y=np.where(unknown, np.nan, each.y)) for each in pair]
                 own, many = [each.curves() for each in pair], [each.curves(weights) for each in pair]
             found.append((_differences(own), _differences(many)))
             row = contrast_row(*found[-1], len(blocks.motions), margin)
-            rows.append({"cylinder": cylinder, **about, **row})
+            rows.append({"cylinder": cylinder, **about, **row, **_ends(ends[-1:])})
         if len(found) == len(blocks.cylinders) > 1:
             with np.errstate(invalid="ignore"):  # of one beyond all levels and one below there is none
                 mean, means = (np.mean(each, axis=0) for each in zip(*found, strict=True))
-            rows.append({"cylinder": ALL, **about, **contrast_row(mean, means, len(blocks.motions), margin)})
+            row = contrast_row(mean, means, len(blocks.motions), margin)
+            rows.append({"cylinder": ALL, **about, **row, **_ends(ends)})
     return pd.DataFrame(rows)
+
+
+def _ends(bounds: Sequence[tuple[float, float]]) -> dict[str, float]:
+    """Return the columns of geometric means of the bounds of a ratio, of their logarithms."""
+    with np.errstate(invalid="ignore"):
+        return {
+            name: float(np.exp(np.mean(end)))
+            for name, end in zip(RATIOS_OF_FAILED, np.transpose(bounds), strict=True)
+        }
 
 
 def _differences(pair: Sequence[Curves]) -> Array:
