@@ -190,7 +190,7 @@ def _require_able(engine: Engine, name: str, case: Case, support: str) -> None:
         raise ValueError(
             f"{name} cannot uplift a cylinder that stands: give a release with a tilt, got a start at rest"
         )
-    if case.tendon is not None:
+    if case.tendon is not None and not engine.facts.tendons:
         raise ValueError(f"{name} has no tendon: tendon must be None, got {case.tendon!r}")
     if case.rolling_resistance and not engine.facts.rolling_friction:
         raise ValueError(
