@@ -126,11 +126,11 @@ _RTOL = 1e-7
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Shaking:
-    """A cylinder under a ground motion as it is, the factors on the motion, and the place of the first."""
+    """A cylinder under a ground motion as it is, the factors on the motion, and their places (levels)."""
 
     case: Case
     scales: tuple[float, ...]
-    step: int = 0
+    steps: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -157,9 +157,7 @@ class Task:
     def points(self) -> list[tuple[str, int]]:
         """Name of the motion and place of the level of each run."""
         return [
-            (shaking.case.name, shaking.step + place)
-            for shaking in self.shakings
-            for place in range(len(shaking.scales))
+            (shaking.case.name, step) for shaking in self.shakings for step in shaking.steps
         ]
 
     @property
@@ -268,6 +266,8 @@ class RunPlan:
     options : FragilityPlan
         With levels (stripes: every motion is scaled to each of these intensities), or with scales or neither
         (a cloud: factors on the motions as they are). A step factor is of runs that state no step.
+    stripes : mapping of str to tuple of int, optional
+        Places of the levels at which each motion is run, by its name. Default: every motion at every level.
 
     Raises
     ------
@@ -279,6 +279,7 @@ class RunPlan:
     motions: Sequence[GroundMotion]
     methods: Sequence[Method]
     options: FragilityPlan
+    stripes: Mapping[str, tuple[int, ...]] | None = None
 
     def __post_init__(self) -> None:
         asked = self.options
@@ -305,11 +306,14 @@ class RunPlan:
         """Factors on the motions of a cloud."""
         return (1.0,) if self.options.scales is None else tuple(map(float, self.options.scales))
 
-    def factors(self, cylinder: Cylinder, motion: GroundMotion) -> tuple[float, ...]:
-        """Return the factors on a motion, one for each level or those of the cloud."""
+    def factors(self, cylinder: Cylinder, motion: GroundMotion) -> dict[int, float]:
+        """Return the factors on a motion by their place: one for each of its levels, or those of the cloud."""
         asked = self.options
+        if asked.levels is None:
+            return dict(enumerate(self.scales))
         own = intensity(asked.measure, motion, cylinder, gravity=asked.gravity, period=asked.period)
-        return self.scales if asked.levels is None else tuple(float(level) / own for level in asked.levels)
+        steps = range(len(asked.levels)) if self.stripes is None else self.stripes[motion.name]
+        return {step: float(asked.levels[step]) / own for step in steps}
 
     def _shaking(self, cylinder: Cylinder, motion: GroundMotion) -> Shaking:
         case = Case(
@@ -320,22 +324,27 @@ class RunPlan:
             rolling_resistance=self.options.rolling_resistance,
             name=motion.name,
         )
-        return Shaking(case=case, scales=self.factors(cylinder, motion))
+        factors = self.factors(cylinder, motion)
+        return Shaking(case=case, scales=tuple(factors.values()), steps=tuple(factors))
 
     @cached_property
     def points(self) -> pd.DataFrame:
-        """One row for each cylinder, motion and level: place, factor, factor of uplift, all intensities."""
+        """One row for each cylinder, motion and level of it.
+
+        Place, factor, factor of uplift, whether the motion is synthetic, all intensities.
+        """
         rows, asked = [], self.options
         for name, cylinder in self.cylinders.items():
             own = measures_of(self.motions, cylinder, gravity=asked.gravity, period=asked.period)
             lifts = [uplift_scale(motion, cylinder, asked.gravity) for motion in self.motions]
             for index, motion in enumerate(self.motions):
-                for step, scale in enumerate(self.factors(cylinder, motion)):
+                for step, scale in self.factors(cylinder, motion).items():
                     found = {measure: scale * values[index] for measure, values in own.items()}
                     if asked.levels is not None:  # to the last bit one level for all
                         found[asked.measure] = float(asked.levels[step])
                     place = {"cylinder": name, "motion": motion.name, "step": step, "scale": scale}
-                    rows.append(place | {"uplift_scale": lifts[index]} | found)
+                    about = {"uplift_scale": lifts[index], "synthetic": motion.synthetic}
+                    rows.append(place | about | found)
         return pd.DataFrame(rows)
 
     def tasks(self) -> Iterator[Task]:
@@ -344,9 +353,9 @@ class RunPlan:
         for name, cylinder in self.cylinders.items():
             shakings = [self._shaking(cylinder, motion) for motion in self.motions]
             single = [
-                replace(shaking, scales=(scale,), step=step)
+                replace(shaking, scales=(scale,), steps=(step,))
                 for shaking in shakings
-                for step, scale in enumerate(shaking.scales)
+                for step, scale in zip(shaking.steps, shaking.scales, strict=True)
             ]
             for method in self.methods:
                 if method.run is None:
