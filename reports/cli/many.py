@@ -80,13 +80,21 @@ def fragility(
             chosen = methods.methods(next(iter(bodies.values())))
             methods_of(chosen, restitution=plan.restitution)  # before motions are read
             site = hazard.curve(plan.period)
-            motions, source = many.read(plan.seed)
+            stripes = many.by_level()
+            if stripes:
+                lone = {"levels", "scales"}
+                refuse(context, lone, "does not go with the column level of records.csv")
+                motions = list({each.name: each for own in stripes.values() for each in own}.values())
+                source = many.source
+            else:
+                motions, source = many.read(plan.seed)
             for name, each in bodies.items():
                 size = f"R = {each.semidiagonal:g} m, tan alpha = {each.tan_alpha:g}"
                 print(f"{name}: {size}" if cylinder else size)
             echo(
                 [
-                    f"Motions: {len(motions)}, {source}",
+                    f"Motions: {len(motions)}, {source}"
+                    + (f", of their own at each of {len(stripes)} levels" if stripes else ""),
                     *record_lines(motions),
                     *warnings_about(motions, bodies.values(), plan.gravity),
                 ]
@@ -94,7 +102,7 @@ def fragility(
         with user_input(), shown_progress() as progress:
             found = rw.fragility(
                 bodies,
-                motions,
+                stripes or motions,
                 methods=chosen,
                 workers=workers,
                 scheduler=scheduler,

@@ -97,7 +97,10 @@ def fragility_values(found: Fragility) -> dict[str, object]:
 def _scaling(found: Fragility, measure: str) -> str:
     levels, scales = found.facts["levels"], found.facts["scales"]
     if levels:
-        return f"each at {len(levels)} levels of {measure} from {levels[0]:.4g} to {levels[-1]:.4g}"
+        own = found.facts.get("motions_of_levels")
+        counts = f"{min(own)} to {max(own)}" if own and len(set(own)) > 1 else str(own[0]) if own else ""
+        each = f"{counts} of their own at each of" if own else "each at"
+        return f"{each} {len(levels)} levels of {measure} from {levels[0]:.4g} to {levels[-1]:.4g}"
     return "as they are" + ("" if scales == [1.0] else f", times {', '.join(f'{s:.4g}' for s in scales)}")
 
 

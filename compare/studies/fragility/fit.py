@@ -233,10 +233,16 @@ _SAME = 1e-9
 _MOST_NUMBERS = 2_000_000
 
 
-def resamples(motions: int, count: int, seed: int) -> Array:
-    """Return how often each motion is drawn (count, motions)."""
+def resamples(motions: int, count: int, seed: int, *, strata: NDArray[np.int64] | None = None) -> Array:
+    """Return how often each motion is drawn (count, motions); strata (motions,) keep their numbers."""
     rng = np.random.default_rng(seed)
-    return rng.multinomial(motions, np.full(motions, 1.0 / motions), size=count).astype(np.float64)
+    weights = np.empty((count, motions))
+    strata = np.zeros(motions, dtype=np.int64) if strata is None else strata
+    for stratum in np.unique(strata):
+        of = strata == stratum
+        size = int(of.sum())
+        weights[:, of] = rng.multinomial(size, np.full(size, 1.0 / size), size=count)
+    return weights
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

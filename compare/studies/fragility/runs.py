@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run
-from rockwobble.models.number_checks import require_one_of
+from rockwobble.models.number_checks import require_each, require_increasing, require_one_of
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody.scene import default_step
 
@@ -156,9 +156,7 @@ class Task:
     @property
     def points(self) -> list[tuple[str, int]]:
         """Name of the motion and place of the level of each run."""
-        return [
-            (shaking.case.name, step) for shaking in self.shakings for step in shaking.steps
-        ]
+        return [(shaking.case.name, step) for shaking in self.shakings for step in shaking.steps]
 
     @property
     def title(self) -> str:
@@ -301,13 +299,18 @@ class RunPlan:
                 if method.run is not None:
                     require_runnable(shakings[0].case, self._stepped(method.run, cylinder))
 
+    def motions_of_levels(self) -> list[int]:
+        """Return the number of motions at each level."""
+        counts = Counter(step for steps in (self.stripes or {}).values() for step in steps)
+        return [counts[step] for step in range(len(self.options.levels or ()))]
+
     @property
     def scales(self) -> tuple[float, ...]:
         """Factors on the motions of a cloud."""
         return (1.0,) if self.options.scales is None else tuple(map(float, self.options.scales))
 
     def factors(self, cylinder: Cylinder, motion: GroundMotion) -> dict[int, float]:
-        """Return the factors on a motion by their place: one for each of its levels, or those of the cloud."""
+        """Return the factors on a motion by their place: one for each level of its, or of the cloud."""
         asked = self.options
         if asked.levels is None:
             return dict(enumerate(self.scales))
@@ -372,6 +375,32 @@ class RunPlan:
             return run
         step = self.options.step_factor * default_step(cylinder.semidiagonal, self.options.gravity)
         return Run(run.engine, run.support, step, **run.settings)
+
+
+def motions_by_level(
+    given: Mapping[float, Sequence[GroundMotion]],
+) -> tuple[tuple[float, ...], list[GroundMotion], dict[str, tuple[int, ...]]]:
+    """Return the levels, all motions, and the places of the levels of each motion by its name.
+
+    Raises
+    ------
+    ValueError
+        If a level is none, a name comes twice at a level, or is that of another motion at another.
+    """
+    levels = tuple(float(level) for level in require_increasing("levels", sorted(given)))
+    motions: dict[str, GroundMotion] = {}
+    places: dict[str, tuple[int, ...]] = {}
+    for place, level in enumerate(sorted(given)):
+        require_each(f"motions at {level:g}", given[level], GroundMotion)
+        for motion in given[level]:
+            known = motions.setdefault(motion.name, motion)
+            same = known.time_step == motion.time_step and np.array_equal(
+                known.acceleration, motion.acceleration
+            )
+            if place in places.get(motion.name, ()) or not same:
+                raise ValueError(f"motions must have different names, got {motion.name!r} twice")
+            places[motion.name] = (*places.get(motion.name, ()), place)
+    return levels, list(motions.values()), places
 
 
 def default_levels(
