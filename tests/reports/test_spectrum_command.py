@@ -13,6 +13,7 @@ import pytest
 from rich.console import Console
 
 from rockwobble import reduced
+from rockwobble.compare.studies.plans import SpectrumPlan
 from rockwobble.compare.studies.spectrum.maps import TiltMaps, record_frame, safe_gaps, tilt_maps
 from rockwobble.compare.studies.spectrum.parts import PLANAR_X, SERIES, SPATIAL
 from rockwobble.compare.studies.spectrum.study import KIND, OverturningSpectrum, planar_contrast
@@ -113,11 +114,13 @@ def spectrum() -> TiltMaps:
     whole = el_centro_1940()
     return tilt_maps(
         0.1,
-        GroundMotion(whole.acceleration[:1500], whole.time_step, whole.name),  # with the strongest shaking
-        semidiagonals=np.linspace(0.5, 30.0, 12),
-        intensities=np.linspace(1.0, 12.0, 12),
-        search_step=0.2,
-        probes=5,
+        GroundMotion(whole.acceleration[:1500], whole.time_step, whole.name),
+        SpectrumPlan(
+            semidiagonals=np.linspace(0.5, 30.0, 12),
+            intensities=np.linspace(1.0, 12.0, 12),
+            search_step=0.2,
+            probes=5,
+        ),
     )
 
 
@@ -226,7 +229,9 @@ def test_a_record_of_one_component_has_a_picture_and_a_page(still):
     acceleration[:, still] = 0.0
     motion = GroundMotion(acceleration, 0.01, "one component")
     found = tilt_maps(
-        0.1, motion, semidiagonals=[1.0, 8.0], intensities=[0.5, 4.0, 9.0], search_step=1.0, probes=0
+        0.1,
+        motion,
+        SpectrumPlan(semidiagonals=[1.0, 8.0], intensities=[0.5, 4.0, 9.0], search_step=1.0, probes=0),
     )
     assert not found.peak_tilt[SERIES[1 + still]].any()
     picture = picture_of(found)

@@ -319,12 +319,12 @@ def require_cases(tan_alpha: float, motion: GroundMotion, plan: SpectrumPlan) ->
 def tilt_maps(
     tan_alpha: float,
     motion: GroundMotion,
+    plan: SpectrumPlan | None = None,
     *,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
     resume: str | Path | None = None,
     kind: str = KIND,
-    **options: Any,
 ) -> TiltMaps:
     """Run every size at every intensity, in three dimensions and in the planes of both components.
 
@@ -333,6 +333,8 @@ def tilt_maps(
     tan_alpha : float
         Slenderness b/h [-].
     motion : GroundMotion
+    plan : SpectrumPlan, optional
+        Grid, support and search. Default: those of figure 6 of the paper.
     workers : int, optional
         Number of threads. It does not influence the result.
     progress : callable, optional
@@ -341,9 +343,6 @@ def tilt_maps(
         Folder that keeps each finished part: a second call, after whatever ended the first, repeats none.
     kind : str, optional
         Of the results that keep them.
-    **options
-        Of `SpectrumPlan`: semidiagonals [m], intensities [g tan alpha], support, search_step, probes,
-        gravity, slab_mass_ratio, rolling_resistance [m].
 
     Returns
     -------
@@ -357,18 +356,12 @@ def tilt_maps(
     Examples
     --------
     >>> from rockwobble.models import el_centro_1940
-    >>> spectrum = tilt_maps(
-    ...     0.1,
-    ...     el_centro_1940(),
-    ...     semidiagonals=[1.0, 20.0],
-    ...     intensities=[0.9, 4.0],
-    ...     search_step=0.2,
-    ...     probes=9,
-    ... )
+    >>> coarse = SpectrumPlan(semidiagonals=[1, 20], intensities=[0.9, 4], search_step=0.2, probes=9)
+    >>> spectrum = tilt_maps(0.1, el_centro_1940(), coarse)
     >>> spectrum.overturned("3d").tolist()
     [[False, True], [False, False]]
     """
-    asked = SpectrumPlan.of(**options)
+    asked = SpectrumPlan() if plan is None else plan
     sizes, levels = (
         np.linspace(*default) if given is None else require_increasing(name, given)
         for name, given, default in (
