@@ -22,7 +22,7 @@ from .command import takes_options
 from .outputs import claim_folder
 from .problem import BODY, Body, Problem, Record, refuse, refuse_options_of_engines, unread
 from .several import GridOptions, Hazard, ManyMethods, ManyMotions, cylinders_of
-from .suite_choice import chosen_runs, refuse_problem_options, without_missing
+from .suite_choice import chosen_runs, refuse_problem_options, say_what_is_left_out, without_missing
 
 if TYPE_CHECKING:
     from rockwobble.models.case import TimeStep
@@ -269,6 +269,8 @@ def _runs(
         return []
     if suite is not None:
         return without_missing(chosen_runs(suite, engines, supports, time_step), engines)
+    if not engines:
+        say_what_is_left_out(supports or ())
     chosen = rc.default_runs(engines or None, supports or None)
     return [rw.Run(run.engine, run.support, time_step) for run in chosen]
 
@@ -349,7 +351,11 @@ def _suite(name: str, models: list[str] | None) -> rw.Suite:
             raise ValueError(f"--model must be of {', '.join(rw.reduced.MODELS)}, got {model!r}")
     suite = rw.read_suite(name)
     chosen = [rw.Run(None, **{"support": "recess", **rw.reduced.MODELS[model]}) for model in models or ()]
-    runs = (*chosen, *(suite.runs or (() if models else rc.default_runs())))
+    added = suite.runs
+    if not added and not models:
+        say_what_is_left_out()
+        added = rc.default_runs()
+    runs = (*chosen, *added)
     return runnable_suite(rw.Suite(suite.cases, runs))
 
 
