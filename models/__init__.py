@@ -8,7 +8,7 @@ from .ground_motion import GroundMotion
 from .hazard import HazardCurve, read_hazard
 from .members import perturbed_copies, with_motions
 from .records.files import el_centro_1940, read_record
-from .records.folder import read_records
+from .records.folder import read_records, read_records_by_level
 from .records.p695 import far_field_motions, p695_far_field
 from .suites import read_suite, shipped_suites
 from .synthetic import pulse, synthetic_motions
@@ -39,6 +39,7 @@ __all__ = [
     "read_hazard",
     "read_record",
     "read_records",
+    "read_records_by_level",
     "read_suite",
     "run_duration",
     "shipped_suites",

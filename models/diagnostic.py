@@ -44,6 +44,7 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "not_extrapolated": ("", "runs at successive time steps do not agree well enough to extrapolate"),
         "one_column": ("columns", "the engine runs one column, under a slab that only translates"),
         "side": ("", "it passed through upright itself: the side to which it goes on is undetermined"),
+        "spent_spin": ("", "rolling resistance took the spin: passes go on in the sense in which it rolled"),
         "tendon_yield": ("weights", "the tendon would yield: what comes after is not modelled"),
         # what makes a record of the ground improbable
         "large_peak": ("g", "no record has such a peak: is its unit another?"),

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from .protocol import Steps
 from .scene import Array, Body
+from .tendon import SceneTendon
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,11 +28,14 @@ class Kinematics:
     tilt, tilt_rate, azimuth, twist : ndarray
         The azimuth is phi between -pi and pi, the twist as the quaternion tells it: see `unwrap_twist`.
     energy : ndarray
-        Kinetic and potential, per unit of the driven mass, zero standing [m^2/s^2].
+        Kinetic and potential, that of a tendon included, per unit of the driven mass, zero standing
+        [m^2/s^2].
     depth : ndarray
         Of the lowest point of the rim below the ground [m].
     slip_rate : ndarray
         Horizontal speed of the material point there [m/s].
+    elongation : ndarray, optional
+        Of the tendon since rest [m]; None without one.
     """
 
     tilt: Array
@@ -41,9 +45,12 @@ class Kinematics:
     energy: Array
     depth: Array
     slip_rate: Array
+    elongation: Array | None = None
 
 
-def kinematics(poses: Steps, after: Steps, body: Body, gravity: float) -> Kinematics:
+def kinematics(
+    poses: Steps, after: Steps, body: Body, gravity: float, tendon: SceneTendon | None = None
+) -> Kinematics:
     """Return the quantities at `poses`, whose velocities are those of the step before.
 
     `after` holds the poses of one step later: the velocity at a pose is the mean of those before and
@@ -69,6 +76,10 @@ def kinematics(poses: Steps, after: Steps, body: Body, gravity: float) -> Kinema
     energy = body.moved_mass * (vx * vx + vy * vy + vz * vz)
     energy += transverse * (wx * wx + wy * wy + wz * wz)
     energy += (axial - transverse) * along * along
+    elongation = None
+    if tendon is not None:
+        elongation = tendon.elongation(base_centre(poses, body))
+        energy += 2.0 * tendon.energy(elongation)
     return Kinematics(
         # atan2 of both, because the cosine alone loses a tilt below 1e-8
         tilt=np.arctan2(sine, az),
@@ -78,7 +89,13 @@ def kinematics(poses: Steps, after: Steps, body: Body, gravity: float) -> Kinema
         energy=0.5 * energy / body.driven_mass + gravity * (z - h),
         depth=-height,
         slip_rate=np.sqrt(slip_x * slip_x + slip_y * slip_y),
+        elongation=elongation,
     )
+
+
+def base_centre(poses: Steps, body: Body) -> Array:
+    """Return the places of the centre of the base, shape (n, 3) [m]."""
+    return np.asarray(poses.position - body.mass_centre_height * axis_of(poses.quaternion))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

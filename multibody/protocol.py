@@ -82,6 +82,8 @@ class EngineFacts(Brief):
         Whether its scenes hold the slab of a frame: one column, under a slab that only translates.
     rolling_friction : bool
         Whether it has a couple against rolling, of at most a length times the normal force.
+    tendons : bool
+        Whether it has a tendon along the axis, `Scene.tendon`; without, a case with one is refused.
     contact_time : str
         Name of the setting that is the time in which contact removes a velocity [s]; empty without one.
     alternatives : mapping
@@ -100,6 +102,7 @@ class EngineFacts(Brief):
     rounding: float = 2.0**-53
     carries_slab: bool = False
     rolling_friction: bool = False
+    tendons: bool = False
     contact_time: str = ""
     alternatives: Mapping[str, Settings] = field(default_factory=lambda: _NOTHING)
     standing_alternatives: Mapping[str, Settings] = field(default_factory=lambda: _NOTHING)

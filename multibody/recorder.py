@@ -8,7 +8,7 @@ long, and would not know the force.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -19,7 +19,16 @@ from rockwobble.models.plain_json import fields_of
 from rockwobble.models.support import SUPPORTS
 
 from .guard import EnergyWatch, couple_power, energy_scale, first_breach
-from .kinematics import Kinematics, kinematics, rim, rolling_momentum, tilt_of, unwrap, unwrap_twist
+from .kinematics import (
+    Kinematics,
+    base_centre,
+    kinematics,
+    rim,
+    rolling_momentum,
+    tilt_of,
+    unwrap,
+    unwrap_twist,
+)
 from .passes import RestWatch, TurningPoint, turning_points
 from .protocol import Steps, Wall
 from .reaction import ForceSamples, UpliftWatch, begun_at, first_grip, first_pull, force_of_steps, sure_tilt
@@ -38,7 +47,7 @@ _ROUNDING = 1e-6  # of a step
 COLUMNS = (
     "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_x", "contact_y",
     "base_x", "base_y", "x", "y", "z", "energy", "energy_error", "energy_lost", "slip",
-    "wall_contact", "wall_impulse",
+    "wall_contact", "wall_impulse", "elongation",
 )  # fmt: skip
 
 
@@ -77,7 +86,7 @@ class Recorder:
         self.off_grid = False  # whether it is no sample of a run that is extended
         self._watch: UpliftWatch | None = None
         if start.standing:
-            self._watch = UpliftWatch(body, scene.gravity, scene.time_step, rounding)
+            self._watch = UpliftWatch(body, scene.tipping_gravity, scene.time_step, rounding)
         self._start: Start | None = start
         self._last: Steps | None = None  # the pose whose next velocity is still to come
         self._count = 0  # poses analysed
@@ -98,7 +107,7 @@ class Recorder:
         self.energy = EnergyWatch(
             scene.time_step,
             _LEAST_ENERGY * balance if start.standing else 0.0,
-            balance if lean > math.atan(body.tan_alpha) else 0.0,
+            balance if lean > scene.balance_tilt else 0.0,
         )
         self.looks = 0  # at the solver, and how often it had not converged
         self.unsolved = 0
@@ -111,6 +120,9 @@ class Recorder:
         self._at_turn = not start.standing and starts_at_turn
         self.points: list[TurningPoint] = []
         self.peak = 0.0
+        self.elongation = 0.0  # largest so far [m]
+        self.yield_time = math.nan  # when the tendon would first have yielded [s]
+        self._balance = scene.balance_tilt
         self.fastest = 0.0
         self.uplift: tuple[float, float] | None = None if start.standing else (0.0, rolling_angle)
         self.ended: str = ""
@@ -155,7 +167,8 @@ class Recorder:
         count, wall = len(poses.position), steps.wall
         time: Array = self._scene.time_step * np.arange(self._count, self._count + count, dtype=float)
         body = self._scene.body
-        state = kinematics(poses, after, body, self._scene.gravity)
+        tendon = self._scene.tendon
+        state = kinematics(poses, after, body, self._scene.gravity, tendon)
         state = replace(state, twist=unwrap_twist(state.twist, self._twist))
         gained = self.energy.error(state, poses, after, acceleration)
         # before the couple, whose part is not known well enough to end a run by
@@ -190,6 +203,8 @@ class Recorder:
             self._watch = None
         slip = self._slip(time, state)
         wall_contact, wall_impulse = self.walls.take(time, wall)
+        elongation = np.zeros(stop) if state.elongation is None else state.elongation
+        self._watch_tendon(time, elongation)
 
         def rows(at: Indices) -> Array:
             some, later = _rows(poses, at), _rows(after, at)
@@ -197,7 +212,8 @@ class Recorder:
             return np.column_stack(
                 [time[at], state.tilt[at], state.tilt_rate[at], angle[at], place.rolling_rate,
                  state.twist[at], place.contact_point, place.base_centre[:, :2], some.position,
-                 state.energy[at], gained[at], lost[at], slip[at], wall_contact[at], wall_impulse[at]]
+                 state.energy[at], gained[at], lost[at], slip[at], wall_contact[at], wall_impulse[at],
+                 elongation[at]]
             )  # fmt: skip
 
         self._depths.append(float(np.median(state.depth)))
@@ -205,14 +221,11 @@ class Recorder:
         self.energy.take(time, state.energy, gained)
         self.rests.take(time, state.tilt)
         # a fall beyond the balance is faster than any pass, and none comes after it
-        within = state.tilt < math.atan(body.tan_alpha)
+        within = state.tilt < self._balance
         self.fastest = max(self.fastest, float(np.abs(state.tilt_rate[within]).max(initial=0.0)))
         self._sample(time, rows)
         # on the base, and on a slab that keeps to the top
-        ends = [
-            force_of_steps(poses, after, acceleration, self._scene.time_step, self._scene.gravity, gain)
-            for gain in self._gains
-        ]
+        ends = self._contact_forces(poses, after, acceleration, self._gains)
         self.forces.add(ends[0])
         # a wall may well push the cylinder down, by its friction or where the rim is below it
         if math.isnan(self.pull_time) and wall is None:
@@ -256,19 +269,34 @@ class Recorder:
         self._last = _rows(joined, slice(-1, None))
         return _rows(joined, slice(0, -1)), _rows(joined, slice(1, None))
 
+    @property
+    def _carried(self) -> tuple[float, float]:
+        """What the base carries, a column and its share of the slab, and the top, the share [columns]."""
+        slab = self._scene.body.slab_mass_ratio
+        return 1.0 + slab, slab
+
+    def _contact_forces(
+        self, poses: Steps, after: Steps, ground: Array, gains: Sequence[float]
+    ) -> list[Array]:
+        """Force of contact (3, n) on each end that has a gain, over the weight that it carries."""
+        scene = self._scene
+        ends = [force_of_steps(poses, after, ground, scene.time_step, scene.gravity, gain) for gain in gains]
+        if scene.tendon is not None:
+            # of what the base carries, and of the slab, the tendon takes hold as well as contact does
+            place = base_centre(poses, scene.body)
+            pulls = scene.tendon.pulls(place, scene.tendon.elongation(place)) / scene.gravity
+            for end, mass in zip(ends, self._carried, strict=False):
+                end -= pulls / mass
+        return ends
+
     def _rolling_loss(self, poses: Steps, after: Steps, ground: Array) -> Array:
         """Energy that the rolling resistance has taken until each pose, shape (n,) [m^2/s^2]."""
         scene, body = self._scene, self._scene.body
         if scene.rolling_resistance == 0.0:
             return np.zeros(len(poses.position))
-        slab = body.slab_mass_ratio
-        # the base carries a column and its share of the slab, the top the share
-        carried = (1.0 + slab, slab)
-        forces = [
-            (mass * scene.gravity / body.driven_mass,
-             force_of_steps(poses, after, ground, scene.time_step, scene.gravity, gain))
-            for mass, gain in zip(carried, body.gains, strict=False)
-        ]  # fmt: skip
+        masses = (mass * scene.gravity / body.driven_mass for mass in self._carried)
+        ends = self._contact_forces(poses, after, ground, body.gains)
+        forces = list(zip(masses, ends, strict=False))
         power = couple_power(poses, after, forces, scene.rolling_resistance)
         return self.energy.lost(power)
 
@@ -282,6 +310,15 @@ class Recorder:
             if math.isnan(getattr(self, name)) and happens.any():
                 setattr(self, name, float(time[np.argmax(happens)]))
         return slipped
+
+    def _watch_tendon(self, time: Array, elongation: Array) -> None:
+        """Follow the tendon; note where it would yield."""
+        if self._scene.tendon is None:
+            return
+        self.elongation = max(self.elongation, float(elongation.max()))
+        yields = elongation > self._scene.tendon.yield_elongation
+        if math.isnan(self.yield_time) and yields.any():
+            self.yield_time = float(time[np.argmax(yields)])
 
     def _stop(self, time: Array, state: Kinematics, gained: Array, wall: Wall | None) -> int:
         """Number of steps of this chunk that belong to the result."""

@@ -13,6 +13,7 @@ import numpy as np
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace, WobblingFrame
 from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_positive, require_sample_step
+from rockwobble.models.support import SUPPORTS
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.models.trace_source import Known
 
@@ -35,6 +36,7 @@ from .scene import (
     starting_state,
 )
 from .stepping import run_steps
+from .tendon import scaled_tendon
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -196,6 +198,9 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         "wall_contact": table["wall_contact"] * scale.time,
         "wall_impulse": table["wall_impulse"] * scale.length / scale.time,
     }
+    if scene.tendon is not None and not SUPPORTS[scene.support].guided:
+        # the base wanders from the anchor, and the tilt alone does not tell it
+        sampled["elongation"] = table["elongation"] * scale.length
     if scene.rolling_resistance > 0.0:
         sampled["energy_lost"] = table["energy_lost"] * scale.energy
     return Trace(
@@ -216,6 +221,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         passes=passes,
         facts=(
             *diagnostics(recorder, passes, resolution, scale.time),
+            *_yield(method["case"], recorder, scale),
             *_column_facts(method["case"].cylinder),
         ),
         rest_intervals=np.array(recorder.rests.after_motion(), dtype=float).reshape(-1, 2) * scale.time,
@@ -230,6 +236,20 @@ def _column_facts(cylinder: Cylinder) -> tuple[Diagnostic, ...]:
     """Return the fact that one column stands for all in the scene of a frame, if it does."""
     columns = cylinder.columns if isinstance(cylinder, WobblingFrame) and cylinder.slab_mass_ratio else 1
     return (Diagnostic(code="one_column", size=columns),) if columns > 1 else ()
+
+
+def _yield(case: Case, recorder: Recorder, scale: Scale) -> Iterator[Diagnostic]:
+    """Yield where the tendon would have, if it would: the swing that goes on after the end included."""
+    tendon = case.tendon
+    if tendon is None or tendon.yield_force is None or math.isnan(recorder.yield_time):
+        return
+    elongation = recorder.elongation * scale.length
+    yield Diagnostic(
+        code="tendon_yield",
+        time=recorder.yield_time * scale.time,
+        size=tendon.prestress + tendon.stiffness * elongation / case.cylinder.base_radius,
+        bound=tendon.yield_force,
+    )
 
 
 def _extrema(recorder: Recorder, scene: Scene, scale: Scale) -> Array:
@@ -321,7 +341,7 @@ def _stated(
     scale = froude_scale(*size)
     step = default_step(*size) if time_step is None else time_step
     check_time_step(step, scale.time)
-    body, motion = scaled_body(case.cylinder, scale.length), case.motion
+    body, motion, tendon = scaled_body(case.cylinder, scale.length), case.motion, case.tendon
     scene = Scene(
         body=body,
         start=starting_state(body, case.initial, scale.time),
@@ -332,6 +352,15 @@ def _stated(
         components="" if motion is None else "xyz" if motion.has_vertical else "xy",
         unit_time=scale.time,
         rolling_resistance=case.rolling_resistance / scale.length,
+        tendon=None
+        if tendon is None
+        else scaled_tendon(
+            tendon,
+            tendon.gaps(case.cylinder),
+            body.base_radius,
+            REFERENCE_GRAVITY,
+            backend.facts.rounding,
+        ),
     )
     return backend, scene, backend.settings(settings, scene)
 

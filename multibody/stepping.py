@@ -19,7 +19,7 @@ from .excitation import StepMeans
 from .passes import TurningPoint, true_swings
 from .protocol import Engine, Stepper
 from .recorder import Recorder
-from .scene import Array, Body, Scene
+from .scene import Array, Scene
 
 _CHUNK = 10_000  # steps between two looks at the run: a second of the reference scene, 3 MB of states
 _CHUNK_BEYOND = 2_000  # the same after the end, where most swings turn back within a second
@@ -65,13 +65,6 @@ def run_steps(
         return _followed(stepper, scene, recorder, means, total, sample_step, progress)
 
 
-def growth_time(body: Body, gravity: float) -> float:
-    """Return the time in which a small distance from the balance grows by e, 1/p [s]."""
-    b, h = body.base_radius, body.mass_centre_height
-    inertia = (body.transverse_inertia + body.moved_mass * (h * h + b * b)) / body.driven_mass
-    return math.sqrt(inertia / (gravity * math.hypot(b, h)))
-
-
 def _followed(
     stepper: Stepper,
     scene: Scene,
@@ -81,7 +74,7 @@ def _followed(
     sample_step: float,
     progress: Progress | None,
 ) -> Recorder:
-    end, longest = recorder.end, LONGEST * growth_time(scene.body, scene.gravity)
+    end, longest = recorder.end, LONGEST * scene.growth_time
     ahead = copy.deepcopy(recorder)
     first = math.floor(end / sample_step + 1e-9) + 1
     ahead.off_grid = end - (first - 1) * sample_step > 1e-6 * sample_step
@@ -105,11 +98,12 @@ def _followed(
     # a steady wobble, which keeps its tilt below the balance, has no maximum to come, nor has what leans on a
     # wall beyond it
     keeps = abs(ahead.last_value("tilt") - start.tilt) < _STEADY * min(
-        start.tilt, abs(math.atan(scene.body.tan_alpha) - start.tilt)
+        start.tilt, abs(scene.balance_tilt - start.tilt)
     )
     recorder.undecided = top is None and not ahead.resting and not keeps
     recorder.followed_until = float(ahead.last_row[0]) if top is None else top.time
     recorder.peak = max(recorder.peak, ahead.peak if top is None else top.tilt)
+    recorder.elongation, recorder.yield_time = ahead.elongation, ahead.yield_time
     return recorder
 
 

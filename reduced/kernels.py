@@ -81,8 +81,9 @@ INTEGRATORS: dict[str, Driver] = {
     "resisted recess": integrate_resisted_recess,
     "resisted flat": integrate_resisted_flat,
 }
-# variables of a state: with rolling resistance two more, energy lost and side (`integration.resisted`)
-SIZES = {"planar": 3, "recess": 4, "flat": 8, "resisted planar": 5, "resisted recess": 6, "resisted flat": 10}
+# variables of a state: with rolling resistance two more, energy lost and side, in the recess the sense of
+# rolling before them (`integration.resisted`)
+SIZES = {"planar": 3, "recess": 4, "flat": 8, "resisted planar": 5, "resisted recess": 7, "resisted flat": 10}
 
 
 def load(model: str) -> None:

@@ -41,7 +41,7 @@ I_v, P    m^2      moment and product of inertia about the contact, of that
 
 from __future__ import annotations
 
-from math import copysign, cos, inf, sin, sqrt
+from math import copysign, cos, exp, inf, log, pi, sin, sqrt
 
 from ._compile import inlined, jit
 from .body import Body
@@ -53,6 +53,8 @@ Vector = tuple[float, float, float]
 PIVOTS = 2.0
 # of 1/p: a hold that ends so soon is over. By rounding the end of one would be followed by another
 _HAIR = 1e-9
+# of the integrals over a pass, even; they converge as those of a smooth function do
+_PARTS = 400
 # of tau': what is left of psi' = tau' - phi' where both are the same
 _ROUNDING = 1e-12
 
@@ -290,6 +292,32 @@ def couple_on(
     side = copysign(1.0, free) if omega == 0.0 else 0.0
     tilting, turning, _ = couple(body, sin(theta), cos(theta), omega, spin, free, a[2], side)
     return tilting, turning
+
+
+@jit
+def limit_of_pass(body: Body) -> tuple[float, float]:
+    """Return the turn [rad] of a pass of vanishing spin under the couple, and its ratio of the tilt rates.
+
+    Upright the tilt is a polar distance, and N = mu b theta'' alone: with x = cos(chi) = theta'/w, from -1
+    to 1, and e = delta mu b, the equations of the recess are
+
+        dphi = -dchi/[x^2 + (1 - x^2)(J + e x)/(A + e x)],
+        dln(w) = -[(A - J) x + e]/[(A - J) x^2 + e x + J] dx.
+
+    Without the couple the turn is pi sqrt(A/J) and nothing is lost.
+    """
+    e = body.delta * body.mu * body.b
+    turn = taken = 0.0
+    # the trapezia of an even periodic function, and Simpson's rule
+    for i in range(_PARTS + 1):
+        end = i == 0 or i == _PARTS
+        x = cos(pi * i / _PARTS)
+        turn += (0.5 if end else 1.0) / (x * x + (1.0 - x * x) * (body.J + e * x) / (body.A + e * x))
+        x = 2.0 * i / _PARTS - 1.0
+        weight = 1.0 if end else 4.0 if i % 2 == 1 else 2.0
+        taken += weight / ((body.A - body.J) * x * x + e * x + body.J)
+    logarithm = -0.5 * log((body.A + e) / (body.A - e)) - 0.5 * e * taken * 2.0 / (3.0 * _PARTS)
+    return turn * pi / _PARTS, exp(logarithm)
 
 
 def impact_ratio(body: Body, restitution: float) -> float:

@@ -191,9 +191,10 @@ def _facts(problem: Problem, result: IntegrationResult) -> Iterator[Diagnostic]:
     if result.status == UNDECIDED:
         yield Diagnostic(code="undecided", time=min(result.end, problem.case.length))
     yield from _yield(problem, result)
-    straight = result.extrema[result.extrema[:, 1] == 0.0]
+    straight = result.extrema[result.extrema[:, 1] == 0.0, 0]
     if len(straight) and not problem.is_planar():
-        yield Diagnostic(code="side", time=float(straight[0, 0]))
+        spent = straight[0] == result.spent
+        yield Diagnostic(code="spent_spin" if spent else "side", time=float(straight[0]))
 
 
 _DIVISIONS, _ROUNDS = 64, 5  # of the time in which a tendon yields: to 1e-9 of a swing

@@ -7,6 +7,7 @@ import io
 import math
 import shlex
 import sys
+import textwrap
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -110,19 +111,20 @@ def _plain(error: UnicodeError) -> tuple[str, int]:
 
 # up to so many tasks have a line each where there is no terminal
 _FEW = 12
-_PAUSE = 10.0  # between two lines of more [s]
+_FIRST, _PAUSE = 2.0, 10.0  # before the first line of more, and between two [s]
 
 
 @contextmanager
-def shown_progress(what: str = "runs", *, heading: str = "") -> Iterator[ProgressCallback]:
+def shown_progress(what: str = "runs", *, heading: str = "", each: bool = True) -> Iterator[ProgressCallback]:
     """Yield a callback that shows how far tasks are; `what` they are, and what for, in words.
 
+    Where there is no terminal a line tells of `each` of a few, and of many one from time to time.
     It names each file of finished tasks that is damaged, once.
     """
     if heading:
         _say(f"{heading} ...")
     named: set[str] = set()
-    with _bar(what) if sys.stderr.isatty() else _lines(what) as show:
+    with _bar(what) if sys.stderr.isatty() else _lines(what, _FEW if each else 0) as show:
 
         def show_progress(event: Progress) -> None:
             for path in event.damaged:
@@ -181,21 +183,24 @@ def _bar(what: str) -> Iterator[ProgressCallback]:
 
 
 @contextmanager
-def _lines(what: str) -> Iterator[ProgressCallback]:
+def _lines(what: str, few: int) -> Iterator[ProgressCallback]:
     begun: dict[str, float] = {}
-    last = time.monotonic()
+    start = last = time.monotonic()
 
     def show_progress(event: Progress) -> None:
         nonlocal last
         now = time.monotonic()
-        if event.total - event.found <= _FEW:
+        if event.total - event.found <= few:
             if event.state == "started":
                 begun[event.label] = now
                 _say(f"running {event.label} ...")
             else:
                 took = now - begun.get(event.label, now)
                 _say(f"  done {event.label} in {took:.1f} s ({event.done} of {event.total})")
-        elif now - last >= _PAUSE or (event.state == "finished" and event.done == event.total):
+        elif (
+            now - last >= (_PAUSE if last > start else _FIRST)
+            or (few and event.state == "finished" and event.done == event.total)
+        ):  # fmt: skip
             last = now
             _say(sentence(event, what))
 
@@ -203,20 +208,21 @@ def _lines(what: str) -> Iterator[ProgressCallback]:
 
 
 def print_facts(heading: Sequence[str | Text], facts: Mapping[str, str]) -> None:
-    """Print a heading and facts by their names, as text, in which brackets are no markup."""
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
+    """Print a heading and facts by their names, as text, in which brackets are no markup.
 
-    table = Table(box=box.SIMPLE_HEAD, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
-    table.add_column(no_wrap=True)
-    table.add_column(overflow="fold")
-    for name, fact in facts.items():
-        table.add_row(Text(name), Text(fact))
+    No word is broken: one that is longer than a line, such as a path, is a line.
+    """
+    from rich.console import Console
+
     console = Console()
     console.print(*heading, highlight=False)
-    console.print(table)
+    indent = max(map(len, facts), default=0) + 2
+    for name, fact in facts.items():
+        lines = textwrap.wrap(
+            fact, max(console.width - indent, 1), break_long_words=False, break_on_hyphens=False
+        )
+        print(name.ljust(indent) + ("\n" + " " * indent).join(lines))
+    print()
 
 
 def show_and_save(found: Results, out: Path, *, details: bool = False) -> None:

@@ -129,7 +129,7 @@ class SuiteFile(pytest.File):
     def collect(self) -> Iterator[SuiteItem]:
         """Yield the items."""
         from rockwobble.compare.runs.choice import run_labels
-        from rockwobble.multibody.engines.registry import engine_lack
+        from rockwobble.multibody.engines.registry import engine_fault
 
         try:
             suite = rw.read_suite(self.path)
@@ -143,7 +143,7 @@ class SuiteFile(pytest.File):
                     self, name=f"{case.name}, {label}", suite=suite, case=case, run=run, label=label
                 )
                 if run not in here:
-                    item.add_marker(pytest.mark.skip(reason=f"{run.engine} {engine_lack(str(run.engine))}"))
+                    item.add_marker(pytest.mark.skip(reason=f"{run.engine} {engine_fault(str(run.engine))}"))
                 yield item
 
 

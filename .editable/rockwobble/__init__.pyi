@@ -33,6 +33,7 @@ from .models import pulse as pulse
 from .models import read_hazard as read_hazard
 from .models import read_record as read_record
 from .models import read_records as read_records
+from .models import read_records_by_level as read_records_by_level
 from .models import read_suite as read_suite
 from .models import shipped_suites as shipped_suites
 from .models import synthetic_motions as synthetic_motions

@@ -39,6 +39,7 @@ from rockwobble.models.support import SUPPORTS
 
 from ..check import GROUPS, NOT_RUN, Result, Subject, engine, reduced_model
 from ..check.measurement import FRAME
+from ..runs.progress import ProgressCallback, stages
 from ..storage.files import replace_files
 from ..storage.provenance import commit, package_versions
 from .verdict import (
@@ -161,36 +162,49 @@ def _record(name: str, term: str, strength: float, length: float) -> ShortCase:
     return ShortCase(name=name, claim="response to shaking", term=term, case=case)
 
 
-def fingerprint(subject: Subject) -> Iterator[Entry]:
+def fingerprint(subject: Subject, progress: ProgressCallback | None = None) -> Iterator[Entry]:
     """Yield the entries, each when it is computed."""
-    for short in short_cases(slab=subject.carries_slab):
-        trace = _run(subject, short, short.case)
-        found, values = entry(short, trace), _signals(trace)
-        copies = [_signals(_run(subject, short, copy)) for copy in _copies(short.case, subject.tolerance)]
-        spread = _BEYOND * np.array([_apart(copy, values) for copy in copies]).max(axis=0)
-        lost = np.flatnonzero(spread[:, SIGNALS.index("tilt")] > AGREEMENT)
-        allowed = _REPEATS * subject.tolerance * np.maximum(1.0, np.abs(np.nan_to_num(values))) + spread
-        if len(lost):  # from there on copies are no measure
-            allowed[lost[0] :] = allowed[max(lost[0] - 1, 0)]
-        whole: Entry = {
-            **found,
-            "agreement_time": found["time"][lost[0]] if len(lost) else None,
-            "repeats": _REPEATS * subject.tolerance,
-            "allowed": {name: _rounded(allowed[:, k]) for k, name in enumerate(SIGNALS)},
-        }
-        if len(lost):
-            whole["copies"] = copied_tilts(short, subject)
+    shorts = short_cases(slab=subject.carries_slab)
+    stage = stages(progress, [short.case.length for short in shorts])
+    for short in shorts:
+        with stage(short.name):
+            whole = entry_of(short, subject)
         yield whole
 
 
-def repeated(subject: Subject, old: Sequence[Entry]) -> Iterator[Sample]:
+def entry_of(short: ShortCase, subject: Subject) -> Entry:
+    """Return the entry of a case."""
+    trace = _run(subject, short, short.case)
+    found, values = entry(short, trace), _signals(trace)
+    copies = [_signals(_run(subject, short, copy)) for copy in _copies(short.case, subject.tolerance)]
+    spread = _BEYOND * np.array([_apart(copy, values) for copy in copies]).max(axis=0)
+    lost = np.flatnonzero(spread[:, SIGNALS.index("tilt")] > AGREEMENT)
+    allowed = _REPEATS * subject.tolerance * np.maximum(1.0, np.abs(np.nan_to_num(values))) + spread
+    if len(lost):  # from there on copies are no measure
+        allowed[lost[0] :] = allowed[max(lost[0] - 1, 0)]
+    whole: Entry = {
+        **found,
+        "agreement_time": found["time"][lost[0]] if len(lost) else None,
+        "repeats": _REPEATS * subject.tolerance,
+        "allowed": {name: _rounded(allowed[:, k]) for k, name in enumerate(SIGNALS)},
+    }
+    if len(lost):
+        whole["copies"] = copied_tilts(short, subject)
+    return whole
+
+
+def repeated(
+    subject: Subject, old: Sequence[Entry], progress: ProgressCallback | None = None
+) -> Iterator[Sample]:
     """Yield the parts of the entries needed to compare them with older ones: the copies are theirs."""
     cases = {short.name: short for short in short_cases()}
-    for one in old:
-        short = cases[one["name"]]
-        found = entry(short, _run(subject, short, short.case))
-        if one["agreement_time"] is not None and compare_entries(one, found).word != SAME:
-            found["copies"] = copied_tilts(short, subject)
+    shorts = [cases[one["name"]] for one in old]
+    stage = stages(progress, [short.case.length for short in shorts])
+    for one, short in zip(old, shorts, strict=True):
+        with stage(short.name):
+            found = entry(short, _run(subject, short, short.case))
+            if one["agreement_time"] is not None and compare_entries(one, found).word != SAME:
+                found["copies"] = copied_tilts(short, subject)
         yield found
 
 
@@ -283,7 +297,9 @@ NOT_COVERED = (
 )
 
 
-def certify(subject: Subject, results: Iterable[Result]) -> Certificate:
+def certify(
+    subject: Subject, results: Iterable[Result], progress: ProgressCallback | None = None
+) -> Certificate:
     """Make a certificate.
 
     Parameters
@@ -292,6 +308,8 @@ def certify(subject: Subject, results: Iterable[Result]) -> Certificate:
         The reduced models, or an engine.
     results : iterable of Result
         Results of its checks, which become claims.
+    progress : callable, optional
+        Called with a `Progress` at the start and the end of each case of the fingerprint.
 
     Returns
     -------
@@ -313,7 +331,7 @@ def certify(subject: Subject, results: Iterable[Result]) -> Certificate:
         "commit": commit(),
         "claims": claims,
         "not_covered": open_points,
-        "fingerprint": list(fingerprint(subject)),
+        "fingerprint": list(fingerprint(subject, progress)),
     }
 
 
@@ -342,7 +360,9 @@ def models(module: ModuleType = reduced) -> Subject:
     return reduced_model(module, rtol=_RTOL)
 
 
-def verify(certificate: Certificate, subject: Subject | None = None) -> FingerprintVerdict:
+def verify(
+    certificate: Certificate, subject: Subject | None = None, progress: ProgressCallback | None = None
+) -> FingerprintVerdict:
     """Compute the fingerprint here, up to the first change, and return the verdict.
 
     Parameters
@@ -350,6 +370,8 @@ def verify(certificate: Certificate, subject: Subject | None = None) -> Fingerpr
     certificate : mapping
     subject : Subject, optional
         Default: that of the certificate, as it is installed here.
+    progress : callable, optional
+        Called with a `Progress` at the start and the end of each case.
 
     Returns
     -------
@@ -365,7 +387,8 @@ def verify(certificate: Certificate, subject: Subject | None = None) -> Fingerpr
     # of what carries no slab, or made before a frame was a case, it has none
     if all(names != [short.name for short in short_cases(slab=slab)] for slab in (True, False)):
         raise ValueError("the certificate has other cases than this version: make it anew")
-    return compare(old, repeated(subject_of(certificate) if subject is None else subject, old))
+    own = subject_of(certificate) if subject is None else subject
+    return compare(old, repeated(own, old, progress))
 
 
 def read_certificate(path: Path) -> Certificate:
@@ -383,8 +406,8 @@ def read_certificate(path: Path) -> Certificate:
     return found
 
 
-def write_certificate(certificate: Certificate, path: Path) -> None:
-    """Write it whole, or not at all; a claim is a line."""
+def write_certificate(certificate: Mapping[str, object], path: Path) -> None:
+    """Write a certificate, perhaps with more, whole or not at all; a claim is a line."""
     parts = []
     for name, part in certificate.items():
         text = json.dumps(part)

@@ -9,6 +9,7 @@ import dataclasses
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,11 +19,11 @@ from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import line
 from rockwobble.multibody import available_engines
-from rockwobble.multibody.engines.registry import engine_lack, own_engines, standard_engines
+from rockwobble.multibody.engines.registry import engine_fault, engine_packages, own_engines, standard_engines
 
 from ..runs.choice import default_runs, require_runnable, run_labels, runs_here
 from ..runs.execution import Job
-from ..runs.progress import ProgressCallback
+from ..runs.progress import ProgressCallback, Stage, stages
 from ..storage.provenance import package_versions
 from . import agreement, invariance, lagrange, laws
 from . import subject as subjects
@@ -179,6 +180,7 @@ def run_checks(
     groups: Sequence[str] | None = None,
     *,
     checks: Mapping[str, tuple[Check, ...]] | None = None,
+    stage: Stage | None = None,
 ) -> Iterator[Result]:
     """Yield the results of the groups, in their order, as they are made.
 
@@ -192,6 +194,8 @@ def run_checks(
         Some of `GROUPS`. Default: all.
     checks : mapping, optional
         The checks of each group. Default: all.
+    stage : callable, optional
+        Told of the start and the end of each check, see `stages`.
 
     Returns
     -------
@@ -202,13 +206,29 @@ def run_checks(
     ValueError
         If a group is unknown.
     """
+    for group, each in chosen_checks(subject, groups, checks=checks):
+        name = f"{subject.label}: {each.measure.__name__.replace('_', ' ')}"
+        with nullcontext() if stage is None else stage(name):
+            for result in each.run(subject):
+                yield dataclasses.replace(result, group=group, subject=subject.label)
+
+
+def chosen_checks(
+    subject: Subject,
+    groups: Sequence[str] | None = None,
+    *,
+    checks: Mapping[str, tuple[Check, ...]] | None = None,
+) -> list[tuple[str, Check]]:
+    """Return the checks of some groups, as in `run_checks`, that apply to a subject, each with its group."""
     for group in groups or ():
         require_one_of("a group", group, tuple(GROUPS))
-    for group, chosen in (GROUPS if checks is None else checks).items():
-        for check in chosen if groups is None or group in groups else ():
-            if check.applies(subject):
-                for result in check.run(subject):
-                    yield dataclasses.replace(result, group=group, subject=subject.label)
+    return [
+        (group, each)
+        for group, chosen in (GROUPS if checks is None else checks).items()
+        if groups is None or group in groups
+        for each in chosen
+        if each.applies(subject)
+    ]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -294,7 +314,7 @@ def check(
     workers : int, optional
         Number of processes for the runs of a suite. Default: one for each core.
     progress : callable, optional
-        Called at the start and end of each run of the suite.
+        Called at the start and the end of each check, or of each run of the suite.
     **settings
         Of the engine.
 
@@ -336,14 +356,21 @@ def check(
         results = [not_run("all other checks", "one motion does not tell: give a model that can be called")]
     else:
         chosen = baseline_subjects()
-        missing = [name for name in standard_engines() if name not in available_engines()]
-        results = [not_run(f"checks of {name}", engine_lack(name)) for name in missing]
+        # an extra that is not installed is nobody's loss, one that does not load is
+        asked = [name for name in engine_packages() if name in (*standard_engines(), *available_engines())]
+        faults = {name: engine_fault(name) for name in asked}
+        results = [not_run(f"checks of {name}", fault) for name, fault in faults.items() if fault]
+    parts: list[tuple[Subject, str, Mapping[str, tuple[Check, ...]]]] = []
     for group in (each for each in GROUPS if only is None or each in only):
         for each in chosen:
             checks: Mapping[str, tuple[Check, ...]] = GROUPS
             if engine is None and each.run is not None:
                 checks = _OF_ENGINES if each.label in standard_engines() else _OF_EXTRAS
-            results += run_checks(each, [group], checks=checks)
+            parts.append((each, group, checks))
+    count = sum(len(chosen_checks(each, [group], checks=checks)) for each, group, checks in parts)
+    stage = stages(progress, [1.0] * count)
+    for each, group, checks in parts:
+        results += run_checks(each, [group], checks=checks, stage=stage)
     if not results:
         raise ValueError(f"no check of {', '.join(only or GROUPS)} applies: name an engine, or another group")
     return _summed(results)

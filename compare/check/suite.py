@@ -19,7 +19,7 @@ import numpy as np
 
 from rockwobble import reduced
 from rockwobble.models import AGREEMENT, Bounds, Case, GroundMotion, InitialState, Run, Trace
-from rockwobble.multibody.engines.registry import available_engines, find_engine, standard_engines
+from rockwobble.multibody.engines.registry import engine_fault, find_engine, standard_engines
 from rockwobble.multibody.scene import default_step
 from rockwobble.reduced.problem import LARGEST_REST_TILT, REST_TILT
 
@@ -270,7 +270,7 @@ def likely_cause(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, *, until
     Where it agrees with neither, nothing is named.
     """
     engine, support = job.run.engine, job.run.support
-    here = [name for name in standard_engines() if name in available_engines() and name != engine]
+    here = [name for name in standard_engines() if name != engine and not engine_fault(name)]
     others = [name for name in here if support in find_engine(name).supports]
     if not others:
         return "", "a second engine would tell which is wrong: add one to the runs of the suite"

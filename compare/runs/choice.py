@@ -8,9 +8,10 @@ from rockwobble.models import Case, InitialState, Run
 from rockwobble.models.case import TimeStep
 from rockwobble.models.support import RECESS, Support
 from rockwobble.models.support import SUPPORTS as SUPPORT_FACTS
-from rockwobble.multibody import BrokenEngineError, available_engines
+from rockwobble.multibody import BrokenEngineError, EngineNotInstalledError, available_engines
 from rockwobble.multibody.engines.registry import (
-    engine_lack,
+    engine_fault,
+    engine_named,
     engine_packages,
     find_engine,
     stand_in,
@@ -148,25 +149,26 @@ SUPPORTS = ("recess", "flat")
 
 
 def missing_engines() -> tuple[str, ...]:
-    """Return the engines that every installation is meant to have and this one has not.
+    """Return the engines that every installation is meant to have and that do not run in this one.
 
     Returns
     -------
     tuple of str
     """
-    return tuple(name for name in standard_engines() if name not in available_engines())
+    return tuple(name for name in standard_engines() if engine_fault(name))
 
 
 def left_out(name: str) -> str:
-    """Return the line on an engine that every installation is meant to have, where this one lacks it."""
-    return f"{name} {engine_lack(name)}; it is left out"
+    """Return the line on an engine that every installation is meant to have, where it does not run."""
+    return f"{name} {engine_fault(name)}; it is left out"
 
 
 def runs_here(runs: Sequence[Run], named: Sequence[str] = ()) -> tuple[list[Run], list[str]]:
     """Return the runs of a suite that this installation can make, and a line on each engine it lacks.
 
     Where an engine has no wheel, another takes its place as in a default run. One that every installation is
-    meant to have is left out where it is missing; others, and those that are named, stay, and are refused.
+    meant to have is left out where it is missing or does not load; others, and those that are named, stay,
+    and are refused.
 
     Parameters
     ----------
@@ -179,15 +181,15 @@ def runs_here(runs: Sequence[Run], named: Sequence[str] = ()) -> tuple[list[Run]
     tuple
         The runs, a list of Run, and the lines, a list of str.
     """
-    here, found, said = available_engines(), list[Run](), dict[str, str]()
+    found, said = list[Run](), dict[str, str]()
     for run in runs:
         name, other = run.engine, None
-        if name is not None and name not in (*here, *named):
+        if name is not None and name not in named and engine_fault(name):
             other = stand_in(name)
-            if other in here and run.support in find_engine(other).supports:
+            if other is not None and not engine_fault(other) and run.support in find_engine(other).supports:
                 run = Run(other, run.support, run.time_step)
                 said.setdefault(name, f"{name} has no wheel here, {other} takes its place")
-            elif other is not None or name in missing_engines():
+            elif other is not None or name in standard_engines():
                 said.setdefault(name, left_out(name))
                 continue
         if run not in found:
@@ -212,7 +214,7 @@ def reserved_engines() -> dict[str, str]:
 
 def _reservation(name: str) -> str:
     try:
-        engine = find_engine(name)
+        engine = engine_named(name)
     except BrokenEngineError as error:
         # of another package: what is broken there stops nobody here
         return str(error)
@@ -220,7 +222,10 @@ def _reservation(name: str) -> str:
     lacks += [] if engine.uplifts else ["no uplift"]
     if lacks:
         return f"{name} has {' and '.join(lacks)}"
-    return f"{name} is an extra" if name in engine_packages() and name not in standard_engines() else ""
+    if name in engine_packages() and name not in standard_engines():
+        return f"{name} is an extra"
+    fault = engine_fault(name)
+    return f"{name} {fault}" if fault else ""
 
 
 def require_runnable(case: Case, run: Run) -> None:
@@ -234,8 +239,8 @@ def require_runnable(case: Case, run: Run) -> None:
     Raises
     ------
     ValueError
-        If the engine is unknown or not installed, does not have the support or cannot start the case,
-        the time step is too large for contact, or a setting is unknown or out of range.
+        If the engine is unknown, not installed or does not load, does not have the support or cannot start
+        the case, the time step is too large for contact, or a setting is unknown or out of range.
     """
     if run.engine is None:
         # loads the compiler, which who only imports this need not wait for
@@ -311,7 +316,7 @@ def unable_engines(cases: Sequence[Case]) -> tuple[str, ...]:
 def _unable(name: str, cases: Sequence[Case]) -> str:
     try:
         engine = find_engine(name)
-    except BrokenEngineError as error:
+    except (BrokenEngineError, EngineNotInstalledError) as error:
         return str(error)
     stands = not all(case.is_release for case in cases)
     return (

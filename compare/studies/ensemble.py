@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 import pandas as pd
@@ -107,11 +107,13 @@ def ensemble(
     *,
     runs: Iterable[Run] | None = None,
     models: Sequence[Run] = MODELS,
+    copies: int = 20,
+    perturbation: float = 0.01,
+    seed: int = 0,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
     resume: str | Path | None = None,
     source: str = "cases",
-    **options: Any,
 ) -> Ensemble:
     """Run many members by each method, and compare their peak tilts, member by member.
 
@@ -124,12 +126,17 @@ def ensemble(
         Default: those of the suite, else every installed engine with supports "recess" and "flat".
     models : sequence of Run, optional
         Reduced models. The first is named first in every contrast.
+    copies : int, optional
+        Number of perturbed copies of one case.
+    perturbation : float, optional
+        Relative standard deviation of the copies: of tilt and rolling rate at release, or of both components
+        of the ground motion.
+    seed : int, optional
+        Of the perturbations.
     workers, progress, resume
         As in `compare`.
     source : str, optional
         What the members are, for people, where there are several cases.
-    **options
-        Of the copies, see `Copies`: copies (20), perturbation (0.01), seed (0).
 
     Returns
     -------
@@ -150,7 +157,7 @@ def ensemble(
     >>> found.methods[["method", "runs", "failed"]].values.tolist()
     [['recess model', 5, 0], ['flat-ground model', 5, 0]]
     """
-    plan = Copies.of(**options)
+    plan = Copies(copies=copies, perturbation=perturbation, seed=seed)
     about: dict[str, object] = {"seed": plan.seed}
     if not isinstance(case_or_members, Case | Suite):
         require_each("case_or_members", case_or_members, Case)

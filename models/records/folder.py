@@ -15,7 +15,7 @@ from .files import ZERO, read_record
 TABLE = "records.csv"
 PEER_TABLE = "_SearchResults.csv"
 _WAYS = ("units", "columns", "time_step", "lengths", "remove_mean", "rotate", "resample")
-_COLUMNS = ("name", "record", "x", "y", "z", "scale", *_WAYS)
+_COLUMNS = ("name", "record", "x", "y", "z", "scale", "level", *_WAYS)
 
 
 def read_records(
@@ -33,7 +33,8 @@ def read_records(
 
     A row of records.csv is a motion: columns x and y, the files of the two horizontal components beside the
     table ("zero" is a component of zeros) and maybe z (vertical), or record, a file or folder of all
-    components; and maybe name, scale and the options of `read_record`, which count before those given here.
+    components; and maybe name, scale, level (see `read_records_by_level`) and the options of `read_record`,
+    which count before those given here.
 
     A folder without one that holds the _SearchResults.csv of PEER, or files named ``RSN6_...``, is read as it
     comes: the files of one record sequence number are one motion, unscaled, with its vertical component where
@@ -70,27 +71,66 @@ def read_records(
         **{"units": units, "columns": columns, "time_step": time_step, "lengths": lengths},
         **{"remove_mean": remove_mean, "rotate": rotate, "resample": resample},
     }
-    path = Path(folder)
+    return [motion for motion, _ in _read(Path(folder), ways)]
+
+
+def read_records_by_level(folder: str | Path, **ways: Any) -> dict[float, list[GroundMotion]]:
+    """Return the ground motions of a folder by the column level of its records.csv: multiple stripes.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Or the table itself.
+    **ways
+        Options of `read_record`, as of `read_records`.
+
+    Returns
+    -------
+    dict of float to list of GroundMotion
+        Empty where the table has no column level.
+
+    Raises
+    ------
+    ValueError
+        As of `read_records`; if a level is not positive, or some rows have one and others not.
+    """
+    table = Path(folder) / TABLE if Path(folder).is_dir() else Path(folder)
+    if not table.exists() or table.name.endswith(PEER_TABLE) or "level" not in _table(table)[0]:
+        return {}
+    motions: dict[float, list[GroundMotion]] = {}
+    read = _read(table, ways)
+    without = sum(level is None for _, level in read)
+    if 0 < without < len(read):
+        raise ValueError(f"each row must have a level, or none: {without} of {len(read)} have none")
+    for motion, level in read:
+        if level is not None:
+            motions.setdefault(level, []).append(motion)
+    return motions
+
+
+def _read(path: Path, ways: Mapping[str, Any]) -> list[tuple[GroundMotion, float | None]]:
+    """Return motions, each with its level."""
     if path.is_dir() and not (path / TABLE).exists():
         stations = _stations(path)
         if stations:
-            return _peer_motions(stations, ways)
+            return [(motion, None) for motion in _peer_motions(stations, ways)]
     path = path / TABLE if path.is_dir() else path
     if path.name.endswith(PEER_TABLE):
-        return _peer_motions(_stations(path.parent), ways)
+        return [(motion, None) for motion in _peer_motions(_stations(path.parent), ways)]
     columns_of_table, rows = _table(path)
     wrong = [column for column in columns_of_table if column not in _COLUMNS]
     if wrong or not ({"x", "y"} <= set(columns_of_table) or "record" in columns_of_table):
         raise ValueError(
-            f"{path} must have the columns x and y, or record, and may have z, name, scale, "
+            f"{path} must have the columns x and y, or record, and may have z, name, scale, level, "
             f"{', '.join(_WAYS)}, got {', '.join(columns_of_table)[:100] or 'none'}"
         )
     if not rows:
         raise ValueError(f"{path} must list ground motions, one in a line, got none")
-    motions = []
+    motions: list[tuple[GroundMotion, float | None]] = []
     for number, row in rows:
         try:
-            motions.append(_motion(path.parent, row, ways))
+            level = _positive("level", row.get("level"))
+            motions.append((_motion(path.parent, row, ways), level))
         except ValueError as error:
             raise ValueError(f"{path.name}, line {number}: {error}") from None
     return motions
@@ -135,15 +175,22 @@ def _motion(folder: Path, row: Mapping[str | None, str | list[str]], ways: Mappi
         x, y, z = (_place(folder, cells.get(axis)) for axis in ("x", "y", "z"))
         assert x is not None
         motion = read_record(x, y, z, name=name, **{**ways, **of_row})
-    if not cells.get("scale"):
-        return motion
+    factor = _positive("scale", cells.get("scale"))
+    return motion if factor is None else motion.scaled(factor)
+
+
+def _positive(name: str, cell: object) -> float | None:
+    """Return the number of a cell, None of an empty one."""
+    text = str(cell or "").strip()
+    if not text:
+        return None
     try:
-        factor = float(cells["scale"])
+        value = float(text)
     except ValueError:
-        factor = 0.0
-    if not 0.0 < factor < float("inf"):
-        raise ValueError(f"scale must be a positive number, got {cells['scale']!r}")
-    return motion.scaled(factor)
+        value = 0.0
+    if not 0.0 < value < float("inf"):
+        raise ValueError(f"{name} must be a positive number, got {text!r}")
+    return value
 
 
 def _way(name: str, text: str) -> object:

@@ -26,12 +26,13 @@ Contact has no stiffness to choose: after a step the rim's lowest point rests or
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from ..kinematics import about_vertical
+from ..kinematics import about_vertical, axis_of
 from ..protocol import EngineFacts, SceneCounts, Steps
 from ..scene import Array, Scene
 from ..settings import Count, EngineSettings, Positive, Share, Small, positive
@@ -115,6 +116,7 @@ _FACTS = EngineFacts(
     uplift_error=5e-6,
     smooth_uplift=True,
     carries_slab=True,
+    tendons=True,
 )
 
 
@@ -133,6 +135,8 @@ class _DartStepper(Leapfrog):
         self._put(start.quaternion, position, velocity, spin)
         if not start.standing:
             # leapfrog starts half a step back: a trial step shows the acceleration
+            axis = axis_of(start.quaternion[None])[0]
+            self._pull_tendon(position.tolist(), axis.tolist())
             self._step_on([0.0, 0.0, 0.0])
             after, spin_after = self._rates()
             self._slab_height = 2.0 * float(position[2])
@@ -210,7 +214,9 @@ class _DartStepper(Leapfrog):
         cosine, sine, root = math.cos, math.sin, math.sqrt
         b, h, arm = body.base_radius, body.mass_centre_height, body.mass_centre_height / body.base_radius
         excited, gravity, heading = bool(self._scene.components), self._scene.gravity, self._heading
-        friction = self._scene.friction
+        # prestress holds the base down as weight does
+        tipping, tied = self._scene.tipping_gravity, self._scene.tendon is not None
+        friction = self._scene.friction * self._scene.pressing_gravity / tipping
         followed = _LOADED * min(1.0, friction * arm)
         # where friction gives way before the base opens, the four contacts of a closed base slide: those of
         # the rim solver take its hundreds of sweeps in every step, for no motion that could follow
@@ -251,7 +257,7 @@ class _DartStepper(Leapfrog):
             slip_x = slip_y = 0.0
             if closed:
                 # of a base that slides, friction is all the load
-                load = min(math.hypot(ax, ay) / (gravity + az), friction) * arm
+                load = min(math.hypot(ax, ay) / (tipping + az), friction) * arm
                 # what lies after its landing leans by what it has sunk, and does not open
                 self._use_for(opening=opens and (load > _OPENING or (lean > _OPEN and not lies)))
                 # a load pushes against the acceleration
@@ -260,7 +266,7 @@ class _DartStepper(Leapfrog):
                 if off and (lean > _LEANS or load > followed):
                     self._turn(along)
                     heading, turn_x, turn_y = along, cosine(along), sine(along)
-                    x, y, z, _, _, height = get().tolist()
+                    x, y, z, away_x, away_y, height = get().tolist()
                     i, j = part * (x * spin_x - y * spin_y), part * (y * spin_x + x * spin_y)
                     axis_x, axis_y = 2.0 * (i * k + w * j), 2.0 * (j * k - w * i)
             else:
@@ -285,11 +291,25 @@ class _DartStepper(Leapfrog):
                 # along the vertical plus the axis, proportional to the twist
                 pair = 0.5 * stiffness * math.atan2(k, w)
                 torque([pair * axis_x, pair * axis_y, pair * (2.0 - 2.0 * (i * i + j * j))])
+            if tied:
+                axis = axis_x, axis_y, 1.0 - 2.0 * (i * i + j * j)
+                self._pull_tendon((away_x, away_y, height), axis)
             self._step_on(beyond)
             row = get().tolist()
             rows.append([*row, heading])
         self._kept = kept
         return rows
+
+    def _pull_tendon(self, place: Sequence[float], axis: Sequence[float]) -> None:
+        """Apply the forces of the tendon in the next step, at a place of the mass centre and an axis."""
+        tendon, depth = self._scene.tendon, self._depth
+        if tendon is None:
+            return
+        x, y, z = place
+        force, torque = tendon.loads((x, y, z + depth), axis, self._scene.body.mass_centre_height)
+        self._cylinder.addExtTorque(torque)
+        body = self._cylinder if self._slab is None else self._slab.getChildBodyNode()
+        body.addExtForce(force)
 
     def _step_on(self, beyond: list[float]) -> None:
         """Take a step, in which the slab has a velocity beyond its own; it keeps what the step changed."""

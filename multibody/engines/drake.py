@@ -246,6 +246,7 @@ _FACTS = EngineFacts(
     uplift_error=5e-6,
     smooth_uplift=True,
     carries_slab=True,
+    tendons=True,
 )
 
 
@@ -273,7 +274,7 @@ class _DrakeStepper(Leapfrog):
         self._frame = np.zeros(len(velocity) - 3)
         if not start.standing:
             # leapfrog starts half a step back: a trial step shows the acceleration
-            self._advance_once(np.zeros_like(velocity))
+            self._advance_once(self._pull_of_tendon(np.zeros_like(velocity)))
             self._place, self._velocity = place, 1.5 * velocity - 0.5 * self._velocity
 
     def advance(self, acceleration: Array) -> Steps:
@@ -340,12 +341,25 @@ class _DrakeStepper(Leapfrog):
         if self._share > 0.0:
             push += [self._share * each for each in push]
         if not self._stiffness:
-            return np.array([0.0, 0.0, 0.0, *push])
+            return self._pull_of_tendon(np.array([0.0, 0.0, 0.0, *push]))
         w, x, y, z = self._place[:4]
         # along the vertical plus the axis, proportional to the twist
         twist = math.remainder(2.0 * math.atan2(z, w) + self._spun, 2.0 * math.pi)
         pair = -4.0 * self._stiffness * twist
-        return np.array([pair * (x * z + w * y), pair * (y * z - w * x), pair * (1.0 - x * x - y * y), *push])
+        couple = pair * (x * z + w * y), pair * (y * z - w * x), pair * (1.0 - x * x - y * y)
+        return self._pull_of_tendon(np.array([*couple, *push]))
+
+    def _pull_of_tendon(self, force: Array) -> Array:
+        """Return torque and forces of a step with those of the tendon."""
+        tendon, rim = self._scene.tendon, self._rim
+        if tendon is not None:
+            _, x, y, _, *place = self._place[:7]
+            place[2] += self._depth
+            axis = rim.axis_x, rim.axis_y, 1.0 - 2.0 * (x * x + y * y)
+            pull, couple = tendon.loads(place, axis, self._scene.body.mass_centre_height)
+            force[:3] += couple
+            force[-3:] += pull  # of the slab, or the cylinder alone
+        return force
 
     def _advance_once(self, force: Array) -> None:
         step = self._step

@@ -4,7 +4,8 @@ The joint holds the lowest point of the rim on the ground and its material point
 constraints, exact up to the integration. So it is a check of the flat-ground model that shares neither
 contact nor friction with the other engines. What it cannot do follows from the same: the rim neither
 leaves the ground nor slips, whatever force that takes, and a cylinder that stands has no lowest point. The
-slab of a frame rolls on the rim of the top in the same way; its orientation is held.
+slab of a frame rolls on the rim of the top in the same way; its orientation is held. A tendon is a spring at
+each gap.
 """
 
 from __future__ import annotations
@@ -66,7 +67,7 @@ class ExudynSettings(EngineSettings):
         return {}
 
 
-_FACTS = EngineFacts(title="Exudyn", step_time=1.2e-5, order=2.0, carries_slab=True)
+_FACTS = EngineFacts(title="Exudyn", step_time=1.2e-5, order=2.0, carries_slab=True, tendons=True)
 
 
 class ExudynEngine(Declared):
@@ -231,6 +232,28 @@ class _ExudynStepper:
             _, slab = add_body(share, [share] * 3, above, [*2.0 * start.velocity, 0.0, 0.0, 0.0, 0.0])
             both = [still, add_rim(slab, -1.0)]
             system.AddObject(items.ObjectJointGeneric(markerNumbers=both, constrainedAxes=[0, 0, 0, 1, 1, 1]))
+        tendon = scene.tendon
+        if tendon is not None:
+            # the rims do not slip, so both gaps open alike, and each has its share of the tension
+            height = body.mass_centre_height
+            gaps = [[(ground, [0.0, 0.0, -tendon.depth]), (cylinder, [0.0, 0.0, -height])]]
+            if share > 0.0:
+                # the slab stands over the origin at the start, and its anchor twice as far off as the column
+                x, y, _ = (2.0 * start.position).tolist()
+                gaps.append([(slab, [x, y, tendon.depth]), (cylinder, [0.0, 0.0, height])])
+            for gap in gaps:
+                points = [
+                    system.AddMarker(items.MarkerBodyPosition(bodyNumber=each, localPosition=place))
+                    for each, place in gap
+                ]
+                system.AddObject(
+                    items.ObjectConnectorSpringDamper(
+                        markerNumbers=points,
+                        referenceLength=tendon.depth,
+                        stiffness=tendon.gaps * tendon.stiffness,
+                        force=tendon.prestress,
+                    )
+                )
         kinds = self._exudyn.OutputVariableType
         sensors = [
             system.AddSensor(items.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=kind))

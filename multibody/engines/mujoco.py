@@ -45,6 +45,7 @@ _FACTS = EngineFacts(
     smooth_uplift=True,  # its corners turn under the load
     carries_slab=True,
     rolling_friction=True,
+    tendons=True,
     contact_time="contact_time_constant",
     alternatives={
         **{
@@ -201,7 +202,7 @@ class _MujocoStepper:
         """Of the load, over b, in each step (n,)."""
         body = self._scene.body
         push = np.hypot(acceleration[:, 0], acceleration[:, 1]) * body.mass_centre_height
-        load: Array = push / (body.base_radius * (self._scene.gravity + acceleration[:, 2]))
+        load: Array = push / (body.base_radius * (self._scene.tipping_gravity + acceleration[:, 2]))
         return load
 
     def _follow_load(self, acceleration: Array, eccentricity: Array) -> int:
@@ -255,9 +256,9 @@ def _warnings(data: mujoco.MjData) -> list[str]:
 
 
 def _depth(scene: Scene, settings: MujocoSettings) -> float:
-    """Depth at which one contact carries the weight [m]: what the impedance leaves for the spring."""
+    """Depth at which one contact carries weight and prestress [m]: what the impedance leaves its spring."""
     time = settings.contact_time_constant / scene.unit_time
-    return scene.gravity * time**2 * (1.0 - settings.impedance) / settings.impedance
+    return scene.pressing_gravity * time**2 * (1.0 - settings.impedance) / settings.impedance
 
 
 def _wall(sensors: Array) -> Wall:

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from ..ring import RingSettings, wall_feet, wall_orientations
-from ..scene import Array, Scene, Start
+from ..scene import Array, Body, Scene, Start
 from ..settings import Count, EngineSettings, Positive, one_of, positive
+from ..tendon import SceneTendon
 
 if TYPE_CHECKING:
     import mujoco  # type: ignore[import-untyped]
@@ -112,6 +113,8 @@ def compile_scene(
     _set_body(spec, scene)
     if ring is not None:
         _set_walls(spec, ring, scene.body.base_radius)
+    if scene.tendon is not None:
+        _add_tendon(spec, scene.body, scene.tendon)
     if scene.body.slab_mass_ratio > 0.0:
         _add_slab(spec, scene, standing and settings.standing_corners > 0)
     _set_contact(spec, scene, settings, standing, ring)
@@ -157,6 +160,28 @@ def _set_body(spec: mujoco.MjSpec, scene: Scene) -> None:
         geom.size = [radius, half, 0.0] if geom.name == "cylinder" else [radius / 2**0.5] * 2 + [half]
 
 
+def _add_tendon(spec: mujoco.MjSpec, shape: Body, tendon: SceneTendon) -> None:
+    """Stretch a tendon from its anchor to the base, and up the axis to the slab where there is one.
+
+    The actuator that is its prestress takes no control.
+    """
+    import mujoco
+
+    body, base = spec.body("cylinder"), -shape.mass_centre_height
+    spec.worldbody.add_site(name="tendon_anchor", pos=[0.0, 0.0, -tendon.depth])
+    body.add_site(name="tendon_base", pos=[0.0, 0.0, base])
+    sites, rest = ["tendon_anchor", "tendon_base"], tendon.depth
+    if tendon.gaps > 1:
+        body.add_site(name="tendon_top", pos=[0.0, 0.0, base + shape.height])
+        sites, rest = [*sites, "tendon_top", "tendon_slab"], 2.0 * tendon.depth + shape.height
+    cable = spec.add_tendon(name="tendon", stiffness=[tendon.stiffness, 0.0, 0.0], springlength=[rest, rest])
+    for site in sites:
+        cable.wrap_site(site)
+    force = spec.add_actuator(name="prestress", target="tendon", trntype=mujoco.mjtTrn.mjTRN_TENDON)
+    force.gaintype, force.biastype = mujoco.mjtGain.mjGAIN_FIXED, mujoco.mjtBias.mjBIAS_AFFINE
+    force.gainprm[0], force.biasprm[0] = 0.0, -tendon.prestress
+
+
 def _add_slab(spec: mujoco.MjSpec, scene: Scene, standing: bool) -> None:
     """Put a slab that can only translate on the top; it lies on the first prism, or on the rim."""
     import mujoco
@@ -178,6 +203,8 @@ def _add_slab(spec: mujoco.MjSpec, scene: Scene, standing: bool) -> None:
             push = spec.add_actuator(name=f"push_slab_{name}", target=f"slab_{name}")
             push.trntype = mujoco.mjtTrn.mjTRN_JOINT
             push.gear[0] = shape.slab_mass_ratio
+    if scene.tendon is not None:
+        slab.add_site(name="tendon_slab", pos=[0.0, 0.0, scene.tendon.depth - _SLAB_THICKNESS])
     spec.add_pair(geomname1="slab", geomname2="prism0" if standing else "cylinder")
     # two convex bodies: their point of contact is sought, to rounding, and is one: what a face and a rim next
     # to it have in common, which 4.0 looks for, is off by 4e-3 m at a tilt of 1e-4 rad

@@ -109,6 +109,7 @@ _FACTS = EngineFacts(
     smooth_uplift=True,
     carries_slab=True,
     rolling_friction=True,
+    tendons=True,
 )
 
 
@@ -149,6 +150,7 @@ class _PybulletStepper(Leapfrog):
         self._put(start.position, quaternion, velocity, spin)
         if not start.standing:
             # leapfrog starts half a step back: a trial step shows the acceleration
+            self._pull_tendon(start.position.tolist(), quaternion.tolist())
             pybullet.stepSimulation(client)
             after, spin_after = map(np.array, pybullet.getBaseVelocity(self._body, client))
             velocity, spin = 1.5 * velocity - 0.5 * after, 1.5 * spin - 0.5 * spin_after
@@ -269,7 +271,9 @@ class _PybulletStepper(Leapfrog):
         axis_x, axis_y = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x)
         lean = math.hypot(axis_x, axis_y)
         load = (
-            math.hypot(acceleration[0], acceleration[1]) * h / (b * (self._scene.gravity + acceleration[2]))
+            math.hypot(acceleration[0], acceleration[1])
+            * h
+            / (b * (self._scene.tipping_gravity + acceleration[2]))
         )
         if self._held and load < 1.0:
             return (*place, x, y, z, w)
@@ -289,6 +293,7 @@ class _PybulletStepper(Leapfrog):
         self._put(vectors[0], np.append(vectors[1], w), vectors[2], vectors[3])
         pull = about_vertical(-acceleration[None] - [0.0, 0.0, self._scene.gravity], -towards)[0]
         bullet.setGravity(*pull.tolist(), client)
+        self._pull_tendon(vectors[0].tolist(), [*vectors[1].tolist(), w])
         bullet.stepSimulation(client)
         if self._slab is not None:
             self._slab_velocity = np.array(bullet.getBaseVelocity(self._slab, client)[0])
@@ -298,7 +303,22 @@ class _PybulletStepper(Leapfrog):
     def _slides(self, acceleration: Array) -> bool:
         """Whether friction does not hold a cylinder that stands."""
         push = math.hypot(acceleration[0], acceleration[1])
-        return push > self._scene.friction * float(self._scene.gravity + acceleration[2])
+        return push > self._scene.friction * float(self._scene.pressing_gravity + acceleration[2])
+
+    def _pull_tendon(self, place: Sequence[float], turn: Sequence[float]) -> None:
+        """Apply the forces of the tendon in the next step, at a place and a quaternion, scalar last."""
+        tendon = self._scene.tendon
+        if tendon is None:
+            return
+        x, y, z, w = turn
+        axis = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)
+        force, torque = tendon.loads(place, axis, self._lengths[1])
+        bullet, client, world = self._bullet, self._client, self._bullet.WORLD_FRAME
+        bullet.applyExternalTorque(self._body, -1, torque, world, client)
+        body, at = self._body, place
+        if self._slab is not None:
+            body, at = self._slab, bullet.getBasePositionAndOrientation(self._slab, client)[0]
+        bullet.applyExternalForce(body, -1, force, at, world, client)
 
     def _let_go(self) -> None:
         """Go on with the cylinder in place of the point of its rim; its pose is still to be set."""
@@ -349,12 +369,13 @@ class _PybulletStepper(Leapfrog):
         velocities, move = bullet.getBaseVelocity, bullet.resetBaseVelocity
         ground, overshoot, (b, h) = self._ground, self._settings.friction_damping - 1.0, self._lengths
         slab, (slab_x, slab_y, slab_z) = self._slab, self._slab_velocity.tolist()
-        atan2, sqrt = math.atan2, math.sqrt
+        atan2, sqrt, pull_tendon = math.atan2, math.sqrt, self._pull_tendon
+        tied = self._scene.tendon is not None
         # numbers in one list, not tuples in one: those the garbage collector would go through again and again
         poses: list[float] = []
         beyond_x = beyond_y = 0.0
         report: Sequence[Mapping[str, float]] = ()
-        _, (x, y, z, w) = pose(body, client)
+        place, (x, y, z, w) = pose(body, client)
         for along_x, along_y, along_z in zip(*gravity.T.tolist(), strict=True):
             pull(along_x, along_y, along_z, client)
             across_x, across_y, xy = x * z + w * y, y * z - w * x, x * x + y * y
@@ -363,6 +384,8 @@ class _PybulletStepper(Leapfrog):
                 pair = 2.0 * stiffness * atan2(z, w)
                 moment = pair * across_x, pair * across_y, pair * (1.0 - x * x - y * y)
                 torque(body, -1, moment, world, client)
+            if tied:
+                pull_tendon(place, (x, y, z, w))
             ax, ay, az = 2.0 * across_x, 2.0 * across_y, 1.0 - 2.0 * xy
             sine = sqrt(ax * ax + ay * ay)
             if overshoot and sine > _LEANS:

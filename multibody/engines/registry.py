@@ -32,7 +32,7 @@ DEFAULT_ENGINE = "mujoco"
 
 
 class EngineNotInstalledError(ValueError):
-    """A known engine whose package, or a library that it needs, is not installed here."""
+    """A known engine whose package, or a library that it needs, is not installed here or does not load."""
 
 
 class BrokenEngineError(ValueError):
@@ -43,7 +43,8 @@ class BrokenEngineError(ValueError):
 class _Entry:
     package: str
     remedy: str
-    module: str = ""  # to import, where it is not called as the package
+    module: str = ""  # where it is not called as the package
+    part: str = ""  # of the module, which loads only where all of it is there
     standard: bool = True  # comes with every installation of this package, where it has a wheel
     # of the system, which a wheel for Linux does not bring, by the package that has them
     libraries: Mapping[str, str] = field(default_factory=dict)
@@ -55,7 +56,8 @@ _GRAPHICS = {"libgl1": "libGL.so.1", "libx11-6": "libX11.so.6"}
 _WHEEL = sys.version_info < (3, 12) and sys.platform == "linux" and platform.machine() == "x86_64"
 _ENGINES: Mapping[str, _Entry] = MappingProxyType(
     {
-        "mujoco": _Entry("mujoco", "pip install 'mujoco>=4.0,<5'"),
+        # without mujoco-core a folder of that name is left, which can be imported and holds nothing
+        "mujoco": _Entry("mujoco", "pip install 'mujoco>=4.0,<5'", part="rollout"),
         "pybullet": _Entry(
             "pybullet",
             "pip install pybullet, which has wheels for Python 3.11 and older on Linux x86-64 only",
@@ -71,6 +73,7 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
             "drake",
             "pip install 'drake>=1.51'",
             module="pydrake",
+            part="multibody.plant",
             standard=False,
             libraries={"libglib2.0-0": "libglib-2.0.so.0"},
         ),
@@ -111,12 +114,14 @@ def stand_in(name: str) -> str | None:
 
 
 def own_engines() -> tuple[str, ...]:
-    """Return the names of our engines whose packages are installed here, without importing them."""
-    return tuple(name for name in _ENGINES if not engine_lack(name))
+    """Return the names of our engines that run here: their packages are installed, and load."""
+    return tuple(name for name in _ENGINES if not engine_fault(name))
 
 
 def available_engines() -> tuple[str, ...]:
     """Return the names of all engines that are installed here: of this package, then of others.
+
+    Nothing is imported: one whose package is damaged is among them, and is refused when it is asked for.
 
     Returns
     -------
@@ -127,7 +132,7 @@ def available_engines() -> tuple[str, ...]:
     >>> "mujoco" in available_engines()
     True
     """
-    return (*own_engines(), *_declared())
+    return (*(name for name in _ENGINES if not engine_lack(name)), *_declared())
 
 
 def engine_lack(name: str) -> str:
@@ -143,19 +148,62 @@ def engine_lack(name: str) -> str:
     return f"needs {' and '.join(missing)} of the system: apt install {' '.join(entry.libraries)}"
 
 
+def engine_fault(name: str) -> str:
+    """Return why an engine does not run here, to follow its name; empty if it does.
+
+    Its package is imported, which takes some tenths of a second once.
+    """
+    return engine_lack(name) or _load_failure(name)
+
+
+@cache
+def _load_failure(name: str) -> str:
+    from .pybullet import quiet  # which prints as it loads
+
+    entry = _ENGINES.get(name)
+    if entry is None:  # what another package declares is loaded by that
+        return ""
+    module = entry.module or entry.package
+    try:
+        with quiet():
+            importlib.import_module(f"{module}.{entry.part}" if entry.part else module)
+    # whatever a damaged package raises, it must not stop the other engines
+    except Exception as error:
+        reason = " ".join(str(error).split()) or type(error).__name__
+        return f"is installed and does not load: {reason}"
+    return ""
+
+
+def engine_named(name: str) -> Engine:
+    """Return the engine called `name`, whose facts are known whether it runs here or not.
+
+    Raises
+    ------
+    ValueError
+        If there is no such engine; BrokenEngineError if it is of another package and does not load.
+    """
+    if name in _ENGINES:
+        module = importlib.import_module(f".{name}", __package__)
+        return cast(Engine, getattr(module, f"{name.capitalize()}Engine")())
+    declared = _declared()
+    if name not in declared:
+        raise ValueError(f"engine must be one of {', '.join((*_ENGINES, *declared))}, got {name!r}")
+    return _load(name, declared[name])
+
+
 def find_engine(name: str) -> Engine:
-    """Return the engine called `name`.
+    """Return the engine called `name`, which runs here.
 
     Raises
     ------
     ValueError
         If there is no such engine.
     EngineNotInstalledError
-        If its package is not installed; a ValueError that says how to get it.
+        If its package is not installed or does not load; a ValueError that says how to get it, or why.
     BrokenEngineError
         If another package declares it and it does not load, or is no engine; a ValueError that says why.
     """
-    engine = _engine_named(name)
+    engine = engine_named(name)
     _require_installed(name)
     return engine
 
@@ -170,7 +218,7 @@ def engine_for(case: Case, name: str, support: str) -> Engine:
     ValueError
         Saying what is allowed, and as `find_engine` does.
     """
-    engine = _engine_named(name)
+    engine = engine_named(name)
     _require_able(engine, name, case, support)
     _require_installed(name)
     return engine
@@ -190,7 +238,7 @@ def _require_able(engine: Engine, name: str, case: Case, support: str) -> None:
         raise ValueError(
             f"{name} cannot uplift a cylinder that stands: give a release with a tilt, got a start at rest"
         )
-    if case.tendon is not None:
+    if case.tendon is not None and not engine.facts.tendons:
         raise ValueError(f"{name} has no tendon: tendon must be None, got {case.tendon!r}")
     if case.rolling_resistance and not engine.facts.rolling_friction:
         raise ValueError(
@@ -206,7 +254,7 @@ def engine_facts(name: str) -> EngineFacts:
     ValueError
         If there is no such engine; BrokenEngineError if it is of another package and does not load.
     """
-    return _engine_named(name).facts
+    return engine_named(name).facts
 
 
 def engine_packages() -> dict[str, str]:
@@ -224,20 +272,9 @@ def _has_library(name: str) -> bool:
 
 
 def _require_installed(name: str) -> None:
-    lack = engine_lack(name)
-    if lack:
-        raise EngineNotInstalledError(f"engine {name!r} {lack}")
-
-
-def _engine_named(name: str) -> Engine:
-    """Return an engine, one of ours also where its package, which it imports when it opens, is missing."""
-    if name in _ENGINES:
-        module = importlib.import_module(f".{name}", __package__)
-        return cast(Engine, getattr(module, f"{name.capitalize()}Engine")())
-    declared = _declared()
-    if name not in declared:
-        raise ValueError(f"engine must be one of {', '.join((*_ENGINES, *declared))}, got {name!r}")
-    return _load(name, declared[name])
+    fault = engine_fault(name)
+    if fault:
+        raise EngineNotInstalledError(f"engine {name!r} {fault}")
 
 
 def _declared() -> dict[str, list[EntryPoint]]:

@@ -8,11 +8,13 @@ largest (`driver`): a solution that rises above it has passed the balance by its
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import cos, inf, log, sin
 
-from .._compile import jit
+from .._compile import inlined, jit
 from ..body import Body
-from .result import COMPLETED, HALF_PI, MAXIMUM, UNDECIDED, IntegrationResult, Log
+from ..equations import energy
+from .result import COMPLETED, HALF_PI, MAXIMUM, UNDECIDED, IntegrationResult, Log, State
 
 LONGEST = 34.0  # of 1/p, between the balance and the tilt alpha on either side of it: log(2e14) and a little
 # of p^2 alpha, tilt acceleration of a release at rest that is rounding: it neither falls nor turns back
@@ -36,6 +38,15 @@ def decided(body: Body, result: IntegrationResult) -> IntegrationResult:
 def longest_stay(body: Body) -> float:
     """Return the time that a motion may stay by its balance, and then fall from there [s]."""
     return (LONGEST + log(HALF_PI / body.alpha)) / body.p
+
+
+@inlined
+def may_rise_above(
+    body: Body, momenta: Callable[[State], tuple[float, float]], y: State, peak: float
+) -> bool:
+    """Return whether over still ground the energy of a state lets the tilt rise above `peak` later."""
+    L, S = momenta(y)
+    return energy(body, y[0], y[1], L, S) > energy(body, min(peak, body.alpha), 0.0, 0.0, 0.0)
 
 
 @jit
@@ -95,14 +106,17 @@ def departs(body: Body, theta: float, L: float) -> bool:
 
 
 @jit
-def undecided(body: Body, theta: float, L: float, rows: Log, since: float, last: float, falls: bool) -> bool:
+def undecided(
+    body: Body, theta: float, L: float, rows: Log, since: float, last: float, falls: bool, grows: bool
+) -> bool:
     """Return whether rounding, or the error of the solution, decided what became of a motion.
 
     `theta` and `L` are its tilt and spin at the end, `since` is when the ground began to keep still, `last`
-    the time reached [s], and `falls` says that the side came to the ground.
+    the time reached [s], `falls` says that the side came to the ground, and `grows` that a later maximum may
+    be larger than the first.
     """
     longest, _, top = turn_since(rows, since, last)
     beyond = theta > top * (1.0 + _ABOVE) and free_acceleration(body, theta, L) > 0.0
-    if top < inf and (falls or beyond):
+    if not grows and top < inf and (falls or beyond):
         return True
     return longest > longest_stay(body) and (falls or departs(body, min(theta, top), L))

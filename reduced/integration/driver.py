@@ -6,7 +6,7 @@ Every step ends at the next record sample at the latest, because the forcing has
 
 A run that ends while the cylinder moves is followed over still ground to the next maximum of the tilt, or
 until it overturns; where rounding decides which, the run is undecided (`balance`). Of the maxima over still
-ground the first is the largest:
+ground the first is the largest, but on flat ground with a loss:
 
 - Recess: energy and L are conserved, so the tilt oscillates between the same two turning points.
 - Flat ground: Lambda' and S' are theta' times what is linear in (Lambda, S) with coefficients of theta alone.
@@ -14,6 +14,9 @@ ground the first is the largest:
   energy (Appell and Chaplygin, of a rolling disc): the tilt again has the same two turning points.
 - Losses lower each maximum: impacts in a plane, and rolling resistance in the recess, whose effect on the
   energy at the maximum goes with theta'^2 + sin^2(theta) phi' (phi' - L/B(theta_max)) >= 0.
+- Flat ground with rolling resistance: no proof, and it is not so. The couple changes Lambda and S by itself,
+  so that a motion which wobbles low with much spin may rise when that is lost. It is followed from maximum to
+  maximum until its energy, which only falls, is below that of a standstill at the largest tilt so far.
 """
 
 from __future__ import annotations
@@ -25,7 +28,7 @@ import numpy as np
 
 from .._compile import borrowed, once
 from ..body import Body
-from .balance import departs, longest_stay, turn_since, turns_back, undecided
+from .balance import departs, longest_stay, may_rise_above, turn_since, turns_back, undecided
 from .events import NO_TURN
 from .progress import Stage, make_progress, time_in
 from .record import piece_of_record, still_from
@@ -63,8 +66,8 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
     """Return the compiled time integration of one model by one method."""
     lifted, lift_in, at_beginning, at_rest, stood, moved = make_progress(system, stepper)
     workspace, derivative = stepper.workspace, system.derivative
-    resists, hold = system.resists, system.hold
-    momenta = system.momenta
+    resists, hold, momenta, grows = system.resists, system.hold, system.momenta, system.grows
+    sense = system.sense
 
     @once
     def integrate(body: Body, options: Options, task: Task) -> IntegrationResult:
@@ -79,7 +82,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         uplift = (np.nan, np.nan) if resting else (0.0, initial[2])  # time and direction
         h_next = _FIRST_STEP / body.p
         run = Stage(0.0, initial, initial, h_next, True, resting, initial[0], _FIRST_SAMPLE, 0, COMPLETED)
-        now, index, turned = 0.0, 0, np.nan
+        now, index, turned, spent = 0.0, 0, np.nan, np.nan
         still = still_from(record, time_step)
         end, following, mark = options.duration, False, mark_of(run.y, log)
 
@@ -91,9 +94,11 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     if longest <= longest_stay(body):
                         end = since + 1.01 * longest_stay(body)
                         continue
-                if following or run.resting or has_turned(log, still):
+                if following or run.resting:
                     break
-                if resists and hold(body, run.y, _STILL_GROUND, _STILL_GROUND) == inf:
+                if has_turned(log, still) and not (grows and may_rise_above(body, momenta, run.y, run.peak)):
+                    break
+                if resists and hold(body, options.rtol, run.y, _STILL_GROUND, _STILL_GROUND) == inf:
                     break
                 end, following, mark = now + _LONGEST / body.p, True, mark_of(run.y, log)
                 index, jumps = len(record), True
@@ -125,6 +130,8 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     log.extrema.append((turned, turn.tilt, turn.angle, turn.kind))
                 if landing.kind != NO_TURN:
                     log.extrema.append((now, landing.tilt, landing.angle, landing.kind))
+                    if resists and np.isnan(spent) and sense(run.y) != 0.0:
+                        spent = now
                 if options.record_steps and now > begin:
                     log.steps.append((now, *run.y))
                 if run.resting:
@@ -136,11 +143,12 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         if following:
             followed = turned if status == TURNED else log.rests[-1][0] if run.resting else now
         falls = status == OVERTURNED
-        moves = not run.resting and not (resists and hold(body, run.y, _STILL_GROUND, _STILL_GROUND) == inf)
+        stuck = resists and hold(body, options.rtol, run.y, _STILL_GROUND, _STILL_GROUND) == inf
+        moves = not run.resting and not stuck
         if moves and now >= still and status in (OVERTURNED, COMPLETED, TURNED):
-            status = (
-                UNDECIDED if undecided(body, run.y[0], momenta(run.y)[0], log, still, now, falls) else status
-            )
+            L = momenta(run.y)[0]
+            if undecided(body, run.y[0], L, log, still, now, falls, grows):
+                status = UNDECIDED
         if following and status in (COMPLETED, TURNED, UNDECIDED):
             y, now, status = mark.y, options.duration, UNDECIDED if status == UNDECIDED else COMPLETED
         else:
@@ -154,6 +162,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
             status,
             now,
             followed,
+            spent,
             run.peak,
             uplift[0],
             uplift[1],

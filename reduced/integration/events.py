@@ -163,17 +163,17 @@ def make_events(system: System, stepper: Stepper) -> Events:
 
     @jit
     def release_in(
-        body: Body, work: NDArray[np.float64], path: object, h: float, a: Vector, slope: Vector
+        body: Body, rtol: float, work: NDArray[np.float64], path: object, h: float, a: Vector, slope: Vector
     ) -> float:
         """Return the time in a step at which a body that only pivots is let go, or 0; by bisection."""
         low, high = 0.0, 0.5 * h
-        if not let_go(body, partial(body, work, path, high)[0], ground(a, slope, high), slope):
+        if not let_go(body, rtol, partial(body, work, path, high)[0], ground(a, slope, high), slope):
             low, high = high, h
-            if not let_go(body, partial(body, work, path, high)[0], ground(a, slope, high), slope):
+            if not let_go(body, rtol, partial(body, work, path, high)[0], ground(a, slope, high), slope):
                 return 0.0
         while high - low > _CLOSE * _CLOSE * h:
             middle = 0.5 * (low + high)
-            if let_go(body, partial(body, work, path, middle)[0], ground(a, slope, middle), slope):
+            if let_go(body, rtol, partial(body, work, path, middle)[0], ground(a, slope, middle), slope):
                 high = middle
             else:
                 low = middle
@@ -214,7 +214,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
                 h, (y_new, _) = at, partial(body, work, path, at)
                 k = restarted(body, y_new, ground(a, slope, at), work)
         if resists and y[-1] == PIVOTS:
-            at = release_in(body, work, path, h, a, slope)
+            at = release_in(body, rtol, work, path, h, a, slope)
             if at > 0.0:
                 h, (y_new, _) = at, partial(body, work, path, at)
         flat = is_flat(y) and is_flat(y_new)

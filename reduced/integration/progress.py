@@ -7,7 +7,7 @@ every step.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import hypot, pi
+from math import hypot
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +19,7 @@ from ..equations import base_inertia, energy
 from ..restoring import balance, surely_overturns, with_prestress_share
 from ..rolling import PIVOTS, rolling_momentum
 from ..trigonometry import sin_cos
+from .balance import may_rise_above
 from .events import NONE, REPEATED, Turn, make_events
 from .record import Piece, Vector, ground
 from .result import (
@@ -203,6 +204,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     momenta, is_flat = system.momenta, make_is_flat(system.momenta)
     placed: Callable[..., State] = system.placed
     resists, hold, set_off, stopped = system.resists, system.hold, system.set_off, system.stopped
+    ready, rebound, grows = system.ready, system.rebound, system.grows
 
     @jit
     def lifted(body: Body, time_step: float, piece: Piece, at: float, time: float, last: State) -> State:
@@ -228,8 +230,8 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     @inlined
     def rebounded(body: Body, y: State, restitution: float) -> State:
         """Return the state after the base met the ground in planar motion: contact changes sides."""
-        opposite = y[2] + (-pi if y[2] > 0.0 else pi)
-        return placed(body, y, 0.0, restitution * abs(y[1]), opposite, 0.0)
+        turn, ratio = rebound(body, y, restitution)
+        return placed(body, y, 0.0, ratio * abs(y[1]), y[2] + turn, 0.0)
 
     sample_rest, sample_uplift, sample_step = make_sampling(lifted, partial)
 
@@ -299,11 +301,15 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         """
         elapsed, y, k, h_next, restart, _, peak, sample, step_count, status = run
         a = ground(piece.a, piece.slope, elapsed)
+        if resists:
+            spun = not is_flat(y)
+            y = ready(body, options.rtol, y, a, piece.slope)
+            restart = restart or (spun and is_flat(y))
         if resists and (is_still(y) or y[-1] == PIVOTS):
-            wait = hold(body, y, a, piece.slope) if is_still(y) else 0.0
+            wait = hold(body, options.rtol, y, a, piece.slope) if is_still(y) else 0.0
             if wait > 0.0:
                 return Step(held(piece, wait, wanted, run), NONE, NONE)
-            y, longest = set_off(body, y, a, piece.slope)
+            y, longest = set_off(body, options.rtol, y, a, piece.slope)
             h_next, restart = min(h_next, longest), True
         if restart:
             k = restarted(body, y, a, work)
@@ -328,6 +334,8 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
                 peak = max(peak, turn.tilt)
                 status = TURNED if following and turn.kind == MAXIMUM else COMPLETED
             y, peak = ending.y, max(peak, ending.y[0])
+            if grows and status == TURNED and may_rise_above(body, momenta, y, peak):
+                status = COMPLETED
             if ending.overturns:
                 status = OVERTURNED
             elif ending.lands:

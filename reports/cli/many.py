@@ -22,7 +22,7 @@ from .command import takes_options
 from .outputs import claim_folder
 from .problem import BODY, Body, Problem, Record, refuse, refuse_options_of_engines, unread
 from .several import GridOptions, Hazard, ManyMethods, ManyMotions, cylinders_of
-from .suite_choice import chosen_runs, refuse_problem_options, without_missing
+from .suite_choice import chosen_runs, refuse_problem_options, say_what_is_left_out, without_missing
 
 if TYPE_CHECKING:
     from rockwobble.models.case import TimeStep
@@ -80,13 +80,21 @@ def fragility(
             chosen = methods.methods(next(iter(bodies.values())))
             methods_of(chosen, restitution=plan.restitution)  # before motions are read
             site = hazard.curve(plan.period)
-            motions, source = many.read(plan.seed)
+            stripes = many.by_level()
+            if stripes:
+                lone = {"levels", "scales"}
+                refuse(context, lone, "does not go with the column level of records.csv")
+                motions = list({each.name: each for own in stripes.values() for each in own}.values())
+                source = many.source
+            else:
+                motions, source = many.read(plan.seed)
             for name, each in bodies.items():
                 size = f"R = {each.semidiagonal:g} m, tan alpha = {each.tan_alpha:g}"
                 print(f"{name}: {size}" if cylinder else size)
             echo(
                 [
-                    f"Motions: {len(motions)}, {source}",
+                    f"Motions: {len(motions)}, {source}"
+                    + (f", of their own at each of {len(stripes)} levels" if stripes else ""),
                     *record_lines(motions),
                     *warnings_about(motions, bodies.values(), plan.gravity),
                 ]
@@ -94,7 +102,7 @@ def fragility(
         with user_input(), shown_progress() as progress:
             found = rw.fragility(
                 bodies,
-                motions,
+                stripes or motions,
                 methods=chosen,
                 workers=workers,
                 scheduler=scheduler,
@@ -128,19 +136,22 @@ def spectrum(
     The lowest intensity that overturns each size is searched between the intensities and below them,
     too; what the search misses is measured.
 
+    Whatever ends it, the same command resumes.
+
     Writes spectrum.html, the same as spectrum.md with spectrum.svg, and as Parquet the cells (spectrum),
     the lowest intensities found to overturn (lowest), the gaps in the overturning region above them
     (gaps), the shares by size (contrast), and some cells run again to a tighter tolerance (checked).
 
     Example: rockwobble spectrum --tan-alpha 0.2 --semidiagonal 1:20:50 --intensity 1:9:50
     """
-    with interruptible():
+    with interruptible(out):
         with user_input():
-            from rockwobble.compare.studies.spectrum.maps import intensity_unit
+            from rockwobble.compare.studies.spectrum.maps import intensity_unit, require_cases
 
             motion = record.motion()
             assert motion is not None  # without a release there always is one
             intensity_unit(tan_alpha, motion, plan.gravity)
+            require_cases(tan_alpha, motion, plan)
             slender = rw.Case(
                 rw.Cylinder(semidiagonal=1.0, tan_alpha=tan_alpha), motion, gravity=plan.gravity
             )
@@ -150,9 +161,14 @@ def spectrum(
         )
         # the ground: the threshold of uplift is that of all sizes
         echo(describe(slender)[1:-1])
-        with shown_progress("series") as progress:
+        with user_input(), shown_progress("parts") as progress:
             found = rw.spectrum(
-                tan_alpha, motion, workers=workers, progress=progress, **dataclasses.asdict(plan)
+                tan_alpha,
+                motion,
+                workers=workers,
+                progress=progress,
+                resume=out,
+                **dataclasses.asdict(plan),
             )
         show_and_save(found, out)
 
@@ -253,6 +269,8 @@ def _runs(
         return []
     if suite is not None:
         return without_missing(chosen_runs(suite, engines, supports, time_step), engines)
+    if not engines:
+        say_what_is_left_out(supports or ())
     chosen = rc.default_runs(engines or None, supports or None)
     return [rw.Run(run.engine, run.support, time_step) for run in chosen]
 
@@ -333,7 +351,11 @@ def _suite(name: str, models: list[str] | None) -> rw.Suite:
             raise ValueError(f"--model must be of {', '.join(rw.reduced.MODELS)}, got {model!r}")
     suite = rw.read_suite(name)
     chosen = [rw.Run(None, **{"support": "recess", **rw.reduced.MODELS[model]}) for model in models or ()]
-    runs = (*chosen, *(suite.runs or (() if models else rc.default_runs())))
+    added = suite.runs
+    if not added and not models:
+        say_what_is_left_out()
+        added = rc.default_runs()
+    runs = (*chosen, *added)
     return runnable_suite(rw.Suite(suite.cases, runs))
 
 

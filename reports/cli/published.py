@@ -111,13 +111,15 @@ def figures(
 ) -> None:
     """Compute figures 3 to 6 of the paper again, and compare its statements with the numbers.
 
+    Whatever ends it, the same command resumes.
+
     Writes paper.md and paper.html with a verdict on each statement, the figures as SVG, and the data of each
     and the numbers of the statements as Parquet.
 
     Example: rockwobble figures --out paper
     """
-    with results_in(context, "figures", resumes=False) as progress:
+    with user_input(), results_in(context, "parts") as progress:
         from ..paper.page import compute
 
-        found = compute(grid, progress)
+        found = compute(grid, progress, out)
     show_and_save(found, out)

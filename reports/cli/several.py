@@ -29,7 +29,8 @@ class ManyMotions(Reading):
     records: Path | None = _motions(
         None,
         "A folder of PEER with its _SearchResults.csv, or one with a table records.csv: columns x and y "
-        "(files), or record (file or folder of all), maybe z, name, units, scale and the options below.",
+        "(files), or record (file or folder of all), maybe z, name, units, scale, level and the options "
+        "below.",
     )
     synthetic: int | None = _motions(None, "So many synthetic motions.", least=2)
 
@@ -37,6 +38,15 @@ class ManyMotions(Reading):
     def given(self) -> str:
         """The option that names them; empty without one."""
         return first_given(self, "p695", "records", "synthetic")
+
+    @property
+    def source(self) -> str:
+        """What the motions of --records are."""
+        return "" if self.records is None else f"records of {self.records.name}"
+
+    def by_level(self) -> dict[float, list[rw.GroundMotion]]:
+        """Return the motions of each level of the intensity; empty where the table of --records has none."""
+        return {} if self.records is None else rw.read_records_by_level(self.records, **self.ways())
 
     def read(self, seed: int) -> tuple[list[rw.GroundMotion], str]:
         """Return the ground motions and what they are; synthetic ones where none are named.
@@ -57,8 +67,7 @@ class ManyMotions(Reading):
         if self.p695:
             return recorded_far_field(), "far-field pairs of FEMA P-695"
         if self.records is not None:
-            found = rw.read_records(self.records, **self.ways())
-            return found, f"records of {self.records.name}"
+            return rw.read_records(self.records, **self.ways()), self.source
         count = DEFAULT_COUNT if self.synthetic is None else self.synthetic
         return rw.synthetic_motions(count, peak=1.0, seed=seed), f"synthetic ground motions, seed {seed}"
 

@@ -24,7 +24,13 @@ from .command import takes_options
 from .options import settings
 from .outputs import claim_folder
 from .problem import Problem, given_options, refuse_options_of_engines, restated, stated_options
-from .suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
+from .suite_choice import (
+    chosen_runs,
+    describe_suite,
+    refuse_problem_options,
+    say_what_is_left_out,
+    without_missing,
+)
 
 if TYPE_CHECKING:
     from rockwobble.models.case import TimeStep
@@ -141,7 +147,7 @@ def compare(
             for reason in unable_engines(cases):
                 complain(reason)
         elif not engine and suite is None:
-            _say_what_is_left_out(support or [])
+            say_what_is_left_out(support or [])
         with user_input(), shown_progress() as progress:
             found = rw.compare(
                 rw.Suite(cases, runs),
@@ -184,15 +190,6 @@ def _runs(
     every = engines == [options.ALL]
     runs = all_runs([case], supports or None) if every else rc.default_runs(engines or None, supports or None)
     return [rw.Run(run.engine, run.support, time_step) for run in runs]
-
-
-def _say_what_is_left_out(supports: list[str]) -> None:
-    from rockwobble.compare.runs.choice import left_out, unsupported
-
-    for name in rr.missing_engines():
-        complain(left_out(name))
-    for reason in unsupported(supports):
-        complain(reason)
 
 
 @takes_options
@@ -320,11 +317,13 @@ def _run(case: rw.Case, engine: str | None, support: str, time_step: float | Non
     """Return the run of the engine that verifies; None without one."""
     if engine == options.NO_ENGINE and time_step is not None:
         raise ValueError("--time-step belongs to an engine, got it with --engine none")
+    from rockwobble.multibody.engines.registry import engine_fault
+
     default = rw.multibody.DEFAULT_ENGINE
-    missing = engine is None and default not in rw.multibody.available_engines()
-    if missing:
-        complain(f"{default} is not installed here: the prediction stays unverified")
-    if missing or engine == options.NO_ENGINE:
+    fault = engine_fault(default) if engine is None else ""
+    if fault:
+        complain(f"{default} {fault}; the prediction stays unverified")
+    if fault or engine == options.NO_ENGINE:
         return None
     run = rw.Run(engine or default, support, time_step)
     rr.require_runnable(case, run)

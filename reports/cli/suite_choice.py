@@ -76,6 +76,16 @@ def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list
     return kept
 
 
+def say_what_is_left_out(supports: Sequence[str] = ()) -> None:
+    """Say which engines a default run leaves out, and why: those that do not run here or lack a support."""
+    from rockwobble.compare.runs.choice import left_out, unsupported
+
+    for name in rr.missing_engines():
+        complain(left_out(name))
+    for reason in unsupported(supports):
+        complain(reason)
+
+
 def describe_suite(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> Iterator[str]:
     """Yield the lines that echo what will run."""
     from rockwobble.compare.runs.choice import run_labels

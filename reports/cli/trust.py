@@ -115,11 +115,11 @@ class OutputOptions(Plan):
             ("--junit", self.junit, plan_in_junit),
         ):
             if path is not None and self.overwrite:
-                require_file("a report", path)
+                require_file(option, path)
             elif path is not None:
                 require_own_file(option, path, plan, plan_in)
         if self.markdown is not None:  # to which a page is added
-            require_file("a report", self.markdown)
+            require_file("--markdown", self.markdown)
 
     def write(self, found: Checks, seconds: float, plan: str) -> None:
         """Write the files.
@@ -214,7 +214,8 @@ def _run(subject: Subject, only: list[str] | None) -> Checks:
 
     for group in only or ():
         require_one_of("--only", group, tuple(GROUPS))
-    with shown_progress("engine runs", heading="checking") as progress:
+    what = "engine runs" if "suite" in subject else "checks"
+    with shown_progress(what, heading="checking", each="suite" in subject) as progress:
         found = check(**subject, only=only, progress=progress)
     print_checks(Console(), found)
     return found
@@ -294,6 +295,8 @@ def certify(
         from rockwobble.compare.certificate import certify as make
         from rockwobble.compare.check import engine as engine_subject
         from rockwobble.compare.check import reduced_model, run_checks
+        from rockwobble.compare.check.groups import chosen_checks
+        from rockwobble.compare.runs.progress import stages
         from rockwobble.compare.storage.files import require_file
         from rockwobble.models.number_checks import require_one_of
         from rockwobble.models.support import SUPPORTS
@@ -311,11 +314,15 @@ def certify(
             given = f"{engine} with {', '.join(subject.supports)}"
             raise ValueError(f"--engine must have a recess, got {given}")
         checked = subject if engine else reduced_model()
-        results = list(run_checks(checked, only or CLAIMING))
+        groups = only or CLAIMING
+        count = len(chosen_checks(checked, groups))
+        with shown_progress("checks", heading="checking", each=False) as progress:
+            results = list(run_checks(checked, groups, stage=stages(progress, [1.0] * count)))
         if failed := [result.name for result in results if result.failed]:
             complain(f"a check failed, and nothing is certified: {failed[0]}")
             raise typer.Exit(FAILED)
-        found = make(subject, results)
+        with shown_progress("cases", each=False) as progress:
+            found = make(subject, results, progress)
         write_certificate({**found, "plan": plan}, out)
     print(f"{out}: {len(found['claims'])} claims, {len(found['fingerprint'])} cases")
 
@@ -337,7 +344,9 @@ def verify(
         from rockwobble.compare.certificate import read_certificate
         from rockwobble.compare.certificate import verify as verdict_on
 
-        verdict = verdict_on(read_certificate(certificate))
+        stated = read_certificate(certificate)
+        with shown_progress("cases", each=False) as progress:
+            verdict = verdict_on(stated, progress=progress)
     print(json.dumps(asdict(verdict), indent=1) if as_json else verdict.words())
     if verdict.exit_code:
         raise typer.Exit(verdict.exit_code)

@@ -11,7 +11,7 @@ import pandas as pd
 
 from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.studies.advice.advice import Advice
-from rockwobble.compare.studies.spectrum.maps import SERIES
+from rockwobble.compare.studies.spectrum.parts import SERIES
 from rockwobble.models.trace import NO_PEAK
 
 from .ensemble import peak_shares

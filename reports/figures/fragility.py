@@ -99,11 +99,17 @@ def _curves(found: Fragility, cylinder: str, place: int) -> Picture:
             shown = labels if support in _GUIDED else [*guided, *labels]
             panels.append(_panel(found, cylinder, shown, title))
     measure = MEASURES[str(found.facts["measure"])]
+    drawn = (found.curves["cylinder"] == cylinder) & (found.curves["limit"] == OVERTURNED)
+    lines = (
+        "Lines: lognormal curves by maximum likelihood, with 95 % bands by resampling the motions; marks: "
+        "shares of the runs."
+        if drawn.any()
+        else "Marks: shares of the runs."
+    )
     return Picture(
         name=f"fragility-{place}",
         title=f"Fragility of {cylinder}: share of the motions that overturn it",
-        caption=f"Over the intensity, {measure.title}. Lines: lognormal curves by maximum likelihood, with "
-        "95 % bands by resampling the motions; marks: shares of the runs.",
+        caption=f"Over the intensity, {measure.title}. {lines}",
         panels=panels,
         columns=2,
         legend="panels",

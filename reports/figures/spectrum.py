@@ -4,15 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rockwobble.compare.studies.spectrum.maps import (
-    PLANAR_X,
-    PLANAR_Y,
-    SERIES,
-    SPATIAL,
-    TITLES,
-    TiltMaps,
-    safe_gaps,
-)
+from rockwobble.compare.studies.spectrum.maps import TiltMaps, safe_gaps
+from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, TITLES
 from rockwobble.compare.studies.spectrum.study import OverturningSpectrum
 from rockwobble.models import Run
 

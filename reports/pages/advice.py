@@ -15,7 +15,7 @@ from rockwobble.compare.studies.advice.grades import CRITERIA, NEAR
 from rockwobble.compare.studies.advice.members import ACCELERATION, COPIES, HORIZONTAL, VELOCITY, VERTICAL
 from rockwobble.compare.studies.advice.scales import AS_STRONG, planar_shares
 from rockwobble.compare.studies.advice.trust import Verification
-from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.compare.studies.spectrum.study import CHECK_RTOL, NUDGE
 from rockwobble.models import AGREEMENT, CLOSED_TILT
 from rockwobble.models.diagnostic import CODES, parted
@@ -355,7 +355,7 @@ def _wall(found: Advice) -> str:
     return f"Wall: {size}, for a tilt of {tilt}° ({_of(found, row)})."
 
 
-def _of(found: Advice, row: Mapping[Hashable, Any]) -> str:
+def _of(found: Advice, row: Mapping[Any, Any]) -> str:
     """How many runs of which group ask no more than a demand, and under which shaking."""
     kind = "" if found.facts["records"] == "p695" else " synthetic"
     name = {

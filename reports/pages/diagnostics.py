@@ -59,6 +59,8 @@ _WORDS: Mapping[str, str] = {
     "translates: whether the slab turns, or the columns keep in step, is not tested",
     "side": "it passed through upright itself, first{at}: the ground had moved in one plane, and the side "
     "of such a pass is undetermined",
+    "spent_spin": "rolling resistance has taken the spin, from a pass{at}: so near upright that only the "
+    "sense of rolling is left, in which it goes on",
     "large_peak": "its peak is {size:.3g} g, more than {bound:g} g, which few records have{other_unit}",
     "unlike_components": "the peaks of its components differ by a factor of {size:.3g}, {detail} is the "
     "larger: their units may differ",
@@ -104,6 +106,7 @@ _MANY: Mapping[str, str] = {
     "undecided": "ended in motion that was not decided",
     "one_column": "ran one column, under a slab that only translates",
     "side": "passed through upright itself",
+    "spent_spin": "rolled until the spin was spent",
 }
 
 

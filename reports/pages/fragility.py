@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 from rockwobble.compare import Fragility
 from rockwobble.compare.metrics.statistics import FEWEST
-from rockwobble.compare.studies.fragility.fit import ALWAYS, FITTED, NEVER, TOO_FEW
+from rockwobble.compare.studies.fragility.fit import (
+    ALWAYS,
+    EXTRAPOLATED,
+    FALLING,
+    FITTED,
+    NEVER,
+    ONE_MOTION,
+    SEPARATED,
+    TOO_FEW,
+)
 from rockwobble.compare.studies.fragility.intensity import MEASURES
-from rockwobble.compare.studies.fragility.study import FEWEST_LEVELS, Row, main_contrasts
+from rockwobble.compare.studies.fragility.study import FEWEST_LEVELS, Row, known_ratio, main_contrasts
 from rockwobble.compare.studies.fragility.tables import ALL, OVERTURNED
 from rockwobble.models.support import SUPPORTS
 
@@ -18,6 +28,7 @@ from .page import Page
 from .risk import risk_values
 
 _WALLED = tuple(each.name for each in SUPPORTS.values() if each.walls)
+_BOUNDED = (NEVER, ALWAYS, EXTRAPOLATED, ONE_MOTION)
 # below this probability the counts do not follow a lognormal curve
 _POOR = 0.05
 
@@ -38,7 +49,11 @@ def fragility_values(found: Fragility) -> dict[str, object]:
     whole = ALL if len(cylinders) > 1 else next(iter(cylinders))
     answers = main_contrasts(found)
     fits = found.fits.to_dict("records")
-    fallen = [row for row in fits if row["limit"] == OVERTURNED]
+    fallen = [
+        {**row, "median": found.stated(row["cylinder"], row["median"])}
+        for row in fits
+        if row["limit"] == OVERTURNED
+    ]
     efficiency = [
         {**row, "title": MEASURES[str(row["measure"])].title} for row in found.efficiency.to_dict("records")
     ]
@@ -51,15 +66,19 @@ def fragility_values(found: Fragility) -> dict[str, object]:
             question: [{"ratio_most": math.nan, **row} for row in rows if row["cylinder"] == whole]
             for question, rows in answers.items()
         },
-        "contrasts": _by_cylinder([row for rows in answers.values() for row in rows], [*cylinders, ALL]),
+        "contrasts": _by_cylinder(
+            [{**row, "ratio": known_ratio(row["ratio"])} for rows in answers.values() for row in rows],
+            [*cylinders, ALL],
+        ),
         "several": len(cylinders) > 1,
         "engine_runs": any(each["engine"] is not None for each in found.facts["methods"].values()),
         "scaling": _scaling(found, measure.title),
         "fallen": fallen,
         "overturns": any(row["exceeded"] for row in fallen),
         "curved": [row for row in fallen if row["kind"] == FITTED],
-        "extrapolated": [row for row in fallen if row["extrapolated"] and row["kind"] == FITTED],
-        "curveless": [row for row in fits if row["kind"] not in (FITTED, ALWAYS, NEVER, TOO_FEW)],
+        "bounded": [row for row in fallen if row["kind"] in _BOUNDED],
+        "one_motion": [row for row in fits if row["kind"] == ONE_MOTION],
+        "curveless": [row for row in fits if row["kind"] in (SEPARATED, FALLING)],
         "few": any(row["kind"] == TOO_FEW for row in fits),
         "fewest": {"motions": FEWEST, "levels": FEWEST_LEVELS},
         **_counts(found),
@@ -71,14 +90,17 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "walls": any(each["support"] in _WALLED for each in found.facts["methods"].values()),
         "failed": [{"median_if_not": math.nan, **row} for row in fallen if row["failed"]],
         "efficiency": efficiency,
-        "gaps": found.gaps.to_dict("records"),
+        "gaps": _gaps(found),
     }
 
 
 def _scaling(found: Fragility, measure: str) -> str:
     levels, scales = found.facts["levels"], found.facts["scales"]
     if levels:
-        return f"each at {len(levels)} levels of {measure} from {levels[0]:.4g} to {levels[-1]:.4g}"
+        own = found.facts.get("motions_of_levels")
+        counts = f"{min(own)} to {max(own)}" if own and len(set(own)) > 1 else str(own[0]) if own else ""
+        each = f"{counts} of their own at each of" if own else "each at"
+        return f"{each} {len(levels)} levels of {measure} from {levels[0]:.4g} to {levels[-1]:.4g}"
     return "as they are" + ("" if scales == [1.0] else f", times {', '.join(f'{s:.4g}' for s in scales)}")
 
 
@@ -90,35 +112,51 @@ def _counts(found: Fragility) -> dict[str, object]:
             "cylinder": cylinder,
             "method": method,
             "limit": str(limit).replace("_", " "),
-            "all": f"{own['k'].sum()} of {own['n'].sum()}",
-            **{f"{row['intensity']:g}": f"{row['k']} of {row['n']}" for row in own.to_dict("records")},
+            "all": _share(own["k"].sum(), own["n"].sum()),
+            **{f"{row['intensity']:g}": _share(row["k"], row["n"]) for row in own.to_dict("records")},
         }
         for (cylinder, method, limit), own in found.counts.groupby(
             ["cylinder", "method", "limit"], sort=False
         )
     ]
-    columns = [("all", "all"), *((f"{level:g}", f"{level:g}") for level in levels)]
+    columns = [(f"{level:g}", f"{level:g}") for level in levels]
     return {
         "count_rows": rows,
         "count_columns": [
-            *([name, name, "words"] for name in ("method", "limit")),
-            *([*each, "words"] for each in columns),
+            *([name, name, "words"] for name in ("method", "limit", "all")),
+            *([*each, "words", "wide"] for each in columns),
         ],
     }
+
+
+def _share(exceeded: float, runs: float) -> str:
+    return f"{exceeded:g} of {runs:g}".replace(" ", "\u00a0")  # in one line
 
 
 def _by_cylinder(rows: list[Row], cylinders: list[str]) -> list[Row]:
     return [row for cylinder in cylinders for row in rows if row["cylinder"] == cylinder]
 
 
+def _gaps(found: Fragility) -> list[Row]:
+    medians = ("median", "median_incremental")
+    rows: Iterable[Row] = (
+        {str(name): value for name, value in row.items()} for row in found.gaps.to_dict("records")
+    )
+    return [
+        {
+            **row,
+            **{name: found.stated(row["cylinder"], row[name]) for name in medians},
+            "bias": known_ratio(row["bias"]),
+        }
+        for row in rows
+    ]
+
+
 def _states(found: Fragility) -> list[Row]:
     """One row for each cylinder and method: the median of each limit, or what bounds it."""
     rows: dict[tuple[str, str], Row] = {}
-    ends = found.counts.groupby("cylinder")["intensity"].agg(["min", "max"])
     for row in found.fits.to_dict("records"):
         key = str(row["cylinder"]), str(row["method"])
         made = rows.setdefault(key, {"cylinder": key[0], "method": key[1]})
-        low, high = (float(ends[end][key[0]]) for end in ("min", "max"))
-        bounds = {0.0: f"< {low:.3g}", math.inf: f"> {high:.3g}"}
-        made[str(row["limit"])] = bounds.get(float(row["median"]), row["median"])
+        made[str(row["limit"])] = found.stated(key[0], float(row["median"]))
     return list(rows.values())

@@ -34,7 +34,7 @@ Output = Literal["terminal", "markdown", "html"]
 _PLACE = re.compile(r"\n?@@(\d+)@@\n?")
 # what Markdown would take for markup in a name; an underscore only where a word begins or ends
 _MARKUP = re.compile(r"([\\`*<])|(?<!\w)_|_(?!\w)")
-_LEAST_WIDTH = 100  # of what is not a terminal, such as a file
+_LEAST_WIDTH = 80  # of what is not a terminal, such as a file
 
 
 class Safe(str):

@@ -8,7 +8,8 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.studies.spectrum.maps import SPATIAL, TiltMaps
+from rockwobble.compare.studies.spectrum.maps import TiltMaps
+from rockwobble.compare.studies.spectrum.parts import SPATIAL
 from rockwobble.compare.studies.spectrum.search import gap_bound
 from rockwobble.compare.studies.spectrum.study import (
     AGREEMENT,

@@ -11,6 +11,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from rich.console import Group
     from rich.table import Table as RichTable
 
 Row = Mapping[str, object]
@@ -160,24 +161,78 @@ class Table:
         return f"<tr>{''.join(found)}</tr>"
 
     def shown(self, width: int) -> Sequence[Column]:
-        """Return the columns for which a terminal of this width has room: the last wide ones go first."""
+        """Return the columns for which a terminal of this width has room.
+
+        The last wide ones go first, where a cell would take two lines; then the last, where a word would be
+        broken. The first stays.
+        """
         columns = list(self.columns)
-        while self._needed(columns, stacked=True) > width and any(column.wide for column in columns):
+        while any(column.wide for column in columns) and self._width(columns) > width:
             columns.remove(next(column for column in reversed(columns) if column.wide))
+        while len(columns) > 1 and self._width(columns, wrapped=True) > width:
+            columns.pop()
         return columns
 
-    def rich(self, width: int) -> RichTable:
-        """Return the table for a terminal of so many columns."""
+    def rich(self, width: int) -> Group:
+        """Return the table for a terminal of so many columns, in which no word is broken."""
+        from rich.console import Group
+        from rich.text import Text
+
         columns = self.shown(width)
-        return self._rich(columns, stacked=self._needed(columns) > width)
+        stacked = self._width(columns, stacked=False) > width
+        widths = self._widths(columns, width, stacked=stacked)
+        parts: list[RichTable | Text] = [self._rich(columns, widths, stacked=stacked)]
+        for name, rows in self.groups():
+            if name:
+                parts.append(Text(name, style="bold"))
+            parts.append(self._rich(columns, widths, rows))
+        if gone := len(self.columns) - len(columns):
+            parts.append(Text(f"{gone} more column{'s' if gone > 1 else ''} on the page", style="dim"))
+        return Group(*parts)
 
-    def _needed(self, columns: Sequence[Column], *, stacked: bool = False) -> int:
-        from rich.console import Console
+    def _width(self, columns: Sequence[Column], **look: bool) -> int:
+        return sum(self._lengths(columns, **look)) + len(columns) - 1
 
-        return Console(width=10_000).measure(self._rich(columns, stacked=stacked)).maximum
+    def _lengths(
+        self, columns: Sequence[Column], *, stacked: bool = True, wrapped: bool = False
+    ) -> list[int]:
+        """Return the length of the longest line in each column.
 
-    def _rich(self, columns: Sequence[Column], *, stacked: bool = False) -> RichTable:
-        """Return the table, `stacked` with one word of a heading above the next."""
+        The words of a heading `stacked` one above the other, or only its unit below it; words `wrapped` where
+        that is needed.
+        """
+        from rich.cells import cell_len
+
+        def length(column: Column) -> int:
+            cells = [number(row.get(column.key), column.form) for row in self.rows]
+            if wrapped and column.text:
+                cells = [word for cell in cells for word in cell.split(" ")]
+            heading = column.heading.split(" " if stacked else " [")
+            units = [f"[{part}" for part in heading[1:]] if not stacked else heading[1:]
+            return max(map(cell_len, [heading[0], *units, *cells]))
+
+        return [length(column) for column in columns]
+
+    def _widths(self, columns: Sequence[Column], width: int, *, stacked: bool) -> list[int]:
+        """Return the widths of the columns: as wide as they need, where there is room for that."""
+        most = self._lengths(columns, stacked=stacked)
+        widths = self._lengths(columns, stacked=stacked, wrapped=True)
+        spare = width - sum(widths) - len(columns) + 1
+        while spare > 0 and widths != most:
+            for place, needed in enumerate(most):
+                more = widths[place] < needed and spare > 0
+                widths[place], spare = widths[place] + more, spare - more
+        return widths
+
+    def _rich(
+        self,
+        columns: Sequence[Column],
+        widths: Sequence[int],
+        rows: Sequence[Sequence[str]] | None = None,
+        *,
+        stacked: bool = False,
+    ) -> RichTable:
+        """Return some rows, or the heading, `stacked` with one word above the next."""
         from rich import box
         from rich.table import Table as RichTable
         from rich.text import Text
@@ -185,17 +240,16 @@ class Table:
         look: dict[str, Any] = (
             {"box": None, "padding": (0, 1, 0, 0)} if self.compact else {"box": box.SIMPLE_HEAD, "padding": 0}
         )
-        table = RichTable(**look, pad_edge=False, show_edge=False)
-        for column in columns:
+        table = RichTable(**look, pad_edge=False, show_edge=False, show_header=rows is None)
+        for column, width in zip(columns, widths, strict=True):
             # as a text, because brackets are markup; the unit in a line of its own
             heading = Text(column.heading.replace(" " if stacked else " [", "\n" if stacked else "\n["))
-            table.add_column(heading, justify="left" if column.text else "right", overflow="fold")
+            table.add_column(
+                heading, justify="left" if column.text else "right", overflow="fold", width=width
+            )
         kept = [self.columns.index(column) for column in columns]
-        for name, rows in self.groups():
-            if name:
-                table.add_row(Text(name, style="bold"))
-            for cells in rows:
-                table.add_row(*(Text(cells[place]) for place in kept))
+        for cells in rows or ():
+            table.add_row(*(Text(cells[place]) for place in kept))
         return table
 
 

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.compare.studies.plans import SpectrumPlan
-from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL, TiltMaps
+from rockwobble.compare.studies.spectrum.maps import TiltMaps
+from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.compare.studies.spectrum.study import planar_contrast, unconservative_from
 from rockwobble.models import el_centro_1940
 
@@ -31,13 +32,12 @@ _EVERY = 0.95  # share of the sizes that may pass for all of them: single ones a
 
 def problem(grid: int) -> dict[str, Any]:
     """Return the arguments of `tilt_maps`: `grid` sizes and as many intensities."""
-    return {
-        "tan_alpha": TAN_ALPHA,
-        "motion": el_centro_1940(),
-        "semidiagonals": np.linspace(*SpectrumPlan.SIZES[:2], grid),
-        "intensities": np.linspace(*SpectrumPlan.INTENSITIES[:2], grid),
-        "probes": _PROBES * grid,
-    }
+    plan = SpectrumPlan(
+        semidiagonals=np.linspace(*SpectrumPlan.SIZES[:2], grid).tolist(),
+        intensities=np.linspace(*SpectrumPlan.INTENSITIES[:2], grid).tolist(),
+        probes=_PROBES * grid,
+    )
+    return {"tan_alpha": TAN_ALPHA, "motion": el_centro_1940(), "plan": plan}
 
 
 def lowest_on_axes(spectrum: TiltMaps, *, own: bool) -> Mapping[str, Array]:

@@ -21,7 +21,8 @@ from rockwobble import reduced
 from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.runs.progress import stages
 from rockwobble.compare.studies.plans import PROBES, STEP
-from rockwobble.compare.studies.spectrum.maps import RTOL, intensity_unit, uplift_factor
+from rockwobble.compare.studies.spectrum.maps import intensity_unit, uplift_factor
+from rockwobble.compare.studies.spectrum.parts import RTOL
 from rockwobble.compare.studies.spectrum.search import (
     gap_bound,
     probe_below,

@@ -54,7 +54,7 @@ from rockwobble.compare.studies.advice.scales import (
     scan_scales,
 )
 from rockwobble.compare.studies.advice.trust import trust_of, verified
-from rockwobble.compare.studies.plans import AdvicePlan
+from rockwobble.compare.studies.plans import AdvicePlan, SpectrumPlan
 from rockwobble.compare.studies.spectrum.maps import intensity_unit, tilt_maps, uplift_factor
 from rockwobble.models import (
     Case,
@@ -246,7 +246,9 @@ def test_the_lowest_of_a_release_is_searched_from_still_ground():
 
 
 def test_advice_and_spectrum_uplift_at_the_same_factor(advice):
-    spectrum = tilt_maps(0.2, SHORT, semidiagonals=[6.0], intensities=[1.0, 2.0], search_step=1.0, probes=0)
+    spectrum = tilt_maps(
+        0.2, SHORT, SpectrumPlan(semidiagonals=[6.0], intensities=[1.0, 2.0], search_step=1.0, probes=0)
+    )
     unit = intensity_unit(0.2, SHORT, 9.81)
     for found in advice.lowest.itertuples():
         assert found.start == pytest.approx(unit * spectrum.searched_from[found.series], rel=1e-12)

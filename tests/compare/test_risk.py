@@ -150,12 +150,41 @@ def test_intervals_of_resampled_motions_cover_the_truth() -> None:
         capacity = rng.normal(math.log(0.9), 0.35, motions)
         x = np.tile(levels, (motions, 1))
         y = (x >= capacity[:, None]).astype(float)
-        sample = Exposure(x=x, y=y, uplift=np.full(motions, -9.0), far=np.full(motions, 9.0))
+        ends = {"uplift": np.full(motions, -9.0), "far": np.full(motions, 9.0)}
+        sample = Exposure(x=x, y=y, made=np.full(x.shape, True), **ends)
         single = sample.frequencies(hazard).total
         found = interval(single.mean(), sample.resampled(hazard, single, weights), motions)
         covered += found.low <= truth <= found.high
     # 95 %, with 2.2 % of the standard error of 400 trials
     assert 0.93 - 0.022 <= covered / trials <= 0.97 + 0.011
+
+
+def test_resampled_intervals_of_motions_by_level_cover_the_truth() -> None:
+    """Each level has motions of its own, so that only shares are known, resampled within the level."""
+    rng = np.random.default_rng(12)
+    hazard, levels = power_law(low=0.05, high=8.0), np.log(np.geomspace(0.2, 4.0, 8))
+    each, trials, covered = 20, 300, 0
+    strata = np.repeat(np.arange(len(levels)), each)
+    made = strata[:, None] == np.arange(len(levels))
+    weights = resamples(len(strata), 400, 1, strata=strata)
+    assert (weights @ made == each).all()
+    fine = rng.normal(math.log(0.9), 0.35, 200_000)
+    share = np.array([(fine <= level).mean() for level in levels])
+    ends = np.array([-9.0]), np.array([9.0])
+    truth = frequencies_of(hazard, levels[None], share[None], *ends).total[0]
+    from rockwobble.compare.studies.fragility.fit import interval
+
+    for _ in range(trials):
+        capacity = rng.normal(math.log(0.9), 0.35, len(strata))
+        y = np.where(made, levels >= capacity[:, None], np.nan)
+        ends = {"uplift": np.full(len(y), -9.0), "far": np.full(len(y), 9.0)}
+        sample = Exposure(x=np.tile(levels, (len(y), 1)), y=y, made=made, **ends)
+        single = sample.frequencies(hazard).total
+        drawn = sample.resampled(hazard, single, weights)
+        between = interval(float(single.mean()), drawn, each)
+        covered += between.low <= truth <= between.high
+    # 95 %, with twice the 1.3 % of the standard error of 300 trials
+    assert 0.93 - 0.026 <= covered / trials <= 0.97 + 0.02
 
 
 @pytest.fixture(scope="module")
@@ -231,3 +260,72 @@ def test_where_no_motion_overturns_a_bound_is_given() -> None:
     assert row["overturning_motions"] == 0
     assert row["annual_frequency"] == row["annual_frequency_low"] == 0.0
     assert 0.0 < row["annual_frequency_most"] <= row["annual_frequency_high"]
+
+
+def test_motions_by_level_that_are_the_same_everywhere_are_stripes_of_all(
+    found: rw.compare.Fragility,
+) -> None:
+    """One set of motions, stated for each level, gives the tables of the set at all levels."""
+    pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    motions = rw.synthetic_motions(12, peak=1.0, seed=4)
+    levels = [10, 1.5, 2, 3, 4.5, 7]
+    again = rw.fragility(
+        pier,
+        dict.fromkeys(levels, motions),
+        methods=["recess", "planar-x"],
+        resamples=200,
+        workers=1,
+    )
+    for name in ("fits", "contrasts", "gaps", "counts"):
+        pd.testing.assert_frame_equal(again.tables[name], found.tables[name])
+    assert again.facts["motions_of_levels"] == [12] * 6
+
+
+def test_each_level_is_shaken_by_motions_of_its_own() -> None:
+    pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    motions = rw.synthetic_motions(36, peak=1.0, seed=4)
+    own = {1.5: motions[:12], 3.0: motions[12:24], 9.0: motions[24:]}
+    run = rw.fragility(pier, own, methods=["recess", "planar-x"], resamples=200, workers=1)
+    assert run.facts["motions_of_levels"] == [12, 12, 12]
+    # the shares of each level are those of its motions alone
+    for level, group in own.items():
+        alone = rw.fragility(
+            pier, group, methods=["recess"], levels=[level], limits=["overturned"], resamples=2, workers=1
+        )
+        counts = run.counts.query("limit == 'overturned' and method == 'recess model'").set_index("intensity")
+        assert (counts.loc[level, "k"], counts.loc[level, "n"]) == tuple(alone.counts[["k", "n"]].iloc[0])
+    fits = run.fits.set_index(["method", "limit"])
+    assert (fits["failed"] == 0).all()
+    assert (fits["median_if_exceeded"] == fits["median"])[("recess model", "overturned")]
+    assert run.gaps.empty
+    resultant = HazardCurve(SITE.intensity, SITE.annual_frequency, measure="pga_resultant")
+    table = run.risk(resultant)
+    assert (table["motions"] == 36).all()
+    assert (table["failed"] == 0).all()
+    assert table["far_share"].tolist() == [0.0, 0.0]  # synthetic motions may be scaled
+    low, value, high = (table[f"annual_frequency{end}"].iloc[0] for end in ("_low", "", "_high"))
+    assert 0.0 < low <= value <= high
+    with pytest.raises(ValueError, match="motions by level are of the measure of their levels"):
+        run.risk(SITE)
+
+
+def test_motions_by_level_are_refused_where_they_are_not_one_set() -> None:
+    pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    a, b = rw.synthetic_motions(2, peak=1.0, seed=4)
+    with pytest.raises(ValueError, match="state the levels themselves"):
+        rw.fragility(pier, {1.0: [a, b]}, levels=[1.0])
+    with pytest.raises(ValueError, match="must have different names"):
+        rw.fragility(pier, {1.0: [a, a]})
+    other = GroundMotion(b.acceleration, b.time_step, name=a.name)
+    with pytest.raises(ValueError, match="must have different names"):
+        rw.fragility(pier, {1.0: [a, b], 2.0: [other, b]})
+
+
+def test_far_scaled_records_are_counted_and_synthetic_motions_are_not(found: rw.compare.Fragility) -> None:
+    assert found.risk(SITE)["far_share"].tolist() == [0.0, 0.0]
+    points = found.points.assign(synthetic=False)
+    recorded = rw.compare.Fragility(tables={**found.tables, "points": points}, facts=found.facts)
+    assert (recorded.risk(SITE)["far_share"] >= 0.0).all()
+    weak = points.assign(scale=100.0 * points["scale"], uplift_scale=100.0 * points["uplift_scale"])
+    scaled = rw.compare.Fragility(tables={**found.tables, "points": weak}, facts=found.facts)
+    assert scaled.risk(SITE)["far_share"].to_numpy() == pytest.approx(1.0, abs=1e-9)

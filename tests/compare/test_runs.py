@@ -61,7 +61,8 @@ def test_a_suite_runs_with_what_takes_the_place_of_an_engine_without_a_wheel(mon
         pytest.skip("dart is not installed")
     place = {"pybullet": "dart"}.get
     monkeypatch.setattr("rockwobble.compare.runs.choice.stand_in", place)
-    monkeypatch.setattr("rockwobble.compare.runs.choice.available_engines", lambda: ("mujoco", "dart"))
+    lacks = {"pybullet": "is not installed here"}
+    monkeypatch.setattr("rockwobble.compare.runs.choice.engine_fault", lambda name: lacks.get(name, ""))
     runs = [Run(name, place) for name in ("mujoco", "pybullet", "dart") for place in ("recess", "ring")]
     found, said = runs_here(runs)
     assert found == [

@@ -7,16 +7,11 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.studies.plans import STEP
+from rockwobble.compare.studies.plans import STEP, SpectrumPlan
+from rockwobble.compare.studies.spectrum import maps
 from rockwobble.compare.studies.spectrum import study as verification
-from rockwobble.compare.studies.spectrum.maps import (
-    PLANAR_X,
-    PLANAR_Y,
-    SERIES,
-    SPATIAL,
-    TiltMaps,
-    tilt_maps,
-)
+from rockwobble.compare.studies.spectrum.maps import TiltMaps, tilt_maps
+from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, run_part
 from rockwobble.compare.studies.spectrum.study import CELLS, check_cells, confirm_lowest
 from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame, el_centro_1940
 
@@ -32,7 +27,9 @@ SAME_RUN = 1e-6
 
 @pytest.fixture(scope="module")
 def spectrum() -> TiltMaps:
-    return tilt_maps(0.1, EL_CENTRO, semidiagonals=SIZES, intensities=INTENSITIES, probes=PROBES)
+    return tilt_maps(
+        0.1, EL_CENTRO, SpectrumPlan(semidiagonals=SIZES, intensities=INTENSITIES, probes=PROBES)
+    )
 
 
 def alone(component: int) -> GroundMotion:
@@ -68,7 +65,9 @@ def test_the_first_intensity_is_the_threshold_of_uplift(spectrum):
 
 
 def test_the_same_bits_whatever_the_number_of_threads(spectrum):
-    one = tilt_maps(0.1, EL_CENTRO, semidiagonals=SIZES, intensities=INTENSITIES, probes=PROBES, workers=1)
+    one = tilt_maps(
+        0.1, EL_CENTRO, SpectrumPlan(semidiagonals=SIZES, intensities=INTENSITIES, probes=PROBES), workers=1
+    )
     for series in SERIES:
         assert np.array_equal(one.peak_tilt[series], spectrum.peak_tilt[series], equal_nan=True)
         assert np.array_equal(one.lowest[series], spectrum.lowest[series], equal_nan=True)
@@ -99,7 +98,15 @@ def test_the_tables_hold_every_cell(spectrum):
 
 
 def test_below_a_grid_that_begins_high_the_lowest_is_found():
-    spectrum = tilt_maps(0.1, EL_CENTRO, semidiagonals=[0.5], intensities=[6.0, 8.0], probes=0)
+    spectrum = tilt_maps(
+        0.1,
+        EL_CENTRO,
+        SpectrumPlan(
+            semidiagonals=[0.5],
+            intensities=[6.0, 8.0],
+            probes=0,
+        ),
+    )
     assert spectrum.overturned(SPATIAL)[0, 0]
     assert spectrum.lowest[SPATIAL][0] < 1.1
     row = spectrum.lowest_frame().iloc[0]
@@ -110,11 +117,9 @@ def test_the_rolling_model_makes_another_spectrum(spectrum):
     rolling = tilt_maps(
         0.1,
         EL_CENTRO,
-        semidiagonals=SIZES[:2],
-        intensities=INTENSITIES[:4],
-        support="flat",
-        search_step=2.0,
-        probes=0,
+        SpectrumPlan(
+            semidiagonals=SIZES[:2], intensities=INTENSITIES[:4], support="flat", search_step=2.0, probes=0
+        ),
     )
     single = reduced.simulate(
         Case(Cylinder(semidiagonal=4.0, tan_alpha=0.1), EL_CENTRO.scaled(rolling.scales[1])),
@@ -127,7 +132,7 @@ def test_the_rolling_model_makes_another_spectrum(spectrum):
 
 def test_a_slab_is_carried_in_every_cell_and_when_it_is_run_again():
     options = {"semidiagonals": [4.0], "intensities": [2.0, 4.0], "search_step": 2.0, "probes": 0}
-    maps = tilt_maps(0.1, EL_CENTRO, slab_mass_ratio=2.0, **options)
+    maps = tilt_maps(0.1, EL_CENTRO, SpectrumPlan(slab_mass_ratio=2.0, **options))
     frame = WobblingFrame(Cylinder(semidiagonal=4.0, tan_alpha=0.1), slab_mass_ratio=2.0)
     single = reduced.simulate(Case(frame, EL_CENTRO.scaled(maps.scales[0])), rtol=1e-8)
     assert maps.peak_tilt[SPATIAL][0, 0] == pytest.approx(single.peak_tilt, rel=SAME_RUN)
@@ -145,17 +150,22 @@ def test_a_slab_is_carried_in_every_cell_and_when_it_is_run_again():
         ({"support": "ring"}, "support must be one of recess, flat, got 'ring'"),
         ({"probes": -1}, "probes must be a whole number, at least 0, got -1"),
         ({"search_step": 0.0}, "search_step must be at least 1e-05, got 0.0"),
+        ({"semidiagonals": [1.0, 9.0], "rolling_resistance": 0.3}, "to below the base radius, 0.0995037 m"),
+        ({"slab_mass_ratio": 1e300}, "slab_mass_ratio must be"),
     ],
 )
-def test_bad_input_is_named(change, words):
+def test_bad_input_is_named_before_anything_runs(change, words, monkeypatch):
+    monkeypatch.setattr(reduced, "peak_tilts", lambda *_, **__: pytest.fail("a run"))
     options = {"semidiagonals": [1.0], "intensities": [1.0]} | change
     with pytest.raises(ValueError, match=words):
-        tilt_maps(0.1, EL_CENTRO, **options)
+        tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options))
 
 
 def test_a_still_record_cannot_be_scaled():
     with pytest.raises(ValueError, match="horizontal acceleration"):
-        tilt_maps(0.1, GroundMotion(np.zeros((3, 2)), 0.1), semidiagonals=[1.0], intensities=[1.0])
+        tilt_maps(
+            0.1, GroundMotion(np.zeros((3, 2)), 0.1), SpectrumPlan(semidiagonals=[1.0], intensities=[1.0])
+        )
 
 
 # Cells drawn from the grid of the paper's figure 6. Of 2200 drawn from the whole of it none failed these
@@ -166,7 +176,9 @@ DRAWN_SIZES, DRAWN_INTENSITIES = np.linspace(0.5, 30.0, 100)[7::46], np.linspace
 @pytest.fixture(scope="module")
 def drawn() -> TiltMaps:
     return tilt_maps(
-        0.1, WHOLE, semidiagonals=DRAWN_SIZES, intensities=DRAWN_INTENSITIES, search_step=2.0, probes=0
+        0.1,
+        WHOLE,
+        SpectrumPlan(semidiagonals=DRAWN_SIZES, intensities=DRAWN_INTENSITIES, search_step=2.0, probes=0),
     )
 
 
@@ -216,9 +228,7 @@ def test_what_falls_after_the_record_has_overturned_in_every_cell():
         tilt_maps(
             0.2,
             GroundMotion(acceleration, 0.01),
-            semidiagonals=[6.0],
-            intensities=[1.5, 2.5, 4.0],
-            probes=0,
+            SpectrumPlan(semidiagonals=[6.0], intensities=[1.5, 2.5, 4.0], probes=0),
         )
         for acceleration in (pulse, np.vstack([pulse, still]))
     )
@@ -230,3 +240,28 @@ def test_what_falls_after_the_record_has_overturned_in_every_cell():
     # a component that does not move is searched nowhere
     assert math.isnan(cut.lowest[PLANAR_Y][0])
     assert cut.searched_from[PLANAR_Y] > 1e10
+
+
+def test_a_spectrum_resumes_with_the_same_bits_after_whatever_ended_it(tmp_path, monkeypatch):
+    options = {"semidiagonals": np.linspace(1.0, 20.0, 9), "intensities": [1.0, 4.0, 8.0], "probes": 9}
+    whole = tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options))
+    told = []
+
+    def interrupt(event):
+        told.append(event)
+        if event.done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options), resume=tmp_path, progress=interrupt)
+    ran = []
+    monkeypatch.setattr(maps, "run_part", lambda part, **more: ran.append(part) or run_part(part, **more))
+    found = tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options), resume=tmp_path, progress=told.append)
+    assert len(ran) == told[-1].total - 2
+    assert 0.0 < told[-3].left < math.inf
+    for name in SERIES:
+        np.testing.assert_array_equal(found.peak_tilt[name], whole.peak_tilt[name])
+        np.testing.assert_array_equal(found.lowest[name], whole.lowest[name])
+        np.testing.assert_array_equal(found.below[name], whole.below[name])
+    tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options), resume=tmp_path)
+    assert len(ran) == told[-1].total - 2

@@ -8,13 +8,8 @@ import pytest
 from showing import shows_itself
 
 from rockwobble.compare.studies.spectrum import study as bands
-from rockwobble.compare.studies.spectrum.maps import (
-    PLANAR_X,
-    PLANAR_Y,
-    SPATIAL,
-    TiltMaps,
-    safe_gaps,
-)
+from rockwobble.compare.studies.spectrum.maps import TiltMaps, safe_gaps
+from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.compare.studies.spectrum.search import lowest_on_grid
 from rockwobble.compare.studies.spectrum.study import (
     edge_difference,

@@ -32,7 +32,7 @@ print(os.environ["NUMBA_CACHE_DIR"])
 
 
 def test_compiled_code_goes_to_a_folder_of_ours_where_it_has_no_other_place(tmp_path):
-    environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")}
     environment["TMPDIR"] = str(tmp_path)
 
     def start() -> tuple[Path, str]:
@@ -79,7 +79,11 @@ def made(tmp_path: Path) -> Path:
 
 def called(folder: Path) -> str:
     command = [sys.executable, "-c", CALL]
-    return subprocess.run(command, cwd=folder.parent, capture_output=True, text=True, check=True).stdout
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")}
+    done = subprocess.run(
+        command, cwd=folder.parent, env=environment, capture_output=True, text=True, check=True
+    )
+    return done.stdout
 
 
 def test_compiled_code_is_kept_by_the_content_of_its_sources(made: Path) -> None:
@@ -99,7 +103,8 @@ def test_a_column_of_times_is_solved_by_what_is_compiled(options):
     case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940().scaled(2.0), duration=3.0)
     problem = reduced.simulate(case, **options).source.problem
     column = np.linspace(0.0, 3.0, 20).reshape(10, 2)[:, 0]
+    before = list(problem._set_up.integrate.signatures)  # of bodies with a tendon, too, where one has run
     result, _ = problem.solve(column)
     assert result.samples.tolist() == problem.solve(column.copy())[0].samples.tolist()
     # for strided arrays it would be compiled anew, for ten seconds
-    assert len(problem._set_up.integrate.signatures) == 1
+    assert problem._set_up.integrate.signatures == before

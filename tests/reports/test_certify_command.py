@@ -71,7 +71,7 @@ def test_nothing_is_certified_where_a_check_fails(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     failed = Result(group="conserved", name="energy", value=2.0, bound=1.0, reason="", outcome="FAILED")
-    monkeypatch.setattr("rockwobble.compare.check.run_checks", lambda *_: iter([failed]))
+    monkeypatch.setattr("rockwobble.compare.check.run_checks", lambda *_, **__: iter([failed]))
     assert run("certify") == 1
     assert "nothing is certified: energy" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
@@ -108,7 +108,7 @@ def test_a_certificate_of_an_engine_holds_claims_of_that_engine_alone(
 ) -> None:
     found: list[Result] = []
 
-    def make(_: Subject, results: Iterable[Result]) -> dict[str, list[str]]:
+    def make(_: Subject, results: Iterable[Result], __: object) -> dict[str, list[str]]:
         found.extend(results)
         return {"claims": [], "fingerprint": []}
 

@@ -233,3 +233,38 @@ def test_what_no_motion_is_needed_for_is_refused_before_any_is_made(
 
 def test_a_fragility_shows_itself(found):
     shows_itself(found, "motions ", "runs ")
+
+
+def stripes_folder(folder: Path, levels: tuple[float, ...] = (2.0, 9.0)) -> Path:
+    """Return a folder with six records of its own at each level."""
+    folder.mkdir()
+    lines = ["level,x,y,name,units"]
+    for place, level in enumerate(levels):
+        for motion in synthetic_motions(6, peak=1.0, seed=place):
+            name = f"{place}-{motion.name}".replace(" ", "-")
+            time = motion.time_step * np.arange(len(motion.acceleration))
+            for axis, column in zip("xy", motion.acceleration.T, strict=True):
+                np.savetxt(folder / f"{name}-{axis}.csv", np.column_stack([time, column]), delimiter=",")
+            lines.append(f"{level},{name}-x.csv,{name}-y.csv,{name},m/s2")
+    (folder / "records.csv").write_text("\n".join(lines) + "\n")
+    return folder
+
+
+def test_records_by_level_are_stripes_of_their_own(tmp_path: Path, capsys: Any) -> None:
+    records = stripes_folder(tmp_path / "records")
+    out = tmp_path / "out"
+    small = ["--model", "recess", "--resamples", "40", "--workers", "1"]
+    assert call("fragility", "--records", str(records), *small, "--out", str(out)) == 0
+    assert "12, records of records, of their own at each of 2 levels" in capsys.readouterr().out
+    found = Fragility.load(out)
+    assert found.facts["levels"] == [2.0, 9.0]
+    assert found.facts["motions_of_levels"] == [6, 6]
+    assert len(found.runs) == 12
+    assert "6 of their own at each of 2 levels" in (out / "fragility.md").read_text()
+    assert call("fragility", "--records", str(records), "--levels", "1,2", "--out", str(tmp_path / "b")) == 2
+    said = capsys.readouterr().err
+    assert said.splitlines()[-1] == "rockwobble: --levels does not go with the column level of records.csv"
+    table = records / "records.csv"
+    table.write_text(table.read_text().replace("9.0,", ",", 1))
+    assert call("fragility", "--records", str(records), "--out", str(tmp_path / "c")) == 2
+    assert "each row must have a level, or none: 1 of 12 have none" in capsys.readouterr().err

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import re
+from collections import Counter
 
 import jinja2
 import numpy as np
@@ -104,6 +105,41 @@ def test_terminal_shows_words_and_tables_and_leaves_out_what_has_no_room(page):
         assert re.search(r"mujoco \*recess\*\s+0\.50\s+fine", text)
     assert "nnn" in wide
     assert "nnn" not in narrow
+
+
+def random_table(random: np.random.Generator) -> Table:
+    """Table of random words and numbers under headings of random words."""
+
+    def text() -> str:
+        return " ".join("x" * length for length in random.integers(1, 15, random.integers(1, 5)))
+
+    forms = random.choice([".3g", "words", "tag", "percent"], random.integers(1, 13))
+    columns = [Column(str(i), text(), form, bool(random.random() < 0.4)) for i, form in enumerate(forms)]
+    rows = [
+        {"group": "one group", **{c.key: text() if c.text else random.lognormal(0.0, 9.0) for c in columns}}
+        for _ in range(3)
+    ]
+    group = "group" if random.random() < 0.5 else ""
+    return Table(columns=columns, rows=rows, group=group, compact=bool(random.random() < 0.5))
+
+
+@pytest.mark.parametrize("seed", range(200))
+def test_no_word_of_a_table_is_broken_in_a_terminal(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    table, width = random_table(random), int(random.integers(40, 121))
+    console = Console(width=width, file=io.StringIO())
+    console.print(table.rich(width))
+    assert isinstance(console.file, io.StringIO)
+    printed = console.file.getvalue()
+    shown = table.shown(width)
+    cells = [number(row[column.key], column.form) for row in table.rows for column in shown]
+    words = Counter(" ".join([*cells, *(column.heading for column in shown)]).split())
+    assert words - Counter(printed.replace("─", " ").split()) == Counter()
+    assert max(map(len, printed.splitlines())) <= width
+    # what is left out is what is wide, as long as there is such a column
+    gone = [column for column in table.columns if column not in shown]
+    assert all(column.wide for column in gone) or not any(column.wide for column in shown)
+    assert bool(gone) == ("on the page" in printed)
 
 
 def test_headings_are_reached_by_their_words():

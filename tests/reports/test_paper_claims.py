@@ -11,7 +11,8 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL, TiltMaps
+from rockwobble.compare.studies.spectrum.maps import TiltMaps
+from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.models import Case, Cylinder, InitialState, Trace, el_centro_1940
 from rockwobble.models.cylinder import PIER
 from rockwobble.reports.paper import (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -23,8 +24,9 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         # three neighbours tell as much of the command as forty do
         patch.setattr(earthquake, "_NEIGHBOURS", (0.95, 1.0, 1.05))
         # and coarse steps of the search of figure 6 as much as fine ones
-        asked = overturning.problem
-        patch.setattr(overturning, "problem", lambda grid: asked(grid) | {"search_step": 0.2})
+        asked = overturning.problem(6)
+        asked["plan"] = replace(asked["plan"], search_step=0.2)
+        patch.setattr(overturning, "problem", lambda grid: asked)
         folder = tmp_path_factory.mktemp("paper")
         with pytest.raises(SystemExit) as ended:
             main(["figures", "--grid", "6", "--out", str(folder)])

@@ -37,6 +37,22 @@ def test_few_tasks_have_a_line_each_and_many_one_at_the_end(capsys):
     assert capsys.readouterr().err == "100 of 100 cells\n"
 
 
+def test_what_takes_two_seconds_says_how_far_it_is_and_what_is_left(capsys, monkeypatch):
+    now = 0.0
+    monkeypatch.setattr("rockwobble.reports.console.time.monotonic", lambda: now)
+    with shown_progress("checks", each=False) as tell:
+        for done in range(1, 31):
+            now += 0.9
+            tell(Progress(label="a", state="finished", done=done, total=30, left=0.9 * (30 - done)))
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0] == "3 of 30 checks, about 24 s left"
+    assert len(lines) == 3  # one after 2 s, and every 10 s
+    now = 0.0
+    with shown_progress("checks", each=False) as tell:
+        tell(Progress(label="a", state="finished", done=30, total=30))
+    assert capsys.readouterr().err == ""
+
+
 def test_a_damaged_file_is_named_once(capsys):
     with shown_progress() as tell:
         for state in ("started", "finished"):

@@ -126,7 +126,7 @@ def test_a_setting_that_an_engine_has_not_is_one_line(suite) -> None:
 
 
 def test_an_engine_that_is_missing_is_skipped(suite, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("rockwobble.compare.runs.choice.available_engines", lambda: ())
+    monkeypatch.setattr("rockwobble.compare.runs.choice.engine_fault", lambda name: "is not here")
     suite().runpytest().assert_outcomes(skipped=4)
 
 

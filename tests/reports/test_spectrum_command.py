@@ -13,15 +13,9 @@ import pytest
 from rich.console import Console
 
 from rockwobble import reduced
-from rockwobble.compare.studies.spectrum.maps import (
-    PLANAR_X,
-    SERIES,
-    SPATIAL,
-    TiltMaps,
-    record_frame,
-    safe_gaps,
-    tilt_maps,
-)
+from rockwobble.compare.studies.plans import SpectrumPlan
+from rockwobble.compare.studies.spectrum.maps import TiltMaps, record_frame, safe_gaps, tilt_maps
+from rockwobble.compare.studies.spectrum.parts import PLANAR_X, SERIES, SPATIAL
 from rockwobble.compare.studies.spectrum.study import KIND, OverturningSpectrum, planar_contrast
 from rockwobble.models import GroundMotion, el_centro_1940
 from rockwobble.reports.cli.main import main
@@ -56,7 +50,7 @@ def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, caps
     assert "planar analysis is unconservative in" in printed
     assert "in steps down to 0.4 g tan α" in printed
     written = PAGES | {f"{name}.parquet" for name in TABLES} | {"manifest.json"}
-    assert {path.name for path in tmp_path.iterdir()} == written | {"kept.txt"}
+    assert {path.name for path in tmp_path.iterdir()} == written | {"kept.txt", "finished"}
     assert f"Written to {tmp_path}: " in printed
     assert all(name in printed for name in PAGES | {"manifest.json"})
 
@@ -98,6 +92,7 @@ def test_any_record_will_do(tmp_path: Path, monkeypatch, capsys):
         (["--support", "ring"], "support must be one of recess, flat, got 'ring'"),
         (["--search-step", "inf"], "--search-step must be at least 1e-05, got inf"),
         (["--slab-mass-ratio", "-1"], "--slab-mass-ratio must be at least 0, got -1"),
+        (["--rolling-resistance", "0.3"], "to below the base radius, 0.0497519 m, got 0.3 m"),
         (["--tan-alpha", "0"], "tan_alpha must be positive"),
         (["--record-x", "x.csv"], "both horizontal components are needed"),
         (["--out", "taken"], "the output folder must be a folder"),
@@ -119,11 +114,13 @@ def spectrum() -> TiltMaps:
     whole = el_centro_1940()
     return tilt_maps(
         0.1,
-        GroundMotion(whole.acceleration[:1500], whole.time_step, whole.name),  # with the strongest shaking
-        semidiagonals=np.linspace(0.5, 30.0, 12),
-        intensities=np.linspace(1.0, 12.0, 12),
-        search_step=0.2,
-        probes=5,
+        GroundMotion(whole.acceleration[:1500], whole.time_step, whole.name),
+        SpectrumPlan(
+            semidiagonals=np.linspace(0.5, 30.0, 12),
+            intensities=np.linspace(1.0, 12.0, 12),
+            search_step=0.2,
+            probes=5,
+        ),
     )
 
 
@@ -232,7 +229,9 @@ def test_a_record_of_one_component_has_a_picture_and_a_page(still):
     acceleration[:, still] = 0.0
     motion = GroundMotion(acceleration, 0.01, "one component")
     found = tilt_maps(
-        0.1, motion, semidiagonals=[1.0, 8.0], intensities=[0.5, 4.0, 9.0], search_step=1.0, probes=0
+        0.1,
+        motion,
+        SpectrumPlan(semidiagonals=[1.0, 8.0], intensities=[0.5, 4.0, 9.0], search_step=1.0, probes=0),
     )
     assert not found.peak_tilt[SERIES[1 + still]].any()
     picture = picture_of(found)

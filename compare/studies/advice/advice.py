@@ -28,7 +28,8 @@ from ...storage.manifest import Number
 from ...storage.provenance import fingerprint
 from ...storage.results import Results
 from ..plans import AdvicePlan
-from ..spectrum.maps import SPATIAL, uplift_factor
+from ..spectrum.maps import uplift_factor
+from ..spectrum.parts import SPATIAL
 from .demands import demand_table, demands_of, fall_of, weaker_factors
 from .grades import (
     POOR,

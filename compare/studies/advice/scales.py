@@ -15,7 +15,8 @@ from rockwobble.models import Case
 from ...metrics.pair import overturned
 from ...metrics.statistics import share_interval
 from ..plans import STEP
-from ..spectrum.maps import RTOL, SERIES, SPATIAL, intensity_unit, series_options, uplift_of_series
+from ..spectrum.maps import intensity_unit, uplift_of_series
+from ..spectrum.parts import RTOL, SERIES, SPATIAL, series_options
 from ..spectrum.search import Array, lowest_on_grid, run_searches, search_lowest
 from ..spectrum.study import CHECK_RTOL, NUDGE
 

@@ -15,7 +15,7 @@ takes the coverage from 93 to 95 %.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,8 @@ from ...metrics.statistics import CONFIDENCE, Interval
 Array = NDArray[np.float64]
 
 FITTED, NEVER, ALWAYS, SEPARATED, FALLING = "fitted", "never", "always", "separated", "not increasing"
-KINDS = (FITTED, NEVER, ALWAYS, SEPARATED, FALLING)
+EXTRAPOLATED, ONE_MOTION = "extrapolated", "one motion"
+KINDS = (FITTED, NEVER, ALWAYS, SEPARATED, FALLING, EXTRAPOLATED, ONE_MOTION)
 TOO_FEW = "too few"  # motions or levels: whatever the curve, it is not stated
 _ITERATIONS, _HALVINGS = 60, 30
 _TOLERANCE = 1e-11  # of a step of Newton's method, in standard deviations of the logarithm of the intensity
@@ -40,9 +41,12 @@ class Curves:
     Attributes
     ----------
     centre : ndarray, shape (B,)
-        Logarithm of the median intensity: infinite where no run exceeds the limit, minus infinity where all
-        do; where the counts are separated between the two intensities, or that of the level with both, but
-        infinite where the median lies beyond the levels; NaN where the share does not grow.
+        Centre of the curve: the median, but where that is not known.
+    median : ndarray, shape (B,)
+        Logarithm of the median intensity: infinite where it lies above all intensities that were run, minus
+        infinity where below: where no run exceeds the limit, where all do, or where that holds of all motions
+        but one. Where the counts are separated between the two intensities, or that of the level with
+        both; NaN where the share does not grow.
     low, high : ndarray, shape (B,)
         Between which the median lies, as far as the counts tell: both the centre where there is a curve.
     dispersion : ndarray, shape (B,)
@@ -52,6 +56,7 @@ class Curves:
     """
 
     centre: Array
+    median: Array
     low: Array
     high: Array
     dispersion: Array
@@ -66,7 +71,8 @@ class Curves:
                 np.isfinite(self.centre), self.dispersion, 1.0
             )[:, None]
         # on the step of a separated curve itself
-        z[np.isnan(z) & (self.kinds != KINDS.index(FALLING))[:, None]] = 0.0
+        shapeless = np.isin(self.kinds, [KINDS.index(FALLING), KINDS.index(ONE_MOTION)])
+        z[np.isnan(z) & ~shapeless[:, None]] = 0.0
         return np.asarray(ndtr(z), dtype=np.float64)
 
 
@@ -106,7 +112,7 @@ def fit_curves(x: Array, n: Array, k: Array) -> Curves:
             dispersion[free] = np.where(rising, spread / b, math.nan)
         low[free] = high[free] = centre[free]
         kinds[free[~rising]] = KINDS.index(FALLING)
-    return Curves(centre=centre, low=low, high=high, dispersion=dispersion, kinds=kinds)
+    return Curves(centre=centre, median=centre, low=low, high=high, dispersion=dispersion, kinds=kinds)
 
 
 def _between(
@@ -220,16 +226,23 @@ def _lowest(x: Array, where: NDArray[np.bool_]) -> Array:
     return np.asarray(np.where(where, x, math.inf).min(axis=1), dtype=np.float64)
 
 
+_BOUNDS = ("median", "low", "high")
 # of logarithms of intensities: motions of one peak differ by the rounding of their samples
 _SAME = 1e-9
 # numbers held at once in a fit of many resamples
 _MOST_NUMBERS = 2_000_000
 
 
-def resamples(motions: int, count: int, seed: int) -> Array:
-    """Return how often each motion is drawn (count, motions)."""
+def resamples(motions: int, count: int, seed: int, *, strata: NDArray[np.int64] | None = None) -> Array:
+    """Return how often each motion is drawn (count, motions); strata (motions,) keep their numbers."""
     rng = np.random.default_rng(seed)
-    return rng.multinomial(motions, np.full(motions, 1.0 / motions), size=count).astype(np.float64)
+    weights = np.empty((count, motions))
+    strata = np.zeros(motions, dtype=np.int64) if strata is None else strata
+    for stratum in np.unique(strata):
+        of = strata == stratum
+        size = int(of.sum())
+        weights[:, of] = rng.multinomial(size, np.full(size, 1.0 / size), size=count)
+    return weights
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -260,12 +273,43 @@ class Sample:
         return self.x.ravel()[there], n, n * over.ravel()[there]
 
     def curves(self, weights: Array | None = None) -> Curves:
-        """Return the curve of each set of weights (B, R); without weights that of the motions as they are."""
-        weights = np.ones((1, len(self.y))) if weights is None else weights
+        """Return the curve of each set of weights (B, R); without weights that of the motions as they are.
+
+        Where the median of the motions as they are is only bounded, so is that of every resample.
+        """
+        whole = fit_curves(*self.counts())
+        kind, side = self._bounded(whole)
         size = max(1, _MOST_NUMBERS // self.y.size)
-        parts = [fit_curves(*self.counts(weights[i : i + size])) for i in range(0, len(weights), size)]
+        parts = (
+            [whole]
+            if weights is None
+            else [fit_curves(*self.counts(weights[i : i + size])) for i in range(0, len(weights), size)]
+        )
         names = [each.name for each in fields(Curves)]
-        return Curves(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+        found = Curves(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+        if not side:
+            return found
+        edge, beyond = (float(self.x.max()), math.inf) if side > 0.0 else (float(self.x.min()), -math.inf)
+        low, high = (edge, beyond) if side > 0.0 else (beyond, edge)
+        if weights is not None:
+            return replace(found, low=np.minimum(found.low, low), high=np.maximum(found.high, high))
+        shape = dict.fromkeys(("centre", "dispersion"), np.full(1, math.nan)) if kind == ONE_MOTION else {}
+        bounds = {name: np.full(1, value) for name, value in zip(_BOUNDS, (beyond, low, high), strict=True)}
+        return replace(found, **shape, **bounds, kinds=np.full(1, KINDS.index(kind)))
+
+    def _bounded(self, whole: Curves) -> tuple[str, float]:
+        """Return why the median of a fitted curve is only bounded, and on which side it lies; 0 if on none.
+
+        A curve is not determined where all that exceed the limit, or all that do not, are of one motion:
+        without it there is none. And beyond the intensities that were run a median is a guess.
+        """
+        if KINDS[whole.kinds[0]] != FITTED:
+            return FITTED, 0.0
+        for value, side in ((1.0, 1.0), (0.0, -1.0)):
+            if np.count_nonzero((self.y == value).any(axis=1)) == 1:
+                return ONE_MOTION, side
+        centre = float(whole.centre[0])
+        return EXTRAPOLATED, float(centre > self.x.max()) - float(centre < self.x.min())
 
 
 def expanded_shares(motions: int) -> tuple[float, float]:

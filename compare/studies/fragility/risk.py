@@ -23,15 +23,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from rockwobble.models.hazard import HazardCurve
 
 from ...metrics.statistics import Interval, share_interval
-from .fit import FITTED, KINDS, Array, Sample, interval
+from .fit import EXTRAPOLATED, FITTED, KINDS, Array, Sample, interval
 from .tables import OVERTURNED, Blocks
 
 TARGET = 2e-4  # [1/year], a common bound on collapse: 1 % in 50 years
@@ -150,7 +152,7 @@ def frequencies_of(hazard: HazardCurve, x: Array, y: Array, uplift: Array, far: 
         total=inside + tail,
         tail=tail,
         missing=(1.0 - share) * _rate(hazard, last),
-        far=_within(hazard, x, y, np.maximum(far, begin)) + far_tail,
+        far=_within(hazard, x, y, np.clip(far, begin, end)) + far_tail,
     )
 
 
@@ -181,39 +183,47 @@ def _rate(hazard: HazardCurve, x: Array) -> Array:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Exposure:
-    """Motions of one cylinder and one method, in the unit of a hazard.
+    """Motions of one cylinder and one method, in the unit of a hazard; R motions at S levels.
 
     Attributes
     ----------
     x, y : ndarray, shape (R, S)
         Logarithms of the intensities of R motions at S levels; 1 where they overturn, 0 where not, NaN where
         that is not known.
+    made : ndarray of bool, shape (R, S)
+        Whether a motion is run at a level.
     uplift : ndarray, shape (R,)
         Logarithm of the intensity at which each motion begins to uplift the cylinder.
     far : ndarray, shape (R,)
-        Logarithm of the intensity beyond which its factor is larger than `FAR`.
+        Logarithm of the intensity beyond which its factor is larger than `FAR`; infinite of a synthetic
+        motion, which a factor makes no less likely.
     """
 
     x: Array
     y: Array
+    made: NDArray[np.bool_]
     uplift: Array
     far: Array
 
     @property
     def stripes(self) -> bool:
-        """Whether each level has motions of its own, so that no motion has an indicator of all levels."""
-        return bool((~np.isnan(self.y)).sum(axis=1).max() < min(2, self.y.shape[1]))
+        """Whether levels have motions of their own, so that no motion has an indicator of all levels."""
+        return not self.made.all()
 
     def frequencies(self, hazard: HazardCurve) -> Frequencies:
         """Return the annual frequency of each motion; of stripes that of the shares, once."""
         if self.stripes:
-            return self._of_shares(hazard, np.nanmean(self.y, axis=0)[None])
+            known = np.maximum((~np.isnan(self.y)).sum(axis=0), 1)
+            shares = np.nansum(self.y, axis=0)[None] / known
+            distant = np.nansum(np.where(self.x > self.far[:, None], self.y, 0.0), axis=0)[None] / known
+            of_far = self._of_shares(hazard, distant).total
+            return replace(self._of_shares(hazard, shares), far=of_far)
         return frequencies_of(hazard, self.x, self.y, self.uplift, self.far)
 
     def _of_shares(self, hazard: HazardCurve, shares: Array) -> Frequencies:
         """Return the annual frequency of each of some sets of shares (B, S)."""
         x, ones = np.tile(self.x.mean(axis=0), (len(shares), 1)), np.ones(len(shares))
-        return frequencies_of(hazard, x, shares, self.uplift.min() * ones, np.median(self.far) * ones)
+        return frequencies_of(hazard, x, shares, self.uplift.min() * ones, np.inf * ones)
 
     def resampled(self, hazard: HazardCurve, single: Array, weights: Array) -> Array:
         """Return the annual frequency of each set of weights (B, R), from that of each motion (R,)."""
@@ -222,13 +232,13 @@ class Exposure:
             return np.asarray(weights[:, known] @ single[known] / weights[:, known].sum(axis=1))
         runs, over = Sample(x=self.x, y=self.y).counts(weights)[1:]
         with np.errstate(divide="ignore", invalid="ignore"):
-            shares = over / runs  # NaN where a resample has no motion of a level
+            shares = over / runs  # NaN where all motions of a level that were drawn failed
         return self._of_shares(hazard, shares).total
 
     def largest(self, hazard: HazardCurve) -> float:
         """Return the annual frequency by the upper ends of the intervals of the shares (Clopper-Pearson)."""
         runs, over = (~np.isnan(self.y)).sum(axis=0), np.nansum(self.y, axis=0)
-        ends = [share_interval(int(k), int(n)).high for k, n in zip(over, runs, strict=True)]
+        ends = [share_interval(int(k), int(n)).high if n else 1.0 for k, n in zip(over, runs, strict=True)]
         bound = self._of_shares(hazard, np.array([ends]))
         return float((bound.total + bound.missing)[0])
 
@@ -271,7 +281,7 @@ def risk_tables(
                 continue
             single = exposure.frequencies(hazard)
             drawn = exposure.resampled(hazard, single.total, weights)
-            stated = _stated(hazard, exposure, single, drawn, len(blocks.motions))
+            stated = _stated(hazard, exposure, single, drawn, blocks.fewest)
             value = float(stated["annual_frequency"])
             reference = (value, drawn) if reference is None else reference
             curve = curves[cylinder, method]
@@ -284,7 +294,7 @@ def risk_tables(
                     "annual_frequency_fit": fit,
                     "probability": -math.expm1(-value * years),
                     "margin": math.nan if curve is None else math.exp(curve[0]) / hazard.intensity_at(RARE),
-                    **_ratio(value, drawn, *reference, len(blocks.motions)).columns("ratio"),
+                    **_ratio(value, drawn, *reference, blocks.fewest).columns("ratio"),
                 }
             )
             parts.append(_contributions(hazard, exposure, curve).assign(**about))
@@ -309,9 +319,9 @@ def _stated(
         "annual_frequency_most": total + missing,
         "tail_share": tail * share,
         "far_share": far * share,
-        "motions": motions,
+        "motions": len(exposure.y),
         "overturning_motions": overturning,
-        "failed": int(np.isnan(exposure.y).sum()) if not exposure.stripes else 0,
+        "failed": int((np.isnan(exposure.y) & exposure.made).sum()),
     }
 
 
@@ -417,17 +427,24 @@ def exposures_of(
     for cylinder in blocks.cylinders:
         measure, factor = of_hazard[cylinder]
         x = blocks.intensities[cylinder, measure] + math.log(factor)
-        scale = blocks.of_points(points, cylinder, "scale")
-        as_recorded = x[:, 0] - np.log(scale[:, 0])
-        uplift = as_recorded + np.log(blocks.of_points(points, cylinder, "uplift_scale")[:, 0])
+        if not blocks.made.all() and measure != blocks.measure:
+            raise ValueError(
+                f"motions by level are of the measure of their levels: the hazard must be of "
+                f"{blocks.measure}, got {measure}"
+            )
+        of_points = partial(blocks.of_points, points, cylinder)
+        as_recorded = np.nanmean(x - np.log(of_points("scale")), axis=1)
+        uplift = as_recorded + np.log(np.nanmean(of_points("uplift_scale"), axis=1))
+        synthetic = "synthetic" in points and np.nanmax(of_points("synthetic"), axis=1) > 0.0
+        far = np.where(synthetic, np.inf, as_recorded + math.log(FAR))
         for method in blocks.methods:
             y = blocks.exceeded(cylinder, method, OVERTURNED)
             if np.isnan(y).all():
                 continue
             key = cylinder, method
-            exposures[key] = Exposure(x=x, y=y, uplift=uplift, far=as_recorded + math.log(FAR))
+            exposures[key] = Exposure(x=x, y=y, made=blocks.made, uplift=uplift, far=far)
             curve = Sample(x=x, y=y).curves()
             own = float(curve.dispersion[0]) if dispersion is None else dispersion
-            fitted = curve.kinds[0] == KINDS.index(FITTED)
+            fitted = KINDS[curve.kinds[0]] in (FITTED, EXTRAPOLATED)
             curves[key] = (float(curve.centre[0]), own) if fitted else None
     return exposures, curves

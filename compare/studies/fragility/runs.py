@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run
-from rockwobble.models.number_checks import require_one_of
+from rockwobble.models.number_checks import require_each, require_increasing, require_one_of
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody.scene import default_step
 
@@ -126,11 +126,11 @@ _RTOL = 1e-7
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Shaking:
-    """A cylinder under a ground motion as it is, the factors on the motion, and the place of the first."""
+    """A cylinder under a ground motion as it is, the factors on the motion, and their places (levels)."""
 
     case: Case
     scales: tuple[float, ...]
-    step: int = 0
+    steps: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -156,11 +156,7 @@ class Task:
     @property
     def points(self) -> list[tuple[str, int]]:
         """Name of the motion and place of the level of each run."""
-        return [
-            (shaking.case.name, shaking.step + place)
-            for shaking in self.shakings
-            for place in range(len(shaking.scales))
-        ]
+        return [(shaking.case.name, step) for shaking in self.shakings for step in shaking.steps]
 
     @property
     def title(self) -> str:
@@ -268,6 +264,8 @@ class RunPlan:
     options : FragilityPlan
         With levels (stripes: every motion is scaled to each of these intensities), or with scales or neither
         (a cloud: factors on the motions as they are). A step factor is of runs that state no step.
+    stripes : mapping of str to tuple of int, optional
+        Places of the levels at which each motion is run, by its name. Default: every motion at every level.
 
     Raises
     ------
@@ -279,6 +277,7 @@ class RunPlan:
     motions: Sequence[GroundMotion]
     methods: Sequence[Method]
     options: FragilityPlan
+    stripes: Mapping[str, tuple[int, ...]] | None = None
 
     def __post_init__(self) -> None:
         asked = self.options
@@ -300,16 +299,24 @@ class RunPlan:
                 if method.run is not None:
                     require_runnable(shakings[0].case, self._stepped(method.run, cylinder))
 
+    def motions_of_levels(self) -> list[int]:
+        """Return the number of motions at each level."""
+        counts = Counter(step for steps in (self.stripes or {}).values() for step in steps)
+        return [counts[step] for step in range(len(self.options.levels or ()))]
+
     @property
     def scales(self) -> tuple[float, ...]:
         """Factors on the motions of a cloud."""
         return (1.0,) if self.options.scales is None else tuple(map(float, self.options.scales))
 
-    def factors(self, cylinder: Cylinder, motion: GroundMotion) -> tuple[float, ...]:
-        """Return the factors on a motion, one for each level or those of the cloud."""
+    def factors(self, cylinder: Cylinder, motion: GroundMotion) -> dict[int, float]:
+        """Return the factors on a motion by their place: one for each level of its, or of the cloud."""
         asked = self.options
+        if asked.levels is None:
+            return dict(enumerate(self.scales))
         own = intensity(asked.measure, motion, cylinder, gravity=asked.gravity, period=asked.period)
-        return self.scales if asked.levels is None else tuple(float(level) / own for level in asked.levels)
+        steps = range(len(asked.levels)) if self.stripes is None else self.stripes[motion.name]
+        return {step: float(asked.levels[step]) / own for step in steps}
 
     def _shaking(self, cylinder: Cylinder, motion: GroundMotion) -> Shaking:
         case = Case(
@@ -320,22 +327,27 @@ class RunPlan:
             rolling_resistance=self.options.rolling_resistance,
             name=motion.name,
         )
-        return Shaking(case=case, scales=self.factors(cylinder, motion))
+        factors = self.factors(cylinder, motion)
+        return Shaking(case=case, scales=tuple(factors.values()), steps=tuple(factors))
 
     @cached_property
     def points(self) -> pd.DataFrame:
-        """One row for each cylinder, motion and level: place, factor, factor of uplift, all intensities."""
+        """One row for each cylinder, motion and level of it.
+
+        Place, factor, factor of uplift, whether the motion is synthetic, all intensities.
+        """
         rows, asked = [], self.options
         for name, cylinder in self.cylinders.items():
             own = measures_of(self.motions, cylinder, gravity=asked.gravity, period=asked.period)
             lifts = [uplift_scale(motion, cylinder, asked.gravity) for motion in self.motions]
             for index, motion in enumerate(self.motions):
-                for step, scale in enumerate(self.factors(cylinder, motion)):
+                for step, scale in self.factors(cylinder, motion).items():
                     found = {measure: scale * values[index] for measure, values in own.items()}
                     if asked.levels is not None:  # to the last bit one level for all
                         found[asked.measure] = float(asked.levels[step])
                     place = {"cylinder": name, "motion": motion.name, "step": step, "scale": scale}
-                    rows.append(place | {"uplift_scale": lifts[index]} | found)
+                    about = {"uplift_scale": lifts[index], "synthetic": motion.synthetic}
+                    rows.append(place | about | found)
         return pd.DataFrame(rows)
 
     def tasks(self) -> Iterator[Task]:
@@ -344,9 +356,9 @@ class RunPlan:
         for name, cylinder in self.cylinders.items():
             shakings = [self._shaking(cylinder, motion) for motion in self.motions]
             single = [
-                replace(shaking, scales=(scale,), step=step)
+                replace(shaking, scales=(scale,), steps=(step,))
                 for shaking in shakings
-                for step, scale in enumerate(shaking.scales)
+                for step, scale in zip(shaking.steps, shaking.scales, strict=True)
             ]
             for method in self.methods:
                 if method.run is None:
@@ -363,6 +375,32 @@ class RunPlan:
             return run
         step = self.options.step_factor * default_step(cylinder.semidiagonal, self.options.gravity)
         return Run(run.engine, run.support, step, **run.settings)
+
+
+def motions_by_level(
+    given: Mapping[float, Sequence[GroundMotion]],
+) -> tuple[tuple[float, ...], list[GroundMotion], dict[str, tuple[int, ...]]]:
+    """Return the levels, all motions, and the places of the levels of each motion by its name.
+
+    Raises
+    ------
+    ValueError
+        If a level is none, a name comes twice at a level, or is that of another motion at another.
+    """
+    levels = tuple(float(level) for level in require_increasing("levels", sorted(given)))
+    motions: dict[str, GroundMotion] = {}
+    places: dict[str, tuple[int, ...]] = {}
+    for place, level in enumerate(sorted(given)):
+        require_each(f"motions at {level:g}", given[level], GroundMotion)
+        for motion in given[level]:
+            known = motions.setdefault(motion.name, motion)
+            same = known.time_step == motion.time_step and np.array_equal(
+                known.acceleration, motion.acceleration
+            )
+            if place in places.get(motion.name, ()) or not same:
+                raise ValueError(f"motions must have different names, got {motion.name!r} twice")
+            places[motion.name] = (*places.get(motion.name, ()), place)
+    return levels, list(motions.values()), places
 
 
 def default_levels(

@@ -24,10 +24,10 @@ from ...storage.manifest import Number
 from ...storage.provenance import fingerprint
 from ...storage.results import Results
 from ..plans import FragilityPlan
-from .fit import TOO_FEW, resamples
+from .fit import TOO_FEW
 from .intensity import velocity_unit
 from .risk import RARE, exposures_of, measure_factor, risk_tables
-from .runs import MODELS, Method, RunPlan, default_levels, methods_of, own_model, run_plan
+from .runs import MODELS, Method, RunPlan, default_levels, methods_of, motions_by_level, own_model, run_plan
 from .tables import (
     DEFAULT_LIMITS,
     LIMITS,
@@ -64,11 +64,13 @@ class Fragility(Results, kind=KIND):
         n runs and k that exceed a limit, by cylinder, method, limit and intensity.
     fits : DataFrame
         One row for each cylinder, method and limit: kind ("fitted", "never", "always", "separated", "not
-        increasing"; of fewer motions or levels than a curve takes "too few", and no number but counts; then
-        the tables below are empty), median, median_if_exceeded and median_if_not (were all failed runs to
-        exceed the limit, or none), dispersion, runs, exceeded, failed, extrapolated, without_curve (share of
-        the resamples), and of the goodness of fit deviance, degrees, p and largest (difference of
-        share and curve).
+        increasing"; "extrapolated", where the median lies beyond the intensities that were run; "one motion",
+        where all that exceed the limit, or all that do not, are of one; of fewer motions or levels than a
+        curve takes "too few", and no number but counts; then the tables below are empty), median (infinite or
+        0 where it lies beyond the intensities that were run, and so is that end of its interval),
+        median_if_exceeded and median_if_not (were all failed runs to exceed the limit, or none), dispersion,
+        runs, exceeded, failed, extrapolated, without_curve (share of the resamples), and of the goodness of
+        fit deviance, degrees, p and largest (difference of share and curve).
     curves : DataFrame
         The curves point by point: intensity, probability, low, high.
     contrasts : DataFrame
@@ -103,9 +105,19 @@ class Fragility(Results, kind=KIND):
         return {
             f"{row['cylinder']}, {row['method']}, overturned of {row['runs']}": row["exceeded"]
             if row["kind"] == TOO_FEW
-            else row["median"]
+            else self.stated(row["cylinder"], row["median"])
             for row in fits
-        } | {f"{row['cylinder']}, {row['method']} / {row['against']}": row["ratio"] for row in contrasts}
+        } | {
+            f"{row['cylinder']}, {row['method']} / {row['against']}": known_ratio(row["ratio"])
+            for row in contrasts
+        }
+
+    def stated(self, cylinder: str, median: float) -> float | str:
+        """Return a median; of one that lies beyond the intensities that were run the bound, as "> 12"."""
+        if math.isnan(median) or 0.0 < median < math.inf:
+            return float(median)
+        run = self.counts.loc[self.counts["cylinder"] == cylinder, "intensity"]
+        return f"> {run.max():.3g}" if median > 0.0 else f"< {run.min():.3g}"
 
     def risk(
         self, hazard: HazardCurve, years: float = 50.0, *, total_dispersion: float | None = None
@@ -170,7 +182,7 @@ class Fragility(Results, kind=KIND):
         }
         blocks = blocks_of(self.runs, self.points, facts["limits"], str(facts["measure"]))
         exposures, curves = exposures_of(blocks, self.points, of_hazard, total_dispersion)
-        weights = resamples(len(blocks.motions), int(facts["resamples"]), int(facts["seed"]))
+        weights = blocks.weights(int(facts["resamples"]), int(facts["seed"]))
         return risk_tables(blocks, exposures, curves, hazard, weights=weights, years=years)
 
     def sheets(self) -> dict[str, bytes]:
@@ -192,12 +204,17 @@ class Fragility(Results, kind=KIND):
         }
 
 
+def known_ratio(ratio: float) -> float | None:
+    """Return a ratio of medians; None where one of them is only bounded."""
+    return float(ratio) if 0.0 < ratio < math.inf else None
+
+
 def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Mapping[str, Any]) -> Fragility:
     """Return the fragility by the runs of the plan that `facts` state."""
     if runs["outcome"].isin(NO_PEAK).all():
         raise ValueError(f"a fragility needs runs that do not fail, got {len(runs)} runs that all failed")
     blocks = blocks_of(runs, points, facts["limits"], str(facts["measure"]))
-    weights = resamples(len(blocks.motions), int(facts["resamples"]), int(facts["seed"]))
+    weights = blocks.weights(int(facts["resamples"]), int(facts["seed"]))
     fitted, drawn = curves_of(blocks), curves_of(blocks, weights)
     tables = {
         "runs": runs,
@@ -210,7 +227,7 @@ def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Mapping[str, A
         "gaps": gap_table(blocks, weights),
     }
     levels = points.groupby("cylinder")[blocks.measure].nunique()
-    if len(blocks.motions) < FEWEST or levels.min() < FEWEST_LEVELS:
+    if blocks.fewest < FEWEST or levels.min() < FEWEST_LEVELS:
         tables |= _counts_alone(tables)
     return Fragility(tables=tables, facts=facts)
 
@@ -285,38 +302,72 @@ def _inverted(row: Row) -> Row:
 
 def fragility(
     cylinders: Cylinder | Mapping[str, Cylinder] | Sequence[Cylinder],
-    motions: Sequence[GroundMotion],
+    motions: Sequence[GroundMotion] | Mapping[float, Sequence[GroundMotion]],
     *,
     methods: Iterable[str | Run] = tuple(MODELS),
+    measure: str = "peak_acceleration",
+    levels: Sequence[float] | None = None,
+    scales: Sequence[float] | None = None,
+    period: float = 1.0,
+    limits: Sequence[str] | None = None,
+    margin: float = 0.1,
+    resamples: int = 1000,
+    seed: int = 0,
+    restitution: float | str = 1.0,
+    step_factor: float = 1.0,
+    friction: float = 1.0,
+    rolling_resistance: float = 0.0,
+    gravity: float = 9.81,
     workers: int | None = None,
     scheduler: str | None = None,
     progress: ProgressCallback | None = None,
     resume: str | Path | None = None,
     source: str = "ground motions",
-    **options: Any,
 ) -> Fragility:
     """Fit the probability of exceeding limits by several methods under the same motions.
 
     Parameters
     ----------
     cylinders : Cylinder, or mapping of names or sequence of them
-    motions : sequence of GroundMotion
-        At least two, with different names.
+    motions : sequence of GroundMotion, or mapping of levels to them
+        At least two, with different names, each scaled to every level. A mapping gives each level motions of
+        its own, which are scaled to it (multiple stripes): at least two a level, and no `levels` beside it.
     methods : iterable of str or Run, optional
         Reduced models by name, "recess", "flat", "planar-x", "planar-y", "worse-plane" (of the two, motion
         by motion), and runs of engines with any support. Default: all five models. The first is the one
         whose efficient measure is sought. In a ring, whose walls have no top, a cylinder that leans on a
         wall beyond its balance at the end has overturned.
+    measure : str, optional
+        Intensity, one of `MEASURES`.
+    levels : sequence of float, optional
+        Intensities to which every motion is scaled (stripes). Default: 20, from a little above uplift to
+        where most overturn.
+    scales : sequence of float, optional
+        Factors on the motions as they are (a cloud), in the place of levels.
+    period : float, optional
+        Of "sa" and "sa_mean" [s].
+    limits : sequence of str, optional
+        Of `LIMITS`. Default: all but contact_lost.
+    margin : float, optional
+        Relative difference within which two medians are equivalent.
+    resamples, seed : int, optional
+        Of the bootstrap.
+    restitution : float or "momentum", optional
+        Of the planar models.
+    step_factor : float, optional
+        On the default time step of engines.
+    friction : float, optional
+        Coefficient of cylinder and ground.
+    rolling_resistance : float, optional
+        Length of the couple against rolling [m].
+    gravity : float, optional
+        g [m/s^2].
     workers, scheduler, progress : optional
         As in `run_tasks`.
     resume : str or Path, optional
         Folder that keeps each finished run: a second call, after whatever ended the first, repeats none.
     source : str, optional
         Name of the set of motions.
-    **options
-        Of `FragilityPlan`: measure, one of `MEASURES`; levels (stripes) or scales (a cloud); limits, of
-        `LIMITS`; period [s], margin, resamples, seed, restitution, step_factor, friction, gravity
-        [m/s^2], rolling_resistance [m].
 
     Returns
     -------
@@ -340,12 +391,32 @@ def fragility(
     >>> list(zip(overturned["intensity"], overturned["k"], overturned["n"]))
     [(1.5, 0, 8), (3.0, 6, 8), (6.0, 8, 8)]
     """
+    stripes: dict[str, tuple[int, ...]] | None = None
+    if isinstance(motions, Mapping):
+        if levels is not None or scales is not None:
+            raise ValueError("motions by level state the levels themselves: got levels or scales besides")
+        levels, motions, stripes = motions_by_level(motions)
     require_each("motions", motions, GroundMotion)
-    bodies, asked = _named(cylinders), FragilityPlan.of(**options)
+    bodies = _named(cylinders)
+    asked = FragilityPlan(
+        measure=measure,
+        levels=levels,
+        scales=scales,
+        period=period,
+        limits=limits,
+        margin=margin,
+        resamples=resamples,
+        seed=seed,
+        restitution=restitution,
+        step_factor=step_factor,
+        friction=friction,
+        rolling_resistance=rolling_resistance,
+        gravity=gravity,
+    )
     chosen = methods_of(methods, restitution=asked.restitution)
     if asked.levels is None and asked.scales is None and motions:  # without, the plan says what is missing
         asked = replace(asked, levels=default_levels(bodies, motions, asked))
-    plan = RunPlan(cylinders=bodies, motions=motions, methods=chosen, options=asked)
+    plan = RunPlan(cylinders=bodies, motions=motions, methods=chosen, options=asked, stripes=stripes)
     doubts = doubts_about(motions=motions, cylinders=bodies.values(), gravities=[asked.gravity])
     facts = _facts(plan) | {"source": source, "doubts": doubts, "record_sources": sources_of(motions)}
     runs = run_plan(plan, KIND, folder=resume, workers=workers, scheduler=scheduler, progress=progress)
@@ -369,6 +440,8 @@ def _facts(plan: RunPlan) -> dict[str, object]:
         "methods": {method.label: _described(method, plan.methods) for method in plan.methods},
         "levels": None if asked.levels is None else list(map(float, asked.levels)),
         "scales": list(plan.scales) if asked.levels is None else None,
+        # by level, where each has motions of its own
+        "motions_of_levels": None if plan.stripes is None else plan.motions_of_levels(),
         "limits": [name for name in LIMITS if name in (asked.limits or DEFAULT_LIMITS)],
         **{name: getattr(asked, name) for name in named},
         **({"rolling_resistance": asked.rolling_resistance} if asked.rolling_resistance else {}),

@@ -21,16 +21,17 @@ from rockwobble.models.trace import NO_PEAK
 
 from ...metrics.statistics import Interval
 from .fit import (
-    ALWAYS,
+    EXTRAPOLATED,
     FITTED,
     KINDS,
-    NEVER,
+    ONE_MOTION,
     Array,
     Curves,
     Sample,
     bands,
     goodness,
     interval,
+    resamples,
     spread_interval,
 )
 from .intensity import MEASURES
@@ -63,7 +64,7 @@ def exceeded(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
     limit : str
         One of `LIMITS`.
     """
-    failed = runs["outcome"].isin(NO_PEAK).to_numpy(bool)
+    failed = (runs["outcome"].isin(NO_PEAK) | runs["outcome"].isna()).to_numpy(bool)
     fell = (runs["outcome"] == "overturned").to_numpy(bool)
     if limit == CONTACT_LOST:
         lost = runs["contact_lost"].to_numpy(float)
@@ -90,8 +91,11 @@ class Blocks:
         In the order in which they were run.
     intensities : mapping of (str, str) to ndarray, shape (R, S)
         Logarithms by cylinder and measure; of a stripe the same for all motions.
+    made : ndarray of bool, shape (R, S)
+        Whether a motion is run at a level.
     runs : mapping of (str, str) to DataFrame
-        By cylinder and method, the S levels of each of R motions one after the other.
+        By cylinder and method, the S levels of each of R motions one after the other; a row of NaN where
+        none is made.
     limits : sequence of str
         That are asked about.
     measure : str
@@ -102,9 +106,20 @@ class Blocks:
     methods: list[str]
     motions: list[str]
     intensities: Mapping[tuple[str, str], Array]
+    made: NDArray[np.bool_]
     runs: Mapping[tuple[str, str], pd.DataFrame]
     limits: Sequence[str]
     measure: str
+
+    @property
+    def fewest(self) -> int:
+        """Number of motions at the level that has fewest."""
+        return int(self.made.sum(axis=0).min())
+
+    def weights(self, count: int, seed: int) -> Array:
+        """Return resamples (count, R) of the motions, those with the same levels among themselves."""
+        strata = np.unique(self.made, axis=0, return_inverse=True)[1].ravel()
+        return resamples(len(self.motions), count, seed, strata=strata)
 
     def known_keys(self) -> Iterator[Key]:
         """Yield cylinder, method and limit where anything is known."""
@@ -124,13 +139,17 @@ class Blocks:
     def of_points(self, points: pd.DataFrame, cylinder: str, column: str) -> Array:
         """Return a column of the points of a cylinder for each motion and level (R, S)."""
         own = points[points["cylinder"] == cylinder]
-        place = own["motion"].map({name: index for index, name in enumerate(self.motions)})
-        order = np.lexsort((own["step"].to_numpy(), place.to_numpy()))
-        return own[column].to_numpy(float)[order].reshape(len(self.motions), -1)
+        return _grid(own, self.motions, self.made.shape[1])[column].to_numpy(float).reshape(self.made.shape)
 
     def known(self, cylinder: str, measure: str) -> bool:
         """Whether every motion has an intensity of this measure."""
         return bool(np.isfinite(self.intensities[cylinder, measure]).all())
+
+
+def _grid(table: pd.DataFrame, motions: Sequence[str], steps: int) -> pd.DataFrame:
+    """Return a row for each motion and step, NaN where the table has none."""
+    whole = pd.MultiIndex.from_product([motions, range(steps)], names=["motion", "step"])
+    return table.set_index(["motion", "step"]).reindex(whole).reset_index()
 
 
 def blocks_of(runs: pd.DataFrame, points: pd.DataFrame, limits: Sequence[str], measure: str) -> Blocks:
@@ -139,29 +158,35 @@ def blocks_of(runs: pd.DataFrame, points: pd.DataFrame, limits: Sequence[str], m
         list(dict.fromkeys(table[name]))
         for table, name in ((runs, "cylinder"), (runs, "method"), (points, "motion"))
     )
-    place = {name: index for index, name in enumerate(motions)}
-
-    def ordered(table: pd.DataFrame) -> pd.DataFrame:
-        order = np.lexsort((table["step"].to_numpy(), table["motion"].map(place).to_numpy()))
-        return table.iloc[order].reset_index(drop=True)
-
-    own = {name: ordered(part) for name, part in points.groupby("cylinder", sort=False)}
+    shape = len(motions), int(points["step"].max()) + 1
+    own = {name: _grid(part, motions, shape[1]) for name, part in points.groupby("cylinder", sort=False)}
     with np.errstate(divide="ignore"):
         intensities = {
-            (str(name), measure): np.log(part[measure].to_numpy(float)).reshape(len(motions), -1)
+            (str(name), measure): _whole(np.log(part[measure].to_numpy(float)).reshape(shape))
             for name, part in own.items()
             for measure in MEASURES
         }
+    made = np.isfinite(next(iter(own.values()))["scale"].to_numpy(float)).reshape(shape)
     grouped = runs.groupby(["cylinder", "method"], sort=False)
     return Blocks(
         cylinders=cylinders,
         methods=methods,
         motions=motions,
         intensities=intensities,
-        runs={(str(key[0]), str(key[1])): ordered(part) for key, part in grouped},
+        made=made,
+        runs={(str(key[0]), str(key[1])): _grid(part, motions, shape[1]) for key, part in grouped},
         limits=limits,
         measure=measure,
     )
+
+
+def _whole(x: Array) -> Array:
+    """Return intensities (R, S) with the mean of a level where a motion is not run at it."""
+    made = ~np.isnan(x)
+    if made.all():
+        return x
+    means = np.where(made, x, 0.0).sum(axis=0) / np.maximum(made.sum(axis=0), 1)
+    return np.where(made, x, means)
 
 
 # of a curve: from half of the lowest intensity to twice the highest
@@ -195,27 +220,27 @@ def count_table(blocks: Blocks) -> pd.DataFrame:
 def fit_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, Curves]) -> pd.DataFrame:
     """Return the curve of each cylinder, method and limit with its intervals and its goodness of fit."""
     rows = []
-    motions = len(blocks.motions)
+    motions = blocks.fewest
     for key, found in fitted.items():
         sample, many = blocks.sample(*key), drawn[key]
         x, n, k = sample.counts()
         centre, dispersion = float(found.centre[0]), float(found.dispersion[0])
-        kind = KINDS[found.kinds[0]]
-        median = interval(centre, many.low, motions, above=many.high)
+        kind, middle = KINDS[found.kinds[0]], float(found.median[0])
+        median = interval(middle, many.low, motions, above=many.high)
         spread = spread_interval(dispersion, many.dispersion, motions)
-        held = goodness(x, n[0], k[0], centre, dispersion) if kind == FITTED else _NO_FIT
+        held = goodness(x, n[0], k[0], centre, dispersion) if kind in (FITTED, EXTRAPOLATED) else _NO_FIT
         rows.append(
             {
                 **dict(zip(_KEY, key, strict=True)),
                 "kind": kind,
                 "runs": int(n.sum()),
                 "exceeded": int(k.sum()),
-                "failed": int(np.isnan(sample.y).sum()),
+                "failed": int((np.isnan(sample.y) & blocks.made).sum()),
                 **median.exponential().columns("median"),
-                **dict(zip(MEDIANS_OF_FAILED, _bounds_of_failed(sample), strict=True)),
+                **dict(zip(MEDIANS_OF_FAILED, _bounds_of_failed(sample, blocks.made), strict=True)),
                 **spread.columns("dispersion"),
-                # beyond the intensities that were run the curve is a guess
-                "extrapolated": not x.min() <= centre <= x.max(),
+                # beyond the intensities that were run
+                "extrapolated": not x.min() <= middle <= x.max(),
                 "without_curve": float((many.kinds != KINDS.index(FITTED)).mean()),
                 **held,
             }
@@ -229,29 +254,33 @@ MEDIANS_OF_FAILED = ("median_if_exceeded", "median_if_not")
 RATIOS_OF_FAILED = ("ratio_least", "ratio_most")
 
 
-def _bounds_of_failed(sample: Sample) -> tuple[float, float]:
-    """Return the medians if all runs that failed exceed the limit, and if none does."""
-    least, most = (Sample(x=sample.x, y=np.nan_to_num(sample.y, nan=fate)).curves() for fate in (1.0, 0.0))
-    return math.exp(least.centre[0]), math.exp(most.centre[0])
+def _bounds_of_failed(sample: Sample, made: NDArray[np.bool_]) -> tuple[float, float]:
+    """Return the medians if all runs that were made and failed exceed the limit, and if none does."""
+    failed = np.isnan(sample.y) & made
+    least, most = (Sample(x=sample.x, y=np.where(failed, fate, sample.y)).curves() for fate in (1.0, 0.0))
+    return math.exp(least.median[0]), math.exp(most.median[0])
 
 
-def _ratio_bounds(pair: Sequence[Sample]) -> tuple[float, float]:
+def _ratio_bounds(pair: Sequence[Sample], made: NDArray[np.bool_]) -> tuple[float, float]:
     """Return the least and the largest logarithm of a ratio of medians, whatever failed runs would do."""
-    first, second = (np.log(_bounds_of_failed(each)) for each in pair)
+    first, second = (np.log(_bounds_of_failed(each, made)) for each in pair)
     return float(first[0] - second[1]), float(first[1] - second[0])
 
 
 def curve_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, Curves]) -> pd.DataFrame:
     """Return the curves point by point, each with its band.
 
-    One that all runs exceed is unknown below the intensities that were run, one that none exceeds above.
+    One whose median lies below the intensities that were run is unknown there, and so is one above them.
+    Where all depends on one motion there is none.
     """
     tables = []
     for key, found in fitted.items():
-        sample, kind = blocks.sample(*key), KINDS[found.kinds[0]]
-        first = sample.x.min() - math.log(_BEYOND) * (kind != ALWAYS)
-        x = np.linspace(first, sample.x.max() + math.log(_BEYOND) * (kind != NEVER), _POINTS)
-        low, high = bands(drawn[key], x, len(blocks.motions))
+        if KINDS[found.kinds[0]] == ONE_MOTION:
+            continue
+        sample, median = blocks.sample(*key), found.median[0]
+        first = sample.x.min() - math.log(_BEYOND) * (median != -math.inf)
+        x = np.linspace(first, sample.x.max() + math.log(_BEYOND) * (median != math.inf), _POINTS)
+        low, high = bands(drawn[key], x, blocks.fewest)
         tables.append(
             pd.DataFrame(
                 {
@@ -263,7 +292,8 @@ def curve_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key
                 }
             )
         )
-    return pd.concat(tables, ignore_index=True)
+    columns = [*_KEY, "intensity", "probability", "low", "high"]
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=columns)
 
 
 def contrast_table(
@@ -289,22 +319,22 @@ def contrast_table(
         ends: list[tuple[float, float]] = []
         for cylinder in blocks.cylinders:
             pair = [blocks.sample(cylinder, name, limit) for name in (method, against)]
-            unknown = np.isnan(pair[0].y) | np.isnan(pair[1].y)
+            unknown = (np.isnan(pair[0].y) | np.isnan(pair[1].y)) & blocks.made
             if unknown.all():
                 continue
             with np.errstate(divide="ignore", invalid="ignore"):  # of curves that have no median
-                ends.append(_ratio_bounds(pair))
+                ends.append(_ratio_bounds(pair, blocks.made))
             own, many = ([of[cylinder, name, limit] for name in (method, against)] for of in (fitted, drawn))
             if unknown.any():
                 pair = [Sample(x=each.x, y=np.where(unknown, np.nan, each.y)) for each in pair]
                 own, many = [each.curves() for each in pair], [each.curves(weights) for each in pair]
             found.append((_differences(own), _differences(many)))
-            row = contrast_row(*found[-1], len(blocks.motions), margin)
+            row = contrast_row(*found[-1], blocks.fewest, margin)
             rows.append({"cylinder": cylinder, **about, **row, **_ends(ends[-1:])})
         if len(found) == len(blocks.cylinders) > 1:
             with np.errstate(invalid="ignore"):  # of one beyond all levels and one below there is none
                 mean, means = (np.mean(each, axis=0) for each in zip(*found, strict=True))
-            row = contrast_row(mean, means, len(blocks.motions), margin)
+            row = contrast_row(mean, means, blocks.fewest, margin)
             rows.append({"cylinder": ALL, **about, **row, **_ends(ends)})
     return pd.DataFrame(rows)
 
@@ -324,7 +354,7 @@ def _differences(pair: Sequence[Curves]) -> Array:
     with np.errstate(invalid="ignore"):  # of two curves that are never reached there is none
         return np.array(
             [
-                first.centre - second.centre,
+                first.median - second.median,
                 first.dispersion - second.dispersion,
                 first.low - second.high,
                 first.high - second.low,
@@ -365,8 +395,14 @@ def curves_of(blocks: Blocks, weights: Array | None = None) -> dict[Key, Curves]
     return {key: blocks.sample(*key).curves(weights) for key in blocks.known_keys()}
 
 
+_GAP_COLUMNS = ["cylinder", "method", "motions", "motions_with_gaps", "runs", "runs_below_gaps"]
+_GAP_COLUMNS += ["median", "median_incremental", "bias", "bias_low", "bias_high"]
+
+
 def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
     """Return, for each cylinder and method, how many motions have gaps and what stopping early does.
+
+    Empty where the motions are not all run at every level.
 
     The columns: motions, motions_with_gaps (of these), runs, runs_below_gaps (those that overturn while a
     stronger one stands), median of all levels and median_incremental, and bias, the second over the first,
@@ -374,14 +410,15 @@ def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
     """
     rows = []
     motions = len(blocks.motions)
-    for cylinder, method in itertools.product(blocks.cylinders, blocks.methods):
+    several = blocks.cylinders if blocks.made.all() else []  # a motion of one level has no gap
+    for cylinder, method in itertools.product(several, blocks.methods):
         sample = blocks.sample(cylinder, method, OVERTURNED)
         if np.isnan(sample.y).all():
             continue
         stopped = Sample(x=sample.x, y=incremental(sample.y))
         whole, early = sample.curves(), stopped.curves()
         with np.errstate(invalid="ignore"):
-            value = float(early.centre[0] - whole.centre[0])
+            value = float(early.median[0] - whole.median[0])
             many_early, many = stopped.curves(weights), sample.curves(weights)
             low, high = many_early.low - many.high, many_early.high - many.low
             # of the same counts the same curve, wherever it lies
@@ -396,12 +433,12 @@ def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
                 "motions_with_gaps": int(found.any(axis=1).sum()),
                 "runs": int((~np.isnan(sample.y)).sum()),
                 "runs_below_gaps": int(found.sum()),
-                "median": float(np.exp(whole.centre[0])),
-                "median_incremental": float(np.exp(early.centre[0])),
+                "median": float(np.exp(whole.median[0])),
+                "median_incremental": float(np.exp(early.median[0])),
                 **interval(value, low, motions, above=high).exponential().columns("bias"),
             }
         )
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=_GAP_COLUMNS)
 
 
 def below_gaps(y: Array) -> NDArray[np.bool_]:
@@ -436,7 +473,7 @@ def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFram
     it matters little by which measure their levels were chosen.
     """
     rows = []
-    motions = len(blocks.motions)
+    motions = blocks.fewest
     for cylinder in blocks.cylinders:
         if (cylinder, method) not in blocks.runs:
             continue

@@ -7,55 +7,39 @@ component of the same shaking and leave the other out, as a planar analysis does
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, TypedDict
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockwobble import reduced
-from rockwobble.models import GroundMotion
+from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
 from rockwobble.models.number_checks import require_increasing
 
 from ...metrics.pair import overturned
-from ...runs.progress import ProgressCallback, stages
+from ...runs.execution import run_tables
+from ...runs.progress import ProgressCallback
 from ..plans import SpectrumPlan
-from .search import lowest_on_grid, probe_below, run_searches, search_lowest
-
-SPATIAL, PLANAR_X, PLANAR_Y = "3d", "planar_x", "planar_y"
-SERIES = (SPATIAL, PLANAR_X, PLANAR_Y)
-TITLES = {
-    SPATIAL: "3D, both components",
-    PLANAR_X: "planar x (east-west)",
-    PLANAR_Y: "planar y (north-south)",
-}
-# Rest tilt (over alpha) of the random runs below a boundary: just above uplift a cylinder chatters below it
-# through millions of steps. A rest may change what follows (`reduced.REST_TILT`), but not the share that
-# overturns; the lowest that is found so is confirmed.
-_CALM = 1e-5
-_AZIMUTH = {PLANAR_X: 0.0, PLANAR_Y: 0.5 * math.pi}  # of the plane [rad]
-
-
-class Options(TypedDict, total=False):
-    """Options of a reduced run."""
-
-    support: str
-    plane: float
-
-
-def series_options(series: str, support: str) -> Options:
-    """Return the options of a reduced run that make it one of a series; `support` is that in 3D."""
-    return {"support": support} if series == SPATIAL else {"plane": _AZIMUTH[series]}
+from .parts import (
+    AZIMUTH,
+    SERIES,
+    SPATIAL,
+    SpectrumPart,
+    blocks_of_sizes,
+    run_part,
+)
+from .search import lowest_on_grid
 
 
 def uplift_of_series(
     series: str, motion: GroundMotion, tan_alpha: float, gravity: float, *, until: float = math.inf
 ) -> float:
     """Return the factor on a ground motion at which a series uplifts from rest; see `uplift_factor`."""
-    return uplift_factor(motion, tan_alpha, gravity, plane=_AZIMUTH.get(series), until=until)
+    return uplift_factor(motion, tan_alpha, gravity, plane=AZIMUTH.get(series), until=until)
 
 
 def intensity_unit(tan_alpha: float, motion: GroundMotion, gravity: float) -> float:
@@ -109,6 +93,7 @@ def uplift_factor(
 
 
 Array = NDArray[np.float64]
+KIND = "overturning spectrum"
 _FACTS = (
     "tan_alpha",
     "gravity",
@@ -317,18 +302,29 @@ def safe_gaps(spectrum: TiltMaps) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["series", "semidiagonal", "lower", "upper", "closed"])
 
 
-# Steps end at each sample of the record, so a tenth of the tolerance of `reduced.peak_tilts` costs only
-# 4 % of the time, and the cells that it moves by 2 % of their tilt fall from 2 in 1000 to none.
-RTOL = 1e-8
+def require_cases(tan_alpha: float, motion: GroundMotion, plan: SpectrumPlan) -> None:
+    """Refuse, before anything runs, what is out of range for the smallest of the sizes or for the largest.
+
+    Raises
+    ------
+    ValueError
+        As for a `Case` of it.
+    """
+    sizes = SpectrumPlan.SIZES[:2] if plan.semidiagonals is None else plan.semidiagonals
+    for size in (sizes[0], sizes[-1]):
+        body = WobblingFrame(Cylinder(semidiagonal=float(size), tan_alpha=tan_alpha), plan.slab_mass_ratio)
+        Case(body, motion, gravity=plan.gravity, rolling_resistance=plan.rolling_resistance)
 
 
 def tilt_maps(
     tan_alpha: float,
     motion: GroundMotion,
+    plan: SpectrumPlan | None = None,
     *,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
-    **options: Any,
+    resume: str | Path | None = None,
+    kind: str = KIND,
 ) -> TiltMaps:
     """Run every size at every intensity, in three dimensions and in the planes of both components.
 
@@ -337,13 +333,16 @@ def tilt_maps(
     tan_alpha : float
         Slenderness b/h [-].
     motion : GroundMotion
+    plan : SpectrumPlan, optional
+        Grid, support and search. Default: those of figure 6 of the paper.
     workers : int, optional
         Number of threads. It does not influence the result.
     progress : callable, optional
-        Called with a `Progress` at the start and the end of each series.
-    **options
-        Of `SpectrumPlan`: semidiagonals [m], intensities [g tan alpha], support, search_step, probes,
-        gravity, slab_mass_ratio, rolling_resistance [m].
+        Called with a `Progress` at the start and the end of each part: some sizes in one series.
+    resume : str or Path, optional
+        Folder that keeps each finished part: a second call, after whatever ended the first, repeats none.
+    kind : str, optional
+        Of the results that keep them.
 
     Returns
     -------
@@ -357,18 +356,12 @@ def tilt_maps(
     Examples
     --------
     >>> from rockwobble.models import el_centro_1940
-    >>> spectrum = tilt_maps(
-    ...     0.1,
-    ...     el_centro_1940(),
-    ...     semidiagonals=[1.0, 20.0],
-    ...     intensities=[0.9, 4.0],
-    ...     search_step=0.2,
-    ...     probes=9,
-    ... )
+    >>> coarse = SpectrumPlan(semidiagonals=[1, 20], intensities=[0.9, 4], search_step=0.2, probes=9)
+    >>> spectrum = tilt_maps(0.1, el_centro_1940(), coarse)
     >>> spectrum.overturned("3d").tolist()
     [[False, True], [False, False]]
     """
-    asked = SpectrumPlan.of(**options)
+    asked = SpectrumPlan() if plan is None else plan
     sizes, levels = (
         np.linspace(*default) if given is None else require_increasing(name, given)
         for name, given, default in (
@@ -376,37 +369,42 @@ def tilt_maps(
             ("intensities", asked.intensities, SpectrumPlan.INTENSITIES),
         )
     )
-    gravity, probes = asked.gravity, asked.probes
+    gravity = asked.gravity
     unit = intensity_unit(tan_alpha, motion, gravity)
-    peaks, lowest, below, start = {}, {}, {}, {}
-    stage = stages(progress, [1.0, 4.0] * len(SERIES))
-    for index, name in enumerate(SERIES):
-        start[name] = uplift_of_series(name, motion, tan_alpha, gravity) / unit
-        run = partial(
-            reduced.peak_tilts,
+    require_cases(tan_alpha, motion, asked)
+    start = {name: uplift_of_series(name, motion, tan_alpha, gravity) / unit for name in SERIES}
+    parts = [
+        SpectrumPart(
+            series=name,
+            places=places,
+            semidiagonals=sizes[places.start : places.stop],
+            levels=levels,
+            unit=unit,
+            start=start[name],
             tan_alpha=tan_alpha,
             motion=motion,
-            rtol=RTOL,
-            gravity=gravity,
-            slab_mass_ratio=asked.slab_mass_ratio,
-            rolling_resistance=asked.rolling_resistance,
-            **series_options(name, asked.support),
+            plan=asked,
         )
-        search = partial(
-            search_lowest, levels, start=start[name], step=asked.search_step, alpha=math.atan(tan_alpha)
-        )
-        with stage(TITLES[name]):
-            peaks[name] = run(sizes, scales=unit * levels, workers=workers)
-            at = partial(_at_levels, run, sizes, unit)
-            found = run_searches([search(known) for known in peaks[name]], at, workers=workers)
-        with stage(f"{TITLES[name]}: {probes} random intensities below each boundary"):
-            probing = [
-                probe_below(start[name], levels[-1], each, probes=probes, seed=(index, i))
-                for i, each in enumerate(found)
-            ]
-            calm = partial(run, rest_tilt=_CALM)
-            at = partial(_at_levels, calm, sizes, unit)
-            lowest[name], below[name] = np.array(run_searches(probing, at, workers=workers)).T
+        for name in SERIES
+        for places in blocks_of_sizes(len(sizes))
+    ]
+    # the mean time of the parts so far is that of the rest, if they are not in the order of their sizes
+    order = np.random.default_rng(0).permutation(len(parts)).tolist()
+    with run_tables(
+        partial(run_part, workers=workers),
+        [parts[index] for index in order],
+        kind=kind,
+        key=SpectrumPart.key,
+        label=lambda part: part.name,
+        folder=resume,
+        workers=1,  # each runs in threads
+        progress=progress,
+    ) as tables:
+        by_place = dict(zip(order, tables, strict=True))
+    whole = {
+        name: pd.concat([by_place[i] for i, part in enumerate(parts) if part.series == name])
+        for name in SERIES
+    }
     return TiltMaps(
         tan_alpha=tan_alpha,
         motion=motion,
@@ -416,14 +414,13 @@ def tilt_maps(
         rolling_resistance=asked.rolling_resistance,
         semidiagonals=sizes,
         intensities=levels,
-        peak_tilt=peaks,
-        lowest=lowest,
-        below=below,
+        peak_tilt={
+            name: table[[str(place) for place in range(len(levels))]].to_numpy()
+            for name, table in whole.items()
+        },
+        lowest={name: table["lowest"].to_numpy() for name, table in whole.items()},
+        below={name: table["below"].to_numpy() for name, table in whole.items()},
         searched_from=start,
         search_step=asked.search_step,
-        probes=probes,
+        probes=asked.probes,
     )
-
-
-def _at_levels(run: Callable[..., Array], sizes: Array, unit: float, i: int, levels: Array) -> Array:
-    return run(sizes[i : i + 1], scales=unit * levels, workers=1).ravel()

@@ -6,9 +6,10 @@ Its tables: 3D beside planar analysis, and cells run again singly and to a tight
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -24,18 +25,9 @@ from ...runs.progress import ProgressCallback
 from ...storage.manifest import Number
 from ...storage.provenance import fingerprint, reduced_makers
 from ...storage.results import Results
-from .maps import (
-    PLANAR_X,
-    PLANAR_Y,
-    SERIES,
-    SPATIAL,
-    TiltMaps,
-    maps_of,
-    record_frame,
-    safe_gaps,
-    series_options,
-    tilt_maps,
-)
+from ..plans import PROBES, STEP, SpectrumPlan
+from .maps import KIND, TiltMaps, maps_of, record_frame, safe_gaps, tilt_maps
+from .parts import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, series_options
 
 Array = NDArray[np.float64]
 
@@ -251,9 +243,6 @@ def tables_of(spectrum: TiltMaps) -> dict[str, pd.DataFrame]:
     }
 
 
-KIND = "overturning spectrum"
-
-
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class OverturningSpectrum(Results, kind=KIND):
     """Peak tilts over size and intensity in three dimensions and in two planes, and what overturns.
@@ -300,9 +289,17 @@ def spectrum(
     tan_alpha: float,
     motion: GroundMotion,
     *,
+    semidiagonals: Sequence[float] | None = None,
+    intensities: Sequence[float] | None = None,
+    slab_mass_ratio: float = 0.0,
+    gravity: float = 9.81,
+    rolling_resistance: float = 0.0,
+    support: str = "recess",
+    search_step: float = STEP,
+    probes: int = PROBES,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
-    **options: Any,
+    resume: str | Path | None = None,
 ) -> OverturningSpectrum:
     """Run every size at every intensity, in three dimensions and in the planes of both components.
 
@@ -311,8 +308,24 @@ def spectrum(
     tan_alpha : float
         Slenderness b/h [-].
     motion : GroundMotion
-    workers, progress, **options
-        As in `tilt_maps`: semidiagonals [m], intensities [g tan alpha], support, search_step, probes, ...
+    semidiagonals : sequence of float, optional
+        R [m]. Default: 100 from 0.5 to 30.
+    intensities : sequence of float, optional
+        Peaks of the horizontal resultant [g tan alpha]. Default: 100 from 1 to 12.
+    slab_mass_ratio : float, optional
+        Mass of a rigid slab over that of its columns.
+    gravity : float, optional
+        g [m/s^2].
+    rolling_resistance : float, optional
+        Length of the couple against rolling [m].
+    support : {"recess", "flat"}, optional
+        Of the model in three dimensions.
+    search_step : float, optional
+        Finest step of the search for the lowest intensity that overturns [g tan alpha].
+    probes : int, optional
+        Random intensities below each lowest, until none of them overturns.
+    workers, progress, resume : optional
+        As in `tilt_maps`.
 
     Returns
     -------
@@ -330,7 +343,17 @@ def spectrum(
     >>> spectrum(0.1, el_centro_1940(), **coarse).maps.overturned("3d").tolist()
     [[False, True], [False, False]]
     """
-    return spectrum_of(tilt_maps(tan_alpha, motion, workers=workers, progress=progress, **options))
+    plan = SpectrumPlan(
+        semidiagonals=semidiagonals,
+        intensities=intensities,
+        slab_mass_ratio=slab_mass_ratio,
+        gravity=gravity,
+        rolling_resistance=rolling_resistance,
+        support=support,
+        search_step=search_step,
+        probes=probes,
+    )
+    return spectrum_of(tilt_maps(tan_alpha, motion, plan, workers=workers, progress=progress, resume=resume))
 
 
 def spectrum_of(maps: TiltMaps) -> OverturningSpectrum:

@@ -1,0 +1,114 @@
+"""An engine that is installed and does not load: one line in every command, and defaults without it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from rockwobble.compare import default_runs
+from rockwobble.compare.runs import execution
+from rockwobble.models import Run
+from rockwobble.multibody import available_engines
+from rockwobble.multibody.engines import registry
+from rockwobble.reports.cli.main import main
+
+REASON = "libmujoco.so.4: cannot open shared object file"
+LINE = f"'mujoco' is installed and does not load: {REASON}"
+RELEASE = ("--release-tilt-deg", "5", "--duration", "0.2")
+COMMANDS = {
+    "compare": RELEASE,
+    "simulate": RELEASE,
+    "view": RELEASE,
+    "advise": (),
+    "ensemble": (*RELEASE, "--copies", "2"),
+    "fragility": ("--semidiagonal", "6", "--tan-alpha", "0.2", "--synthetic", "4"),
+    "check": (),
+    "certify": (),
+}
+
+
+def call(*arguments: str) -> int:
+    with pytest.raises(SystemExit) as end:
+        main(list(arguments))
+    return int(end.value.code or 0)
+
+
+def install(folder: Path, monkeypatch: pytest.MonkeyPatch, files: dict[str, str]) -> None:
+    """Put packages before those that are installed, as if nothing had loaded them yet."""
+    for name, text in files.items():
+        path = folder / "packages" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    for name in [each for each in sys.modules if each.partition(".")[0] == "mujoco"]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.syspath_prepend(str(folder / "packages"))
+
+
+@pytest.fixture
+def fresh() -> Iterator[None]:
+    """Forget what loaded, before and after."""
+    registry._load_failure.cache_clear()
+    yield
+    registry._load_failure.cache_clear()
+
+
+@pytest.fixture
+def damaged(fresh: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Damage MuJoCo in a folder to work in."""
+    text = "raise ImportError('libmujoco.so.4: cannot open\\nshared object file')"
+    install(tmp_path, monkeypatch, {"mujoco/__init__.py": text})
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_it_is_refused_by_name_in_one_line_before_anything_runs(damaged, monkeypatch, capsys, command):
+    monkeypatch.setattr(execution, "run_tasks", lambda *_, **__: pytest.fail("it ran"))
+    assert call(command, *COMMANDS[command], "--engine", "mujoco") == 2
+    error = capsys.readouterr().err
+    assert [line for line in error.splitlines() if "mujoco" in line] == [f"rockwobble: engine {LINE}"]
+    assert "Traceback" not in error
+
+
+def test_a_default_run_has_what_loads(damaged):
+    assert "mujoco" in available_engines()
+    assert "mujoco" not in {run.engine for run in default_runs()}
+    assert len(default_runs()) == 2 * len(registry.standard_engines()[1:])
+
+
+@pytest.mark.parametrize("command", ["compare", "ensemble"])
+def test_a_command_without_an_engine_runs_what_loads_and_says_so(damaged, in_this_process, capsys, command):
+    assert call(command, *COMMANDS[command]) == 0
+    captured = capsys.readouterr()
+    said = [line for line in captured.err.splitlines() if "does not load" in line]
+    assert said == [f"rockwobble: mujoco is installed and does not load: {REASON}; it is left out"]
+    assert f"{registry.standard_engines()[1]} recess" in captured.out
+
+
+def test_advice_goes_without_its_engine_and_says_so(damaged, in_this_process, capsys):
+    assert call("advise", "--copies", "20") == 0
+    captured = capsys.readouterr()
+    said = [line for line in captured.err.splitlines() if "does not load" in line]
+    line = f"rockwobble: mujoco is installed and does not load: {REASON}; the prediction stays unverified"
+    assert said == [line]
+
+
+def test_a_check_counts_what_it_could_not_check(damaged, capsys):
+    call("check", "--only", "rest")
+    assert REASON in " ".join(capsys.readouterr().out.split())
+
+
+def test_a_package_of_which_a_folder_is_left_does_not_load(fresh, tmp_path, monkeypatch):
+    # as `pip uninstall mujoco-core` leaves it: it can be imported, and holds nothing
+    install(tmp_path, monkeypatch, {"mujoco/__init__.py": ""})
+    assert registry.engine_fault("mujoco").startswith("is installed and does not load: No module named")
+    with pytest.raises(ValueError, match="'mujoco' is installed and does not load: No module named"):
+        registry.find_engine("mujoco")
+
+
+def test_what_is_damaged_in_any_way_stops_no_other(fresh, tmp_path, monkeypatch):
+    install(tmp_path, monkeypatch, {"mujoco/__init__.py": "raise RuntimeError"})
+    assert registry.engine_fault("mujoco") == "is installed and does not load: RuntimeError"
+    assert Run("mujoco", "recess") not in default_runs()
