@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 _ROLLING = (
     "Length of the couple against the rolling of the rim, in m, below every base radius; 0 loses nothing."
 )
+MASS = "Mass of the cylinder, or of one column without a slab, in t: forces in kN and moments in kNm."
 _PLANE = "Planar motion: azimuth of the vertical plane that holds it, in rad."
 _RESTITUTION = (
     "Ratio of tilt rates at an impact of planar motion. Default: 1, as in the paper; momentum: from the "
@@ -64,8 +65,7 @@ class AdvicePlan(Copies):
     )
     mass: float | None = option(
         None,
-        "Mass of the cylinder, or of one column without its share of the slab, in t: forces in kN and "
-        "moments in kNm.",
+        MASS,
         group="Cylinder",
         above=0.0,
     )

@@ -41,6 +41,8 @@ cases.motion, one of
     time_shift [s]: positive begins later, negative leaves out the beginning
 cases.release
     tilt [rad], tilt_deg or tilt_over_alpha; tilt_rate [rad/s], rolling_angle_deg, rolling_rate [rad/s]
+cases.tendon
+    prestress [weights of a column], stiffness [weights of a column per base radius], yield_force [weights]
 bounds, of what tests ask of every run (see `Bounds`); each may be left out
     at most: tilt_rms [alpha], tilt_rms_relative, peak_tilt_difference [alpha], contact_rms [b],
     turn_difference [deg], uplift_time_difference [s], residual_displacement [b], residual_twist [deg],

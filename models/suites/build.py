@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from pydantic import BaseModel
 
 from ..case import Case, InitialState, Run, Suite
 from ..cylinder import Cylinder, cylinder_of
@@ -16,6 +17,7 @@ from ..ground_motion import GroundMotion
 from ..records.files import ZERO, el_centro_1940, read_record
 from ..records.p695 import p695_far_field
 from ..synthetic import MOST_STILL, SAMPLES_PER_PERIOD, pulse
+from ..tendon import Tendon
 from .errors import KeyedError, located
 from .tables import WAYS_OF_READING, CaseTable, CylinderTable, MotionTable, ReleaseTable, RunTable, SuiteTable
 
@@ -75,7 +77,12 @@ def _cases(table: CaseTable, path: str, folder: Path) -> Iterator[Case]:
 
 def _numbers(table: CaseTable) -> Iterator[tuple[tuple[str, str], tuple[float, ...]]]:
     """Yield (table, key) and values of every number that the case gives, in the order of a name."""
-    parts = [("cylinder", table.cylinder), ("motion", table.motion), ("release", table.release), ("", table)]
+    parts: list[tuple[str, BaseModel | None]] = [
+        ("cylinder", table.cylinder),
+        ("motion", table.motion),
+        ("release", table.release),
+    ]
+    parts += [("release", table.release), ("tendon", table.tendon), ("", table)]
     for part, holder in parts:
         for key in type(holder).model_fields if holder is not None else ():
             values = getattr(holder, key)
@@ -109,8 +116,12 @@ def _case(
     if table.release is not None:
         with located(f"{path}.release"):
             initial = _release(table.release, of("release"), cylinder)
+    tendon = None
+    if table.tendon is not None:
+        with located(f"{path}.tendon"):
+            tendon = Tendon(**of("tendon"))
     with located(path):
-        return Case(cylinder, motion, initial=initial, name=name, **own)
+        return Case(cylinder, motion, initial=initial, name=name, tendon=tendon, **own)
 
 
 def _cylinder(table: CylinderTable, values: dict[str, float]) -> Cylinder:

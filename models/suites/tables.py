@@ -325,6 +325,14 @@ class ReleaseTable(_Table):
         return self
 
 
+class TendonTable(_Table):
+    """The restraint: an unbonded tendon along the axis."""
+
+    prestress: NotNegatives | None = None
+    stiffness: NotNegatives | None = None
+    yield_force: Positives | None = None
+
+
 class CaseTable(_Table):
     """One problem, or as many as its lists and ranges make."""
 
@@ -332,6 +340,7 @@ class CaseTable(_Table):
     cylinder: CylinderTable
     motion: MotionTable | None = None
     release: ReleaseTable | None = None
+    tendon: TendonTable | None = None
     duration: Positives | None = None
     gravity: Positives | None = None
     friction: NotNegatives | None = None
@@ -410,6 +419,7 @@ TABLES: Mapping[str, type[BaseModel]] = MappingProxyType(
         "cylinder": CylinderTable,
         "motion": MotionTable,
         "release": ReleaseTable,
+        "tendon": TendonTable,
         "runs": RunTable,
     }
 )

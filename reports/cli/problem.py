@@ -11,14 +11,15 @@ from typing import Any
 import typer
 
 import rockwobble as rw
-from rockwobble.compare.runs.plan import Plan, options_in
+from rockwobble.compare.runs.plan import Plan, option, options_in
+from rockwobble.compare.studies.plans import MASS
 
 from ..pages.command_line import command_line
 from . import options
 
 # length of a free response where the user does not say [s]
 FREE_DURATION = 10.0
-_cylinder, _ground, _release = map(options_in, ("Cylinder", "Ground motion", "Release"))
+_cylinder, _ground, _release, _tendon = map(options_in, ("Cylinder", "Ground motion", "Release", "Tendon"))
 SEMIDIAGONAL, TAN_ALPHA = 6.0, 0.2  # [m], [-]
 
 
@@ -215,7 +216,65 @@ class Release(Plan):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Problem(Release, Record, Body):
+class Restraint(Plan):
+    """The options that state a tendon: by ratios, or by what a drawing gives."""
+
+    tendon_prestress: float | None = _tendon(
+        None, "Tension at rest of a tendon along the axis, in weights of one column.", least=0.0
+    )
+    tendon_stiffness: float | None = _tendon(
+        None, "Its stiffness, in weights of one column per base radius.", least=0.0
+    )
+    tendon_yield: float | None = _tendon(None, "Tension at which it yields, in weights.", above=0.0)
+    tendon_force: float | None = _tendon(
+        None, "Tension at rest, in N; with --tendon-rigidity, --tendon-length and --mass.", least=0.0
+    )
+    tendon_rigidity: float | None = _tendon(None, "E A of the steel, in N.", above=0.0)
+    tendon_length: float | None = _tendon(None, "Free length between the anchors, in m.", above=0.0)
+    tendon_yield_force: float | None = _tendon(None, "Tension at which it yields, in N.", above=0.0)
+    mass: float | None = option(None, MASS, group="Cylinder", above=0.0)
+
+    def tendon(self, cylinder: rw.Cylinder, gravity: float) -> rw.Tendon | None:
+        """Return the tendon of one column; None without any of its options.
+
+        Raises
+        ------
+        ValueError
+            If an option is out of range, one is missing, or two do not go together.
+        """
+        ratios = ("tendon_prestress", "tendon_stiffness", "tendon_yield")
+        steel = ("tendon_force", "tendon_rigidity", "tendon_length", "tendon_yield_force")
+        ratio, drawn = (_first_stated(self, *names) for names in (ratios, steel))
+        if not drawn:
+            if not ratio:
+                return None
+            return rw.Tendon(
+                prestress=self.tendon_prestress or 0.0,
+                stiffness=self.tendon_stiffness or 0.0,
+                yield_force=self.tendon_yield,
+            )
+        if ratio:
+            raise ValueError(f"{drawn} states a tendon in N, got {ratio} in weights beside it")
+        if self.tendon_rigidity is None or self.tendon_length is None or self.mass is None:
+            raise ValueError(f"{drawn} needs --tendon-rigidity, --tendon-length and --mass, got it without")
+        return rw.Tendon.from_steel(
+            prestress=self.tendon_force or 0.0,
+            axial_rigidity=self.tendon_rigidity,
+            length=self.tendon_length,
+            column_mass=1e3 * self.mass,
+            base_radius=cylinder.base_radius,
+            yield_force=self.tendon_yield_force,
+            gravity=gravity,
+        )
+
+
+def _first_stated(plan: Plan, *names: str) -> str:
+    """Return the first option of some that the user gave, zero included; empty without one."""
+    return next((f"--{name.replace('_', '-')}" for name in names if getattr(plan, name) is not None), "")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem(Release, Record, Restraint, Body):
     """The options that state a problem."""
 
     gravity: float = _ground(9.81, "g, in m/s2.")
@@ -248,6 +307,7 @@ class Problem(Release, Record, Body):
             gravity=self.gravity,
             friction=self.friction,
             rolling_resistance=self.rolling_resistance,
+            tendon=self.tendon(cylinder, self.gravity),
             name="free response" if motion is None else motion.name + scaled,
         )
 

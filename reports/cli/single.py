@@ -234,7 +234,10 @@ def simulate(
         echo([*record_lines([case.motion]), *case_warnings([case])])
         with user_input(), shown_progress() as progress:
             found = single_run(
-                case, run, answer=restated(context, "advise", also=("support",)), progress=progress
+                case,
+                run,
+                answer=restated(context, "ensemble" if case.tendon else "advise", also=("support",)),
+                progress=progress,
             )
         if not len(found.trace.time):
             complain(f"{run} left no result: {remarks(found.trace.facts)}")
@@ -294,7 +297,10 @@ def advise(
     """
     with interruptible():
         with user_input():
+            from rockwobble.compare.studies.advice.advice import require_judged
+
             case = problem.case()
+            require_judged(case)
             run = _run(case, engine, plan.support, time_step)
             claim_folder(context)
         echo([*record_lines([case.motion]), *case_warnings([case])])

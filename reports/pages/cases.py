@@ -26,12 +26,20 @@ def describe(case: Case) -> list[str]:
     resistance = case.rolling_resistance / cylinder.base_radius
     if resistance > 0.0:
         lines.append(f"Rolling resistance: {case.rolling_resistance:g} m ({resistance:.3g} b)")
+    tendon = case.tendon
+    if tendon is not None:
+        lines.append(
+            f"Tendon: prestress {tendon.prestress:.4g} weights of a column, stiffness {tendon.stiffness:.4g} "
+            "weights per base radius"
+            + (f", yields at {tendon.yield_force:.4g}" if tendon.yield_force is not None else "")
+        )
     if motion is not None:
         # here, because the help of the command line needs no numpy
         from rockwobble.compare.studies.spectrum.maps import uplift_factor
 
         threshold = cylinder.tan_alpha * (1.0 + resistance)  # over g
         factor = uplift_factor(motion, threshold, case.gravity, until=case.length)
+        factor *= 1.0 if tendon is None else tendon.uplift_factor(cylinder)
         within = " within the run" if case.length < motion.duration else ""
         count, components = motion.acceleration.shape
         lines.append(

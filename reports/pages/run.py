@@ -44,6 +44,7 @@ def page_of(found: SingleRun) -> Page:
         if held
         else math.nan,
         "moment": held.largest_restraining_moment / cylinder.base_radius if held else math.nan,
+        "tension": trace.peak_tendon_force,
         "engine": engine,
         "moves": engine or not (support and support.guided),  # out of its place
         "displacement": trace.residual_displacement / cylinder.base_radius,

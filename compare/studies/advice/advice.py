@@ -391,6 +391,7 @@ def advise(
     if run is not None:
         require_kind("run", run, Run)
     require_case(case)
+    require_judged(case)
     plan = AdvicePlan.of(**({} if run is None else {"support": run.support}) | options)
     if run is not None:
         if run.support != plan.support:
@@ -482,6 +483,18 @@ def advise(
         "inputs": inputs,
     }
     return advice_of(tables, facts)
+
+
+def require_judged(case: Case) -> None:
+    """Refuse a case that no advice judges.
+
+    Raises
+    ------
+    ValueError
+        If it has a tendon.
+    """
+    if case.tendon is not None:
+        raise ValueError(f"an advice is for a cylinder or frame without a tendon, got {case.tendon!r}")
 
 
 def advice_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, object]) -> Advice:

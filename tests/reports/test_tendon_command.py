@@ -1,0 +1,110 @@
+"""A tendon on the command line and in suites: by ratios, by a drawing, on the page, and what is refused."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import rockwobble as rw
+from rockwobble.reports.cli.main import main
+from rockwobble.reports.pages.cases import describe
+
+PIER = ["--diameter", "1.6", "--height", "9", "--release-tilt-deg", "4", "--duration", "2"]
+STEEL = ["--tendon-force", "400e3", "--tendon-rigidity", "30e6", "--tendon-length", "10", "--mass", "45"]
+
+
+def call(*arguments: str) -> int:
+    with pytest.raises(SystemExit) as ended:
+        main(list(arguments))
+    return int(ended.value.code or 0)
+
+
+def test_ratios_and_a_drawing_state_the_same_tendon(tmp_path: Path) -> None:
+    drawn = rw.Tendon.from_steel(
+        prestress=400e3, axial_rigidity=30e6, length=10.0, column_mass=45e3, base_radius=0.8
+    )
+    ratios = ["--tendon-prestress", repr(drawn.prestress), "--tendon-stiffness", repr(drawn.stiffness)]
+    traces = []
+    for name, options in {"drawn": STEEL, "ratios": ratios}.items():
+        assert call("simulate", *PIER, *options, "--out", str(tmp_path / name)) == 0
+        traces.append(rw.Trace.load(tmp_path / name / "run.parquet"))
+    for trace in traces:
+        assert trace.case.tendon == drawn
+        assert trace.tilt.tolist() == traces[0].tilt.tolist()
+    page = (tmp_path / "drawn" / "run.md").read_text()
+    assert "Tendon: prestress 0.9061 weights of a column, stiffness 5.437 weights per base radius" in page
+    largest = traces[0].peak_tendon_force
+    assert f"largest {largest:.3g} weights of a column" in page
+    # a command of its own that takes a tendon
+    answer = json.loads((tmp_path / "drawn" / "manifest.json").read_text())["about"]["single_trace"]["answer"]
+    assert answer.startswith("rockwobble ensemble")
+    assert "--tendon-force" in answer
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (
+            ["simulate", "--tendon-force", "1e5"],
+            "--tendon-force needs --tendon-rigidity, --tendon-length",
+        ),
+        (
+            ["simulate", *STEEL, "--tendon-yield", "2"],
+            "--tendon-force states a tendon in N, got --tendon",
+        ),
+        (["simulate", "--tendon-prestress", "-1"], "--tendon-prestress must be at least 0, got -1"),
+        (
+            ["simulate", "--tendon-prestress", "2", "--tendon-yield", "1"],
+            "yield_force must be above the prestress, 2 weights, got 1",
+        ),
+        (["advise", "--tendon-stiffness", "1"], "an advice is for a cylinder or frame without a tendon"),
+        (["simulate", "--support", "flat", "--tendon-prestress", "1"], ""),
+    ],
+)
+def test_what_states_no_tendon_is_one_line(
+    arguments: list[str], line: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert call(*arguments, "--out", str(tmp_path / "out")) == 2
+    (said,) = capsys.readouterr().err.splitlines()
+    assert said.startswith(f"rockwobble: {line}")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_suite_states_tendons(tmp_path: Path) -> None:
+    path = tmp_path / "tied.toml"
+    path.write_text(
+        """
+        [[cases]]
+        name = "pier"
+        duration = 2.0
+        cylinder = { semidiagonal = 6.0, tan_alpha = 0.2 }
+        release = { tilt_over_alpha = 0.5 }
+        tendon = { prestress = [0.0, 0.5], stiffness = 2.0, yield_force = 3.0 }
+        [[runs]]
+        engine = "mujoco"
+        """
+    )
+    cases = rw.read_suite(path).cases
+    assert [case.tendon for case in cases] == [
+        rw.Tendon(prestress=0.0, stiffness=2.0, yield_force=3.0),
+        rw.Tendon(prestress=0.5, stiffness=2.0, yield_force=3.0),
+    ]
+    assert [case.name for case in cases] == ["pier: prestress 0", "pier: prestress 0.5"]
+    path.write_text(path.read_text().replace("[0.0, 0.5]", "4.0"))
+    with pytest.raises(ValueError, match=r"cases\[0\]\.tendon: yield_force must be above the prestress"):
+        rw.read_suite(path)
+
+
+@pytest.mark.parametrize("slab", [0.0, 1.0])
+def test_the_threshold_of_uplift_counts_the_prestress(slab: float) -> None:
+    pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    body = rw.WobblingFrame(pier, slab) if slab else pier
+    tendon = rw.Tendon(prestress=1.0)
+    motion = rw.el_centro_1940(vertical=True).scaled(10.0)  # more digits
+    times = []
+    for held in (None, tendon):
+        (line,) = (each for each in describe(rw.Case(body, motion, tendon=held)) if each.startswith("Ground"))
+        times.append(float(line.rpartition("(")[2].split()[0]))
+    assert times[0] / times[1] == pytest.approx(tendon.uplift_factor(body), rel=2e-3)
