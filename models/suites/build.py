@@ -81,8 +81,9 @@ def _numbers(table: CaseTable) -> Iterator[tuple[tuple[str, str], tuple[float, .
         ("cylinder", table.cylinder),
         ("motion", table.motion),
         ("release", table.release),
+        ("tendon", table.tendon),
+        ("", table),
     ]
-    parts += [("release", table.release), ("tendon", table.tendon), ("", table)]
     for part, holder in parts:
         for key in type(holder).model_fields if holder is not None else ():
             values = getattr(holder, key)
