@@ -254,7 +254,7 @@ MEDIANS_OF_FAILED = ("median_if_exceeded", "median_if_not")
 RATIOS_OF_FAILED = ("ratio_least", "ratio_most")
 
 
-def _bounds_of_failed(sample: Sample, made: NDArray[np.bool_]) -> tuple[float, float]:
+def _bounds_of_failed(sample: Sample, made: NDArray[np.bool_] | bool = True) -> tuple[float, float]:
     """Return the medians if all runs that were made and failed exceed the limit, and if none does."""
     failed = np.isnan(sample.y) & made
     least, most = (Sample(x=sample.x, y=np.where(failed, fate, sample.y)).curves() for fate in (1.0, 0.0))
