@@ -75,7 +75,7 @@ def read_records(
 
 
 def read_records_by_level(folder: str | Path, **ways: Any) -> dict[float, list[GroundMotion]]:
-    """Return the ground motions of a folder by the column level of its records.csv: multiple stripes.
+    r"""Return the ground motions of a folder by the column level of its records.csv: multiple stripes.
 
     Parameters
     ----------
@@ -93,6 +93,16 @@ def read_records_by_level(folder: str | Path, **ways: Any) -> dict[float, list[G
     ------
     ValueError
         As of `read_records`; if a level is not positive, or some rows have one and others not.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> _ = (folder / "east.csv").write_text("0.00, 0.0\n0.01, 0.5\n0.02, 0.0\n")
+    >>> rows = "0.2,east.csv,zero,weak,m/s2\n0.6,east.csv,zero,strong,m/s2\n"
+    >>> _ = (folder / "records.csv").write_text("level,x,y,name,units\n" + rows)
+    >>> {level: motions[0].name for level, motions in read_records_by_level(folder).items()}
+    {0.2: 'weak', 0.6: 'strong'}
     """
     table = Path(folder) / TABLE if Path(folder).is_dir() else Path(folder)
     if not table.exists() or table.name.endswith(PEER_TABLE) or "level" not in _table(table)[0]:

@@ -115,7 +115,7 @@ def test_a_motion_scaled_to_a_level_has_that_intensity_at_any_period(measure: st
     asked = FragilityPlan(measure=measure, levels=[0.7, 1.9], period=period)
     plan = RunPlan(cylinders={"pier": PIER}, motions=motions, methods=methods_of(["recess"]), options=asked)
     for motion in motions:
-        for level, factor in zip((0.7, 1.9), plan.factors(PIER, motion), strict=True):
+        for level, factor in zip((0.7, 1.9), plan.factors(PIER, motion).values(), strict=True):
             own = intensity(measure, motion.scaled(factor), PIER, period=period)
             assert own == pytest.approx(level, rel=1e-12)  # rounding
     for name, over in measures_of(motions, PIER, period=period).items():

@@ -15,7 +15,7 @@ def test_a_study_says_what_it_was_given_and_what_is_allowed(wrong: object) -> No
         rw.advise(wrong)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="case_or_members must be a sequence of Case, got"):
         rw.ensemble(wrong)  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="motions must be a sequence of GroundMotion, got"):
+    with pytest.raises(ValueError, match="motions must be a sequence of GroundMotion,"):
         rw.fragility(PIER, wrong)  # type: ignore[arg-type]
     if wrong not in (PIER, [PIER]):
         with pytest.raises(ValueError, match="cylinders must be a sequence of Cylinder, got"):

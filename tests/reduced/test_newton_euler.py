@@ -246,9 +246,9 @@ def test_rolling_resistance(seed: int, recess: bool) -> None:
         power = body.delta * max(pressed(motion), 0) * rolling / (1 + 2 * given.slab.share)
         per_power = body.delta * scale.force * rolling
         if recess:
-            found = RESISTED_RECESS.derivative(body, (*started, 0.0, 0.0), ground)
+            found = RESISTED_RECESS.derivative(body, (*started, 0.0, 0.0, 0.0), ground)
             expected = (motion.theta, Lambda_rate, power)
-            assert_close((found[1], found[3], found[4]), expected, (scale.theta, scale.Lambda, per_power))
+            assert_close((found[1], found[3], found[5]), expected, (scale.theta, scale.Lambda, per_power))
         else:
             found = RESISTED_FLAT.derivative(body, (*started, 0.3, given.S, 0.0, 0.0, 0.0, 0.0), ground)
             expected = (motion.theta, Lambda_rate, S_rate, power)

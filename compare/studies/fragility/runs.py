@@ -7,13 +7,14 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from numbers import Real
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run
-from rockwobble.models.number_checks import require_each, require_increasing, require_one_of
+from rockwobble.models.number_checks import quoted, require_each, require_increasing, require_one_of
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody.scene import default_step
 
@@ -387,6 +388,8 @@ def motions_by_level(
     ValueError
         If a level is none, a name comes twice at a level, or is that of another motion at another.
     """
+    if not all(isinstance(level, Real) for level in given):
+        raise ValueError(f"motions must be a sequence of GroundMotion, or such by level, got {quoted(given)}")
     levels = tuple(float(level) for level in require_increasing("levels", sorted(given)))
     motions: dict[str, GroundMotion] = {}
     places: dict[str, tuple[int, ...]] = {}
