@@ -93,7 +93,7 @@ def _vocabulary() -> _Words:
 
 _CHANNEL = re.compile(r"[behcdfgms][nlgh]([enz])")  # of SEED, as HNE
 _AXIS_OF_ACCELERATION = re.compile(
-    r"(?:a|acc|accel|acceleration|lin|linacc)([xyz]|ew|ns|ud)|([xyz]|ew|ns|ud)acc(?:el)?"
+    r"(?:a|acc|accel|acceleration|lin|linacc|gf|gforce)([xyz]|ew|ns|ud)|([xyz]|ew|ns|ud)acc(?:el)?"
 )
 _VELOCITIES = re.compile(r"(?:[cmkdµμn]?m|in|ft)/(?:s|sec)|kines?")
 _LENGTHS = frozenset(
@@ -325,6 +325,41 @@ def _azimuth(words: str) -> float | None:
     return float(degrees[1]) % 360.0 if degrees and float(degrees[1]) <= 360.0 else None
 
 
+_STATEMENT = re.compile(r"=\s?[-+.\d]")  # "dt=0.005 s" names no column
+_TOTALS = ("at", "tgf", "gft", "gforcet")  # of phones: the size of a vector whose components stand beside it
+_GERMAN = ("zeit", "beschl")  # words beside which "O" is Ost; in French, Spanish and Italian it is west
+
+
+def settled(names: Sequence[ColumnName]) -> list[ColumnName]:
+    """Return names of which some say something else beside others than alone.
+
+    "T" beside "Time" is no time but a transverse component, "O" beside "N" and German words is east, and "aT"
+    beside x, y and z is their resultant.
+
+    Examples
+    --------
+    >>> [name.kind for name in settled([column_name(word) for word in ("Time", "L", "T")])]
+    ['time', 'unknown', 'unknown']
+    """
+    letters = [re.sub(r"[\W\d_]+", "", plain(name.label)) for name in names]
+    named = [
+        name.kind == "time" and letter not in ("t", "") for name, letter in zip(names, letters, strict=True)
+    ]
+    directions = {name.direction for name in names}
+    german = any(letter.startswith(_GERMAN) for letter in letters)
+
+    def in_company(name: ColumnName, letter: str) -> ColumnName:
+        if name.kind == "time" and letter == "t" and any(named):
+            return replace(name, kind="unknown", seconds=None)
+        if letter == "o" and german and "y" in directions and "x" not in directions:
+            return replace(name, kind="acceleration", direction="x")
+        if letter in _TOTALS and {"x", "y", "z"} <= directions:
+            return replace(name, kind="other", direction=None)
+        return name
+
+    return [in_company(name, letter) for name, letter in zip(names, letters, strict=True)]
+
+
 _MOST_LINES = 60  # of a header, at each of its ends, in which names are looked for
 _LONGEST_LINE = 400  # [characters]
 
@@ -354,6 +389,8 @@ def names_of(header: Sequence[str], width: int) -> tuple[list[ColumnName] | None
     for place in range(len(lines) - 1, -1, -1):
         last = place == max(set(range(len(lines))) - of_units, default=0)
         for cells in _splittings(lines[place][:_LONGEST_LINE], width):
+            if any(_STATEMENT.search(cell) for cell in cells):
+                continue
             stated = [cell.strip(" []()") for cell in cells]
             of_all = all(_quantity_of_unit(cell) or cell in ("-", "") for cell in stated)
             are_names = all(cell in _vocabulary().senses or cell == "t" for cell in map(plain, stated))
@@ -370,14 +407,14 @@ def names_of(header: Sequence[str], width: int) -> tuple[list[ColumnName] | None
     place = max(set(range(len(lines))) - of_units, default=-1)
     if best is None and place >= 0 and width > 1:
         cells_of_last = next(iter(_splittings(lines[place][:_LONGEST_LINE], width, strict=True)), None)
-        if cells_of_last is not None:
+        if cells_of_last is not None and not any(map(_STATEMENT.search, cells_of_last)):
             best, used = [column_name(cell) for cell in cells_of_last], {place}
     if best is not None and units is not None:
         best = [
             column_name(f"{name.text} [{unit}]") if unit and not name.unit else name
             for name, unit in zip(best, units, strict=True)
         ]
-    return best, [line for at, line in enumerate(lines) if at not in used | of_units]
+    return best and settled(best), [line for at, line in enumerate(lines) if at not in used | of_units]
 
 
 def quantities_of(line: str) -> set[Kind]:

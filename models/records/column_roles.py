@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from .column_names import ColumnName, listed, plain
 from .component import STEP_OPTION, Direction, ReadingOptions, RecordFile
 from .table import Table
-from .times import is_counting, rises_evenly, stated_step
+from .times import is_counting, rises_evenly, since_epoch, stated_step
 
 OPTION = "--record-columns (columns=)"
 _ROLES = ("time", "x", "y", "z")
 _SKIPPED = "-"
+_CLOCKS, _SAME_SPAN = (1.0, 1e3, 1e6, 1e9), 0.01  # units of a clock in those of the other times
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,10 +107,7 @@ class Columns:
         values, names = self.table.values, self.names
         named = [place for place, name in enumerate(names or ()) if name.kind == "time"]
         if len(named) > 1:
-            exact = [place for place in named if (names or [])[place].seconds == 1.0]
-            if len(exact) != 1:
-                raise self.doubt("two columns are named after time")
-            named = exact
+            named = self._one_time(names or [], named)
         if named:
             return named[0]
         rising = [
@@ -136,6 +134,25 @@ class Columns:
                 f"{STEP_OPTION}, or say that it is time [s] by {OPTION}, as 1,2"
             )
         return None
+
+    def _one_time(self, names: Sequence[ColumnName], places: Sequence[int]) -> list[int]:
+        """Return the one of several columns of time that gives seconds, or whose unit is that of no clock."""
+        exact = [place for place in places if names[place].seconds == 1.0]
+        values = self.table.values
+        if len(exact) == 1 or (exact and all((values[:, at] == values[:, exact[0]]).all() for at in exact)):
+            return exact[:1]  # several may be the same
+        spans = {place: float(self.table.values[-1, place] - self.table.values[0, place]) for place in places}
+        # times since an epoch and since the start are the same times: spans of a power of 1000
+        begun = [
+            place
+            for place in places
+            if not since_epoch(self.table.values[:, place], names[place].seconds or 1.0)
+        ]
+        if len(begun) == 1 and spans[begun[0]] > 0.0:
+            parts = [spans[place] / spans[begun[0]] for place in places]
+            if all(any(abs(part / ratio - 1.0) < _SAME_SPAN for ratio in _CLOCKS) for part in parts):
+                return begun
+        raise self.doubt("two columns are named after time")
 
     def by_option(self, options: ReadingOptions) -> Roles:
         """Return the roles as the user states them."""

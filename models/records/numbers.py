@@ -22,6 +22,7 @@ from .component import RecordFile
 # one way to match each text, so that no line takes more than linear time
 NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?\d+)?"
 _ALLOWED = b"0123456789+-.eE \t\n\r"
+_FOREIGN = re.compile(r"[^0-9+.eEdD \t\n\r-]")  # a character that stands in no number
 _ENDED = re.compile(r"\.(\d*)(?:[EeDd][-+]?(\d+))?(?=[\s,;+-]|\Z)")  # a number whose end is certain
 _TWO_POINTS = re.compile(r"\.[^\s,;+.-]*(?:(?<=[EeDd])[-+][^\s,;+.-]*)?\.")
 _SIGN_BEHIND = re.compile(r"(?<=[\d.])([-+])")
@@ -82,7 +83,8 @@ def widths_of(text: str) -> NDArray[np.int64]:
     """Return the number of cells that blanks part in each line, none of which is blank (n,)."""
     content = text.encode()
     ends = np.flatnonzero(np.frombuffer(content, dtype=np.uint8) == ord("\n"))
-    return np.add.reduceat(_begins(content).astype(np.int64), np.concatenate([[0], ends + 1]))
+    before = np.searchsorted(np.flatnonzero(_begins(content)), np.concatenate([[0], ends, [len(content)]]))
+    return np.asarray(np.diff(before), dtype=np.int64)
 
 
 def parted(text: str) -> str | None:
@@ -218,6 +220,12 @@ def only_numbers(text: str) -> bool:
     return all(math.isfinite(float(re.sub("[Dd]", "E", token))) for token in re.findall(NUMBER, text))
 
 
+def foreign_line(text: str) -> int | None:
+    """Return the place of the first line with a character that stands in no number; None without one."""
+    foreign = _FOREIGN.search(text)
+    return None if foreign is None else text.count("\n", 0, foreign.start())
+
+
 CHUNK = 4096  # lines that are read at once, to find the one that is damaged
 
 
@@ -226,6 +234,9 @@ def damaged_line(lines: Sequence[str]) -> int | None:
 
     Numbers may touch; of more such text than is parted no more is looked at.
     """
+    at = foreign_line("\n".join(lines))
+    if at is not None:
+        return at
     touched = 0
     for begin in range(0, len(lines), CHUNK):
         chunk = lines[begin : begin + CHUNK]

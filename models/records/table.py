@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .component import RecordFile
+from .dates import has_clock_time, with_seconds
 from .numbers import (
     CHUNK,
     damaged_line,
+    foreign_line,
     is_number,
     only_numbers,
     parse_number,
@@ -24,6 +26,7 @@ from .numbers import (
 )
 
 _COMMENTS = ("#", "%", "!", "//")
+_WORD = re.compile(r"[^\W\d_]{2}")
 _COMMA_NUMBER = re.compile(r"[-+]?\d*,\d+(?:[EeDd][-+]?\d+)?")
 _LONGEST_HEADER = 5000  # lines in which numbers begin, if the text is a record
 _BEGIN_OF_NUMBER = frozenset("0123456789+-.,nNiI")
@@ -50,12 +53,12 @@ class Table:
 
 def uncommented(line: str) -> str:
     """Return a line of a header without quotation marks, blanks and the mark of a comment."""
-    return re.sub(r"^(?:[#%!]+|//+)", "", line.replace('"', "").strip()).strip()
+    return re.sub(r"^(?:[#%!;$*]+|//+)", "", line.replace('"', "").strip()).strip()
 
 
 def is_comment(text: str) -> bool:
-    """Return whether a line, without blanks at its begin, is a comment."""
-    return text.startswith(_COMMENTS)
+    """Return whether a line, without blanks at its begin, is a comment; ";0.1" is an empty cell."""
+    return text.startswith(_COMMENTS) or (text.startswith(";") and _WORD.search(text) is not None)
 
 
 def cells_of(line: str) -> list[str]:
@@ -125,17 +128,24 @@ def rows_of(file: RecordFile, first: int) -> tuple[Sequence[int], list[str]]:
     """Return number (from 1) and text of the lines from `first` on that are neither comments nor blank."""
     lines = file.text[first:]
     whole = "\n".join(lines)
-    if not any(mark in whole for mark in (*_COMMENTS, '"')):
-        rows = [text for line in lines if (text := line.strip())]
-        if len(rows) == len(lines):
-            return range(first + 1, first + 1 + len(rows)), rows
+    if not any(mark in whole for mark in (*_COMMENTS, '"', "\n;")) and whole[:1] != ";":
+        close = whole.replace(" ", "").replace("\t", "")  # to strip each line takes longer than to read
+        if "\n\n" not in close and close[:1] != "\n" != close[-1:] and close.isascii():
+            return range(first + 1, first + 1 + len(lines)), list(lines)
     numbers, rows = [], []
     for number, line in enumerate(file.text[first:], start=first + 1):
         text = line.replace('"', "").strip() if '"' in line else line.strip()
-        if text and not text.startswith(_COMMENTS):
+        if text and not is_comment(text):
             numbers.append(number)
             rows.append(text)
     return numbers, rows
+
+
+def with_clock(file: RecordFile) -> RecordFile:
+    """Return a file whose clock times in its rows are seconds from the first; the same without any."""
+    if not has_clock_time(file.text[-1]):
+        return file
+    return RecordFile(file.path, "\n".join(with_seconds(file.text, _is_row)).encode())
 
 
 def table_of(file: RecordFile) -> Table:
@@ -149,6 +159,9 @@ def table_of(file: RecordFile) -> Table:
     """
     lines = file.text
     first = first_row(lines)
+    if first == len(lines):
+        _refuse_damaged_row(file, first)
+        raise ValueError(_without_rows(file))
     header = tuple(text for line in lines[:first] if (text := uncommented(line)))
     numbers, rows = rows_of(file, first)
     _refuse_damaged_row(file, first)
@@ -162,7 +175,13 @@ def table_of(file: RecordFile) -> Table:
         width = len(text[: text.find("\n")].split())
     if values is None or (widths_of(text) != width).any():
         raise ValueError(_damage(file, numbers, rows, text.split("\n"), width))
-    return Table(header, values.reshape(len(rows), width), numbers)
+    values = values.reshape(len(rows), width)
+    if width == 2 and values[0, 0] == len(values) - 1 > _FEWEST_COUNTED and 0.0 < values[0, 1] < 1.0:
+        return Table((*header, rows[0].strip()), values[1:], numbers[1:])  # "4096 0.025" above two columns
+    return Table(header, values, numbers)
+
+
+_FEWEST_COUNTED = 10  # rows; a number of fewer may be a sample by chance
 
 
 def _blank_separated(file: RecordFile, numbers: Sequence[int], rows: list[str]) -> tuple[str, int]:
@@ -179,12 +198,14 @@ def _blank_separated(file: RecordFile, numbers: Sequence[int], rows: list[str]) 
         if any(mark + "\n" in close or close.endswith(mark) for mark in ",;"):
             text = "\n".join(row.rstrip(",;\t ") for row in text.split("\n"))
             close = text.replace(" ", "").replace("\t", "")
-        doubled = any(pair in close for pair in (",,", ";;", ",;", ";,", "\n,", "\n;"))
+        doubled = any(pair in close for pair in (2 * separator, "\n" + separator))
         if doubled or close.startswith((",", ";")):
             empty = _EMPTY_CELL.search(text)
             assert empty is not None  # what was found without blanks is there with them
             at = text.count("\n", 0, empty.end() - 1)
-            raise ValueError(f"{file.name}, line {numbers[at]}: a cell is empty, got {rows[at][:60]!r}")
+            raise ValueError(
+                f"{file.name}, line {numbers[at]}: a cell is empty, got {rows[at].strip()[:60]!r}"
+            )
     if comma:
         text = text.replace(",", ".")
     if separator is not None:
@@ -215,7 +236,7 @@ def _damage(
         if len(cells) != width or not all(map(is_number, cells)):
             return (
                 f"{file.name}, line {number}: expected {width} number{'s' * (width > 1)} as in line "
-                f"{numbers[0]}, got {row[:60]!r}"
+                f"{numbers[0]}, got {row.strip()[:60]!r}"
             )
         try:
             for cell in cells:
@@ -227,11 +248,32 @@ def _damage(
 
 def _first_damaged(texts: Sequence[str], width: int) -> int:
     """Return the place from which the first damaged row is not far."""
+    whole = "\n".join(texts)
+    if plain_numbers(whole) is not None:
+        return int((widths_of(whole) != width).argmax())
+    foreign = foreign_line(whole)
+    if foreign is not None:
+        return foreign
     for begin in range(0, len(texts), CHUNK):
-        chunk = "\n".join(texts[begin : begin + CHUNK])
-        if plain_numbers(chunk) is None or (widths_of(chunk) != width).any():
+        if plain_numbers("\n".join(texts[begin : begin + CHUNK])) is None:
             return begin
     return 0
+
+
+_DATES = re.compile(r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}|\d{1,2}:\d{2}:\d{2}")
+
+
+def _without_rows(file: RecordFile) -> str:
+    """Return the refusal of a text without any row of numbers."""
+    line = next((text for line in reversed(file.text) if (text := line.strip())), "")
+    dates = (
+        ": its times are dates, which are read in one column, as 2024-11-26T10:20:30.005"
+        if _DATES.search(line[:200])
+        else ""
+    )
+    return (
+        f"{file.name} must hold at least two samples, got 0 rows of numbers{dates}; it ends in {line[:60]!r}"
+    )
 
 
 def _refuse_damaged_row(file: RecordFile, first: int) -> None:

@@ -31,14 +31,21 @@ _STEP_WORDS = "|".join(
 _RATE_WORDS = "|".join(
     (
         r"(?:sampl\w*|abtast\w*)[ _-]?(?:rate|freq\w*)|samplerate|(?<![a-z])fs(?![a-z])|sps\b",
-        "abtastrate|abtastfrequenz|frecuencia de muestreo|frequenza di campionamento",
+        "abtastrate|abtastfrequenz|tasa de muestreo|frecuencia de muestreo|frequenza di campionamento",
         r"fréquence d.échantillonnage|örnekleme frekansı|sampling(?=\W{0,3}\d+(?:\.\d+)?\s?hz)",
     )
 )
 _UNIT = r"(?:\s{0,3}[\[(]?\s?(?P<unit>hz|sps|ms|msec|milliseconds?|us|µs|μs|s|sec|seconds?)\b)?"
 _RATE = re.compile(rf"(?:{_RATE_WORDS}){_GAP}(?P<number>{NUMBER}){_UNIT}", re.IGNORECASE)
 _STEP = re.compile(rf"(?:{_STEP_WORDS})(?P<gap>{_GAP})(?P<number>{NUMBER}){_UNIT}", re.IGNORECASE)
-_PER_SECOND = re.compile(rf"(?P<number>{NUMBER})\s?(?:sps\b|samples?\s?(?:per|/)\s?s)", re.IGNORECASE)
+_PER_SECOND = re.compile(
+    rf"(?P<number>{NUMBER})\s?(?:sps\b|(?:samples?|muestras?|campioni)\s?(?:per|por|al|/)\s?s)", re.IGNORECASE
+)
+_POINTS_AT = re.compile(
+    r"\d{2,9}\s(?:points|samples|values|pts)\b[a-z \t]{0,40}\bat\s{1,3}"
+    rf"(?P<number>{NUMBER})\s?(?P<unit>ms|s|sec|seconds?)\b",
+    re.IGNORECASE,
+)
 _COUNT_AND_STEP = re.compile(rf"\s*(\d{{2,9}})[\s,;]+({NUMBER})\s*")
 
 
@@ -83,11 +90,11 @@ def _step_of(line: str, count: int | None) -> float | None:
         number = _number(rate)
         unit = (rate.groupdict().get("unit") or "").lower()
         return None if not number else number if unit.startswith("s") and unit != "sps" else 1.0 / number
-    step = _STEP.search(line)
+    step = _STEP.search(line) or _POINTS_AT.search(line)
     if step is None or not (number := _number(step)):
         return None
     unit = (step["unit"] or "").lower()
-    in_gap = re.search(r"(?<![a-z])(hz|ms|msec|us|µs)(?![a-z])", step["gap"].lower())
+    in_gap = re.search(r"(?<![a-z])(hz|ms|msec|us|µs)(?![a-z])", (step.groupdict().get("gap") or "").lower())
     word = unit or (in_gap[1] if in_gap else "")
     if word in ("hz", "sps"):
         return 1.0 / number

@@ -11,22 +11,24 @@ from ..ground_motion import GroundMotion
 from .component import METRES_PER_SECOND_SQUARED, UNITS
 from .plausibility import LARGEST_SCALED_PEAK, peak_doubts
 
-_SPELLINGS = {
+_SPELLINGS = {  # without blanks, signs of powers and of products, "sec" as "s"
     "g": "g g's gs",
-    "m/s2": "m/s2 m/s^2 m/s/s m/s**2 m/s² m/sec2 m/sec^2 m/sec**2 m/sec/sec",
-    "cm/s2": "cm/s2 cm/s^2 cm/s/s cm/s**2 cm/s² cm/sec2 cm/sec^2 cm/sec**2 cm/sec/sec gal",
+    "m/s2": "m/s2 m/s/s ms-2 m/ss",
+    "cm/s2": "cm/s2 cm/s/s cms-2 cm/ss gal gals",
 }
 _UNIT_OF = {spelling: unit for unit, spellings in _SPELLINGS.items() for spelling in spellings.split()}
 # a word that can only be a unit, so that one which is not allowed is refused instead of overlooked
 _RATE = re.compile(r"[a-z]{1,3}/s(?:ec)?\S*", re.IGNORECASE)
 # parts of g, which no spelling above allows
 _PART = re.compile(r"%\s?g|m(?:illi-?)?g(?:al)?|[µμ]g", re.IGNORECASE)
-_WORD = r"(%\s?g|[^\s,;()\[\]]+)"
+_POWER = r"[a-z]{1,3}\s?[.·⋅*]?\s?s(?:ec)?\s?(?:\^|\*\*)?\s?\(?[-−⁻]\s?[2²]\)?"  # "m s-2", "m·s⁻²"
+_WORD = rf"(%\s?g|{_POWER}|[^\s,;()\[\]]+)"
+_SAME = str.maketrans({"²": "2", "⁻": "-", "−": "-", **dict.fromkeys(" \t·⋅.*^()")})
 _PLACES = tuple(
     re.compile(place, re.IGNORECASE)
     for place in (
         rf"[\[(]\s*{_WORD}\s*[\])]",
-        rf"units?\b(?:\s*[:=]|\s+(?:of|in|are|is)\b)*\s*{_WORD}",
+        rf"(?:units?|unidad(?:es)?|unité|unità|einheit|birim)\b(?:\s*[:=]|\s+(?:of|in|are|is)\b)*\s*{_WORD}",
         rf"\bacc[a-z]*\.?[\s,:]+(?:in\s+)?{_WORD}",
     )
 )
@@ -37,10 +39,10 @@ def unit_of(word: str) -> str | None:
 
     Examples
     --------
-    >>> unit_of("cm/sec/sec"), unit_of("Gal"), unit_of("mm")
-    ('cm/s2', 'cm/s2', None)
+    >>> unit_of("cm/sec/sec"), unit_of("Gal"), unit_of("m·s⁻²"), unit_of("mm")
+    ('cm/s2', 'cm/s2', 'm/s2', None)
     """
-    return _UNIT_OF.get(word.strip().lower())
+    return _UNIT_OF.get(re.sub("s(?:ec|eg|n|q)", "s", word.lower().translate(_SAME)))
 
 
 def stated_unit(path: Path, header: list[str]) -> str | None:
@@ -58,10 +60,10 @@ def stated_unit(path: Path, header: list[str]) -> str | None:
     found: dict[str, str] = {}
     for line in header:
         for word in _candidates(line):
-            unit = _UNIT_OF.get(word.lower())
+            unit = unit_of(word)
             if unit is not None:
                 found[unit] = word
-            elif _RATE.fullmatch(word) or _PART.fullmatch(word):
+            elif _RATE.fullmatch(word) or _PART.fullmatch(word) or re.fullmatch(_POWER, word, re.IGNORECASE):
                 raise ValueError(f"{path.name} is in {word[:20]}, allowed are {', '.join(UNITS)}")
     if len(found) > 1:
         raise ValueError(f"{path.name} states two units: {' and '.join(found.values())}")

@@ -7,11 +7,16 @@ from collections.abc import Sequence
 from ..column_names import ColumnName, names_of, refuse_other_quantity, refuse_scale, unit_of_time
 from ..column_roles import Columns, Roles
 from ..component import UNITS, Component, ReadingOptions, RecordFile
-from ..table import Table, table_of
+from ..table import Table, table_of, with_clock
 from ..times import even_step, is_counting, rises_evenly, since_epoch, stated_seconds, stated_step
 from ..units import stated_unit, unit_of
 
 NAME = "columns"
+_NO_TIME = (
+    "unknown",
+    "index",
+    "other",
+)  # first columns that are none of times: a frequency or period of a spectrum
 
 
 def recognizes(file: RecordFile) -> bool:
@@ -28,9 +33,9 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
         If names leave a doubt, or there are none for several columns; if a line holds something else than
         numbers, or the times do not rise in even steps.
     """
-    table = table_of(file)
+    table = table_of(with_clock(file))
     names, others = names_of(table.header, table.values.shape[1])
-    if names and not any(name.kind == "time" for name in names) and names[0].kind not in ("unknown", "index"):
+    if names and not any(name.kind == "time" for name in names) and names[0].kind not in _NO_TIME:
         time = table.values[:, 0]
         if rises_evenly(time) and not is_counting(time):
             names, others = None, list(table.header)  # a sentence that looks like names

@@ -98,6 +98,7 @@ _FORMATS: tuple[tuple[str, Callable[[RecordFile], bool], str], ...] = (
         _says(r"^<\?XML|^<Q:QUAKEML|^<FDSNSTATIONXML", 2),
         "give the waveforms: SAC or miniSEED",
     ),
+    ("JSON", _says(r"^\s*(?:\{\s*(?:\"|$)|\[\s*[{\[])", 1), _COLUMNS),
     ("a web page", _says(r"^\s*<(!DOCTYPE HTML|HTML)", 3), "give the file of the record itself"),
 )
 

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from ..column_names import names_of, refuse_other_quantity, refuse_scale, unit_of_time
 from ..component import UNITS, Component, ReadingOptions, RecordFile
-from ..numbers import is_number, numbers_of_lines, parted, without_fill
+from ..numbers import is_number, numbers_of_lines, parted, widths_of, without_fill
 from ..table import cells_of, first_row, is_comment, uncommented
-from ..times import rises_evenly, stated_step
+from ..times import even_step, is_counting, rises_evenly, stated_step
 from ..units import stated_unit, unit_of
 
 NAME = "values without times"
@@ -52,7 +52,12 @@ def recognizes(file: RecordFile) -> bool:
     if not (width > _MOST_COMPONENTS or (shorter and width > 1)):
         return False
     if len(set(widths[:-1])) > 1:
-        return width > _MOST_COMPONENTS
+        # the first row of another length than all others belongs to a header that is not known
+        return width > _MOST_COMPONENTS and (len(set(widths[1:-1])) > 1 or len(widths) < _FEWEST_LINES)
+    if width % 2 == 0 and len(cells) > 1:
+        pairs = np.array([float(cell) for row in cells for cell in row[::2]])
+        if width > 2 and rises_evenly(pairs):  # of time and acceleration, several in a line
+            return True
     column = np.array([float(row[0]) for row in cells[: max(len(cells) - 1, 1)]])
     return not (len(column) > 2 and rises_evenly(column))
 
@@ -80,8 +85,14 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
     """
     first = first_row(file.text)
     header = [text for line in file.text[:first] if (text := uncommented(line))]
-    values, step = _without_counts(_samples(file, first))
-    values, notes = without_fill(values)
+    lines = _rows(file, first)
+    samples = numbers_of_lines(file, lines, first + 1)
+    samples, of_lines = _without_line_numbers(samples, lines)
+    samples, of_pairs, step = _without_times(file, samples)
+    values, count_step = _without_counts(samples)
+    values, of_fill = without_fill(values)
+    notes = (*of_lines, *of_pairs, *of_fill)
+    step = step or count_step
     stated = stated_step(file, header, len(values)) or step
     names, _ = names_of(header, 1)
     word = names[0].unit if names else ""
@@ -102,14 +113,14 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
     ]
 
 
-def _samples(file: RecordFile, first: int) -> NDArray[np.float64]:
-    """Return all numbers from a line on; comments, braces and separators between them are passed over."""
+def _rows(file: RecordFile, first: int) -> Sequence[str]:
+    """Return the lines from one on with numbers alone, without comments, braces and separators."""
     whole = file.text[first:]
     text = "\n".join(whole)
     if not any(mark in text for mark in _MARKS):
-        return numbers_of_lines(file, whole, first + 1)
+        return whole
     if not any(mark in text for mark in (*_COMMENTS, " ", "\t")):  # so a comma is no decimal point
-        return numbers_of_lines(file, text.translate(_SEPARATORS).split("\n"), first + 1)
+        return text.translate(_SEPARATORS).split("\n")
     lines = []
     for line in whole:
         text = line.strip()
@@ -119,7 +130,36 @@ def _samples(file: RecordFile, first: int) -> NDArray[np.float64]:
             lines.append(" ".join(cells_of(text.replace("{", " ").replace("}", " "))))
         else:
             lines.append(line)
-    return numbers_of_lines(file, lines, first + 1)
+    return lines
+
+
+def _without_line_numbers(
+    samples: NDArray[np.float64], lines: Sequence[str]
+) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+    """Return samples without numbers of lines that end each line, as in files of SHAKE, and a note of it."""
+    filled = [line for line in lines if line.strip()]
+    if len(filled) < _FEWEST_LINES or not filled[-1].split()[-1].lstrip("+").isdecimal():
+        return samples, ()
+    text = "\n".join(filled)
+    if widths_of(text).sum() != len(samples):  # some touch
+        text = parted(text) or text
+    ends = np.cumsum(widths_of(text)) - 1
+    if ends[-1] != len(samples) - 1 or ends[0] < 1 or not is_counting(samples[ends]):
+        return samples, ()
+    return np.delete(samples, ends), ("line numbers at the end of the lines left out",)
+
+
+def _without_times(
+    file: RecordFile, samples: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], tuple[str, ...], float | None]:
+    """Return the accelerations of pairs of time and acceleration, with a note and their step [s]."""
+    if len(samples) < _LEAST_COUNT or len(samples) % 2 or not rises_evenly(samples[::2]):
+        return samples, (), None
+    if rises_evenly(samples):  # a ramp
+        return samples, (), None
+    times = samples[::2]
+    step = even_step(file, times, range(1, 1 + len(times)), 1.0)
+    return samples[1::2], ("pairs of time and acceleration",), step
 
 
 def _without_counts(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], float | None]:
@@ -129,8 +169,11 @@ def _without_counts(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], f
         return values[1:], None
     if count > _LEAST_COUNT and values[0] == count - 2 and 0.0 < values[1] <= _LARGEST_STEP:
         return values[2:], float(values[1])
+    if count > _LEAST_COUNT and values[1] == count - 2 and 0.0 < values[0] <= _LARGEST_STEP:
+        return values[2:], float(values[0])
     return values, None
 
 
+_FEWEST_LINES = 4  # of which the last numbers count, which is no chance
 _LEAST_COUNT = 10  # samples; fewer may equal a value by chance
 _LARGEST_STEP = 0.1  # [s]
