@@ -187,13 +187,13 @@ def _reason_of_intensity(found: Advice) -> str:
     low, high = found.beside
     if math.isnan(low):
         return "no other scales of this shaking were run"
-    which = f"of {len(found.as_strong)} scales {_STRONG}"
+    which = f"at {len(found.as_strong)} scales, {_STRONG}"
     if math.isinf(high):
         fell = int(overturned(found.as_strong["peak_tilt"]).sum())
-        return f"{fell} of {len(found.as_strong)} scales {_STRONG} overturn it"
+        return f"at {fell} of {len(found.as_strong)} scales, {_STRONG}, it overturns"
     if low == 0.0:
-        return f"some {which} leave it at rest"
-    return f"the tilt changes by {number(max(high / found.peak, found.peak / low))} times {which}"
+        return f"it stays at rest at some of {which.removeprefix('at ')}"
+    return f"the tilt changes up to {number(max(high / found.peak, found.peak / low))} times {which}"
 
 
 def _reason_of_engine(found: Advice) -> str:
@@ -224,7 +224,7 @@ def _name(found: Advice, row: Mapping[Hashable, Any]) -> str:
     """The name of a group: how many, measured or not, and as strong in which way."""
     group, runs = row["group"], row["runs"] - row["failed"]
     copies = {
-        COPIES: f"copies {number(found.facts['perturbation'], 'percent')} off",
+        COPIES: f"copies, {number(found.facts['perturbation'], 'percent')} off",
         VERTICAL: "copies with vertical",
         HORIZONTAL: "copies without vertical",
     }
@@ -482,7 +482,7 @@ def _scales(found: Advice) -> Iterator[Row]:
     if not math.isnan(low) and not found.overturned:
         span = f"{number(low)} to {number(high)} α"
         yield _check(
-            f"largest tilt at {len(found.as_strong)} scales {_STRONG}",
+            f"largest tilt at {len(found.as_strong)} scales, {_STRONG}",
             span,
             "∞: overturns" if math.isinf(high) else "",
         )

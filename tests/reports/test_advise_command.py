@@ -25,10 +25,12 @@ from rockwobble.reports.pages import page, stored_page
 from rockwobble.reports.pages.advice import page_of
 
 PAGE_LIMIT = 2e6  # bytes, of every page
-SCREEN = 36  # lines: five of an answer, its numbers, the record as it was read, and what to do next
+# lines: an answer, its grades, its numbers, what the recess must carry, the record, and what to do next
+SCREEN = 60
 PRINTED = 5e-3  # three digits
 FAST = ["--engine", "none", "--copies", "20"]
-TABLES = ("members", "groups", "demands", "band", "scales", "lowest", "planar", "trace", "engine")
+TABLES = ("members", "groups", "demands", "weaker", "band", "scales", "as_strong", "lowest", "planar")
+TABLES += ("trace", "engine")
 DATA = {f"{name}.parquet" for name in TABLES}
 GOLDEN = Path(__file__).parent / "golden" / "advice.md"
 
@@ -138,22 +140,31 @@ def test_details_are_printed_where_they_are_asked_for(found):
     assert "Assumptions" not in short
 
 
-def test_the_three_numbers_are_those_of_the_groups(found):
-    values = page_of(found).values
-    tilt, top, chance = values["numbers"]
+def test_the_numbers_are_those_of_the_groups(found):
+    given, *groups = page_of(found).values["numbers"]
     alpha = np.degrees(found.cylinder.alpha)
-    assert float(tilt["given"]) == pytest.approx(alpha * found.peak, rel=PRINTED)
-    assert float(top["given"]) == pytest.approx(found.top(found.peak), rel=PRINTED)
-    group = found.groups.set_index("group").loc["copies"]
-    assert float(tilt["copies"]) == pytest.approx(alpha * group["peak_tilt_95"], rel=PRINTED)
-    assert chance["copies"].startswith(f"{100 * group['chance']:.2g} %")
+    assert float(given["tilt"]) == pytest.approx(alpha * found.peak, rel=PRINTED)
+    assert float(given["top"]) == pytest.approx(found.top(found.peak), rel=PRINTED)
+    assert len(groups) == len(found.groups)
+    for row, group in zip(groups, found.groups.to_dict("records"), strict=True):
+        if np.isfinite(group["peak_tilt_95"]):
+            assert float(row["tilt"]) == pytest.approx(alpha * group["peak_tilt_95"], rel=PRINTED)
+        # one statement: how many overturn, and which order statistic the tilt is
+        assert row["overturn"].startswith(f"{group['overturned']} of {group['runs']} (")
+        rank, count = map(int, row["covered"].split(" of "))
+        peaks = found.members[found.members["group"] == group["group"]]["peak_tilt"]
+        assert (peaks <= group["peak_tilt_95"] * (1.0 + 1e-12)).sum() >= rank >= 0.95 * count
 
 
 def test_an_overturned_group_moves_without_bound(found):
     groups = found.groups.assign(peak_tilt_95=np.inf)
     fallen = dataclasses.replace(found, tables={**found.tables, "groups": groups})
-    _, top, _ = page_of(fallen).values["numbers"]
-    assert [top[name] for name in groups["group"]] == ["overturns"] * len(groups)
+    _, *rows = page_of(fallen).values["numbers"]
+    assert [(row["tilt"], row["top"]) for row in rows] == [("overturns", "overturns")] * len(groups)
+
+
+def reasons_of(found: Advice) -> dict[str, str]:
+    return {row["topic"]: row["reason"] for row in page_of(found).values["criteria"]}
 
 
 def numbers_in(words: str) -> list[float]:
@@ -161,17 +172,22 @@ def numbers_in(words: str) -> list[float]:
 
 
 def test_a_reason_states_the_numbers_of_its_grade(found):
-    reasons = page_of(found).values["reasons"]
+    reasons = reasons_of(found)
     needed = found.demands.set_index("demand")["value"]["friction"]
     assert numbers_in(reasons["friction"]) == [pytest.approx(needed, rel=PRINTED)]
     low, high = found.beside
     times = max(high / found.peak, found.peak / low)
-    assert numbers_in(reasons["intensity"])[1:] == [pytest.approx(times, rel=PRINTED)]
+    assert numbers_in(reasons["intensity"]) == [
+        pytest.approx(times, rel=PRINTED),
+        len(found.as_strong),
+        11.0,
+        12.0,
+    ]
     prediction = dataclasses.asdict(Prediction(length=5.0, reason="pass"))
     engine = changed(found, verification=ENGINE, prediction=prediction)
     end = found.response["uplift_time"] + 5.0
-    assert numbers_in(page_of(engine).values["reasons"]["engine"]) == [22.0, pytest.approx(end, rel=PRINTED)]
-    slides = page_of(changed(found, friction=0.1)).values["reasons"]["friction"]
+    assert numbers_in(reasons_of(engine)["engine"]) == [22.0, pytest.approx(end, rel=PRINTED)]
+    slides = reasons_of(changed(found, friction=0.1))["friction"]
     assert numbers_in(slides) == [0.1, 0.2]
 
 
@@ -204,7 +220,7 @@ def test_every_code_has_words(found):
     for engine in engines:
         values = page_of(changed(found, verification=engine)).values
         notes |= {row["note"] for row in values["checks"] if "mujoco" in row["name"]}
-        reasons.add(values["reasons"]["engine"])
+        reasons |= {row["reason"] for row in values["criteria"] if row["topic"] == "engine"}
     assert len(reasons) == 7  # as predicted in three ways
     assert len(notes) >= 7  # two verdicts are the same
     assert all(notes)
