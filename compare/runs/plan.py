@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from functools import partial
 from numbers import Integral, Real
-from typing import Any, Self, TypeVar, get_type_hints
+from typing import Any, TypeVar, get_type_hints
 
 T = TypeVar("T")
 _KEY = "option"
@@ -73,15 +73,6 @@ class Plan:
     ValueError
         If a number is none or out of its range, or a word is none of the choices.
     """
-
-    @classmethod
-    def of(cls, **options: Any) -> Self:
-        """Return the plan with options that a caller gives by name; one that it has not is a TypeError."""
-        names = options_of(cls)
-        for name in options:
-            if name not in names:
-                raise TypeError(f"an option must be one of {', '.join(names)}, got {name}")
-        return cls(**options)
 
     def __post_init__(self) -> None:
         from rockwobble.models.number_checks import quoted  # with numpy, which help can do without

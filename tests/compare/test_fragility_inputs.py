@@ -98,9 +98,3 @@ def test_a_folder_of_records_with_its_table(tmp_path):
             read_records(tmp_path)
     with pytest.raises(ValueError, match="cannot be read"):
         read_records(tmp_path / "nowhere.csv")
-
-
-def test_an_option_that_a_plan_has_not_is_named_with_those_that_it_has() -> None:
-    with pytest.raises(TypeError, match=r"one of measure, levels, .*, got resample$"):
-        FragilityPlan.of(resample=3)
-    assert FragilityPlan.of(resamples=3).resamples == 3

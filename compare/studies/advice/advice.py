@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, TypedDict
+from typing import Literal, TypedDict
 
 import numpy as np
 import pandas as pd
@@ -350,9 +350,13 @@ def advise(
     case: Case,
     run: Run | None = None,
     *,
+    support: str | None = None,
+    copies: int = 100,
+    perturbation: float = 0.01,
+    seed: int = 1,
+    mass: float | None = None,
     friction_given: bool = True,
     progress: ProgressCallback | None = None,
-    **options: Any,
 ) -> Advice:
     """Run what it takes to say how far the results of one case can be trusted.
 
@@ -362,12 +366,21 @@ def advise(
         Of a cylinder or of a frame.
     run : Run, optional
         Engine that verifies the prediction; without one it stays unverified.
+    support : {"recess", "flat", "ring"}, optional
+        That is built. Default: that of the run, else "recess".
+    copies : int, optional
+        Number of perturbed copies.
+    perturbation : float, optional
+        Relative standard deviation of the copies: of tilt and rolling rate at release, or of both components
+        of the ground motion.
+    seed : int, optional
+        Of the perturbations.
+    mass : float, optional
+        Of the cylinder, or of one column without a slab [t]: forces in kN and moments in kNm.
     friction_given : bool, optional
         Whether the friction of the case is known, not a default.
     progress : callable, optional
         Called with a `Progress` at the start and at the end of each stage.
-    **options
-        See `AdvicePlan`: support ("recess", or that of the run), copies (100), perturbation (0.01), seed (1).
 
     Returns
     -------
@@ -392,7 +405,13 @@ def advise(
         require_kind("run", run, Run)
     require_case(case)
     require_judged(case)
-    plan = AdvicePlan.of(**({} if run is None else {"support": run.support}) | options)
+    plan = AdvicePlan(
+        support=support or ("recess" if run is None else run.support),
+        copies=copies,
+        perturbation=perturbation,
+        seed=seed,
+        mass=mass,
+    )
     if run is not None:
         if run.support != plan.support:
             raise ValueError(f"support must be that of the run, {run.support}, got {plan.support}")
@@ -410,15 +429,15 @@ def advise(
             case = with_time_to_fall(case, trace)
             trace = simulate_run(case, model)
     moves = _moves(trace.outcome, trace.uplift_time)
-    copies: list[Trace] = []
+    perturbed: list[Trace] = []
     others: list[Trace] = []
     groups: dict[str, list[Case]] = {}
     with stage(f"{plan.copies} perturbed copies"):
         if moves:  # in this process: other ones take longer to begin than hundreds of reduced runs
             groups[COPIES] = plan.perturbed(case)
-            copies = [simulate_run(each, model) for each in groups[COPIES]]
+            perturbed = [simulate_run(each, model) for each in groups[COPIES]]
             others = [simulate_run(each, other, sample_step=BAND_STEP) for each in groups[COPIES]]
-        rows = [*member_rows(COPIES, copies), *member_rows(OTHER, others)]
+        rows = [*member_rows(COPIES, perturbed), *member_rows(OTHER, others)]
     with stage("other records as strong, planar analysis and the vertical component"):
         records, source = ({}, "") if trace.outcome in NO_PEAK else other_records(case)
         groups |= records
@@ -440,7 +459,7 @@ def advise(
         with stage(str(run)):
             if moves:
                 verification, prediction, engine = verified(case, run, model)
-    alpha, band = case.cylinder.alpha, band_of(case, copies)
+    alpha, band = case.cylinder.alpha, band_of(case, perturbed)
     trust = Trust(kind="trace", until=case.length, because="")
     if moves:
         methods = trace.uplift_time + prediction.length if prediction.reason else math.inf
@@ -460,7 +479,7 @@ def advise(
         "trace": _samples(trace, alpha).assign(friction_needed=trace.friction_needed),
         "engine": _samples(engine, alpha),
     }
-    form = _contrast(others, copies) if _differ(group_table(members)) else None
+    form = _contrast(others, perturbed) if _differ(group_table(members)) else None
     facts = {
         **_problem(case),
         "friction": case.friction if friction_given else None,
