@@ -2,8 +2,7 @@ from .comparison.budget import LARGEST_SHARE as LARGEST_SHARE
 from .comparison.budget import WORTH_EXPLAINING as WORTH_EXPLAINING
 from .comparison.budget import ErrorBudget as ErrorBudget
 from .comparison.budget import findings as findings
-from .comparison.comparison import Comparison as Comparison
-from .comparison.driver import compare as compare
+from .comparison.result import Comparison as Comparison
 from .comparison.summary import SUMMARY_COLUMNS as SUMMARY_COLUMNS
 from .external.trajectory import External as External
 from .external.trajectory import read_trajectory as read_trajectory

@@ -10,12 +10,10 @@ nothing.
 'stands'
 """
 
-import importlib
-
 import lazy_loader
 
 _stated, _, _names = lazy_loader.attach_stub(__name__, __file__)
-__all__ = sorted([*_names, "compare"])
+__all__ = sorted(_names)
 
 
 def __getattr__(name: str) -> object:
@@ -23,8 +21,6 @@ def __getattr__(name: str) -> object:
         from importlib.metadata import version
 
         return version("rockwobble")
-    if name == "compare":  # the import system binds the package to this name, and it may be called
-        return importlib.import_module("rockwobble.compare")
     return _stated(name)
 
 

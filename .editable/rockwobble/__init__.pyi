@@ -1,11 +1,11 @@
-import rockwobble.compare.comparison.driver as _driver
-
+from . import compare as compare
 from . import models as models
 from . import multibody as multibody
 from . import reduced as reduced
 from . import reports as reports
 from .compare.check import check as check
-from .compare.comparison.comparison import Comparison as Comparison
+from .compare.comparison.driver import comparison as comparison
+from .compare.comparison.result import Comparison as Comparison
 from .compare.external.trajectory import External as External
 from .compare.runs.execution import simulate as simulate
 from .compare.studies.advice.advice import advise as advise
@@ -40,4 +40,3 @@ from .models import synthetic_motions as synthetic_motions
 from .models import with_motions as with_motions
 
 __version__: str
-compare = _driver.compare  # when the program runs, the package of that name, which may be called

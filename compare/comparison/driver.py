@@ -25,12 +25,12 @@ from ..runs.progress import ProgressCallback
 from ..storage.manifest import require_writable
 from ..storage.provenance import package_versions
 from .budget import ErrorBudget, case_budgets
-from .comparison import Comparison, comparison_of
 from .prediction import Prediction, Simulate, estimated_error, measured_error, predict
+from .result import Comparison, comparison_of
 from .summary import SUMMARY_COLUMNS, external_row, lost_row, summary_row
 
 
-def compare(
+def comparison(
     case_or_suite: Case | Suite,
     *,
     runs: Iterable[Run] | None = None,
@@ -90,7 +90,7 @@ def compare(
     >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
     >>> case = Case(pier, initial=release, duration=0.5)
-    >>> found = compare(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1)
+    >>> found = comparison(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1)
     >>> found.summary[["engine", "support", "reference_support", "diverged"]].values.tolist()
     [['mujoco', 'recess', 'recess', False]]
     """

@@ -193,7 +193,7 @@ def view(
         if folder is None:
             echo(describe(case))
             with user_input(), shown_progress() as progress:
-                comparison = rw.compare(case, runs=[run], progress=progress)
+                comparison = rw.comparison(case, runs=[run], progress=progress)
         show_and_save(comparison.of_case(name), out)
     if sys.stdout.isatty() if opened is None else opened:
         import webbrowser

@@ -149,7 +149,7 @@ def compare(
         elif not engine and suite is None:
             say_what_is_left_out(support or [])
         with user_input(), shown_progress() as progress:
-            found = rw.compare(
+            found = rw.comparison(
                 rw.Suite(cases, runs),
                 runs=runs,
                 progress=progress,

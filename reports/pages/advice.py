@@ -379,7 +379,7 @@ def _steps(found: Advice) -> list[str]:
         call = 'rw.advise(case, support="{}")'
         commands = {
             "friction unknown": "dataclasses.replace(case, friction=...)",
-            "budget": f'rw.compare(case, runs=[rw.Run("{DEFAULT_ENGINE}", "{support}")], budget=True)',
+            "budget": f'rw.comparison(case, runs=[rw.Run("{DEFAULT_ENGINE}", "{support}")], budget=True)',
             "engine": f'rw.advise(case, rw.Run("{DEFAULT_ENGINE}", "{support}"))',
             "spectrum": f"rw.spectrum({found.cylinder.tan_alpha:.6g}, case.motion)",
             "ensemble": "rw.ensemble(case)",

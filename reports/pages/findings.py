@@ -245,7 +245,7 @@ _PARTS = ("model_form", "numerics", "unexplained")
 
 def budget_of_run(case: rw.Case, run: rw.Run, reference: rw.Run) -> list[str]:
     """Return the lines; they rest on runs at finer time steps, made here."""
-    comparison = rw.compare(case, runs=[run], budget=True)
+    comparison = rw.comparison(case, runs=[run], budget=True)
     label = next((label for (_, label), trace in comparison.traces.items() if trace.run == reference), None)
     rows = comparison.summary[comparison.summary["reference"] == label]
     budget = next((found for key, found in comparison.budgets.items() if key[2] == label), None)

@@ -9,8 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble import multibody, reduced
-from rockwobble.compare import compare
+from rockwobble import comparison, multibody, reduced
 from rockwobble.compare.comparison.budget import (
     LARGEST_SHARE,
     WORTH_EXPLAINING,
@@ -204,7 +203,7 @@ def test_the_finer_runs_are_no_longer_than_the_traces_agree(engine):
 def test_the_numerics_of_an_extrapolated_run_are_what_its_extrapolation_leaves():
     runs = [Run("mujoco", "recess", STEP), Run("mujoco", "recess", "extrapolated", finest_step=STEP / 2)]
     case = dataclasses.replace(CASE, duration=1.0)
-    found = compare(Suite([case], runs), runs=runs, budget=True, workers=1)
+    found = comparison(Suite([case], runs), runs=runs, budget=True, workers=1)
     plain, extrapolated = found.summary.to_dict("records")
     # both rest on the same finest run, the one at an eighth of the step
     assert extrapolated["numerics_rms"] < 0.1 * plain["numerics_rms"]
@@ -219,7 +218,7 @@ def test_a_base_that_lands_flat_loses_what_the_model_keeps():
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     case = Case(pier, GroundMotion(2.0 * 9.81 * 0.2 * pulse, 0.02), duration=1.0, name="pulse")
     run = Run("mujoco", "recess", 2e-4)
-    found = compare(Suite([case], [run]), runs=[run], budget=True, workers=1)
+    found = comparison(Suite([case], [run]), runs=[run], budget=True, workers=1)
     (row,) = found.summary.to_dict("records")
     assert row["whole_rms"] > WORTH_EXPLAINING
     assert row["model_form_rms"] == pytest.approx(row["whole_rms"], rel=0.1)

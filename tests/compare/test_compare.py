@@ -1,13 +1,13 @@
 from __future__ import annotations
 
-import inspect
 import math
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble.compare import SUMMARY_COLUMNS, compare
+from rockwobble import comparison
+from rockwobble.compare import SUMMARY_COLUMNS
 from rockwobble.compare.comparison import driver
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job, simulate_all, simulate_run
@@ -84,14 +84,14 @@ def made_up(monkeypatch, cylinder, make_trace):
 
 def test_columns_are_those_of_the_contract_in_its_order(made_up, case):
     made_up()
-    summary = compare(case, runs=[Run("mujoco", "recess")], workers=1).summary
+    summary = comparison(case, runs=[Run("mujoco", "recess")], workers=1).summary
     assert list(summary.columns[: len(CONTRACT)]) == CONTRACT
     assert list(summary.columns) == list(SUMMARY_COLUMNS)
 
 
 def test_numbers_of_a_row(made_up, case, cylinder):
     made_up()
-    row = compare(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1).summary.iloc[0]
+    row = comparison(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1).summary.iloc[0]
     assert (row.case, row.engine, row.support) == ("synthetic", "mujoco", "recess")
     assert (row.reference_engine, row.reference_support) == ("reduced", "recess")
     assert row.time_step == 1e-3
@@ -110,7 +110,7 @@ def test_numbers_of_a_row(made_up, case, cylinder):
 
 def test_flat_ground_gets_a_row_for_each_model(made_up, case):
     made_up()
-    found = compare(case, runs=[Run("mujoco", "recess"), Run("mujoco", "flat")], workers=1)
+    found = comparison(case, runs=[Run("mujoco", "recess"), Run("mujoco", "flat")], workers=1)
     assert found.summary[["support", "reference_support"]].to_numpy().tolist() == [
         ["recess", "recess"],
         ["flat", "recess"],
@@ -125,7 +125,7 @@ def test_a_window_narrows_only_the_rms(made_up, case, cylinder):
     time = np.arange(1001) * 0.01
     tilt = (0.3 + np.where(time > 5.0, 0.1, 0.0)) * cylinder.alpha
     made_up(engine={"tilt": tilt})
-    row = compare(case, runs=[Run("mujoco", "recess")], workers=1, until=5.0).summary.iloc[0]
+    row = comparison(case, runs=[Run("mujoco", "recess")], workers=1, until=5.0).summary.iloc[0]
     assert row.tilt_rms == 0.0
     assert row.contact_rms == 0.0
     assert row.diverged
@@ -135,14 +135,14 @@ def test_a_window_narrows_only_the_rms(made_up, case, cylinder):
 def test_what_limits_a_run_is_in_its_row_by_code(made_up, case):
     facts = (Diagnostic(code="slip", time=2.0), Diagnostic(code="energy", time=0.0), Diagnostic(code="slip"))
     made_up({"outcome": "failed", "facts": facts, "peak_tilt": math.nan}, {"outcome": "overturned"})
-    row = compare(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
+    row = comparison(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
     assert (row.outcome, row.reference_outcome, row.diagnostics) == ("failed", "overturned", "slip, energy")
 
 
 def test_two_that_never_move_agree(made_up, case):
     still = {"tilt": np.zeros(1001), "uplift_time": math.nan, "uplift_direction": math.nan, "rests": True}
     made_up(still, still)
-    row = compare(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
+    row = comparison(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
     assert (row.tilt_rms, row.diverged, row.agreement_time) == (0.0, False, 10.0)
     assert math.isnan(row.uplift_time_difference)
 
@@ -151,7 +151,7 @@ def test_a_run_that_fails_half_way_is_compared_up_to_there(made_up, case, cylind
     tilt = np.where(np.arange(1001) > 400, np.nan, 0.3 * cylinder.alpha)
     fact = Diagnostic(code="not_finite", time=4.01)
     made_up({"tilt": tilt, "outcome": "failed", "facts": (fact,), "peak_tilt": math.nan})
-    row = compare(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
+    row = comparison(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
     assert row.diagnostics == "not_finite"
     assert math.isnan(row.peak_tilt)
     assert row.tilt_rms == 0.0
@@ -166,7 +166,7 @@ def test_a_run_that_left_nothing_is_a_failed_row(monkeypatch, made_up, case):
         return run_job(job) if job.run.engine is None else lost_trace(job.case, job.run, "status -11")
 
     monkeypatch.setattr(execution, "run_job", dying)
-    row = compare(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
+    row = comparison(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
     assert (row.outcome, row.diverged, row.diagnostics) == ("failed", True, "died")
     assert row.reference_peak_tilt == pytest.approx(0.3)
     assert math.isnan(row.tilt_rms)
@@ -178,7 +178,7 @@ def test_a_suite_is_cases_times_runs(made_up, case, cylinder, monkeypatch):
     monkeypatch.setattr(driver, "require_runnable", lambda case, run: None)
     other = Case(cylinder, case.motion, name="second")
     suite = Suite([case, other], [Run("mujoco", "recess"), Run("pybullet", "recess")])
-    summary = compare(suite, workers=1).summary
+    summary = comparison(suite, workers=1).summary
     assert summary[["case", "engine"]].to_numpy().tolist() == [
         ["synthetic", "mujoco"],
         ["synthetic", "pybullet"],
@@ -190,7 +190,7 @@ def test_a_suite_is_cases_times_runs(made_up, case, cylinder, monkeypatch):
 def test_progress_is_told_of_every_run(made_up, case):
     made_up()
     told = []
-    compare(case, runs=[Run("mujoco", "recess")], workers=1, progress=told.append)
+    comparison(case, runs=[Run("mujoco", "recess")], workers=1, progress=told.append)
     assert [(p.label, p.state, p.done, p.total) for p in told] == [
         ("synthetic, recess model", "started", 0, 2),
         ("synthetic, recess model", "finished", 1, 2),
@@ -201,7 +201,7 @@ def test_progress_is_told_of_every_run(made_up, case):
 
 def test_files_hold_the_whole_result(made_up, case, tmp_path):
     made_up()
-    found = compare(case, runs=[Run("mujoco", "recess"), Run("mujoco", "flat")], workers=1, out=tmp_path)
+    found = comparison(case, runs=[Run("mujoco", "recess"), Run("mujoco", "flat")], workers=1, out=tmp_path)
     (manifest,) = read_manifests(tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {"manifest.json", *manifest.files, *manifest.pages}
     assert {"summary.parquet", "summary.csv", "traces.parquet", "passes.parquet"} <= set(manifest.files)
@@ -221,10 +221,10 @@ def test_a_folder_that_cannot_be_written_is_refused_before_anything_runs(monkeyp
     monkeypatch.setattr(execution, "run_job", lambda _: pytest.fail("it ran"))
     (tmp_path / "taken").write_text("")
     with pytest.raises(ValueError, match="must be a folder"):
-        compare(case, runs=[Run("mujoco", "recess")], workers=1, out=tmp_path / "taken")
+        comparison(case, runs=[Run("mujoco", "recess")], workers=1, out=tmp_path / "taken")
     (tmp_path / "manifest.json").write_text('{"name": "app"}')
     with pytest.raises(ValueError, match=r"output folder must have no manifest\.json but one of rockwobble"):
-        compare(case, runs=[Run("mujoco", "recess")], workers=1, out=tmp_path)
+        comparison(case, runs=[Run("mujoco", "recess")], workers=1, out=tmp_path)
 
 
 @pytest.mark.parametrize("until", [0.0, -1.0, math.nan])
@@ -233,7 +233,7 @@ def test_a_window_that_is_none_is_refused_before_anything_runs(
 ) -> None:
     monkeypatch.setattr(execution, "run_job", lambda _: pytest.fail("it ran"))
     with pytest.raises(ValueError, match=r"until must be positive \[s\], got "):
-        compare(case, runs=[Run("mujoco", "recess")], workers=1, until=until)
+        comparison(case, runs=[Run("mujoco", "recess")], workers=1, until=until)
 
 
 @pytest.mark.parametrize(
@@ -247,7 +247,7 @@ def test_a_window_that_is_none_is_refused_before_anything_runs(
 )
 def test_no_run_is_held_against_itself(cylinder: Cylinder, run: Run, reference: Run | None) -> None:
     pushed = Case(cylinder, GroundMotion([[3.0, 1.0], [3.0, 1.0]], 0.5, "push"))
-    found = compare(pushed, runs=[run], reference=reference, workers=1)
+    found = comparison(pushed, runs=[run], reference=reference, workers=1)
     (row,) = found.summary.to_dict("records")
     assert row["run"] != row["reference"]
     for label, wanted in ((row["run"], run), (row["reference"], reference or Run(None, "recess"))):
@@ -261,9 +261,3 @@ def test_the_same_run_in_other_processes_is_the_same(cylinder):
     here, there = (simulate_all([job], workers=workers)[0] for workers in (1, 2))
     assert np.array_equal(here.tilt, there.tilt)
     assert np.array_equal(here.energy, there.energy)
-
-
-def test_the_module_that_may_be_called_shows_the_parameters_of_its_function():
-    import rockwobble as rw
-
-    assert inspect.signature(rw.compare) == inspect.signature(compare)

@@ -8,7 +8,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble.compare import Comparison, compare
+from rockwobble import comparison
+from rockwobble.compare import Comparison
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite
 from rockwobble.models.parquet_file import read_about
@@ -33,8 +34,8 @@ CASES = [
 def saved(tmp_path_factory) -> tuple[Comparison, Comparison]:
     folder = tmp_path_factory.mktemp("comparison")
     runs = [Run("mujoco", "recess", 1e-3), Run("mujoco", "flat", 1e-3)]
-    comparison = compare(Suite(CASES, runs), workers=1, out=folder, budget=True)
-    return comparison, Comparison.load(folder)
+    made = comparison(Suite(CASES, runs), workers=1, out=folder, budget=True)
+    return made, Comparison.load(folder)
 
 
 def test_the_summary_is_the_same(saved):

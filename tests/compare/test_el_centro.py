@@ -7,8 +7,8 @@ import math
 
 import pytest
 
+import rockwobble as rw
 from rockwobble import reduced
-from rockwobble.compare import compare
 from rockwobble.compare.metrics.pair import make_pair, tilt_rms_relative
 from rockwobble.models import Case, Cylinder, Run, el_centro_1940
 
@@ -36,7 +36,7 @@ def run():
         if key not in done:
             cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
             case = Case(cylinder, el_centro_1940().scaled(scale), duration=duration, name="El Centro")
-            done[key] = compare(case, runs=[Run("mujoco", "recess", STEP)], workers=1)
+            done[key] = rw.comparison(case, runs=[Run("mujoco", "recess", STEP)], workers=1)
         return done[key]
 
     return compared

@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble import multibody, reduced
-from rockwobble.compare import External, compare, read_trajectory
+from rockwobble import comparison, multibody, reduced
+from rockwobble.compare import External, read_trajectory
 from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.models import Case, Cylinder, InitialState, Run, Suite, el_centro_1940
 
@@ -70,7 +70,7 @@ def in_recess():
 
 def rows(case, path, **given):
     """Rows of the engine, run again as in `in_recess`, and of the file."""
-    found = compare(
+    found = comparison(
         case,
         runs=[Run("mujoco", "recess", 5e-4)],
         external=[External(path=path, **given)],
@@ -174,7 +174,7 @@ def test_a_fall_ends_the_trajectory(save):
     case = Case(PIER, initial=fall, duration=20.0, name="fall")
     response = reduced.simulate(Case(PIER, initial=fall, duration=20.0))
     assert response.outcome == "overturned"
-    found = compare(case, runs=[], external=[save(angles(response))], workers=1)
+    found = comparison(case, runs=[], external=[save(angles(response))], workers=1)
     (row,) = found.summary.to_dict("records")
     assert (row["outcome"], row["reference_outcome"]) == ("overturned", "overturned")
     assert row["peak_tilt"] == row["reference_peak_tilt"]
@@ -200,7 +200,7 @@ def test_a_fall_that_outlasts_the_run_is_followed_to_the_ground(save, tilt, outc
 
 
 def test_a_trajectory_alone_is_held_against_the_model(in_recess, save, tmp_path):
-    found = compare(
+    found = comparison(
         RELEASE, runs=[], external=[save(angles(in_recess["release"]))], workers=1, out=tmp_path / "out"
     )
     assert found.summary[["run", "reference"]].to_numpy().tolist() == [["table", "recess model"]]
@@ -211,11 +211,11 @@ def test_a_trajectory_alone_is_held_against_the_model(in_recess, save, tmp_path)
 def test_labels_and_cases_must_be_clear(in_recess, save):
     path = save(angles(in_recess["release"]))
     with pytest.raises(ValueError, match="each run must have its own label, got 'table' twice"):
-        compare(RELEASE, runs=[], external=[path, path])
+        comparison(RELEASE, runs=[], external=[path, path])
     with pytest.raises(ValueError, match="each run must have its own label, got 'recess model' twice"):
-        compare(RELEASE, runs=[], external=[External(path=path, label="recess model")])
+        comparison(RELEASE, runs=[], external=[External(path=path, label="recess model")])
     with pytest.raises(ValueError, match="a trajectory belongs to one case, got 2 cases"):
-        compare(Suite([RELEASE, SHAKEN], []), external=[path])
+        comparison(Suite([RELEASE, SHAKEN], []), external=[path])
 
 
 def test_half_turns_of_planar_motion_are_passes_and_no_turn(save: Callable[..., Path]) -> None:
@@ -225,7 +225,7 @@ def test_half_turns_of_planar_motion_are_passes_and_no_turn(save: Callable[..., 
     signed = np.copysign(planar.tilt, np.cos(planar.rolling_angle))
     path = save(pd.DataFrame({"time": planar.time, "tilt [rad]": signed, "azimuth [rad]": 0.0}))
     assert len(read_trajectory(path, case).passes) == len(planar.passes) == 2
-    (row,) = compare(case, runs=[], external=[path], workers=1).summary.to_dict("records")
+    (row,) = comparison(case, runs=[], external=[path], workers=1).summary.to_dict("records")
     assert row["turn_difference"] == pytest.approx(0.0, abs=1e-6)  # as above
 
 
@@ -233,6 +233,6 @@ def test_the_peak_of_a_file_that_ends_early_is_held_against_the_same_stretch(tmp
     trace = reduced.simulate(SHAKEN)
     early = angles(trace)[trace.time <= 0.7 * trace.time[int(np.argmax(trace.tilt))]]
     early.to_csv(tmp_path / "early.csv", index=False)
-    row = compare(SHAKEN, runs=[], external=[tmp_path / "early.csv"], workers=1).summary.iloc[0]
+    row = comparison(SHAKEN, runs=[], external=[tmp_path / "early.csv"], workers=1).summary.iloc[0]
     assert row["reference_peak_tilt"] > 1.1 * row["peak_tilt"]
     assert row["peak_tilt_difference"] == pytest.approx(0.0, abs=1e-6)  # samples of a smooth tilt

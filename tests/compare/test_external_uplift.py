@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble import reduced
-from rockwobble.compare import compare, read_trajectory
+from rockwobble import comparison, reduced
+from rockwobble.compare import read_trajectory
 from rockwobble.compare.external.trajectory import uplift
 from rockwobble.compare.external.verdict import first_passage, uplift_differences
 from rockwobble.models import Case, Cylinder, el_centro_1940
@@ -87,7 +87,7 @@ def test_a_clock_that_is_late_shows_in_the_uplift(save, sample_step):
     steps = np.arange(sample_step, 0.05, sample_step)
     rest = pd.DataFrame({"time": steps, "tilt [rad]": 0.0, "azimuth [rad]": 0.0})
     table = pd.concat([table.iloc[:1], rest, table.iloc[1:]])
-    (row,) = compare(case, runs=[], external=[save(table)], workers=1).summary.to_dict("records")
+    (row,) = comparison(case, runs=[], external=[save(table)], workers=1).summary.to_dict("records")
     assert row["uplift_time_difference"] == pytest.approx(0.05, abs=row["uplift_time_uncertainty"])
     assert row["uplift_time_uncertainty"] <= 0.5 * sample_step + 0.01
     assert "uplift_time" in row["differs_in"]

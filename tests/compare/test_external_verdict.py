@@ -11,8 +11,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble import reduced
-from rockwobble.compare import Comparison, compare, read_trajectory
+from rockwobble import comparison, reduced
+from rockwobble.compare import Comparison, read_trajectory
 from rockwobble.compare.external.verdict import VERDICT_COLUMNS, judge, lists_in_words, mistakes_of
 from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
 
@@ -354,7 +354,7 @@ def test_of_a_trajectory_of_another_problem_nothing_is_explained(save):
 
 def test_the_columns_of_the_summary_say_the_verdict(save, tmp_path):
     path = save(turned(samples("pier shaken", "angles"), 10.0))
-    found = compare(CASES["pier shaken"], runs=[], external=[path], workers=1, out=tmp_path / "out")
+    found = comparison(CASES["pier shaken"], runs=[], external=[path], workers=1, out=tmp_path / "out")
     (row,) = found.summary.to_dict("records")
     again = Comparison.load(tmp_path / "out").summary
     pd.testing.assert_frame_equal(found.summary, again, check_exact=True)
@@ -373,7 +373,7 @@ def test_the_columns_of_the_summary_say_the_verdict(save, tmp_path):
 
 def test_noise_is_no_divergence(save):
     path = save(samples("pier wobbles", "angles", noise=NOISE))
-    (row,) = compare(CASES["pier wobbles"], runs=[], external=[path], workers=1).summary.to_dict("records")
+    (row,) = comparison(CASES["pier wobbles"], runs=[], external=[path], workers=1).summary.to_dict("records")
     assert not row["diverged"]
     assert row["noise"] == pytest.approx(NOISE, rel=0.2)
     assert row["tilt_bound"] == pytest.approx(0.01 + 5.0 * row["noise"])

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble.compare import compare
+from rockwobble import comparison
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
 from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
@@ -40,10 +40,10 @@ def run(folder, *runs: Run, **options) -> list[Trace]:
 
 
 def test_a_second_comparison_repeats_nothing_and_finds_the_same(tmp_path, counted):
-    first = compare(CASE, runs=[GUIDED], workers=1, resume=tmp_path)
+    first = comparison(CASE, runs=[GUIDED], workers=1, resume=tmp_path)
     assert counted[:2] == ["recess model", "mujoco recess"]
     counted.clear()
-    second = compare(CASE, runs=[GUIDED], workers=1, resume=tmp_path)
+    second = comparison(CASE, runs=[GUIDED], workers=1, resume=tmp_path)
     assert counted == []
     pd.testing.assert_frame_equal(first.summary, second.summary, check_exact=True)
 

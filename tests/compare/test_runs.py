@@ -7,7 +7,8 @@ from typing import Literal
 
 import pytest
 
-from rockwobble.compare import compare, default_runs, own_model, simulate
+from rockwobble import comparison
+from rockwobble.compare import default_runs, own_model, simulate
 from rockwobble.compare.runs.choice import (
     labels_beside_references,
     missing_engines,
@@ -126,7 +127,7 @@ def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeyp
 
 
 def test_what_is_no_case_is_refused_by_its_name(case):
-    for call in (simulate, compare):
+    for call in (simulate, comparison):
         with pytest.raises(TypeError, match=r"Case.*, got Cylinder\("):
             call(case.cylinder)
 
@@ -167,7 +168,7 @@ def test_a_ring_that_is_not_touched_follows_the_model_of_open_ground():
     ring = Run("mujoco", "ring")
     assert own_model(ring) == Run(None, "flat")
     own, other = (
-        compare(case, runs=[ring], reference=Run(None, support), workers=1).summary.iloc[0]
+        comparison(case, runs=[ring], reference=Run(None, support), workers=1).summary.iloc[0]
         for support in ("flat", "recess")
     )
     assert "wall_contact" not in own["diagnostics"]

@@ -128,7 +128,7 @@ def test_every_file_of_a_comparison_and_key_of_its_manifest_is_on_its_page(tmp_p
     page = (DOCS / "reference" / "results.md").read_text(encoding="utf-8")
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     case = Case(pier, initial=InitialState(0.5 * pier.alpha, rolling_rate=0.5), duration=0.1)
-    compare.compare(case, runs=[Run(None, "flat")], workers=1, out=tmp_path)
+    rockwobble.comparison(case, runs=[Run(None, "flat")], workers=1, out=tmp_path)
     written = [path.name for path in tmp_path.iterdir()]
     keys = list(json.loads((tmp_path / "manifest.json").read_text(encoding="utf-8")))
     trace = compare.simulate(case)

@@ -8,8 +8,9 @@ from typing import Any
 
 import pytest
 
+import rockwobble as rw
 from rockwobble import reduced
-from rockwobble.compare import Comparison, compare
+from rockwobble.compare import Comparison
 from rockwobble.compare.comparison import driver
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
@@ -62,7 +63,7 @@ def comparison() -> Comparison:
         patch.setattr(driver, "simulate_all", lambda jobs, **_: simulate_disguised(jobs, {}))
         # no engine runs, so none needs to be installed: PyBullet is not everywhere
         patch.setattr(driver, "require_runnable", lambda case, run: None)
-        return compare(case, runs=runs)
+        return rw.comparison(case, runs=runs)
 
 
 @pytest.fixture

@@ -7,8 +7,7 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
-from rockwobble import reduced
-from rockwobble.compare import compare
+from rockwobble import comparison, reduced
 from rockwobble.compare.comparison import driver
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import (
@@ -131,7 +130,7 @@ def test_the_support_divides_only_what_its_models_tell_apart(monkeypatch, moved_
         return found
 
     monkeypatch.setattr(driver, "simulate_all", simulated)
-    (view,) = case_views(compare(Case(pier, **moved_by), runs=[Run("mujoco", "flat")]))
+    (view,) = case_views(comparison(Case(pier, **moved_by), runs=[Run("mujoco", "flat")]))
     against_recess, own = rows_of(view.rows)
     assert against_recess.diverged
     assert own.diverged
@@ -339,7 +338,7 @@ def test_the_budget_of_a_run_advises_nothing_where_it_is_not_split(monkeypatch, 
         summary=table(row(reference="model", diverged=False)),
         budgets={("case", "run", "model"): found},
     )
-    monkeypatch.setattr(budget_of_run.rw, "compare", lambda *_, **__: comparison)
+    monkeypatch.setattr(budget_of_run.rw, "comparison", lambda *_, **__: comparison)
     *parts, last = budget_of_run.budget_of_run(None, None, "reference")
     assert last.startswith("It is not split")
     assert not any(line.strip().startswith(("numerics", "unexplained")) for line in parts)

@@ -5,7 +5,8 @@ import re
 from html.parser import HTMLParser
 from pathlib import Path
 
-from rockwobble.compare import SUMMARY_COLUMNS, compare
+import rockwobble as rw
+from rockwobble.compare import SUMMARY_COLUMNS
 from rockwobble.compare.storage.manifest import Manifest
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run
 from rockwobble.reports.pages import page_of
@@ -75,7 +76,7 @@ def test_still_ground_has_no_excitation_and_markup_in_a_name_stays_text(no_engin
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.5)
     case = Case(cylinder, initial=release, duration=2.0, name="<b>name</b> & co")
-    page = page_of(compare(case, runs=[Run("mujoco", "recess")]).made_by()).html()
+    page = page_of(rw.comparison(case, runs=[Run("mujoco", "recess")]).made_by()).html()
     assert "excitation-0" not in page
     assert "<b>name</b>" not in page
     assert "&lt;b&gt;name&lt;/b&gt; &amp; co" in page
@@ -85,12 +86,12 @@ def test_a_run_that_never_moves_or_fails_can_be_shown(no_engines):
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     case = Case(cylinder, duration=1.0, name="still")
     no_engines()
-    still = page_of(compare(case, runs=[Run("mujoco", "recess")]).made_by()).files()
+    still = page_of(rw.comparison(case, runs=[Run("mujoco", "recess")]).made_by()).files()
     assert "stay at rest" in still["report.html"].decode()
     assert still["figure.svg"]
     gained = (Diagnostic(code="energy_gain", time=0.5),)
     no_engines(outcome="failed", facts=gained, peak_tilt=float("nan"))
-    failed = page_of(compare(case, runs=[Run("mujoco", "recess")]).made_by()).files()
+    failed = page_of(rw.comparison(case, runs=[Run("mujoco", "recess")]).made_by()).files()
     assert sentence(gained[0]) in failed["report.html"].decode()
     assert failed["figure.svg"]
 
@@ -100,7 +101,7 @@ def test_the_document_of_a_release_is_this_one(no_engines):
     pier = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
     release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
     case = Case(pier, initial=release, duration=8.0, name="release")
-    found = compare(case, runs=[Run("mujoco", "recess"), Run("mujoco", "flat")])
+    found = rw.comparison(case, runs=[Run("mujoco", "recess"), Run("mujoco", "flat")])
     manifest = Manifest(
         kind="comparison",
         command="rockwobble compare",

@@ -5,7 +5,7 @@ import base64
 import numpy as np
 import pytest
 
-from rockwobble.compare import compare
+import rockwobble as rw
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.case_view import case_views
@@ -25,7 +25,7 @@ def _numbers(text):
 def comparison():
     release = InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.5)
     case = Case(PIER, initial=release, duration=1.0, name="release")
-    return compare(case, runs=[Run("mujoco", "flat", 1e-3)], workers=1)
+    return rw.comparison(case, runs=[Run("mujoco", "flat", 1e-3)], workers=1)
 
 
 def test_the_pose_of_the_page_puts_the_mass_centre_where_the_run_has_it(comparison):
@@ -53,7 +53,7 @@ def test_a_fall_after_the_end_of_the_case_is_played():
     gone = Case(
         PIER, initial=InitialState(tilt=1.1 * PIER.alpha, rolling_rate=0.1), duration=0.5, name="gone"
     )
-    found = compare(gone, runs=[Run("mujoco", "recess", 1e-3)], workers=1)
+    found = rw.comparison(gone, runs=[Run("mujoco", "recess", 1e-3)], workers=1)
     ends = [float(trace.time[-1]) for trace in found.traces.values()]
     assert max(ends) > 1.0
     assert playback(case_views(found)[0])["length"] == max(ends)
@@ -65,10 +65,10 @@ def test_a_fall_after_the_end_of_the_case_is_played():
 
 def test_nothing_is_played_where_nothing_moves():
     still = GroundMotion(np.zeros((20, 2)), 0.01, "still")
-    comparison = compare(Case(PIER, still, name="still"), runs=[Run("mujoco", "recess", 1e-3)], workers=1)
-    assert playback(case_views(comparison)[0]) is None
+    made = rw.comparison(Case(PIER, still, name="still"), runs=[Run("mujoco", "recess", 1e-3)], workers=1)
+    assert playback(case_views(made)[0]) is None
     with pytest.raises(ValueError, match="there is nothing to play in 'still'"):
-        page_of(comparison.of_case("still"))
+        page_of(made.of_case("still"))
 
 
 def test_stored_results_are_played_and_drawn_again_without_a_run(comparison, tmp_path, monkeypatch, capsys):

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from rockwobble.compare import Comparison, compare
+from rockwobble import comparison
+from rockwobble.compare import Comparison
 from rockwobble.compare.storage.manifest import MANIFEST
 from rockwobble.models import Case, Cylinder, InitialState, Run, plain_json
 from rockwobble.reports.cli.main import main
@@ -26,7 +27,7 @@ def call(*arguments: str) -> int:
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("stored")
-    compare(CASE, runs=RUNS, workers=1, out=folder)
+    comparison(CASE, runs=RUNS, workers=1, out=folder)
     return folder
 
 
@@ -62,7 +63,7 @@ def test_show_says_what_is_there_and_what_made_it(stored, capsys):
 
 
 def test_show_names_a_damaged_file_and_fails(tmp_path, capsys):
-    compare(CASE, runs=RUNS, workers=1, out=tmp_path)
+    comparison(CASE, runs=RUNS, workers=1, out=tmp_path)
     (tmp_path / "passes.parquet").write_bytes(b"torn")
     (result,) = described(tmp_path, capsys, code=1)
     assert result["states"]["passes.parquet"] == "damaged"
@@ -78,12 +79,12 @@ def test_show_says_how_far_it_is_and_nothing_when_it_is_done(tmp_path, capsys):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        compare(CASE, runs=RUNS, workers=1, resume=tmp_path, progress=interrupt)
+        comparison(CASE, runs=RUNS, workers=1, resume=tmp_path, progress=interrupt)
     (going,) = described(tmp_path, capsys)
     assert going == {"kind": "comparison", "done": 1, "total": 2, "complete": False}
     assert call("show", str(tmp_path)) == 0
     assert "comparison, not finished: 1 of 2 tasks" in capsys.readouterr().out
-    compare(CASE, runs=RUNS, workers=1, resume=tmp_path, out=tmp_path)
+    comparison(CASE, runs=RUNS, workers=1, resume=tmp_path, out=tmp_path)
     assert [each["complete"] for each in described(tmp_path, capsys)] == [True]
 
 

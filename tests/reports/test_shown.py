@@ -20,7 +20,7 @@ RELEASE = rw.Case(PIER, initial=rw.InitialState(tilt=0.5 * PIER.alpha, rolling_r
 def comparison() -> rw.Comparison:
     other = rw.Case(PIER, initial=RELEASE.initial, duration=1.0, gravity=9.0, name="lighter")
     suite = rw.Suite([RELEASE, other], [])
-    return rw.compare(suite, runs=[rw.Run(None, "flat")], reference=rw.Run(None, "recess"), workers=1)
+    return rw.comparison(suite, runs=[rw.Run(None, "flat")], reference=rw.Run(None, "recess"), workers=1)
 
 
 def test_trace_shows_itself():
@@ -100,7 +100,7 @@ def test_a_line_says_of_what_is_long_how_much_there_is():
 
 
 def test_names_are_told_to_whoever_completes_them():
-    assert {"simulate", "Case", "compare", "__version__"} <= set(dir(rw))
+    assert {"simulate", "Case", "comparison", "compare", "__version__"} <= set(dir(rw))
     for part in (rw.compare, rw.models, rw.reduced, rw.multibody):
         assert dir(part) == sorted(part.__all__)
     for name in rc.__all__:

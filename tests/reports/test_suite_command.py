@@ -9,10 +9,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import rockwobble as rw
 from rockwobble import reduced
-from rockwobble.compare import Comparison, compare
+from rockwobble.compare import Comparison
 from rockwobble.compare.comparison import driver
-from rockwobble.compare.comparison.comparison import comparison_of
+from rockwobble.compare.comparison.result import comparison_of
 from rockwobble.compare.runs import execution
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, WobblingFrame, read_suite
 from rockwobble.reports.cli.main import main
@@ -230,10 +231,10 @@ def test_the_page_of_many_cases_stays_small_and_draws_one_at_a_time(no_engines, 
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     one = Case(pier, initial=InitialState(tilt=0.1, rolling_rate=0.5), duration=60.0, name="</script>")
     runs = [Run(engine, support) for engine in ("mujoco", "pybullet") for support in ("recess", "flat")]
-    comparison = compare(one, runs=runs, workers=1)
+    made = rw.comparison(one, runs=runs, workers=1)
     # with as many points for six cases as 44 would get, all of them would fit
     monkeypatch.setattr(report, "_ALL_POINTS", report._ALL_POINTS * CASES // 44)
-    page = report.page_of(_repeated(comparison, CASES)).html()
+    page = report.page_of(_repeated(made, CASES)).html()
     assert page.count("<template id=") == CASES
     assert page.count('class="chart"') >= CASES * 4
     assert 44 * len(page.encode()) / CASES < PAGE_LIMIT

@@ -6,7 +6,7 @@ import re
 import pytest
 from rich.console import Console
 
-from rockwobble.compare import compare
+import rockwobble as rw
 from rockwobble.models import Case, Cylinder, Run
 from rockwobble.reports.pages import page_of
 
@@ -36,6 +36,6 @@ def test_the_table_fits_its_terminal_and_every_row_its_line(comparison, width):
 def test_a_failed_run_is_no_number(no_engines):
     no_engines(outcome="failed", peak_tilt=float("nan"), residual_displacement=float("nan"))
     case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), duration=1.0, name="still")
-    text = printed(compare(case, runs=[Run("mujoco", "recess")]), 100)
+    text = printed(rw.comparison(case, runs=[Run("mujoco", "recess")]), 100)
     assert "failed" in text
     assert "nan" not in text

@@ -16,7 +16,7 @@ from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 
-from ...comparison.driver import compare
+from ...comparison.driver import comparison
 from ...comparison.prediction import Prediction, estimated_error, predict, time_scale
 from ...metrics.pair import tolerance_of
 from ...runs.execution import SAMPLE_STEP, simulate_run
@@ -160,7 +160,7 @@ def predicted(case: Case, trace: Trace, run: Run | None) -> Prediction:
 
 def verified(case: Case, run: Run, model: Run) -> tuple[Verification, Prediction, Trace]:
     """Run the engine; what it resolved makes the prediction sharper."""
-    found = compare(case, runs=[run], reference=model)
+    found = comparison(case, runs=[run], reference=model)
     (row,) = found.summary.to_dict("records")
     trace = found.traces[case.name, row["run"]]
     verification = Verification(

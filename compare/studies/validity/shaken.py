@@ -18,7 +18,7 @@ from rockwobble.multibody.ring import clearance_needed, take_ring
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 from rockwobble.reduced.body import body_of
 
-from ...comparison.driver import compare
+from ...comparison.driver import comparison
 from ...metrics.pair import FloatArray
 from ...runs.choice import SUPPORTS
 from ...runs.execution import simulate_run
@@ -192,7 +192,7 @@ def measure_following(
     case = shaken_case(
         EL_CENTRO, tan_alpha, semidiagonal, intensity, duration=duration, slab_mass_ratio=slab_mass_ratio
     )
-    summary = compare(case, runs=[Run(DEFAULT_ENGINE, support)], workers=1).summary[list(_COLUMNS)]
+    summary = comparison(case, runs=[Run(DEFAULT_ENGINE, support)], workers=1).summary[list(_COLUMNS)]
     return [{str(name): value for name, value in row.items()} for row in summary.to_dict("records")]
 
 

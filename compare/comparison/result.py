@@ -51,7 +51,7 @@ class Comparison(Results, kind="comparison"):
     >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
     >>> case = rw.Case(pier, initial=release, duration=4.0)
-    >>> comparison = rw.compare(case, runs=[rw.Run(None, "flat")], workers=1)
+    >>> comparison = rw.comparison(case, runs=[rw.Run(None, "flat")], workers=1)
     >>> comparison.summary[["run", "reference", "diverged"]].to_dict("records")[0]
     {'run': 'flat-ground model', 'reference': 'recess model', 'diverged': False}
     >>> sorted(comparison.traces)
