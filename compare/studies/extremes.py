@@ -68,7 +68,7 @@ _EXPLAINS = frozenset(
         "early_uplift",
         "unresolved_pass",
         "undecided",
-    }  # fmt: skip
+    }
 )
 _EXPLAINS_REDUCED = frozenset({"side"})
 

@@ -46,8 +46,8 @@ _WORDS: Mapping[str, str] = {
     "undecided": "it stays so near its balance that rounding or the error of the solution decides whether it "
     "falls or turns back: whether it overturns is not known",
     "solver": "the solver had not converged in {size:.0f} of the {bound:.0f} steps looked at",
-    "early_uplift": "the base opened{at} at {percent:.2g} % less load than uplifts it: what follows from a small "
-    "uplift is not known",
+    "early_uplift": "the base opened{at} at {percent:.2g} % less load than uplifts it: what follows from "
+    "a small uplift is not known",
     "unresolved_pass": "{passes_are} closer to upright than the {bound:.1e} rad that contact resolves, "
     "first{at}",
     "settled": "the tilt is, until {duration}, within {size:.1e} alpha of its limit for a vanishing step, "
