@@ -21,7 +21,7 @@ from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, engine_fo
 from .excitation import StepMeans
 from .extrapolated_step import EXTRAPOLATED, FINEST, extrapolate, require_finest
 from .guard import check_time_step
-from .passes import passes_between, true_swings
+from .passes import STEPS_OF_A_PASS, passes_between, true_swings
 from .protocol import Engine, Settings
 from .reaction import EARLY
 from .recorder import COLUMNS, Recorder
@@ -42,9 +42,6 @@ if TYPE_CHECKING:
 
 
 STEP_SETTINGS = {"step_tolerance": AUTO, "finest_step": EXTRAPOLATED}  # settings of the ways to a step
-# Steps in the time that the minimum tilt of a pass takes at the largest rate: of 200 small motions those with
-# fewer were off by 2e-3 to 2 of their peak, those with 2.5 to 10 by 5e-2 at most
-STEPS_OF_A_PASS = 2.5
 _SWING = 1e-9  # [rad] smallest difference of two turning points that is not rounding
 
 
