@@ -37,6 +37,7 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "rolling_loss": ("", "rolling resistance took of the energy of the motion, besides"),
         "undecided": ("", "it stays by its balance: rounding decides whether it falls or turns back"),
         "solver": ("steps", "the solver had not converged in some of the steps looked at"),
+        "early_uplift": ("", "the base opened before the load was at its rim"),
         "unresolved_pass": ("passes", "passes are closer to upright than contact resolves"),
         "settled": ("alpha", "error that the time step leaves, by extrapolation"),
         "unsettled": ("alpha", "change from twice the time step: it has not settled, or nobody knows"),

@@ -140,7 +140,7 @@ class Trace(Shown):
         Steps tried; 0 where that is not known.
     contact_resolution : float
         Smallest minimum tilt of a pass that the engine resolves [rad]: by which contact gives, or by which
-        the tilt changes in a time step where it is fastest, whichever is more.
+        the tilt changes in a few time steps where it is fastest, whichever is more.
     residual_displacement : float
         Horizontal distance of the base centre from O at the end [m].
     error_estimate, settled_until : float

@@ -182,6 +182,11 @@ class EnergyWatch:
             until, self._lost, self._first = until - until[0], self._lost - float(until[0]), False
         return until
 
+    @property
+    def moves(self) -> bool:
+        """Whether there has been a motion to speak of."""
+        return self.largest >= self._least
+
     def take(self, time: Array, energy: Array, error: Array) -> None:
         """Take the steps (n,) that belong to the result."""
         starts = np.arange(0, len(time), _BLOCK)
@@ -197,6 +202,6 @@ class EnergyWatch:
         time, error = np.hstack([*self._blocks, np.empty((2, 0))])
         error = error[time <= until]
         large = np.abs(error) > DRIFT * self.largest
-        if self.largest < self._least or not large.any():
+        if not self.moves or not large.any():
             return math.nan, 0.0, DRIFT
         return float(time[np.argmax(large)]), float(error[np.abs(error).argmax()]) / self.largest, DRIFT

@@ -125,6 +125,7 @@ class Recorder:
         self._balance = scene.balance_tilt
         self.fastest = 0.0
         self.uplift: tuple[float, float] | None = None if start.standing else (0.0, rolling_angle)
+        self.missing_load = math.nan  # at the uplift, share of the load that uplifts
         self.ended: str = ""
         self.failure = ""  # code of the diagnostic that ended the run
         self.warnings: list[str] = []
@@ -190,6 +191,7 @@ class Recorder:
             wall = wall and _rows(wall, inside)
         if self._watch is not None and self.uplift is None:
             self.uplift = self._watch.watch(time, state.tilt, poses, after, acceleration)
+            self.missing_load = self._watch.missing
         leans = state.tilt > self.floor
         angle = unwrap(
             state.azimuth,

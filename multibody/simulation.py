@@ -22,8 +22,9 @@ from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, engine_fo
 from .excitation import StepMeans
 from .extrapolated_step import EXTRAPOLATED, FINEST, extrapolate, require_finest
 from .guard import check_time_step
-from .passes import passes_between, true_swings
+from .passes import STEPS_OF_A_PASS, passes_between, true_swings
 from .protocol import Engine, Settings
+from .reaction import EARLY
 from .recorder import COLUMNS, Recorder
 from .scene import (
     REFERENCE_GRAVITY,
@@ -186,7 +187,8 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
     for field in (table["rolling_angle"], contact):
         field[resting] = np.nan
     resolution = max(
-        recorder.penetration / (1.5 * scene.body.base_radius), recorder.fastest * scene.time_step
+        recorder.penetration / (1.5 * scene.body.base_radius),
+        STEPS_OF_A_PASS * recorder.fastest * scene.time_step,
     )
     passes = _passes(recorder, resolution, scale)
     sampled = {
@@ -399,8 +401,17 @@ def diagnostics(
         yield Diagnostic(code="undecided", time=end * unit_time)
     if recorder.unsolved:
         yield Diagnostic(code="solver", size=recorder.unsolved, bound=recorder.looks)
+    if recorder.uplift is not None and recorder.missing_load > EARLY:
+        yield Diagnostic(
+            code="early_uplift", time=recorder.uplift[0] * unit_time, size=recorder.missing_load, bound=EARLY
+        )
     close = passes[~passes["resolved"]]
-    if len(close):
+    if recorder.uplift is not None and not recorder.energy.moves:
+        # it opened, and closed before it had moved: a pass through upright, after which no motion is left
+        yield Diagnostic(
+            code="unresolved_pass", time=recorder.uplift[0] * unit_time, size=1, bound=resolution
+        )
+    elif len(close):
         yield Diagnostic(
             code="unresolved_pass",
             time=float(close["time"].iloc[0]),

@@ -280,14 +280,24 @@ def default_runs(
     """
     if engines is not None and supports is not None:
         return tuple(Run(engine, support) for support in supports for engine in engines)
+    unnamed = engines is None
     if engines is None:
         reserved = reserved_engines()
         engines = [name for name in available_engines() if name not in reserved]
     runs = []
     for support in SUPPORTS if supports is None else supports:
         able = [engine for engine in engines if support in find_engine(engine).supports]
+        if unnamed and supports is not None and not able:
+            _require_one_with(support)
         runs += [Run(engine, support) for engine in able or (engines if supports is not None else ())]
     return tuple(runs)
+
+
+def _require_one_with(support: str) -> None:
+    """Refuse a support of which the only engine does not run here, for what that engine lacks."""
+    for name in missing_engines():
+        if support in engine_named(name).supports:
+            find_engine(name)
 
 
 def all_runs(cases: Sequence[Case], supports: Sequence[str] | None = None) -> tuple[Run, ...]:
@@ -317,7 +327,7 @@ def _unable(name: str, cases: Sequence[Case]) -> str:
     try:
         engine = find_engine(name)
     except (BrokenEngineError, EngineNotInstalledError) as error:
-        return str(error)
+        return f"{error}; it is left out"
     stands = not all(case.is_release for case in cases)
     return (
         f"{name} cannot uplift a cylinder that stands and is left out"

@@ -59,7 +59,16 @@ _TIGHT, _REFERENCE = 1e-12, 1e-10  # tolerances
 # what makes an engine leave its reference: no wall, which the reference at half the step meets as well; a
 # reduced model errs only where the side of a pass is undetermined
 _EXPLAINS = frozenset(
-    {"slip", "lift_off", "tension", "friction_needed", "energy", "unresolved_pass", "undecided"}
+    {
+        "slip",
+        "lift_off",
+        "tension",
+        "friction_needed",
+        "energy",
+        "early_uplift",
+        "unresolved_pass",
+        "undecided",
+    }
 )
 _EXPLAINS_REDUCED = frozenset({"side"})
 

@@ -185,7 +185,7 @@ def view(
                 raise ValueError("--case chooses from a folder, give the folder of a comparison as well")
             else:
                 case = problem.case()
-                asked = rw.Run(engine or rw.multibody.DEFAULT_ENGINE, support, time_step)
+                asked = rw.Run(engine or _default_engine(support), support, time_step)
                 (run,) = rr.with_settings(case, [asked], settings(setting))
                 rr.require_runnable(case, run)
                 name = case.name
@@ -199,6 +199,19 @@ def view(
         import webbrowser
 
         webbrowser.open((out / "view.html").resolve().as_uri())
+
+
+def _default_engine(support: str) -> str:
+    """Return the default engine, or in its place the first with the support that loads."""
+    from rockwobble.multibody.engines.registry import engine_fault, find_engine, standard_engines
+
+    default = rw.multibody.DEFAULT_ENGINE
+    fault = engine_fault(default)
+    for name in standard_engines() if fault else ():
+        if not engine_fault(name) and support in find_engine(name).supports:
+            complain(f"{default} {fault}; {name} runs in its place")
+            return name
+    return default
 
 
 def _chosen_case(comparison: rw.Comparison, name: str | None) -> str:

@@ -46,6 +46,8 @@ _WORDS: Mapping[str, str] = {
     "undecided": "it stays so near its balance that rounding or the error of the solution decides whether it "
     "falls or turns back: whether it overturns is not known",
     "solver": "the solver had not converged in {size:.0f} of the {bound:.0f} steps looked at",
+    "early_uplift": "the base opened{at} at {percent:.2g} % less load than uplifts it: what follows from "
+    "a small uplift is not known",
     "unresolved_pass": "{passes_are} closer to upright than the {bound:.1e} rad that contact resolves, "
     "first{at}",
     "settled": "the tilt is, until {duration}, within {size:.1e} alpha of its limit for a vanishing step, "
@@ -102,6 +104,7 @@ _MANY: Mapping[str, str] = {
     "solver": "had steps whose solver did not converge",
     "unsettled": "did not settle with the time step",
     "not_extrapolated": "could not be extrapolated in the time step to the end",
+    "early_uplift": "opened before the load was at the rim",
     "unresolved_pass": "had passes closer to upright than contact resolves",
     "undecided": "ended in motion that was not decided",
     "one_column": "ran one column, under a slab that only translates",

@@ -12,6 +12,7 @@ from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody.guard import energy_scale, first_breach
 from rockwobble.multibody.kinematics import Kinematics, kinematics
+from rockwobble.multibody.passes import STEPS_OF_A_PASS
 from rockwobble.multibody.protocol import Steps
 from rockwobble.multibody.scene import scaled_body, starting_state
 
@@ -102,7 +103,8 @@ def test_passes_too_close_to_upright_are_marked(engine: str, time_step: float | 
     (close,) = (fact for fact in near.facts if fact.code == "unresolved_pass")
     assert (close.size, close.bound) == (len(near.passes), near.contact_resolution)
     # the tilt rate just before upright, in steps; samples miss its largest value by a little
-    assert near.contact_resolution == pytest.approx(near.time_step * np.abs(near.tilt_rate).max(), rel=0.02)
+    step = near.time_step * np.abs(near.tilt_rate).max()
+    assert near.contact_resolution == pytest.approx(STEPS_OF_A_PASS * step, rel=0.02)
 
 
 def test_a_gain_is_held_against_the_energy_of_the_motion() -> None:

@@ -216,6 +216,7 @@ WORDS = {
     "wall_contact": ("the cylinder touched a wall from 2 s on", {}),
     "energy": ("contact took 2.2e-02 of the energy of the motion, which shows from 2 s on", {"size": -0.022}),
     "solver": ("the solver had not converged in 3 of the 90 steps looked at", {"size": 3, "bound": 90}),
+    "early_uplift": ("the base opened at 2 s at 3 % less load than uplifts it", {"size": 0.03}),
     "unresolved_pass": ("1 pass is closer to upright than the 8.1e-06 rad", {"size": 1, "bound": 8.1e-6}),
     "settled": (
         "the tilt is, until 3 s, within 1.0e-05 alpha",

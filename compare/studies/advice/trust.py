@@ -14,6 +14,7 @@ import pandas as pd
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody import DEFAULT_ENGINE
+from rockwobble.multibody.passes import STEPS_OF_A_PASS
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 
 from ...comparison.driver import comparison
@@ -150,8 +151,8 @@ def predicted(case: Case, trace: Trace, run: Run | None) -> Prediction:
         case,
         reference=trace,
         own=trace,
-        # the tilt that the fastest fall crosses in one step; the penetration counts for less than it
-        contact_resolution=float(np.abs(trace.tilt_rate).max()) * step,
+        # of the fastest fall; the penetration counts for less than it
+        contact_resolution=STEPS_OF_A_PASS * float(np.abs(trace.tilt_rate).max()) * step,
         error=estimated_error(case, DEFAULT_ENGINE if run is None else run.engine, step),
         simulate=simulate_run,
         tolerance=tolerance_of(trace),
