@@ -64,8 +64,8 @@ _ROUNDING = 1e-12
 @inlined
 def normal_force(body: Body, s: float, c: float, omega: float, az: float) -> tuple[float, float]:
     """Return load [m/s^2] and lift [m] of the normal force N = load + mu lift theta''."""
-    load = body.g + az - (body.b * s + body.h * c) * omega * (body.mu * omega)
-    return with_tendon_load(body, load, s, c), body.b * c - body.h * s
+    load = with_tendon_load(body, body.g + az, s, c) - (body.b * s + body.h * c) * omega * (body.mu * omega)
+    return load, body.b * c - body.h * s
 
 
 @inlined

@@ -121,11 +121,13 @@ def frame(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def tendon(subject: Subject, support: str) -> Iterator[Result]:
-    """Tilt of a release with a tendon: between points in space, which in a recess the tilt alone stretches."""
+    """Tilt of a release with a tendon: a spring between points, whose stretch follows from the tilt."""
     case = dataclasses.replace(RELEASE, tendon=TENDON)
     found, model = _both(subject, case, support)
     apart = _difference(found, model, case.length)
-    yield at_most("tilt and azimuth with a tendon", apart, subject.within(1.0, "contact at its step", "alpha"))
+    yield at_most(
+        "tilt and azimuth with a tendon", apart, subject.within(1.0, "contact at its step", "alpha")
+    )
 
 
 def ramp(subject: Subject, support: str) -> Iterator[Result]:

@@ -133,9 +133,7 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
         Check(measure=invariance.statement),
     ),
     "tendon": (
-        Check(
-            measure=lagrange.residual_with_tendon, supports=("recess",), options=("rtol",), tendon=True
-        ),
+        Check(measure=lagrange.residual_with_tendon, supports=("recess",), options=("rtol",), tendon=True),
         Check(measure=restraint.releases, supports=("recess",), tendon=True),
         Check(measure=restraint.rocking, supports=("planar",), tendon=True),
         Check(measure=restraint.stored_energy, supports=("recess",), knows=("energy",), tendon=True),

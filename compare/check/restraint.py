@@ -1,8 +1,8 @@
 """What a tendon must do: its energy, its couple by exact solutions, uplift, load, balance and scale.
 
-All follow from the energies of `lagrange`, in which the tendon is stretched by places: from O to the centre of
-the base, and under a slab by as much once more. In a recess both depend on the tilt alone, so that B, L and
-the quadratures of `laws` stay, with another V.
+All follow from the energies of `lagrange`, in which the tendon is stretched by places: from O to the centre
+of the base, and under a slab by as much once more. In a recess both depend on the tilt alone, so that B, L
+and the quadratures of `laws` stay, with another V.
 """
 
 from __future__ import annotations
@@ -16,15 +16,13 @@ import numpy as np
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Tendon, Trace
 from rockwobble.models.cylinder import PIER
 
-from .lagrange import TENDON, energy, gaps, potential, shape_of, slope
+from .lagrange import TENDON, Shape, energy, potential, shape_of, slope
 from .laws import height_energy, period_and_turn, planar_quarter
 from .measurement import (
     FRAME_RELEASE,
-    GRAVITY,
     RELEASE,
     SHOCK,
     SHOCK_TIMES,
-    THRESHOLD,
     Bound,
     Result,
     at_most,
@@ -102,7 +100,9 @@ def second_gap(subject: Subject, support: str) -> Iterator[Result]:
         weight = height_energy(shape_of(body), np.array([start.tilt]))[0]
         stored.append((whole - weight) * (1.0 + 2.0 * body.slab_mass_ratio))
     bound = subject.within(10.0, "in a frame it crosses a gap at either end of the column")
-    yield at_most("elongation under a slab over twice that without", abs(stored[1] / stored[0] / 2.0 - 1.0), bound)
+    yield at_most(
+        "elongation under a slab over twice that without", abs(stored[1] / stored[0] / 2.0 - 1.0), bound
+    )
 
 
 def load_at_rest(subject: Subject, support: str) -> Iterator[Result]:
@@ -119,12 +119,16 @@ def raised_uplift(subject: Subject, support: str) -> Iterator[Result]:
     upright = 1e-9  # [rad]
     for of, case in _held(subject).items():
         shape = shape_of(case.cylinder, TENDON)
-        couple = slope(lambda at, of=shape: potential(of, at, 0.0 * at, np.zeros((1, 3))), upright)
-        threshold = couple / shape.h
+        threshold = _couple(shape, upright) / shape.h
         motion = GroundMotion(np.outer([0.0, 1.5], [threshold, 0.0]), 1.5)
         found = subject.simulate(Case(case.cylinder, motion, tendon=TENDON), support, sample_step=0.05)
         bound = subject.within(50.0, "closed form, to some steps", "s")
         yield at_most(f"time of uplift with a tendon, {of}", abs(found.uplift_time - 1.0), bound)
+
+
+def _couple(shape: Shape, tilt: float) -> float:
+    """Return the static couple V' at a tilt [m^2/s^2]."""
+    return slope(lambda at: potential(shape, at, 0.0 * at, np.zeros((1, 3))), tilt)
 
 
 def balance(subject: Subject, support: str) -> Iterator[Result]:
@@ -133,8 +137,7 @@ def balance(subject: Subject, support: str) -> Iterator[Result]:
     low, high = PIER.alpha, 0.5 * math.pi
     for _ in range(60):
         middle = 0.5 * (low + high)
-        couple = slope(lambda at: potential(shape, at, 0.0 * at, np.zeros((1, 3))), middle)
-        low, high = (middle, high) if couple > 0.0 else (low, middle)
+        low, high = (middle, high) if _couple(shape, middle) > 0.0 else (low, middle)
     for word, factor, expected in (("within", 1.0 - _NEAR, False), ("beyond", 1.0 + _NEAR, True)):
         start = InitialState(factor * low)
         found = subject.simulate(Case(PIER, initial=start, duration=10.0, tendon=TENDON), support)
@@ -169,7 +172,9 @@ def without_force(subject: Subject, support: str) -> Iterator[Result]:
         subject.simulate(dataclasses.replace(case, tendon=tendon, duration=case.length), support)
         for tendon in (None, Tendon())
     )
-    bound = Bound(subject.repeatability if "stepper" in subject.options else 0.0, "no force, no motion", "alpha")
+    bound = Bound(
+        subject.repeatability if "stepper" in subject.options else 0.0, "no force, no motion", "alpha"
+    )
     yield at_most("a tendon that does not pull", _apart(none, free), bound)
 
 

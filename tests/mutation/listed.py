@@ -156,7 +156,10 @@ def _tendons() -> list[Mutation]:
             "_half_cosine(body, v)",
             "return 1.0 - v",
         ),
-        "half angle: energy": ("_tendon_energy(body, energy, c)", "return without_fault(body, energy, 2 * c * c - 1)"),
+        "half angle: energy": (
+            "_tendon_energy(body, energy, c)",
+            "return without_fault(body, energy, 2 * c * c - 1)",
+        ),
         "half angle: pull": ("_pull(body, c)", "return without_fault(body, 2.0 * c * c - 1.0)"),
         "uplift: no prestress": ("_weight_and_prestress(body, az)", "return body.g + az"),
         "uplift: prestress 1 % off": (

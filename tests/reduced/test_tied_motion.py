@@ -1,4 +1,4 @@
-"""Motion with a tendon, with and without rolling resistance, against an integration apart from the package."""
+"""Motion with a tendon, with and without rolling resistance, against an integration of its own."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def test_under_a_record(plane: float | None, share: float, slab: float) -> None:
     uplift, times, own = model_of(case, plane).shaken(motion.acceleration, motion.time_step, 9.0)
     assert trace.uplift_time == pytest.approx(uplift, abs=1e-11)
     same = np.searchsorted(trace.time, times - 1e-9)
-    assert trace.tilt.max() > 0.3 * PIER.alpha
+    assert trace.tilt.max() > 0.2 * PIER.alpha
     assert np.abs(trace.tilt[same] - own[:, 0]).max() < 1e-7 * PIER.alpha
 
 

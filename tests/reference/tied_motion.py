@@ -22,6 +22,8 @@ from scipy.optimize import brentq
 from tendon import Pier
 
 Array = NDArray[np.float64]
+# absolute tolerances: next to upright the azimuth turns fast, and L is small
+_LEAST = np.array([1e-16, 1e-15, 1e-12, 1e-18, 1e-18])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,19 +47,20 @@ class Model:
         of(self, "A", self.J + k * b * b)
 
     def rates(self, y: Array, a: Array) -> Array:
-        """Return theta', theta'', phi', phi'' and the power lost; `a` are three components [m/s^2]."""
-        theta, omega, phi, spin, _ = y
+        """Return the rates of theta, theta', phi, B phi' and the energy lost; `a` has three components."""
+        theta, omega, phi, L, _ = y
         pier, b, h, g = self.pier, self.pier.b, self.pier.h, self.pier.g + a[2]
         s, c, v = math.sin(theta), math.cos(theta), 2.0 * math.sin(0.5 * theta) ** 2
         radial = a[0] * math.cos(phi) + a[1] * math.sin(phi)
         across = a[1] * math.cos(phi) - a[0] * math.sin(phi)
-        B = self.J * s * s + 2.0 * self.E * s * v + self.C * v * v
+        B = self._turn_inertia(theta)
+        spin = L / B if L else 0.0
         half_slope = self.J * s * c + self.E * (c * v + s * s) + self.C * v * s
         tension = pier.prestress + pier.stiffness * 2.0 * self.n * b * math.sin(0.5 * theta)
         opening = self.n * b * math.cos(0.5 * theta)
         moment = half_slope * spin**2 - self.w * (g * (b * c - h * s) + (h * c + b * s) * radial)
         moment -= tension * opening
-        turning = -self.w * (h * s + b * v) * across - 2.0 * half_slope * omega * spin
+        turning = -self.w * (h * s + b * v) * across
         lost = 0.0
         rolling = math.hypot(omega, s * spin)
         if self.delta and rolling:
@@ -68,8 +71,11 @@ class Model:
             moment -= share * normal
             turning -= self.delta * normal * s * s * spin / rolling
             lost = self.delta * normal * rolling
-        turned = turning / B if self.plane is None else 0.0
-        return np.array([omega, moment / self.A, spin if self.plane is None else 0.0, turned, lost])
+        return np.array([omega, moment / self.A, spin, turning if self.plane is None else 0.0, lost])
+
+    def _turn_inertia(self, theta: float) -> float:
+        s, v = math.sin(theta), 2.0 * math.sin(0.5 * theta) ** 2
+        return float(self.J * s * s + 2.0 * self.E * s * v + self.C * v * v)
 
     def _on(self, y: Array, start: float, end: float, ground: object, times: Array) -> tuple[Array, Array]:
         """Integrate to `end`, in a plane from turn to turn and from impact to impact."""
@@ -91,7 +97,7 @@ class Model:
         while now < end:
             wanted = times[(times > now) & (times <= end)]
             run = solve_ivp(
-                rates, (now, end), y, "DOP853", events=events, dense_output=True, rtol=1e-13, atol=1e-17
+                rates, (now, end), y, "DOP853", events=events, dense_output=True, rtol=1e-13, atol=_LEAST
             )
             assert run.success, run.message
             reached = wanted[wanted <= run.t[-1]]
@@ -110,14 +116,15 @@ class Model:
         return y, np.concatenate(states) if states else np.empty((0, 5))
 
     def released(self, tilt: float, spin: float, times: Array) -> Array:
-        """Return theta, theta', phi, phi' and the energy lost (n, 5) at `times`, the first of them 0."""
+        """Return theta, theta', phi, B phi' and the energy lost (n, 5) at `times`, the first of them 0."""
         still = np.zeros(3)
-        start = np.array([tilt, -1e-18 if self.plane is not None else 0.0, self.plane or 0.0, spin, 0.0])
+        rate, L = -1e-18 if self.plane is not None else 0.0, self._turn_inertia(tilt) * spin
+        start = np.array([tilt, rate, self.plane or 0.0, L, 0.0])
         _, states = self._on(start, 0.0, float(times[-1]), lambda _: still, times)
         return np.concatenate([[start], states])
 
     def shaken(
-        self, acceleration: Array, time_step: float, until: float, start: float = 2e-5
+        self, acceleration: Array, time_step: float, until: float, start: float = 5e-4
     ) -> tuple[float, Array, Array]:
         """Return the uplift time, and times and states (n, 5) of the samples of the record after it."""
         record = np.array(acceleration)
@@ -147,7 +154,8 @@ class Model:
         turning = (a[0] * slope[1] - a[1] * slope[0]) / size**2 / lag
         tilt = growth * start**3 / 6.0
         phi = math.atan2(-a[1], -a[0]) + turning * start
-        y = np.array([tilt, 0.5 * growth * start**2, phi, turning, self.delta * normal * tilt])
+        L = self._turn_inertia(tilt) * turning if self.plane is None else 0.0
+        y = np.array([tilt, 0.5 * growth * start**2, phi, L, self.delta * normal * tilt])
         now, states = uplift + start, []
         times = np.arange(first + 1, round(until / time_step) + 1) * time_step
         for end in times:
