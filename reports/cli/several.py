@@ -119,24 +119,28 @@ class ManyMethods:
     setting: options.Settings = None
     time_step: options.TimeStep = None
 
-    def methods(self, body: rw.Cylinder) -> list[str | rw.Run]:
+    def methods(self, body: rw.Cylinder, *, tendon: bool = False) -> list[str | rw.Run]:
         """Return reduced models by name, and each engine with those of the supports that it has.
 
         Parameters
         ----------
         body : Cylinder
             On which the settings are tried.
+        tendon : bool, optional
+            Whether it has a tendon, which the default models on flat ground do not know.
 
         Raises
         ------
         ValueError
             If an engine has none of the supports, or nothing has a setting.
         """
-        from rockwobble.compare.studies.fragility.runs import MODELS
+        from rockwobble.compare.studies.fragility.runs import MODELS, models_with_tendon
         from rockwobble.multibody.engines.registry import find_engine
 
         given, supports = settings(self.setting), self.support
-        chosen: list[str | rw.Run] = [] if self.model == ["none"] else list(self.model or MODELS)
+        chosen: list[str | rw.Run] = (
+            [] if self.model == ["none"] else list(self.model or (models_with_tendon() if tendon else MODELS))
+        )
         if not self.engine or self.engine == [options.NO_ENGINE]:
             if supports or given or self.time_step is not None:
                 raise ValueError("--support, --set and --time-step are for engines, give --engine as well")
