@@ -59,7 +59,10 @@ def test_ratios_and_a_drawing_state_the_same_tendon(tmp_path: Path) -> None:
             ["simulate", "--tendon-prestress", "2", "--tendon-yield", "1"],
             "yield_force must be above the prestress, 2 weights, got 1",
         ),
-        (["advise", "--tendon-stiffness", "1"], "an advice is for a cylinder or frame without a tendon"),
+        (
+            ["advise", "--tendon-stiffness", "1", "--support", "ring"],
+            "an advice on a body with a tendon is for",
+        ),
         (["simulate", "--support", "flat", "--tendon-prestress", "1"], ""),
     ],
 )

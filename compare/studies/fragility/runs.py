@@ -418,8 +418,8 @@ def default_levels(
 ) -> tuple[float, ...]:
     """Return levels from a little above uplift to where most overturn, each the same factor above the last.
 
-    A tendon raises the lowest as it raises uplift, and the highest by its way to the balance besides. In another measure than the peak acceleration: what the median
-    motion has at these levels.
+    A tendon raises the lowest as it raises uplift, and the highest by its way to the balance besides. In
+    another measure than the peak acceleration: what the median motion has at these levels.
     """
     over = [
         intensity(asked.measure, motion, cylinder, gravity=asked.gravity, period=asked.period)
