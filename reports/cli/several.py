@@ -225,6 +225,9 @@ _motion = options_in("Ground motion")
 class GridOptions(GridPlan, Reading):
     """The options that state a grid."""
 
+    record: list[Path] | None = _motion(
+        None, "File or folder of all components; may be repeated for several records."
+    )
     record_x: list[Path] | None = _motion(
         None, "East-west component, or zero; may be repeated for several records. Default: El Centro 1940."
     )
@@ -247,9 +250,13 @@ class GridOptions(GridPlan, Reading):
 
     def _motions(self) -> list[rw.GroundMotion]:
         x, y, z = self.record_x or [], self.record_y or [], self.record_z or []
+        if self.record:
+            if lone := first_given(self, "record_x", "record_y", "record_z"):
+                raise ValueError(f"--record holds all components, got {lone} beside it")
+            return [rw.read_record(path, **self.ways()) for path in self.record]
         if not x and not y:
             if lone := first_given(self, "record_z", *WAYS):
-                raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
+                raise ValueError(f"{lone} belongs to a record, give --record, or --record-x and --record-y")
             return [rw.el_centro_1940()]
         if len(x) != len(y) or len(z) not in (0, len(x)):
             raise ValueError(
