@@ -1,0 +1,183 @@
+"""The model that the page of `explore` runs, against the reduced models that it repeats, in a browser."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from browser import dumped, needs_chromium
+from numpy.typing import NDArray
+
+from rockwobble.compare.comparison.prediction import disturbed
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    GroundMotion,
+    InitialState,
+    Tendon,
+    Trace,
+    WobblingFrame,
+    el_centro_1940,
+)
+from rockwobble.models.synthetic import synthetic_motions
+from rockwobble.reduced import simulate
+
+SCRIPTS = Path(__file__).parents[2] / "reports" / "pages" / "templates" / "explore"
+COUNT, SEED = 40, 11
+STEP = 0.05  # of the samples [s]
+AGREES = 1e-6  # of alpha: what the page may be off while nothing but its own error counts
+DISTURBED = 1e-9  # of gravity: a copy so far off predicts when chance comes in; the page errs by less
+DECIDED = 1e-6  # of gravity: where copies so far off end alike, how it ends is no matter of chance
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A case, and how it is supported: recess, flat, or planar in an azimuth [rad]."""
+
+    case: Case
+    support: str
+    azimuth: float = 0.0
+
+    def solved(self, case: Case, rtol: float = 1e-11) -> Trace:
+        options: dict[str, Any] = {"support": self.support}
+        if self.support == "planar":
+            options = {"plane": self.azimuth}
+        return simulate(case, rtol=rtol, sample_step=STEP, **options)
+
+    def stated(self) -> dict[str, object]:
+        """Return it as the page has it."""
+        case, body = self.case, self.case.cylinder
+        initial, tendon, motion = case.initial, case.tendon, case.motion
+        values: dict[str, object] = {
+            "diameter": 2.0 * body.base_radius,
+            "height": 2.0 * body.half_height,
+            "gamma": body.slab_mass_ratio,
+            "delta": case.rolling_resistance,
+            "prestress": tendon.prestress if tendon else 0.0,
+            "stiffness": tendon.stiffness if tendon else 0.0,
+            "support": self.support,
+            "azimuth": self.azimuth,
+            "duration": case.length,
+            "release": None,
+            "motion": None,
+        }
+        if initial is not None:
+            rate = initial.rolling_rate
+            values["release"] = {"tilt": initial.tilt, "azimuth": initial.rolling_angle, "rate": rate}
+        if motion is not None:
+            columns = np.asarray(motion.acceleration, dtype=np.float64).T.tolist()
+            values["motion"] = dict(zip("xyz", columns, strict=False)) | {
+                "dt": motion.time_step,
+                "scale": 1.0,
+            }
+        return values
+
+
+def problems() -> list[Problem]:
+    """Releases and records on all supports, with and without slab, loss and tendon."""
+    random = np.random.default_rng(SEED)
+    records = [el_centro_1940(), *synthetic_motions(3, peak=4.0, seed=SEED)]
+    found = []
+    for place in range(COUNT):
+        support = ("recess", "flat", "planar", "recess")[place % 4]
+        tan_alpha = float(random.uniform(0.1, 0.5))
+        body: Cylinder = Cylinder(semidiagonal=float(random.uniform(1.0, 12.0)), tan_alpha=tan_alpha)
+        if place % 5 == 1:
+            body = WobblingFrame(body, float(random.uniform(0.3, 3.0)))
+        azimuth = float(random.uniform(-math.pi, math.pi))
+        loss = place % 3 == 1
+        tendon = None
+        if place % 3 == 2 and support != "flat":
+            tendon = Tendon(prestress=float(random.uniform(0, 1)), stiffness=float(random.uniform(0, 8)))
+        initial, motion = None, None
+        if (place // 4) % 3 == 0:
+            rate = 0.0 if support == "planar" else float(random.uniform(0.05, 0.8))
+            tilt = float(random.uniform(0.2, 0.9)) * body.alpha
+            initial = InitialState(tilt=tilt, rolling_angle=azimuth, rolling_rate=rate)
+        else:
+            motion = records[place % len(records)]
+            uplift = 9.81 * tan_alpha * (tendon.uplift_factor(body) if tendon else 1.0)
+            motion = motion.scaled(float(random.uniform(1.2, 2.6)) * uplift / motion.peak)
+            if place % 7 == 3:
+                x, y = np.asarray(motion.acceleration).T[:2]
+                motion = GroundMotion(np.column_stack([x, y, 0.4 * x[::-1]]), motion.time_step, motion.name)
+        case = Case(
+            body,
+            motion,
+            initial=initial,
+            duration=12.0 if motion is None else min(motion.duration, 20.0),
+            rolling_resistance=float(random.uniform(0.001, 0.02)) * body.base_radius if loss else 0.0,
+            tendon=tendon,
+        )
+        found.append(Problem(case, support, azimuth))
+    return found
+
+
+def on_the_page(
+    solved: list[Problem], folder: Path, *, broken: tuple[str, str] | None = None
+) -> list[dict[str, Any]]:
+    """Return what the scripts of the page make of problems; `broken`: a text of theirs and what replaces it."""
+    scripts = "\n".join((SCRIPTS / name).read_text() for name in ("model.js", "motion.js"))
+    if broken is not None:
+        assert scripts.count(broken[0]) == 1
+        scripts = scripts.replace(*broken)
+    stated = json.dumps([each.stated() for each in solved])
+    runs = f"""
+    const found = {stated}.map((each) => {{
+      const run = simulateMotion(each, each.motion, {{ sampleStep: {STEP} }});
+      return {{ ...Object.fromEntries(["outcome", "peak", "upliftTime", "passes", "steps"].map((name) => [name, run[name]])),
+        ...Object.fromEntries(["time", "tilt", "angle", "x", "y", "outward", "across", "normal"].map((name) => [name, Array.from(run[name])])) }};
+    }});
+    document.body.textContent = JSON.stringify(found);"""
+    page = folder / "model.html"
+    page.write_text(f'<!doctype html><meta charset="utf-8"><body><script>{scripts}{runs}</script></body>')
+    text = dumped(page)
+    return json.loads(text[text.index("[{") : text.rindex("}]") + 2])
+
+
+@pytest.fixture(scope="module")
+def solved() -> list[tuple[Problem, Trace, Trace]]:
+    """Problems, with the motion of each and that of a disturbed copy."""
+    return [
+        (each, each.solved(each.case), each.solved(disturbed(each.case, DISTURBED))) for each in problems()
+    ]
+
+
+def apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
+    count = min(len(one), len(other))
+    return np.abs(one[:count] - other[:count])
+
+
+def agreement(trace: Trace, copy: Trace) -> int:
+    """Return for how many samples a disturbed copy is within what the page may be off."""
+    leaves = apart(trace.tilt, copy.tilt) > AGREES * trace.case.cylinder.alpha
+    return int(leaves.argmax()) if leaves.any() else len(leaves)
+
+
+def complaints_of(solved: list[tuple[Problem, Trace, Trace]], runs: list[dict[str, Any]]) -> list[str]:
+    """Return what differs between page and package."""
+    wrong = []
+    for place, ((problem, trace, copy), run) in enumerate(zip(solved, runs, strict=True)):
+        alpha, until = problem.case.cylinder.alpha, agreement(trace, copy)
+        off = apart(np.array(run["tilt"], dtype=np.float64)[:until], trace.tilt) / alpha
+        label = f"{place} {problem.support}"
+        if not off.max(initial=0.0) <= AGREES:
+            first = trace.time[int((off > AGREES).argmax())]
+            wrong.append(
+                f"{label}: tilt off by {off.max():.2g} alpha, first at {first:.2f} s of {trace.time[until - 1]:.2f} s"
+            )
+        ends = {problem.solved(disturbed(problem.case, by)).outcome for by in (DECIDED, -DECIDED)}
+        if ends == {trace.outcome} and run["outcome"] != trace.outcome:
+            wrong.append(f"{label}: {run['outcome']}, not {trace.outcome}")
+    return wrong
+
+
+@needs_chromium
+def test_the_page_moves_as_the_reduced_models(solved, tmp_path: Path):
+    runs = on_the_page([each for each, _, _ in solved], tmp_path)
+    assert complaints_of(solved, runs) == []
