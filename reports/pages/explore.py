@@ -1,4 +1,4 @@
-"""The page to play with: one file in which the reduced models run, with ground motions and the first state."""
+"""The page to play with: one file in which the reduced models run, with ground motions and a first state."""
 
 from __future__ import annotations
 
@@ -20,6 +20,8 @@ MOST_RECORDS = 10  # of a page: each is some 100 kB of it
 _MOST_INTENSITY = 10.0  # of the slider, times the record or the intensity that is given
 # [s], [m/s^2], [s]: of the motions beside El Centro
 _SYNTHETIC_LENGTH, _SYNTHETIC_PEAK, _PULSE_PERIOD, _SEED = 12.0, 3.0, 0.8, 1
+
+_LEFT = 56  # [pixel] of the graphs over time, one below the other
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -175,10 +177,18 @@ def _panels() -> dict[str, dict[str, object]]:
 
     def axis(title: str, unit: str, *, log: bool = False, low: float | None = None) -> dict[str, object]:
         ends = {"low": low, "high": None}
-        return {"title": f"{title} [{unit}]", "unit": f" {unit}", "log": log, "ticks": [], "reverse": False, **ends}
+        return {
+            "title": f"{title} [{unit}]",
+            "unit": f" {unit}",
+            "log": log,
+            "ticks": [],
+            "reverse": False,
+            **ends,
+        }
 
     def panel(height: int, x: dict[str, object], y: dict[str, object], **more: object) -> dict[str, object]:
-        shown = {"second": None, "equal": False, "link": "", "ground": "#ffffff", "legend": [], "more": 0}
+        shown: dict[str, object] = {"second": None, "equal": False, "link": "", "ground": "#ffffff"}
+        shown |= {"legend": [], "more": 0}
         return {"height": height, "x": x, "y": y, "layers": [], **shown, **more}
 
     def entry(name: str, colour: str, dash: str = "") -> dict[str, object]:
@@ -186,15 +196,26 @@ def _panels() -> dict[str, dict[str, object]]:
 
     time = axis("time", "s")
     return {
-        "tilt": panel(230, time, axis("tilt", "deg", low=0.0), link="time"),
+        "tilt": panel(230, time, axis("tilt", "deg", low=0.0), link="time", left=_LEFT),
         "ground": panel(
             150,
             time,
             axis("ground", "g"),
             link="time",
+            left=_LEFT,
             legend=[entry("east", "#0072B2", "solid"), entry("north", "#D55E00", "solid")],
         ),
-        "path": panel(300, axis("east", "m"), axis("north", "m"), equal=True),
+        "path": panel(
+            300,
+            axis("east", "m"),
+            axis("north", "m"),
+            equal=True,
+            legend=[
+                entry("base at rest", "#bbbbbb", "solid"),
+                entry("contact point", "#0072B2", "solid"),
+                entry("top of the column", "#D55E00", "solid"),
+            ],
+        ),
         "map": panel(
             300,
             axis("size R", "m", log=True),

@@ -90,7 +90,7 @@ function sitsDown(o, y, flat, ax, ay, az) {
 
 // -- forces on the base, over the mass that it carries: outward, across, up
 
-function contactForce(o, flat, y, ax, ay, az, slopes) {
+function contactForce(o, flat, y, ax, ay, az, slopes, out, place) {
   derivative(o, flat, y, ax, ay, az, 0, slopes);
   const theta = y[0], omega = y[1], S = flat ? y[5] : 0, s = Math.sin(theta), c = Math.cos(theta), t = Math.tan(theta / 2), sec = 1 + t * t;
   const roll = o.E + o.C * t, reach = o.h + o.b * t, H = o.J + (2 * o.E + o.C * t) * t, H1 = roll * sec;
@@ -107,7 +107,9 @@ function contactForce(o, flat, y, ax, ay, az, slopes) {
     sideways -= o.nu * reach / H * (free - slopes[3]) / s;
   }
   const half = Math.sin(theta / 2), pull = (o.q + 2 * o.k * half) * o.nu / o.gaps;
-  return [o.nu * outward + ar + pull * half, sideways, o.g + az + o.nu * (D2 * slopes[1] - D1 * omega * omega) + pull * Math.cos(theta / 2)];
+  out[place] = o.nu * outward + ar + pull * half;
+  out[place + 1] = sideways;
+  out[place + 2] = o.g + az + o.nu * (D2 * slopes[1] - D1 * omega * omega) + pull * Math.cos(theta / 2);
 }
 
 // -- the run
@@ -115,7 +117,7 @@ function contactForce(o, flat, y, ax, ay, az, slopes) {
 // In `problem`: what `bodyOf` takes; support "recess", "flat" or "planar" with an azimuth; release { tilt, azimuth, rate } or
 // none; restitution of impacts in a plane; duration. `motion` has samples x, y, z (or none), dt and a scale, or is null.
 // Returns the outcome and, at each `sampleStep`, the motion.
-function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01, demands = true } = {}) {
+function simulateMotion(problem, motion, { rtol = 1e-9, sampleStep = 0.01 } = {}) {
   const o = bodyOf(problem, rtol), planar = problem.support === "planar", flat = problem.support === "flat", n = flat ? 8 : 4;
   const azimuth = planar ? problem.azimuth || 0 : 0, release = problem.release, scale = motion ? motion.scale : 0;
   const length = motion ? motion.x.length : 0, dt = motion ? motion.dt : 1, ca = Math.cos(azimuth), sa = Math.sin(azimuth);
@@ -137,7 +139,6 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01, dema
   const y = new Float64Array(8), k = new Float64Array(8), out = new Float64Array(8), kOut = new Float64Array(8);
   const error = new Float64Array(8), part = new Float64Array(8), kPart = new Float64Array(8);
   const run = { outcome: "stands", peak: 0, upliftTime: NaN, endTime: NaN, passes: 0, rests: false, closest: Infinity, steps: 0 };
-  const rows = [], forces = [];
   let resting = true, side = 0, sense = 0, h = FIRST_STEP / o.p, restart = true, lastMaximum = -1, minimum = false;
   let now = 0, index = 0, piece = pieceAfter(0), elapsed = 0, nextSample = 0, following = false, end = duration, passLimit = null;
 
@@ -151,25 +152,30 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01, dema
     if (k[1] < 0) lastMaximum = 0;
   }
 
+  const NAMES = ["time", "tilt", "rate", "angle", "momentum", "twist", "twistMomentum", "x", "y", "outward", "across", "normal"], width = NAMES.length;
+  let rows = new Float64Array(sampleStep ? width * (Math.ceil(duration / sampleStep) + 3) : 0), count = 0;
   const record = () => {
     if (!sampleStep) return;
-    rows.push([now, y[0], y[1], resting ? NaN : y[2] + azimuth, y[3], y[4], y[5], y[6], y[7]]);
-    if (!demands) return;
+    const place = width * count++;
+    if (place + width > rows.length) { const longer = new Float64Array(2 * place + width); longer.set(rows); rows = longer; }
+    rows[place] = now;
+    for (let i = 0; i < 8; i++) rows[place + i + 1] = y[i];
+    rows[place + 3] = resting ? NaN : y[2] + azimuth;
     const ax = piece.x + piece.sx * elapsed, ay = piece.y + piece.sy * elapsed, az = piece.z + piece.sz * elapsed;
-    if (resting) { forces.push([Math.hypot(ax, ay), 0, o.g + az + o.q * o.nu / o.gaps]); return; }
-    forces.push(contactForce(o, flat, y, ax, ay, az, kPart));
+    if (!resting) contactForce(o, flat, y, ax, ay, az, kPart, rows, place + 9);
+    else { rows[place + 9] = Math.hypot(ax, ay); rows[place + 11] = o.g + az + o.q * o.nu / o.gaps; }
   };
   const isPlanar = (state) => state[3] === 0 && (!flat || state[5] === 0);
   const partial = (time) => step(o, flat, n, y, k, time, piece, elapsed, side, part, kPart, error);
   // time in a step at which `value` of the state changes its sign from that at `low`
   const crossing = (value, low, high, sign) => {
     let at = (low + high) / 2;
-    for (let i = 0; i < 60 && high - low > 1e-15 * high; i++) {
+    for (let i = 0; i < 60 && high - low > 1e-13 * high; i++) {
       partial(at);
       const miss = value(part), slope = value(kPart, true);
       if (miss * sign > 0) low = at; else high = at;
       const guess = at - miss / slope;
-      if (Math.abs(guess - at) <= 1e-15 * high) break;
+      if (Math.abs(guess - at) <= 1e-13 * high) break;
       at = guess > low && guess < high ? guess : (low + high) / 2;
     }
     partial(at);
@@ -308,11 +314,8 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01, dema
 
   function finish() {
     run.rests = resting;
-    const count = run.outcome === "overturned" ? rows.length : rows.filter((row) => row[0] <= duration * (1 + 1e-12)).length;
-    const column = (table, i) => Float64Array.from({ length: count }, (_, j) => table[j][i]);
-    const names = ["time", "tilt", "rate", "angle", "momentum", "twist", "twistMomentum", "x", "y"];
-    names.forEach((name, i) => { run[name] = column(rows, i); });
-    if (demands) ["outward", "across", "normal"].forEach((name, i) => { run[name] = column(forces, i); });
+    if (run.outcome !== "overturned") while (count && rows[width * (count - 1)] > duration * (1 + 1e-12)) count--;
+    NAMES.forEach((name, i) => { run[name] = Float64Array.from({ length: count }, (_, j) => rows[width * j + i]); });
     run.body = o;
     return run;
   }

@@ -150,17 +150,27 @@
   const line = ([x, y], colour, name, more = {}) => ({ kind: "line", name, x, y, style: { colour, dash: "solid", symbol: "" }, width: 1.4, size: 5, opacity: 1, open: [0], steps: false, clip: true, notes: [], ...more });
   const rule = (axis, at, text, colour) => ({ kind: "rule", name: text, axis, at, until: null, text, colour, dash: "dash", side: "right" });
 
-  let bodies = [], now = 0, length = 1, playing = false, before = 0;
+  let bodies = [], now = 0, length = 1, playing = false, before = 0, laterTimer = 0;
   // a graph over time, with the time of the view in it
   class Graph extends Chart {
     draw() {
       super.draw();
-      if (!this.at || this.panel.equal || this.place.id === "map") return;
+      if (!this.at || this.panel.equal) return;
+      if (this.place.id === "map") {  // where the sliders stand
+        this.here = element(this.sheet, "circle", { r: 6, fill: "#fff", stroke: "#000", "stroke-width": 2.5 });
+        this.follow();
+        return;
+      }
       this.cursor = element(this.sheet, "line", { y1: this.at.frame.top, y2: this.at.frame.bottom, stroke: "#222", "stroke-width": 1.2 });
       this.follow();
     }
 
     follow() {
+      if (this.here) {
+        const [x, y] = [this.at.x(Math.hypot(state.height, state.diameter) / 2), this.at.y(state.record < 0 ? NaN : state.intensity * peaks[state.record])];
+        this.here.setAttribute("visibility", Number.isFinite(x) && Number.isFinite(y) ? "visible" : "hidden");
+        if (Number.isFinite(y)) { this.here.setAttribute("cx", x); this.here.setAttribute("cy", y); }
+      }
       if (!this.cursor) return;
       const place = this.at.x(now), inside = place >= this.at.frame.left && place <= this.at.frame.right;
       this.cursor.setAttribute("visibility", inside ? "visible" : "hidden");
@@ -191,16 +201,8 @@
     const top = Math.max(...bodies.map((body) => Math.min(body.peak, 1.6 * body.alpha))), alpha = main.alpha * DEG, near = top > 0.25 * main.alpha;
     graphs.tilt.panel.y.high = Math.max(1.08 * top * DEG, near ? 1.15 * alpha : 0, 1e-9);
     redraw(graphs.tilt, [...(bodies[1] ? [tilts(bodies[1], GREY, "beside it")] : []), tilts(main, main.colour, "tilt"), ...(near ? [rule("y", alpha, `α = ${number(alpha)}°`, RED)] : [])], ends);
-    const axis = motion && Float64Array.from(motion.x, (_, i) => i * motion.dt), scale = at.intensity / GRAVITY;
-    const shakes = motion ? [["x", "east", BLUE], ["y", "north", ORANGE], ["z", "up", "#009E73"]].filter(([key]) => motion[key]) : [];
-    redraw(graphs.ground, shakes.length ? shakes.map(([key, name, colour]) => line(thinned(axis, motion[key].map((value) => value * scale)), colour, name, { width: 1 })) : [line([[0, length], [0, 0]], GREY, "still")], ends);
-    const path = (body, colour, name) => {
-      const opened = body.tilt.map((tilt) => (tilt > 1e-3 * body.alpha ? 0 : NaN)), thin = Math.ceil(opened.length / 3000);
-      const pick = (values) => Array.from(values).filter((_, i) => i % thin === 0).map((value, i) => value + opened[i * thin]);
-      return line([pick(body.contact_x), pick(body.contact_y)], colour, name, { width: 1 });
-    };
-    const b = at.diameter / 2, circle = Array.from({ length: 73 }, (_, i) => i * Math.PI / 36);
-    redraw(graphs.path, [line([circle.map((angle) => b * Math.cos(angle)), circle.map((angle) => b * Math.sin(angle))], "#bbb", "base at rest", { width: 1 }), ...(bodies[1] ? [path(bodies[1], GREY, "beside it")] : []), path(main, main.colour, "contact point")]);
+    clearTimeout(laterTimer);
+    laterTimer = setTimeout(() => showFurther(main, motion, ends), first ? 0 : 80);  // once the sliders rest
 
     const most = Math.max(...bodies.map((body) => (body.outcome === "overturned" ? Math.PI / 2 : body.peak))), chosen = find("magnify").dataset.chosen;
     const factors = [1, 3, 10, 30].filter((factor) => factor === 1 || factor * most < 60 / DEG), best = factors.filter((factor) => factor === 1 || factor * most < 30 / DEG).at(-1);
@@ -210,6 +212,36 @@
       seek(Number.isNaN(run.upliftTime) ? 0 : Math.max(0, run.upliftTime - 0.2));
       if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play();
     } else seek(Math.min(now, length));
+  }
+  // ground and paths
+  function showFurther(main, motion, ends) {
+    const { at } = main, scale = at.intensity / GRAVITY, key = String([at.record, at.intensity, ends]);
+    if (key !== graphs.ground.key) {
+      graphs.ground.key = key;
+      const axis = motion && Float64Array.from(motion.x, (_, i) => i * motion.dt);
+      const shakes = motion ? [["x", "east", BLUE], ["y", "north", ORANGE], ["z", "up", "#009E73"]].filter(([key]) => motion[key]) : [];
+      redraw(graphs.ground, shakes.length ? shakes.map(([key, name, colour]) => line(thinned(axis, motion[key].map((value) => value * scale)), colour, name, { width: 1 })) : [line([[0, length], [0, 0]], GREY, "still")], ends);
+    }
+    // a line is broken where the column stands, and where it jumps: in a pass
+    const path = (body, x, y, jump, colour, name) => {
+      const points = [[], []];
+      for (let i = 0, last = -1; i < x.length; i++) {
+        const gap = !(body.tilt[i] > 1e-3 * body.alpha) || (last >= 0 && Math.hypot(x[i] - x[last], y[i] - y[last]) > jump);
+        if (!gap && last >= 0 && i - last < body.thin) continue;
+        points[0].push(gap ? NaN : x[i]); points[1].push(gap ? NaN : y[i]);
+        last = i;
+      }
+      return line(points, colour, name, { width: 1.2 });
+    };
+    const b = at.diameter / 2, circle = Array.from({ length: 73 }, (_, i) => i * Math.PI / 36), paths = [];
+    for (const body of [...bodies].reverse()) {
+      const top = body.tilt.map((tilt) => (Math.min(tilt, 1.6 * body.alpha) ? at.height * Math.sin(tilt) + b * (1 - Math.cos(tilt)) : 0));
+      body.thin = Math.ceil(body.tilt.length / 2500);
+      const own = body === main ? [ORANGE, "top of the column"] : [GREY, "beside it"];
+      paths.push(path(body, body.contact_x, body.contact_y, b, body === main ? main.colour : GREY, "contact point"));
+      paths.push(path(body, top.map((r, i) => body.x[i] + r * Math.cos(body.angle[i])), top.map((r, i) => body.y[i] + r * Math.sin(body.angle[i])), Infinity, ...own));
+    }
+    redraw(graphs.path, [line([circle.map((angle) => b * Math.cos(angle)), circle.map((angle) => b * Math.sin(angle))], "#bbb", "base at rest", { width: 1 }), ...paths]);
   }
   const outcome = ({ outcome: end, endTime, upliftTime, peak, alpha }) => {
     const words = { overturned: `Overturns at ${number(endTime, 4)} s`, undecided: "Not decided: rounding, not the shaking, says how it ends" }[end]
@@ -226,7 +258,7 @@
     }
     const ends = o.gaps, topShift = ends * at.diameter / 2 * (1 - Math.cos(peak)) + at.height * Math.sin(peak), rows = [
       ["peak tilt", fell ? "falls" : moved ? `${number(peak * DEG)}° = ${number(peak / alpha)} α` : "0"],
-      [ends > 1 ? "displacement of the slab" : "displacement of the top", fell ? "falls" : moved ? `${number(topShift * (ends > 1 ? 1 : 1))} m` : "0 m"],
+      [ends > 1 ? "displacement of the slab" : "displacement of the top", fell ? "falls" : moved ? `${number(topShift)} m` : "0 m"],
       [motion ? "uplift" : "released", moved ? motion ? `at ${number(body.upliftTime, 4)} s` : "at 0 s" : "none"],
       ["peak of the ground", motion ? `${number(at.intensity * peaks[at.record])} g` : "still"],
       ["uplifts from", `${number(o.slope * (1 + o.q / GRAVITY))} g`],
@@ -303,9 +335,11 @@
     const { height, diameter, intensity, ...others } = at, key = JSON.stringify([others, diameter / height]);
     document.querySelector(".graph.map").hidden = at.record < 0;
     if (at.record < 0) { map = null; mapKey = ""; return; }
-    if (map && Math.abs(diameter / height / (map.at.diameter / map.at.height) - 1) < 1e-3 && JSON.stringify(others) === map.others) { drawMap(at); return; }
+    if (map && Math.abs(diameter / height / (map.at.diameter / map.at.height) - 1) < 1e-3 && JSON.stringify(others) === map.others) { graphs.map.follow(); return; }
     if (key === mapKey) return;
     mapKey = key;
+    map = null;  // the worker stops after the row that it is at
+    graphs.map.place.classList.add("stale");
     clearTimeout(mapTimer);
     mapTimer = setTimeout(() => {  // once the sliders rest
       // around the uplift of the column: from half of it on
@@ -323,19 +357,18 @@
     const { level, place, peaks: found } = data;
     found.forEach((peak, i) => { for (let r = 0; r < level; r++) for (let c = 0; c < level; c++) map.values[(place * level + r) * CELLS + i * level + c] = peak; });
     const last = (place + 1) * level >= CELLS;
-    if (last || place % (8 / level) === 0) drawMap(state);
+    if (last || place % (8 / level) === 0) drawMap();
     if (!last) row(level, place + 1);
     else if (level > 1) row({ 8: 4, 4: 2, 2: 1 }[level], 0);
     root.dataset.map = last && level === 1 ? "whole" : "partial";
   };
-  function drawMap(at) {
-    if (!map) return;
+  function drawMap() {
+    graphs.map.place.classList.remove("stale");
     const R = (share) => geometric(...SIZES, share) * Math.hypot(map.at.height, map.at.diameter) / 2, edges = Array.from({ length: CELLS + 1 }, (_, i) => i / CELLS);
     const y = edges.map((share) => geometric(...map.intensities, share) * peaks[map.at.record]);
     redraw(graphs.map, [
       { kind: "heat", name: "map", x: edges.map(R), y, cells: Array.from(map.values, (peak) => (Number.isNaN(peak) ? -1 : classOf(peak))), palette, written: [],
         said: (column, line, i) => [`R = ${number(R(spread(column)))} m`, `peak ground acceleration ${number(geometric(...map.intensities, spread(line)) * peaks[map.at.record])} g`, Number.isNaN(map.values[i]) ? "not yet known" : map.values[i] === Infinity ? "overturns" : `peak ${number(map.values[i])} α`] },
-      line([[Math.hypot(at.height, at.diameter) / 2], [at.intensity * peaks[at.record]]], "#000", "here", { style: { colour: "#000", dash: "none", symbol: "circle" }, open: [1], size: 9, width: 2 }),
     ]);
   }
   graphs.map.sheet.addEventListener("click", (event) => {
