@@ -149,6 +149,10 @@ class Diagnostic(Brief):
         reasons = REASONS.get(self.code)
         if reasons and self.detail not in reasons:
             raise ValueError(f"detail must be one of {', '.join(reasons)}, got {self.detail!r}")
+        for name in ("time", "duration", "size", "bound"):
+            value = float(getattr(self, name))
+            # one NaN, which is itself: facts that say the same are equal
+            object.__setattr__(self, name, math.nan if math.isnan(value) else value)
 
     @property
     def meaning(self) -> str:

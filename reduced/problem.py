@@ -104,11 +104,6 @@ class Problem:
             raise ValueError(f"restitution belongs to planar motion, got {factor!r} without a plane")
         if plane is not None and initial is not None:
             _require_in_plane(initial, plane)
-        if self.case.tendon is not None and self.case.rolling_resistance > 0.0:
-            raise ValueError(
-                f"a tendon goes without rolling resistance in the reduced models, got "
-                f"{self.case.rolling_resistance:g} m beside it"
-            )
         if self.case.tendon is not None and self.free_twist:
             raise ValueError(
                 "a tendon is part of the models in the recess and in a plane, got support 'flat': there the "
@@ -133,10 +128,12 @@ class Problem:
 
     @cached_property
     def body(self) -> Body:
-        """The constants of the equations; of a `TiedBody`, which has more, with a tendon."""
+        """The constants of the equations; of a `TiedBody`, which has more, with a tendon that pulls."""
         case = self.case
-        plain = body_of(case.cylinder, case.gravity, case.rolling_resistance)
-        return plain if case.tendon is None else cast("Body", tied(plain, case.cylinder, case.tendon))
+        plain, tendon = body_of(case.cylinder, case.gravity, case.rolling_resistance), case.tendon
+        if tendon is None or tendon.prestress == tendon.stiffness == 0.0:  # to the bit
+            return plain
+        return cast("Body", tied(plain, case.cylinder, tendon))
 
     def solve(
         self,

@@ -269,7 +269,10 @@ class Advice(Results, kind=KIND):
         if not self.moves:
             return {}
         shaken, friction = facts["motion"] is not None, facts["friction"]
-        (slip, lost), spread = self.missing, bool(self.counting["lost_95"].notna().any())
+        (slip, lost), spread = (
+            self.missing,
+            bool((~self.counting["single"] & self.counting["lost_95"].notna()).any()),
+        )
         slides = friction is not None and friction < self.cylinder.tan_alpha and response["uplift_time"] > 0.0
         found: dict[str, Grade] = {
             "overturning": grade_overturning(

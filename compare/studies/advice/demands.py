@@ -125,8 +125,8 @@ def weaker_factors(threshold: float) -> list[float]:
 
     Examples
     --------
-    >>> [round(factor, 2) for factor in weaker_factors(0.3)]
-    [0.16, 0.19, 0.23, 0.28, 0.33, 0.39, 0.46, 0.55, 0.66, 0.78, 0.93]
+    >>> [round(factor, 3) for factor in weaker_factors(0.5)]
+    [0.273, 0.324, 0.386, 0.459, 0.545, 0.648, 0.771, 0.917]
     """
     if not 0.0 < threshold < math.inf:
         return []
@@ -175,7 +175,11 @@ def demand_table(
         if name in _RECESS and not (facts.guided or facts.walls):
             continue
         rows.append({"demand": name, "unit": unit, **_largest(name, groups)})
-        if name == "moment" and rows[-1]["value"] == 0.0:
+        if (
+            name == "moment"
+            and rows[-1]["value"] == 0.0
+            and any(runs["tilt"].gt(0.0).any() for *_, runs in groups)
+        ):
             rows[-1] |= {"value": math.nan, "reason": _NOT_PLANE}
     recess = {row["demand"]: row for row in rows}
     if "tilt" in recess:
