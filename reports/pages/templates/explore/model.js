@@ -25,8 +25,11 @@ function bodyOf({ height, diameter, gamma = 0, delta = 0, prestress = 0, stiffne
   return body;
 }
 
+// what the tendon adds to the normal force of both ends of a tilted column, and over b to the couple
+const pull = (o, s, c) => o.q * Math.sqrt((1 + c) / 2) + o.k * s;
+
 // static couple over R: of the weight and of the tendon, whose gaps a tilt opens by 2 b sin(theta/2) each
-const couple = (o, s, c, gravity) => gravity * (o.sa * c - o.ca * s) + o.sa * (o.q * Math.sqrt((1 + c) / 2) + o.k * s);
+const couple = (o, s, c, gravity) => gravity * (o.sa * c - o.ca * s) + o.sa * pull(o, s, c);
 
 function balanceOf(o) {
   const at = (tilt) => couple(o, Math.sin(tilt), Math.cos(tilt), o.g);
@@ -79,7 +82,7 @@ function derivative(o, flat, y, ax, ay, az, side, out) {
   }
   if (o.delta > 0) {  // a couple of delta N against the rolling of the rim; N has theta'' and theta'' has the couple
     const across = s * (tauRate - phiRate), lift = o.b * c - o.h * s;
-    const load = o.delta * o.A * Math.max(0, o.g + az - o.mu * rise * omega * omega + o.mu * lift * tilting);
+    const load = o.delta * o.A * Math.max(0, o.g + az + pull(o, s, c) - o.mu * rise * omega * omega + o.mu * lift * tilting);
     let first, second;  // on the tilt and along the lean
     if (across !== 0 || (omega !== 0 && side === 0)) {
       const speed = Math.hypot(omega, across), share = load / (o.A * speed + o.delta * lift * o.mu * omega);
@@ -88,8 +91,9 @@ function derivative(o, flat, y, ax, ay, az, side, out) {
       first = -side * load / (o.A + o.delta * lift * o.mu * side); second = 0;
     } else {  // still: it holds, or lags behind the push
       [first, second] = needed(o, theta, phi, ax, ay, o.g + az);
+      first += o.b * pull(o, s, c);
       if (at === 0) second = 0;
-      const share = Math.min(1, o.delta * (o.g + az) / Math.hypot(first, second));
+      const share = Math.min(1, o.delta * (o.g + az + pull(o, s, c)) / Math.hypot(first, second));
       first *= share; second *= share;
     }
     tilting += first / o.A;
@@ -130,7 +134,7 @@ function upliftOf(o, piece, at) {
   const F2 = factor * size * turning * turning * (1 - behind * behind) + o.delta * standing(o, az) * rolling * rolling / (9 * o.A * heavier);
   const F3 = -3 * F2 * along / size;
   let Q = o.drive * (o.g + az) / o.ca * (1 + o.delta * o.b / (o.R * o.R)) / heavier;
-  Q += o.drive * o.sa * (o.q * o.sa / o.ca - o.k) + o.J / o.A / heavier * rolling * rolling;
+  Q += o.drive * o.sa * (1 + o.delta / o.b) / heavier * (o.q * o.sa / o.ca - o.k) + o.J / o.A / heavier * rolling * rolling;
   const unit = 1 / Math.max(o.fastest, Math.hypot(piece.sx, piece.sy) / size), jumps = Math.abs(F1) * 1e-6 * unit < F0;
   let length = unit * (jumps ? 1e-6 : Math.min(Math.cbrt(o.rtol), 5e-3));
   if (jumps && F1) length = Math.min(length, 1e-3 * F0 / Math.abs(F1));

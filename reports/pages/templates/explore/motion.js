@@ -25,10 +25,12 @@ function acrossInertia(o, theta, flat) {
 function pushOn(o, y, piece, elapsed) {
   const ax = piece.x + piece.sx * elapsed, ay = piece.y + piece.sy * elapsed, az = piece.z + piece.sz * elapsed;
   let [tilting, turning] = needed(o, y[0], y[2], ax, ay, o.g + az);
-  let [tilting1, turning1] = needed(o, y[0], y[2], piece.sx, piece.sy, piece.sz);
+  const [tilting1, turning1] = needed(o, y[0], y[2], piece.sx, piece.sy, piece.sz);
+  const tendon = pull(o, Math.sin(y[0]), Math.cos(y[0]));
+  tilting += o.b * tendon;
   const below = (o.h + o.b) * IN_PLANE * (Math.abs(ax) + Math.abs(ay) + o.g * o.b / o.h);
   if (Math.abs(turning) <= below) turning = 0;
-  const size = Math.hypot(tilting, turning), allowed = o.delta * (o.g + az);
+  const size = Math.hypot(tilting, turning), allowed = o.delta * (o.g + az + tendon);
   const growth = size ? (tilting * tilting1 + turning * turning1) / size - o.delta * piece.sz : 0;
   return { excess: size - allowed, growth, tilting, turning, tilting1, turning1, allowed, allowed1: o.delta * piece.sz };
 }
@@ -48,7 +50,7 @@ function holdTime(o, y, piece, elapsed) {
 // Whether a motion is so slow that what is left of the couple stops it.
 function stops(o, y, piece, elapsed) {
   const slow = 40 * o.rtol * o.p, limit = 2 * o.A * slow * slow * o.sa * y[0], room = 0.2 * o.rtol * y[0];
-  if (o.A * y[1] * y[1] >= Math.max(limit, room * o.delta * o.g)) return false;
+  if (o.A * y[1] * y[1] >= Math.max(limit, room * o.delta * (o.g + pull(o, Math.sin(y[0]), Math.cos(y[0]))))) return false;
   const across = acrossOf(o, y, false), inertia = acrossInertia(o, y[0], false), kinetic = o.A * y[1] * y[1] + inertia * across * across;
   const { excess, growth } = pushOn(o, y, piece, elapsed);
   let time = 1e-6 / o.p;
@@ -304,7 +306,7 @@ function simulateMotion(problem, motion, { rtol = 1e-9, sampleStep = 0.01 } = {}
   // over 1 where a step does not follow the turn of the couple and is too long not to matter
   function turnOfCouple(size) {
     const before = acrossOf(o, y, flat), after = acrossOf(o, out, flat), first = y[1] ** 2 + before ** 2, second = out[1] ** 2 + after ** 2;
-    const along = y[1] * out[1] + before * after, loss = o.delta * o.g * size;
+    const along = y[1] * out[1] + before * after, loss = o.delta * (o.g + pull(o, Math.sin(y[0]), Math.cos(y[0]))) * size;
     if (along > 0 && along * along > 0.64 * first * second) {
       const stable = 2 * Math.sqrt(Math.min(first, second));
       return loss > 0.1 * o.A * stable ? loss / (acrossInertia(o, out[0], flat) * stable) : 0;

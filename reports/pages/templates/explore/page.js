@@ -45,9 +45,9 @@
   }
 
   const alphaOf = (at) => Math.atan2(at.diameter, at.height);
-  // what the model takes; loss and tendon are not both to be had, nor a tendon on flat ground
+  // what the model takes, which has no tendon on flat ground
   const problemOf = (at) => {
-    const released = at.record < 0, tendon = at.support !== "flat" && !at.loss, lean = at.support === "planar" ? at.plane : at.lean;
+    const released = at.record < 0, tendon = at.support !== "flat", lean = at.support === "planar" ? at.plane : at.lean;
     return {
       height: at.height, diameter: at.diameter, gamma: at.slab, delta: Math.min(at.loss / 1000, 0.45 * at.diameter), gravity: GRAVITY,
       prestress: tendon ? at.prestress : 0, stiffness: tendon ? at.stiffness : 0, support: at.support, azimuth: at.plane / DEG,
@@ -100,12 +100,12 @@
   };
   let drawn = false;
   const changed = () => {
-    const at = { ...state }, released = at.record < 0, loss = at.loss > 0;
+    const at = { ...state }, released = at.record < 0;
     find("follows").textContent = `R = ${number(Math.hypot(at.height, at.diameter) / 2)} m, tan α = ${number(at.diameter / at.height)}, α = ${number(alphaOf(at) * DEG)}°`;
     const hide = { intensity: released, tilt: !released, rate: !released || at.support === "planar", lean: !released || at.support === "planar", plane: at.support !== "planar" };
     for (const [name, hidden] of Object.entries(hide)) root.querySelector(`[data-field="${name}"]`).hidden = hidden;
-    const refused = (at.prestress || at.stiffness) && (loss || at.support === "flat");
-    find("refused").textContent = refused ? `The tendon is left out: the model has none ${loss ? "beside rolling resistance" : "on flat ground"}.` : "";
+    const refused = (at.prestress || at.stiffness) && at.support === "flat";
+    find("refused").textContent = refused ? "The tendon is left out: the model has none on flat ground." : "";
     ask({ id: ++requested, at, beside: besideOf(at), begin: performance.now() });
     writeAddress();
     askMap(at);
