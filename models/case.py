@@ -9,6 +9,7 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any, Literal
 
+from .argument_kinds import with_argument_kinds
 from .bounds import Bounds
 from .cylinder import Cylinder, WobblingFrame
 from .ground_motion import GroundMotion
@@ -60,6 +61,7 @@ class InitialState(Brief):
             raise ValueError("tilt must be above 0 where tilt_rate or rolling_rate is given, got 0")
 
 
+@with_argument_kinds
 @dataclass(frozen=True, slots=True, repr=False)
 class Case:
     """One problem: a cylinder or a frame, what moves it, and for how long.
@@ -274,6 +276,7 @@ class Run:
         return partial(Run, **self.settings), (self.engine, self.support, self.time_step)
 
 
+@with_argument_kinds
 @dataclass(frozen=True, slots=True, repr=False)
 class Suite(Brief):
     """Cases times runs.

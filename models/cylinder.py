@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 from numbers import Real
 from typing import Any
 
+from .argument_kinds import with_argument_kinds
 from .number_checks import quoted, require_finite, require_positive
 from .shown import Brief, brief, line
 
@@ -172,6 +173,7 @@ class Cylinder(Brief):
 LARGEST_SLAB_MASS_RATIO = 1e15
 
 
+@with_argument_kinds
 @dataclass(frozen=True, slots=True, repr=False, init=False)
 class WobblingFrame(Cylinder):
     """A rigid slab on equal cylinders that rock and wobble together: a deck on piers, a podium.

