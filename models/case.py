@@ -61,7 +61,6 @@ class InitialState(Brief):
             raise ValueError("tilt must be above 0 where tilt_rate or rolling_rate is given, got 0")
 
 
-@with_argument_kinds
 @dataclass(frozen=True, slots=True, repr=False)
 class Case:
     """One problem: a cylinder or a frame, what moves it, and for how long.
@@ -132,11 +131,11 @@ class Case:
                 f"rolling_resistance must be from 0 to below the base radius, "
                 f"{self.cylinder.base_radius:g} m, got {length!r} m"
             )
-        if not self.name:
+        if isinstance(self.name, str) and not self.name:
             name = "free response" if self.motion is None else self.motion.name
             object.__setattr__(self, "name", name or "record")
-        if self.name.splitlines() != [self.name]:
-            raise ValueError(f"the name of a case must be one line, got {self.name!r}")
+        if not isinstance(self.name, str) or self.name.splitlines() != [self.name]:
+            raise ValueError(f"the name of a case must be one line, got {quoted(self.name)}")
         # kept as it was given, so that a copy with another motion follows that motion
         run_duration(self.motion, self.duration)
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, fields
 from numbers import Real
 from typing import Any
 
-from .argument_kinds import with_argument_kinds
 from .number_checks import quoted, require_finite, require_positive
 from .shown import Brief, brief, line
 
@@ -173,7 +172,6 @@ class Cylinder(Brief):
 LARGEST_SLAB_MASS_RATIO = 1e15
 
 
-@with_argument_kinds
 @dataclass(frozen=True, slots=True, repr=False, init=False)
 class WobblingFrame(Cylinder):
     """A rigid slab on equal cylinders that rock and wobble together: a deck on piers, a podium.
@@ -223,7 +221,7 @@ class WobblingFrame(Cylinder):
             raise ValueError(
                 f"slab_mass_ratio must be from 0 to {LARGEST_SLAB_MASS_RATIO:g}, got {slab_mass_ratio!r}"
             )
-        whole = isinstance(columns, Real) and float(columns).is_integer() and not isinstance(columns, bool)
+        whole = isinstance(columns, Real) and columns % 1 == 0 and not isinstance(columns, bool)
         if not whole or columns < 1 or columns == 2:
             raise ValueError(
                 f"columns must be 3 or more, or 1 under a slab that cannot turn, got {quoted(columns)}"

@@ -80,12 +80,6 @@ def require_one_of(name: str, value: object, allowed: Iterable[str]) -> None:
         raise ValueError(f"{name} must be one of {', '.join(words)}, got {quoted(value)}")
 
 
-def require_kind(name: str, value: object, kind: type) -> None:
-    """Raise ValueError unless a value is of a kind."""
-    if not isinstance(value, kind):
-        raise ValueError(f"{name} must be of kind {kind.__name__}, got {quoted(value)}")  # noqa: TRY004 - bad input is a ValueError
-
-
 def require_each(name: str, values: object, kind: type) -> None:
     """Raise ValueError unless a value is a sequence whose members are all of a kind."""
     if isinstance(values, str | bytes) or not isinstance(values, Sequence):

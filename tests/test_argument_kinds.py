@@ -79,7 +79,11 @@ VALID: dict[str, dict[str, Any]] = {
     "el_centro_1940": {},
     "ensemble": {"case_or_members": [CASE, OTHER], "runs": []},
     "far_field_motions": {"peak": 3.0},
-    "fragility": {"cylinders": PIER, "motions": [STILL, STILL.scaled(0.9)], "methods": ["recess"]}
+    "fragility": {
+        "cylinders": PIER,
+        "motions": [STILL, rw.GroundMotion([[0.0, 0.0], [2.0, 1.0], [0.0, 0.0]], 0.1, "other")],
+        "methods": ["recess"],
+    }
     | {"scales": [1.0, 2.0], "resamples": 5},
     "p695_far_field": {"pair": 1},
     "perturbed_copies": {"case": CASE, "count": 2, "perturbation": 0.01, "seed": 0},

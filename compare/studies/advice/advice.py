@@ -15,7 +15,6 @@ from rockwobble.models import Case, Cylinder, Run, Trace, el_centro_1940
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.cylinder import cylinder_of
 from rockwobble.models.doubts import doubts_of_cases
-from rockwobble.models.number_checks import require_kind
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.support import support_named
 from rockwobble.models.trace import NO_PEAK
@@ -405,9 +404,6 @@ def advise(
     >>> found.trust.kind, found.grades["engine"]
     ('trace', 'not tested')
     """
-    require_kind("case", case, Case)
-    if run is not None:
-        require_kind("run", run, Run)
     require_case(case)
     require_judged(case)
     plan = AdvicePlan(
