@@ -20,7 +20,7 @@ from .body import Body, body_of, restitution_from_momentum
 from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
 from .integration.balance import decided
 from .integration.result import Driver, IntegrationResult, Options, Task
-from .restoring import tied
+from .restoring import balance, tied
 from .rolling import impact_ratio
 
 SUPPORTS = tuple(name for name, support in FACTS.items() if support.modelled)
@@ -258,6 +258,14 @@ class Problem:
         x, y = record[:, 0], record[:, 1]
         along = x * math.cos(azimuth) + y * math.sin(azimuth)
         return Plane(azimuth, np.column_stack([along, np.zeros_like(along), record[:, 2]]))
+
+
+def balance_tilt_of_case(case: Case) -> float:
+    """Return the tilt at which the static couple of a case vanishes [rad]: alpha without a tendon.
+
+    Infinite where there is none below pi/2, so that nothing but shaking or spin overturns the body.
+    """
+    return float(balance(Problem(case).body))
 
 
 def _require_in_plane(initial: InitialState, plane: float) -> None:

@@ -40,9 +40,11 @@ def test_commands_exist_with_the_options_shown(command: str) -> None:
 
 
 def test_the_two_lines_that_set_everything_up_are_there() -> None:
-    lines = [line for block in blocks("sh") for line in block.splitlines() if "venv" in line]
+    lines = [
+        line.split("#")[0].strip() for block in blocks("sh") for line in block.splitlines() if "venv" in line
+    ]
     assert lines == [
-        "python3 -m venv .venv && .venv/bin/pip install . && .venv/bin/rockwobble compare",
+        "python3 -m venv .venv && . .venv/bin/activate && pip install . && rockwobble compare",
         "python3 -m venv .venv && .venv/bin/pip install '.[test]' && .venv/bin/pytest",
     ]
 

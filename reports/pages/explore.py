@@ -177,11 +177,14 @@ def _panels() -> dict[str, dict[str, object]]:
 
     def axis(title: str, unit: str, *, log: bool = False, low: float | None = None) -> dict[str, object]:
         ends = {"low": low, "high": None}
+        # a logarithmic axis of the map spans little more than a decade
+        marks = [factor * 10.0**power for power in range(-4, 4) for factor in (1, 2, 5)] if log else []
+        ticks = [[mark, f"{mark:g}"] for mark in marks]
         return {
             "title": f"{title} [{unit}]",
             "unit": f" {unit}",
             "log": log,
-            "ticks": [],
+            "ticks": ticks,
             "reverse": False,
             **ends,
         }
@@ -198,7 +201,7 @@ def _panels() -> dict[str, dict[str, object]]:
     return {
         "tilt": panel(230, time, axis("tilt", "deg", low=0.0), link="time", left=_LEFT),
         "ground": panel(
-            150,
+            200,
             time,
             axis("ground", "g"),
             link="time",

@@ -35,6 +35,7 @@ from rockwobble.compare.studies.advice.grades import (
     grade_intensity,
     grade_overturning,
     grade_share,
+    grade_tendon,
     grade_trace,
     overall,
 )
@@ -63,6 +64,7 @@ from rockwobble.models import (
     GroundMotion,
     InitialState,
     Run,
+    Tendon,
     WobblingFrame,
     el_centro_1940,
     plain_json,
@@ -574,3 +576,48 @@ def test_a_prediction_of_an_engine_is_the_same_after_a_second_of_rest() -> None:
     first, later = predictions
     assert first.reason == later.reason != ""
     assert later.length == pytest.approx(first.length, rel=COUNTED)
+
+
+@pytest.mark.parametrize(
+    ("tension", "force", "tested", "grade"),
+    [
+        (0.99, 1.0, True, "satisfied"),
+        (1.01, 1.0, True, "not satisfied"),
+        (0.5, 1.0, False, "not tested"),
+        (0.5, None, True, "caution"),
+    ],
+)
+def test_a_tendon_is_graded_by_its_yield(
+    tension: float, force: float | None, tested: bool, grade: str
+) -> None:
+    assert grade_tendon(tension, force, tested=tested) == grade
+
+
+def test_an_advice_says_what_a_tendon_does() -> None:
+    """Uplift, initial stiffness and balance are those of the static couple; a demand is its tension."""
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    tendon = Tendon(prestress=0.5, stiffness=1.0, yield_force=0.6)
+    case = Case(pier, el_centro_1940().scaled(2.0), duration=12.0, tendon=tendon)
+    found, plain = (advise(each, copies=20) for each in (case, Case(pier, case.motion, duration=12.0)))
+    facts = found.facts["tendon"]
+    assert facts["uplift_factor"] == 1.5
+    ratio = found.facts["motion"]["uplift_factor"] / plain.facts["motion"]["uplift_factor"]
+    assert ratio == pytest.approx(1.5, rel=1e-12)
+    b, h = pier.base_radius, pier.mass_centre_height
+
+    def couple(tilt: float) -> float:  # over m g
+        pull = tendon.prestress + tendon.stiffness * 2.0 * math.sin(0.5 * tilt)
+        return b * math.cos(tilt) - h * math.sin(tilt) + b * pull * math.cos(0.5 * tilt)
+
+    assert couple(facts["balance_tilt"] * pier.alpha) == pytest.approx(0.0, abs=1e-12)
+    # V'' upright, over m g b
+    assert facts["initial_stiffness"] == pytest.approx((couple(1e-6) - couple(0.0)) / 1e-6 / b, rel=1e-4)
+    rows = found.demands.set_index("demand")
+    assert rows["value"]["tendon"] > 0.6
+    assert found.grades["tendon"] == "not satisfied"
+    assert "tendon" not in plain.grades
+    # the scale from which is searched follows the raised uplift
+    starts = found.lowest["start"].to_numpy() / plain.lowest["start"].to_numpy()
+    assert starts == pytest.approx(1.5, rel=1e-12)
+    with pytest.raises(ValueError, match="is for support 'recess', got 'flat'"):
+        advise(case, support="flat", copies=20)

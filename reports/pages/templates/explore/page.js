@@ -226,7 +226,7 @@
     const path = (body, x, y, jump, colour, name) => {
       const points = [[], []];
       for (let i = 0, last = -1; i < x.length; i++) {
-        const gap = !(body.tilt[i] > 1e-3 * body.alpha) || (last >= 0 && Math.hypot(x[i] - x[last], y[i] - y[last]) > jump);
+        const gap = !(body.tilt[i] > 1e-3 * body.alpha) || Number.isNaN(x[i]) || (last >= 0 && Math.hypot(x[i] - x[last], y[i] - y[last]) > jump);
         if (!gap && last >= 0 && i - last < body.thin) continue;
         points[0].push(gap ? NaN : x[i]); points[1].push(gap ? NaN : y[i]);
         last = i;
@@ -235,7 +235,7 @@
     };
     const b = at.diameter / 2, circle = Array.from({ length: 73 }, (_, i) => i * Math.PI / 36), paths = [];
     for (const body of [...bodies].reverse()) {
-      const top = body.tilt.map((tilt) => (Math.min(tilt, 1.6 * body.alpha) ? at.height * Math.sin(tilt) + b * (1 - Math.cos(tilt)) : 0));
+      const top = body.tilt.map((tilt) => (tilt < 1.3 * body.alpha ? at.height * Math.sin(tilt) + b * (1 - Math.cos(tilt)) : NaN));  // not the fall
       body.thin = Math.ceil(body.tilt.length / 2500);
       const own = body === main ? [ORANGE, "top of the column"] : [GREY, "beside it"];
       paths.push(path(body, body.contact_x, body.contact_y, b, body === main ? main.colour : GREY, "contact point"));

@@ -1,0 +1,102 @@
+"""The numbers of the README, and of the guides that repeat them, are those of the published tables."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+
+CHECKOUT = Path(__file__).parents[2]
+PUBLISHED = CHECKOUT / "reports" / "published"
+RATIO = r"(\d\.\d\d) \((\d\.\d\d) to (\d\.\d\d)\)"
+# study, cylinder, method and reference of each ratio of the README, in their order
+RATIOS = [
+    ("fragility/p695", "all", "planar x", "recess model"),
+    ("fragility/synthetic", "all", "worse plane", "recess model"),
+    ("fragility/p695", "all", "worse plane", "recess model"),
+    ("risk/p695", "pier", "planar x", None),
+    ("risk/p695", "column", "planar x", None),
+    ("risk/p695", "tower", "planar x", None),
+    ("fragility/synthetic", "all", "flat-ground model", "recess model"),
+    ("fragility/p695", "all", "mujoco recess", "recess model"),
+    ("fragility/p695", "all", "pybullet recess", "recess model"),
+]
+
+
+def words(path: str) -> str:
+    """The text of a file in one line, without the addresses of its links."""
+    text = (CHECKOUT / path).read_text(encoding="utf-8")
+    return " ".join(re.sub(r"\]\([^)]*\)", "]", text).split())
+
+
+def median_ratios(study: str) -> dict[Any, dict[Any, Any]]:
+    """Ratio of the medians that overturn, and its interval, by method and reference; of all cylinders."""
+    table = pd.read_parquet(PUBLISHED / study / "contrasts.parquet")
+    rows = table[(table["cylinder"] == "all") & (table["limit"] == "overturned")]
+    return rows.set_index(["method", "against"]).to_dict("index")
+
+
+def printed_ratio(study: str, cylinder: str, method: str, against: str | None) -> tuple[str, ...]:
+    if against is None:  # annual frequencies, over those of the recess model
+        table = pd.read_parquet(PUBLISHED / study / "risk.parquet")
+        row = table.set_index(["cylinder", "method"]).loc[(cylinder, method)].to_dict()
+    else:
+        row = median_ratios(study)[method, against]
+    return tuple(f"{row[name]:.2f}" for name in ("ratio", "ratio_low", "ratio_high"))
+
+
+def test_each_ratio_of_the_readme_is_that_of_its_table() -> None:
+    stated = re.findall(RATIO, words("README.md"))
+    assert stated == [printed_ratio(*row) for row in RATIOS]
+
+
+def test_the_ratios_of_the_guide_to_risk_are_those_of_its_table() -> None:
+    stated = re.findall(RATIO, words("docs/guide/risk.md"))
+    assert stated == [printed_ratio(*row) for row in RATIOS if row[0] == "risk/p695"]
+
+
+@pytest.mark.parametrize(
+    "place", ["README.md", "docs/index.md", "docs/guide/fragility.md", "docs/guide/risk.md"]
+)
+def test_an_interval_that_includes_1_is_called_that_beside_it(place: str) -> None:
+    text = words(place)
+    for match in re.finditer(RATIO, text):
+        ratio, low, high = (float(number) for number in match.groups())
+        if (
+            low < 1.0 < high and abs(ratio - 1.0) > 0.05
+        ):  # nearer to 1 the sentence says that they hardly differ
+            assert "includes 1" in text[match.end() : match.end() + 120], match.group()
+
+
+def test_what_a_pass_costs_with_default_settings_is_that_of_the_table() -> None:
+    table = pd.read_csv(PUBLISHED / "simulators" / "simulators.csv").set_index(["simulator", "settings"])
+    row = next(
+        line for line in (CHECKOUT / "README.md").read_text().splitlines() if "default settings" in line
+    )
+    losses = re.findall(r"([\d.]+) % (?:of its tilt )?in (\w+)", row)
+    assert [name for _, name in losses] == ["Rapier", "MuJoCo", "PyBullet", "DART", "Drake"]
+    for loss, name in losses:
+        assert f"{100.0 * (1.0 - table.loc[(name.lower(), 'default'), 'tilt']):.2g}" == loss
+
+
+def test_times_and_agreement_are_those_that_are_published() -> None:
+    tradeoff = (PUBLISHED / "tradeoff" / "tradeoff.md").read_text(encoding="utf-8")
+    costs = re.search(r"takes ([\d,]+) to ([\d,]+) times", words("README.md"))
+    assert costs is not None
+    assert f"takes {costs[1]} to {costs[2]} times" in tradeoff
+    rows = pd.read_csv(PUBLISHED / "compare" / "summary.csv")
+    recess = rows[(rows["support"] == "recess") & (rows["reference"] == "recess model")]
+    assert len(recess) >= 2
+    agreed = re.search(r"\*same motion\* for (\d+) s after uplift", words("README.md"))
+    assert agreed is not None
+    assert int(agreed[1]) <= recess["agreement_time"].min() < int(agreed[1]) + 1
+
+
+def test_at_half_the_step_of_an_engine_no_ratio_moves_by_more_than_the_guide_says() -> None:
+    coarse, fine = median_ratios("fragility/p695"), median_ratios("fragility/half-step")
+    engines = [pair for pair in fine if any(each.startswith("mujoco") for each in pair)]
+    assert len(engines) >= 18
+    assert max(abs(coarse[pair]["ratio"] - fine[pair]["ratio"]) for pair in engines) < 0.05
