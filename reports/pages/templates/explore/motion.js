@@ -119,7 +119,7 @@ function contactForce(o, flat, y, ax, ay, az, slopes, out, place) {
 // In `problem`: what `bodyOf` takes; support "recess", "flat" or "planar" with an azimuth; release { tilt, azimuth, rate } or
 // none; restitution of impacts in a plane; duration. `motion` has samples x, y, z (or none), dt and a scale, or is null.
 // Returns the outcome and, at each `sampleStep`, the motion.
-function simulateMotion(problem, motion, { rtol = 1e-9, sampleStep = 0.01 } = {}) {
+function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {}) {
   const o = bodyOf(problem, rtol), planar = problem.support === "planar", flat = problem.support === "flat", n = flat ? 8 : 4;
   const azimuth = planar ? problem.azimuth || 0 : 0, release = problem.release, scale = motion ? motion.scale : 0;
   const length = motion ? motion.x.length : 0, dt = motion ? motion.dt : 1, ca = Math.cos(azimuth), sa = Math.sin(azimuth);
