@@ -16,7 +16,7 @@ from .exact import (
     wobble_stability,
     wobbling_period,
 )
-from .problem import REST_TILT, SUPPORTS
+from .problem import REST_TILT, SUPPORTS, balance_tilt_of_case
 from .simulation import simulate
 
 # name of each reduced model: the options of `simulate` and `peak_tilts`
@@ -32,6 +32,7 @@ __all__ = [
     "SUPPORTS",
     "FreeResponse",
     "angle_of_turn",
+    "balance_tilt_of_case",
     "free_response",
     "limiting_angle_of_turn",
     "peak_tilts",

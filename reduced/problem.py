@@ -20,7 +20,7 @@ from .body import Body, body_of, restitution_from_momentum
 from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
 from .integration.balance import decided
 from .integration.result import Driver, IntegrationResult, Options, Task
-from .restoring import tied
+from .restoring import balance, tied
 from .rolling import impact_ratio
 
 SUPPORTS = tuple(name for name, support in FACTS.items() if support.modelled)
@@ -104,11 +104,6 @@ class Problem:
             raise ValueError(f"restitution belongs to planar motion, got {factor!r} without a plane")
         if plane is not None and initial is not None:
             _require_in_plane(initial, plane)
-        if self.case.tendon is not None and self.case.rolling_resistance > 0.0:
-            raise ValueError(
-                f"a tendon goes without rolling resistance in the reduced models, got "
-                f"{self.case.rolling_resistance:g} m beside it"
-            )
         if self.case.tendon is not None and self.free_twist:
             raise ValueError(
                 "a tendon is part of the models in the recess and in a plane, got support 'flat': there the "
@@ -133,10 +128,12 @@ class Problem:
 
     @cached_property
     def body(self) -> Body:
-        """The constants of the equations; of a `TiedBody`, which has more, with a tendon."""
+        """The constants of the equations; of a `TiedBody`, which has more, with a tendon that pulls."""
         case = self.case
-        plain = body_of(case.cylinder, case.gravity, case.rolling_resistance)
-        return plain if case.tendon is None else cast("Body", tied(plain, case.cylinder, case.tendon))
+        plain, tendon = body_of(case.cylinder, case.gravity, case.rolling_resistance), case.tendon
+        if tendon is None or tendon.prestress == tendon.stiffness == 0.0:  # to the bit
+            return plain
+        return cast("Body", tied(plain, case.cylinder, tendon))
 
     def solve(
         self,
@@ -261,6 +258,14 @@ class Problem:
         x, y = record[:, 0], record[:, 1]
         along = x * math.cos(azimuth) + y * math.sin(azimuth)
         return Plane(azimuth, np.column_stack([along, np.zeros_like(along), record[:, 2]]))
+
+
+def balance_tilt_of_case(case: Case) -> float:
+    """Return the tilt at which the static couple of a case vanishes [rad]: alpha without a tendon.
+
+    Infinite where there is none below pi/2, so that nothing but shaking or spin overturns the body.
+    """
+    return float(balance(Problem(case).body))
 
 
 def _require_in_plane(initial: InitialState, plane: float) -> None:

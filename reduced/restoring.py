@@ -124,6 +124,34 @@ standing_force = by_body(_weight_alone, _weight_and_prestress)
 
 
 @inlined
+def _load_alone(body: Body, load: float, s: float, c: float) -> float:
+    """Return the normal force on both ends of a tilted column [m/s^2], from that without a tendon."""
+    return load
+
+
+@inlined
+def _load_tied(body: TiedBody, load: float, s: float, c: float) -> float:
+    return load + (body.prestress * sqrt(0.5 * (1.0 + c)) + body.stiffness * s)
+
+
+with_tendon_load = by_body(_load_alone, _load_tied)
+
+
+@inlined
+def _moment_alone(body: Body, moment: float, s: float, c: float) -> float:
+    """Return the restoring moment about the rim [m^2/s^2], from that without a tendon."""
+    return moment
+
+
+@inlined
+def _moment_tied(body: TiedBody, moment: float, s: float, c: float) -> float:
+    return moment + body.b * (body.prestress * sqrt(0.5 * (1.0 + c)) + body.stiffness * s)
+
+
+with_tendon_moment = by_body(_moment_alone, _moment_tied)
+
+
+@inlined
 def _slope_alone(body: Body, Q: float) -> float:
     """Return the growth of theta'' with the tilt at uplift [1/s^2], from that without a tendon."""
     return Q
@@ -131,8 +159,9 @@ def _slope_alone(body: Body, Q: float) -> float:
 
 @inlined
 def _slope_tied(body: TiedBody, Q: float) -> float:
-    # |a| cos(alpha) = (g + az + q) sin(alpha), and dr/dtheta of the tendon is k sin(alpha)
-    return Q + body.p2 / body.g * body.sin_alpha * (
+    # |a| = (g + az + q)(b + delta)/h, and r of the tendon grows by k sin(alpha); delta adds to b and to A
+    widened = (1.0 + body.delta / body.b) / (1.0 + body.delta * body.mu * body.b / body.A)
+    return Q + body.p2 / body.g * body.sin_alpha * widened * (
         body.prestress * body.sin_alpha / body.cos_alpha - body.stiffness
     )
 
@@ -194,7 +223,8 @@ def _overturns(body: Body, theta: float, strongest: float, lightest: float) -> b
     under these two and the couple of rolling resistance, theta'' is positive and grows with theta. Spin
     only adds to it, (18); a twist rate, which the flat-ground model has, may hold a cylinder up. With a
     tendon the couple must also fall with the tilt: its slope is at most -[cos(theta) (g' cos(alpha) - k
-    sin(alpha)) + sin(theta) g' sin(alpha)], g' = `lightest`, and stays negative once this is.
+    sin(alpha)) + sin(theta) g' sin(alpha)], g' = `lightest`, and stays negative once this is; rolling
+    resistance takes delta/b of what holds the body down besides.
     """
     beyond = theta - body.alpha
     held = body.delta * body.sin_alpha / body.b
@@ -203,12 +233,13 @@ def _overturns(body: Body, theta: float, strongest: float, lightest: float) -> b
 
 @jit
 def _tied_overturns(body: TiedBody, theta: float, strongest: float, lightest: float) -> bool:
-    if body.delta > 0.0 or lightest <= 0.0:
+    if lightest <= 0.0:
         return False
-    s, c = sin(theta), cos(theta)
-    falling = c * (lightest * body.cos_alpha - body.stiffness * body.sin_alpha)
+    s, c, resisted = sin(theta), cos(theta), body.delta / body.b
+    falling = c * (lightest * body.cos_alpha - (1.0 + resisted) * body.stiffness * body.sin_alpha)
     falling += s * lightest * body.sin_alpha
     left = _weight_and_tendon(body, s, c, lightest)
+    left += resisted * (lightest * body.sin_alpha + _tendon(body, s, sqrt(0.5 * (1.0 + c))))
     return falling >= 0.0 and -left > strongest * cos(theta - body.alpha)
 
 

@@ -30,7 +30,8 @@ symbol    unit     meaning
 ========= ======== ============================================================
 delta     m        length of rolling resistance
 N         m/s^2    normal force on the base, and on the top of a column; over m, in a frame w m
-load      m/s^2    its part without theta'', g + az - mu D' theta'^2
+load      m/s^2    its part without theta'', g + az - mu D' theta'^2, and of a tendon q u + k s
+                   (`restoring`), which also adds b (q u + k s) to M_theta
 lift      m        z'' of the mass centre for each theta'', D'' = b c - h s
 w         rad/s    horizontal part of the angular velocity
 side      -        sign of the tilt rate, of motion in one plane
@@ -46,6 +47,7 @@ from math import copysign, cos, exp, inf, log, pi, sin, sqrt
 from ._compile import inlined, jit
 from .body import Body
 from .equations import base_inertia, in_plane_below
+from .restoring import with_tendon_load, with_tendon_moment
 
 Vector = tuple[float, float, float]
 
@@ -62,7 +64,8 @@ _ROUNDING = 1e-12
 @inlined
 def normal_force(body: Body, s: float, c: float, omega: float, az: float) -> tuple[float, float]:
     """Return load [m/s^2] and lift [m] of the normal force N = load + mu lift theta''."""
-    return body.g + az - (body.b * s + body.h * c) * omega * (body.mu * omega), body.b * c - body.h * s
+    load = with_tendon_load(body, body.g + az, s, c) - (body.b * s + body.h * c) * omega * (body.mu * omega)
+    return load, body.b * c - body.h * s
 
 
 @inlined
@@ -195,6 +198,7 @@ def _needed_and_its_rate(
 ) -> tuple[float, float, float, float]:
     """Return the couple that holds a body, on theta and along the lean, and the rates of both."""
     tilting, turning = needed_to_stand(body, theta, phi, pivoting, body.g + a[2], a, pivots)
+    tilting = with_tendon_moment(body, tilting, sin(theta), cos(theta))
     # seen from the body that pivots, the ground acceleration turns
     seen = slope[0] + pivoting * a[1], slope[1] - pivoting * a[0], slope[2]
     tilting_1, turning_1 = needed_to_stand(body, theta, phi, 0.0, slope[2], seen, pivots)
@@ -204,6 +208,12 @@ def _needed_and_its_rate(
         a_t = a[1] * cos(phi) - a[0] * sin(phi)
         tilting_1 -= 2.0 * P * pivoting * (body.b * c - body.h * s) * a_t / I_v
     return tilting, turning, tilting_1, turning_1
+
+
+@inlined
+def largest_at_rest(body: Body, theta: float, az: float) -> float:
+    """Return the largest couple on a tilted body that stands still [m^2/s^2]."""
+    return body.delta * with_tendon_load(body, body.g + az, sin(theta), cos(theta))
 
 
 @inlined
@@ -230,11 +240,12 @@ def push(
     if abs(turning) <= _turning_below(body, a):
         turning = 0.0
     size = sqrt(tilting * tilting + turning * turning)
+    allowed = largest_at_rest(body, theta, a[2])
     if size == 0.0:
-        return -body.delta * (body.g + a[2]), 0.0, 0.0, 0.0
+        return -allowed, 0.0, 0.0, 0.0
     tilting, turning = -tilting / size, -turning / size
     growth = -tilting_1 * tilting - turning_1 * turning - body.delta * slope[2]
-    return size - body.delta * (body.g + a[2]), growth, tilting, turning
+    return size - allowed, growth, tilting, turning
 
 
 @jit
@@ -244,7 +255,7 @@ def hold_time(body: Body, theta: float, phi: float, a: Vector, slope: Vector, pi
     The ground acceleration is a + slope t, so |M|^2 - (delta N)^2 is a parabola in t. What `pivots` does not
     stand still under a force across its lean.
     """
-    allowed, allowed_1 = body.delta * (body.g + a[2]), body.delta * slope[2]
+    allowed, allowed_1 = largest_at_rest(body, theta, a[2]), body.delta * slope[2]
     tilting, turning, tilting_1, turning_1 = _needed_and_its_rate(body, theta, phi, 0.0, a, slope, pivots)
     below = _turning_below(body, a)
     if pivots and (abs(turning) > below or abs(turning_1) > below):
@@ -281,7 +292,8 @@ def couple_on(
     """
     if omega == 0.0 and abs(spin) <= _ROUNDING * abs(twist_rate) and theta > 0.0:
         tilting, turning = needed_to_stand(body, theta, phi, twist_rate, body.g + a[2], a, pivots)
-        allowed, needed = body.delta * (body.g + a[2]), sqrt(tilting * tilting + turning * turning)
+        tilting = with_tendon_moment(body, tilting, sin(theta), cos(theta))
+        allowed, needed = largest_at_rest(body, theta, a[2]), sqrt(tilting * tilting + turning * turning)
         if needed <= allowed:
             return tilting, turning
         if abs(turning) > _turning_below(body, a):

@@ -1,7 +1,8 @@
 """A certificate: a baseline with a verdict, made here and compared with another installation.
 
-It holds claims with their evidence, what no evidence covers, and the fingerprint of a subject: thirteen short
-motions, or twelve where it carries no slab, how exactly they repeat, and how long they can agree. Two
+It holds claims with their evidence, what no evidence covers, and the fingerprint of a subject: fourteen short
+motions, less those of a slab and of a tendon where it has none, how exactly they repeat, and how long they
+can agree. Two
 installations of one subject differ by rounding, and two versions of an engine by a little more. What that
 becomes in time is told by copies of a case whose start or record is off by the tolerance of the subject: a
 difference counts where it is larger than ten times theirs. Where the copies differ by 1 % of alpha themselves
@@ -14,7 +15,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from random import Random
 from types import ModuleType
@@ -30,6 +31,7 @@ from rockwobble.models import (
     GroundMotion,
     InitialState,
     Run,
+    Tendon,
     Trace,
     el_centro_1940,
 )
@@ -93,8 +95,8 @@ class ShortCase:
     options: Mapping[str, object] = field(default_factory=dict)
 
 
-def short_cases(*, slab: bool = True) -> tuple[ShortCase, ...]:
-    """Return the cases, the simplest first; that of a frame where there is a slab."""
+def short_cases(*, slab: bool = True, tendon: bool = True) -> tuple[ShortCase, ...]:
+    """Return the cases, the simplest first; those of a frame and of a tendon where a subject has them."""
     # so strong and long that an engine with a slab 1 % heavier is off by more than it repeats
     pushes = [[0.0, 0.0, 0.0], [2.6, 0.6, -1.2], [1.2, 2.2, 1.2]]
     frame = _shaken("frame", "mass of the slab, in (18) and in the forces", pushes, 1.0, 3.5, body=FRAME)
@@ -115,6 +117,7 @@ def short_cases(*, slab: bool = True) -> tuple[ShortCase, ...]:
         _shaken("turning-push", "a_t of (19)", [[0.0, 0.0], [2.2, 0.5], [1.0, 1.8]], 0.7),
         _shaken("vertical", "g + az", [[0.0, 0.0, 0.0], [2.2, 0.5, -1.0], [1.0, 1.8, 1.0]], 0.7),
         *([frame] if slab else []),
+        *([_tied()] if tendon else []),
         ShortCase(
             name="planar",
             claim="the planar model, with the loss of an impact",
@@ -154,6 +157,13 @@ def _shaken(
     return ShortCase(name=name, claim=claim, term=term, case=case, options=options)
 
 
+def _tied() -> ShortCase:
+    pushes = [[0.0, 0.0, 0.0], [2.6, 1.4, -1.2], [1.2, 2.2, 1.2]]
+    term = "prestress and stiffness of a tendon: uplift, couple, load and energy"
+    short = _shaken("tendon", term, pushes, 1.0, 2.5)
+    return replace(short, case=replace(short.case, tendon=Tendon(prestress=0.3, stiffness=2.0)))
+
+
 def _record(name: str, term: str, strength: float, length: float) -> ShortCase:
     """Return a case under El Centro, so many times as strong as what lifts the pier."""
     record = el_centro_1940()
@@ -164,7 +174,7 @@ def _record(name: str, term: str, strength: float, length: float) -> ShortCase:
 
 def fingerprint(subject: Subject, progress: ProgressCallback | None = None) -> Iterator[Entry]:
     """Yield the entries, each when it is computed."""
-    shorts = short_cases(slab=subject.carries_slab)
+    shorts = short_cases(slab=subject.carries_slab, tendon=subject.has_tendon)
     stage = stages(progress, [short.case.length for short in shorts])
     for short in shorts:
         with stage(short.name):
@@ -384,8 +394,9 @@ def verify(
     """
     old = certificate["fingerprint"]
     names = [one["name"] for one in old]
-    # of what carries no slab, or made before a frame was a case, it has none
-    if all(names != [short.name for short in short_cases(slab=slab)] for slab in (True, False)):
+    # of what carries no slab or has no tendon, or made before either was a case, it has none
+    kinds = [short_cases(slab=slab, tendon=tendon) for slab in (True, False) for tendon in (True, False)]
+    if all(names != [short.name for short in shorts] for shorts in kinds):
         raise ValueError("the certificate has other cases than this version: make it anew")
     own = subject_of(certificate) if subject is None else subject
     return compare(old, repeated(own, old, progress))

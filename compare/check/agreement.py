@@ -28,6 +28,7 @@ from rockwobble.models.cylinder import PIER
 
 from ..external.motion import exceeds
 from ..metrics.pair import agreement_time, energy_loss, make_pair, rms
+from .lagrange import TENDON
 from .measurement import (
     FRAME_RELEASE,
     GRAVITY,
@@ -117,6 +118,16 @@ def frame(subject: Subject, support: str) -> Iterator[Result]:
     found, model = _both(subject, FRAME_RELEASE, support)
     apart = _difference(found, model, FRAME_RELEASE.length)
     yield at_most("tilt and azimuth of a frame", apart, subject.within(1.0, "contact at its step", "alpha"))
+
+
+def tendon(subject: Subject, support: str) -> Iterator[Result]:
+    """Tilt of a release with a tendon: a spring between points, whose stretch follows from the tilt."""
+    case = dataclasses.replace(RELEASE, tendon=TENDON)
+    found, model = _both(subject, case, support)
+    apart = _difference(found, model, case.length)
+    yield at_most(
+        "tilt and azimuth with a tendon", apart, subject.within(1.0, "contact at its step", "alpha")
+    )
 
 
 def ramp(subject: Subject, support: str) -> Iterator[Result]:

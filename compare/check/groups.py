@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockwobble.models import Case, Suite, Trace, read_suite
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import line
@@ -25,7 +26,7 @@ from ..runs.choice import default_runs, require_runnable, run_labels, runs_here
 from ..runs.execution import Job
 from ..runs.progress import ProgressCallback, Stage, stages
 from ..storage.provenance import package_versions
-from . import agreement, invariance, lagrange, laws
+from . import agreement, invariance, lagrange, laws, restraint
 from . import subject as subjects
 from .measurement import Bound, Result, at_most, not_run
 from .subject import TOLERANCE, Subject
@@ -62,6 +63,8 @@ class Check:
         Whether it starts from a cylinder that stands.
     slab : bool
         Whether it is for subjects that know a wobbling frame.
+    tendon : bool
+        Whether it is for subjects that know a tendon.
     """
 
     measure: Measure
@@ -72,6 +75,7 @@ class Check:
     files: bool = False
     from_rest: bool = False
     slab: bool = False
+    tendon: bool = False
 
     def applies(self, subject: Subject) -> bool:
         """Return whether it is a question to this subject at all."""
@@ -81,6 +85,7 @@ class Check:
             and (subject.reference is not None or not self.reference)
             and (subject.uplifts or not self.from_rest)
             and (subject.carries_slab or not self.slab)
+            and (subject.has_tendon or not self.tendon)
         )
 
     def run(self, subject: Subject) -> Iterator[Result]:
@@ -128,6 +133,24 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
         Check(measure=invariance.scale),
         Check(measure=invariance.statement),
     ),
+    "tendon": (
+        Check(measure=lagrange.residual_with_tendon, supports=("recess",), options=("rtol",), tendon=True),
+        Check(measure=restraint.releases, supports=("recess",), tendon=True),
+        Check(measure=restraint.rocking, supports=("planar",), tendon=True),
+        Check(measure=restraint.stored_energy, supports=("recess",), knows=("energy",), tendon=True),
+        Check(measure=restraint.second_gap, supports=("recess",), knows=("energy",), tendon=True, slab=True),
+        Check(measure=restraint.load_at_rest, supports=("recess",), knows=("contact_force",), tendon=True),
+        Check(
+            measure=restraint.raised_uplift,
+            supports=("recess", "planar"),
+            knows=("uplift_time",),
+            tendon=True,
+            from_rest=True,
+        ),
+        Check(measure=restraint.balance, supports=("recess",), knows=("outcome",), tendon=True),
+        Check(measure=restraint.size, supports=("recess",), tendon=True),
+        Check(measure=restraint.without_force, supports=("recess", "planar"), tendon=True),
+    ),
     "order": (Check(measure=agreement.order, options=("stepper",), reference=True),),
     "trace": (
         Check(measure=laws.place, supports=("recess",), knows=("twist", "contact_point", "centre_of_mass")),
@@ -138,6 +161,7 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
         Check(measure=agreement.fields, knows=("twist", "centre_of_mass"), reference=True),
         Check(measure=agreement.release, reference=True),
         Check(measure=agreement.frame, reference=True, slab=True),
+        Check(measure=agreement.tendon, supports=("recess",), reference=True, tendon=True),
         Check(measure=agreement.ramp, reference=True, from_rest=True),
         Check(measure=agreement.record, reference=True, from_rest=True),
         Check(measure=agreement.ring, supports=("ring",), options=("stepper",), reference=True),
@@ -167,6 +191,7 @@ TITLES = {
     "conserved": "conserved quantities",
     "rest": "rest and uplift",
     "invariance": "invariance",
+    "tendon": "restraining tendon",
     "order": "order of convergence",
     "trace": "consistency of a trace",
     "agreement": "agreement with the independent model",
@@ -275,6 +300,7 @@ class Checks:
         return line("Checks", [counts, *failed, *self.facts["subjects"]])
 
 
+@with_argument_kinds
 def check(
     engine: str | None = None,
     *,

@@ -6,7 +6,8 @@ kinetic energy (13)-(15) and the potential energy (17) with the ground's acceler
 derivatives of the energies by tilt, rolling angle and their rates are complex steps, exact to rounding
 (W. Squire and G. Trapp, SIAM Review 40 (1998) 110-112); those by time are taken along the motion.
 
-A column of a frame has its share of the slab in both energies, which goes twice as far as its mass centre.
+A column of a frame has its share of the slab in both energies, which goes twice as far as its mass centre. A
+tendon is stretched by the way of the base centre from O, and under a slab by as much once more.
 
 ====== ======== =============================================================== ========
 symbol unit     meaning                                                         source
@@ -36,7 +37,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson
 
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, WobblingFrame, el_centro_1940
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    GroundMotion,
+    InitialState,
+    Tendon,
+    WobblingFrame,
+    el_centro_1940,
+)
 from rockwobble.models.cylinder import PIER
 from rockwobble.models.support import SUPPORTS
 
@@ -60,9 +69,11 @@ class Shape:
     I1: float
     I2: float
     slab: float
+    prestress: float = 0.0  # of a tendon, over the mass of one column [m/s^2]
+    stiffness: float = 0.0  # [1/s^2]
 
 
-def shape_of(cylinder: Cylinder) -> Shape:
+def shape_of(cylinder: Cylinder, tendon: Tendon | None = None) -> Shape:
     """Return the constants of a cylinder, homogeneous where it has no inertias of its own: (16)."""
     b, h = cylinder.base_radius, cylinder.mass_centre_height
     I1, I2 = cylinder.transverse_inertia, cylinder.axial_inertia
@@ -73,6 +84,8 @@ def shape_of(cylinder: Cylinder) -> Shape:
         I1=b * b / 4.0 + height * height / 12.0 if I1 is None else I1,
         I2=b * b / 2.0 if I2 is None else I2,
         slab=cylinder.slab_mass_ratio,
+        prestress=0.0 if tendon is None else tendon.prestress * GRAVITY,
+        stiffness=0.0 if tendon is None else tendon.stiffness * GRAVITY / b,
     )
 
 
@@ -123,7 +136,23 @@ def potential(shape: Shape, theta: Array, phi: Array, ground: Array) -> Array:
     pull = ground + np.array([0.0, 0.0, GRAVITY])
     standing = np.array([0.0, 0.0, shape.h])
     found: Array = ((mass_centre(shape, theta, phi) - standing) * pull).sum(axis=-1)
+    if shape.prestress or shape.stiffness:
+        away = base_centre(shape, theta, phi)
+        stretch = gaps(shape) * np.sqrt((away * away).sum(axis=-1))
+        stored = shape.prestress * stretch + 0.5 * shape.stiffness * stretch * stretch
+        found = found + stored / (1.0 + 2.0 * shape.slab)
     return found
+
+
+def base_centre(shape: Shape, theta: Array, phi: Array) -> Array:
+    """Return the centre of the base relative to O (n, 3) [m]; equation (10)."""
+    s, c = np.sin(theta), np.cos(theta)
+    return shape.b * np.stack([(1.0 - c) * np.cos(phi), (1.0 - c) * np.sin(phi), s], axis=-1)
+
+
+def gaps(shape: Shape) -> int:
+    """Return how many gaps a tendon crosses: one at the base, one more under a slab."""
+    return 2 if shape.slab > 0.0 else 1
 
 
 def energy(shape: Shape, theta: Array, phi: Array, theta_rate: Array, phi_rate: Array) -> Array:
@@ -224,6 +253,8 @@ CYLINDERS = {
     ),
     "frame, tan alpha = 0.3": WobblingFrame(Cylinder(semidiagonal=3.0, tan_alpha=0.3), 1.5),
 }
+TENDON = Tendon(prestress=0.4, stiffness=2.0)
+_LIGHT = Tendon(prestress=0.1, stiffness=0.5)  # with which a motion is as slow as without, see _SAMPLE
 # in 1/p: the fastest of these motions changes in about 1/(3 p), and 0.06^12 is below rounding
 _SAMPLE = 0.02
 _PIECE = 16  # samples of the run in one of the record
@@ -237,6 +268,7 @@ NAMES = (
     "equation of motion of the rolling angle",
     "tilt rate against the change of tilt",
     "contact force against Newton's law",
+    "contact force on a slab against Newton's law",
 )
 
 
@@ -244,22 +276,36 @@ def residual(subject: Subject, support: str) -> Iterator[Result]:
     """Residuals of Lagrange's equations, of the tilt rate and of Newton's law, each over all cylinders.
 
     d/dt dT/dq' = d(T - V)/dq for the tilt, in g (b + h), and for the rolling angle; theta' in p; the contact
-    force over the weight is the acceleration of the mass centre and that of ground and gravity.
+    forces over the weight are the acceleration of mass centre or slab and that of ground and gravity.
     """
-    errors = {place: _residuals(subject, support, cylinder) for place, cylinder in CYLINDERS.items()}
+    yield from _worst(subject, support, None)
+
+
+def residual_with_tendon(subject: Subject, support: str) -> Iterator[Result]:
+    """The same with a tendon: its energy by places, its pull from the base centre towards O in the force."""
+    yield from _worst(subject, support, _LIGHT)
+
+
+def _worst(subject: Subject, support: str, tendon: Tendon | None) -> Iterator[Result]:
+    errors = {place: _residuals(subject, support, body, tendon) for place, body in CYLINDERS.items()}
     bound = subject.within(1.0, _REASON, "of g (b + h), p and weights")
     for at, name in enumerate(NAMES):
-        yield worst_of(name, {place: found[at] for place, found in errors.items()}, bound)
+        words = name if tendon is None else f"{name}, with a tendon"
+        yield worst_of(words, {place: found[at] for place, found in errors.items()}, bound)
 
 
-def _residuals(subject: Subject, support: str, cylinder: Cylinder) -> list[float]:
-    shape = shape_of(cylinder)
+def _residuals(subject: Subject, support: str, cylinder: Cylinder, tendon: Tendon | None) -> list[float]:
+    shape = shape_of(cylinder, tendon)
     p = math.sqrt(GRAVITY * cylinder.semidiagonal / (shape.I1 + shape.h**2 + shape.b**2))
     step, inner = _SAMPLE / p, slice(REACH, -REACH)
     errors = []
     for initial, motion in _starts(p, step):
         found = subject.simulate(
-            Case(cylinder, motion, initial=initial), support, sample_step=step, rtol=1e-13, rest_tilt=0.0
+            Case(cylinder, motion, initial=initial, tendon=tendon),
+            support,
+            sample_step=step,
+            rtol=1e-13,
+            rest_tilt=0.0,
         )
         if found.outcome == "failed":
             raise RuntimeError(f"a short motion failed: {why(found)}")
@@ -279,6 +325,14 @@ def _residuals(subject: Subject, support: str, cylinder: Cylinder) -> list[float
             # a slab goes twice as far, and the base carries both
             carried = (1.0 + 2.0 * shape.slab) / (1.0 + shape.slab)
             force = carried * curve(found.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
+            # of the column on its share of the slab
+            on_slab = 2.0 * curve(found.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
+            if tendon is not None:
+                away = base_centre(shape, *place)
+                opening = np.sqrt((away * away).sum(axis=-1))[:, None]
+                pull = shape.prestress + shape.stiffness * gaps(shape) * opening
+                force = force + pull * away / opening / (1.0 + shape.slab)
+                on_slab = on_slab + pull * away / opening / (shape.slab or math.inf)
             scale = GRAVITY * (shape.b + shape.h)
             errors.append(
                 [
@@ -286,6 +340,7 @@ def _residuals(subject: Subject, support: str, cylinder: Cylinder) -> list[float
                     largest(by_turn) / scale,
                     largest(rates[0] - found.tilt_rate[cut][inner]) / p,
                     largest(force / GRAVITY - found.contact_force[cut][inner]),
+                    largest(on_slab / GRAVITY - found.top_contact_force[cut][inner]) if shape.slab else 0.0,
                 ]
             )
     return [largest(each) for each in np.array(errors).T]

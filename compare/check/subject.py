@@ -81,6 +81,8 @@ class Subject(Brief):
         Whether it can start from a cylinder that stands.
     carries_slab : bool
         Whether it knows a wobbling frame.
+    has_tendon : bool
+        Whether it knows a tendon.
     """
 
     label: str
@@ -99,6 +101,7 @@ class Subject(Brief):
     cases: tuple[Case, ...] | None = None
     uplifts: bool = True
     carries_slab: bool = False
+    has_tendon: bool = False
 
     def simulate(
         self, case: Case, support: str, *, sample_step: float = SAMPLE_STEP, **options: object
@@ -143,6 +146,7 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
         tolerance=MODEL_TOLERANCE,
         repeatability=MODEL_TOLERANCE,
         carries_slab=True,
+        has_tendon=True,
     )
 
 
@@ -191,6 +195,7 @@ def engine(name: str, time_step: TimeStep | None = None, **settings: object) -> 
         run=Run(name, found.supports[0], time_step, **settings),
         uplifts=found.uplifts,
         carries_slab=facts.carries_slab,
+        has_tendon=facts.tendons,
     )
 
 

@@ -16,6 +16,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Trace, perturbed_copies
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.diagnostic import joined
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.number_checks import require_each
@@ -102,6 +103,7 @@ class Ensemble(Results, kind=KIND):
         }
 
 
+@with_argument_kinds
 def ensemble(
     case_or_members: Case | Suite | Sequence[Case],
     *,
@@ -125,7 +127,8 @@ def ensemble(
     runs : iterable of Run, optional
         Default: those of the suite, else every installed engine with supports "recess" and "flat".
     models : sequence of Run, optional
-        Reduced models. The first is named first in every contrast.
+        Reduced models. The first is named first in every contrast. Default: recess and flat; with a tendon
+        recess.
     copies : int, optional
         Number of perturbed copies of one case.
     perturbation : float, optional
@@ -173,6 +176,8 @@ def ensemble(
         raise ValueError(f"an ensemble has at least 2 members of different names, got {len(members)}")
     stated = case_or_members.runs if isinstance(case_or_members, Suite) else ()
     chosen = (stated or default_runs()) if runs is None else tuple(runs)
+    if models is MODELS and any(case.tendon is not None for case in members):
+        models = MODELS[:1]  # on flat ground the base wanders from its anchor
     for case in members:
         for run in chosen:
             require_runnable(case, run)

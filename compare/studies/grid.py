@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import Brief
@@ -103,11 +104,12 @@ class GridChunk:
         cylinder: Cylinder = Cylinder(semidiagonal=float(size), tan_alpha=self.tan_alpha)
         if ratio := options.pop("slab_mass_ratio", 0.0):
             cylinder = WobblingFrame(cylinder, ratio)
-        stated = {name: options.pop(name) for name in ("gravity", "rolling_resistance") if name in options}
+        stated = {name: options.pop(name) for name in ("gravity", "tendon") if name in options}
         case = Case(cylinder, self.motion.scaled(float(scale)), **stated)
         return reduced.simulate(case, **{"rtol": _RTOL, **options}).outcome
 
 
+@with_argument_kinds
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Grid(Brief, GridPlan):
     """Every size with every slenderness, scale, motion and model, each run from rest for its peak tilt.
@@ -124,7 +126,8 @@ class Grid(Brief, GridPlan):
         With different names.
     models : sequence of {"recess", "flat", "planar"}, optional
     gravity, slab_mass_ratio, rtol, rest_tilt
-        As in `reduced.peak_tilts`; and for a grid of planar runs alone plane and restitution.
+        As in `reduced.peak_tilts`; tendon_prestress and tendon_stiffness of its tendon; and for a grid of
+        planar runs alone plane and restitution.
 
     Raises
     ------
@@ -181,7 +184,8 @@ class Grid(Brief, GridPlan):
     def options(self) -> Mapping[str, object]:
         """Options of `reduced.peak_tilts` that are not its defaults."""
         given = {name: getattr(self, name) for name in _OPTIONS}
-        return {name: value for name, value in given.items() if value != _OPTIONS[name]}
+        tendon = {} if self.tendon is None else {"tendon": self.tendon}
+        return {name: value for name, value in given.items() if value != _OPTIONS[name]} | tendon
 
     @property
     def rows(self) -> int:

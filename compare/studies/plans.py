@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 from ..runs.plan import Plan, option
 
 if TYPE_CHECKING:
-    from rockwobble.models import Case
+    from rockwobble.models import Case, Tendon
 
 _ROLLING = (
     "Length of the couple against the rolling of the rim, in m, below every base radius; 0 loses nothing."
@@ -84,8 +84,35 @@ class AdvicePlan(Copies):
         return perturbed_copies(case, copies, perturbation=self.perturbation, seed=self.seed)
 
 
+def tendon_of(prestress: float, stiffness: float) -> Tendon | None:
+    """Return the tendon of a prestress and a stiffness, as of `Tendon`; None where it does not pull."""
+    from rockwobble.models import Tendon  # with numpy, which help can do without
+
+    return Tendon(prestress=prestress, stiffness=stiffness) if prestress or stiffness else None
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FragilityPlan(Plan):
+class TendonPlan(Plan):
+    """The tendon of many bodies, in multiples of weight and base radius of each."""
+
+    tendon_prestress: float = option(
+        0.0,
+        "Tension at rest of a tendon along the axis, in weights of one column.",
+        group="Tendon",
+        least=0.0,
+    )
+    tendon_stiffness: float = option(
+        0.0, "Its stiffness, in weights of one column per base radius.", group="Tendon", least=0.0
+    )
+
+    @property
+    def tendon(self) -> Tendon | None:
+        """The tendon; None where it does not pull."""
+        return tendon_of(self.tendon_prestress, self.tendon_stiffness)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FragilityPlan(TendonPlan):
     """Fragility: intensities, limits, statistics, and what its methods have in common."""
 
     measure: str = option(
@@ -145,7 +172,7 @@ class FragilityPlan(Plan):
         # with numpy, which help can do without
         from rockwobble.models.number_checks import require_increasing
 
-        Plan.__post_init__(self)
+        TendonPlan.__post_init__(self)
         if self.levels is not None and self.scales is not None:
             raise ValueError("levels scale the motions, scales take them as they are: got both")
         for name in ("levels", "scales"):
@@ -164,7 +191,7 @@ PROBES = 500
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SpectrumPlan(Plan):
+class SpectrumPlan(TendonPlan):
     """Overturning spectrum: its grid, what is run in a cell, and the search for the lowest intensities."""
 
     SIZES: ClassVar = (0.5, 30.0, 100)  # [m]; with the intensities figure 6 of the paper
@@ -208,7 +235,7 @@ class SpectrumPlan(Plan):
     def __post_init__(self) -> None:
         from rockwobble.models.number_checks import require_increasing
 
-        Plan.__post_init__(self)
+        TendonPlan.__post_init__(self)
         for name in ("semidiagonals", "intensities"):
             given = getattr(self, name)
             if given is not None and len(require_increasing(name, given)) > self._MOST:
@@ -239,7 +266,7 @@ class ValidityPlan(QuickPlan):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GridPlan(Plan):
+class GridPlan(TendonPlan):
     """Grid of reduced runs from rest: its axes, and what all runs have in common."""
 
     # [m], [-], [-]: from, to and count

@@ -93,6 +93,8 @@ def single_run(
         # an engine in a process of its own, so that Ctrl-C also stops it in the middle of a long call
         (trace,) = simulate_all([Job(case=case, run=run)], workers=1 if model == run else 2)
     part = math.inf
+    if not len(trace.time):
+        return single_run_of(trace, part, answer, plan.perturbation)
     with stage(f"{plan.copies} copies of the {model}"):
         own = trace if model == run else simulate_run(case, model)
         if len(own.time) and math.isfinite(own.uplift_time):

@@ -15,6 +15,10 @@ NORTH = "north"  # rotate= : x to the east and y to the north, by the azimuths
 _LEAST_ANGLE = 30.0  # [deg] between two horizontal components that span the plane
 
 
+class DirectionError(ValueError):
+    """Refusal of a component of which its file states neither direction nor azimuth."""
+
+
 def in_order(components: Sequence[Component], name: str) -> list[Component]:
     """Return the components of a record as x, y and, where there is one, z.
 
@@ -28,8 +32,10 @@ def in_order(components: Sequence[Component], name: str) -> list[Component]:
 
     Raises
     ------
+    DirectionError
+        If one has neither direction nor azimuth.
     ValueError
-        If a direction is missing or there twice, or one has neither direction nor azimuth.
+        If a direction is missing or there twice.
     """
     parts = _with_directions(components)
     listed = ", ".join(
@@ -41,7 +47,7 @@ def in_order(components: Sequence[Component], name: str) -> list[Component]:
             "(planar motion)"
         )
     if any(part.direction is None for part in parts):
-        raise ValueError(f"{name} does not say which component is east, north and up, it has {listed}")
+        raise DirectionError(f"{name} does not say which component is east, north and up, it has {listed}")
     for axis, word in (("x", "east"), ("y", "north"), ("z", "up")):
         count = sum(part.direction == axis for part in parts)
         if count > 1 or (count == 0 and axis != "z"):

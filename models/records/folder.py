@@ -9,7 +9,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..argument_kinds import with_argument_kinds
 from ..ground_motion import GroundMotion
+from .directions import DirectionError
 from .files import ZERO, read_record
 
 TABLE = "records.csv"
@@ -18,6 +20,7 @@ _WAYS = ("units", "columns", "time_step", "lengths", "remove_mean", "rotate", "r
 _COLUMNS = ("name", "record", "x", "y", "z", "scale", "level", *_WAYS)
 
 
+@with_argument_kinds
 def read_records(
     folder: str | Path,
     *,
@@ -74,6 +77,7 @@ def read_records(
     return [motion for motion, _ in _read(Path(folder), ways)]
 
 
+@with_argument_kinds
 def read_records_by_level(folder: str | Path, **ways: Any) -> dict[float, list[GroundMotion]]:
     r"""Return the ground motions of a folder by the column level of its records.csv: multiple stripes.
 
@@ -121,12 +125,12 @@ def read_records_by_level(folder: str | Path, **ways: Any) -> dict[float, list[G
 def _read(path: Path, ways: Mapping[str, Any]) -> list[tuple[GroundMotion, float | None]]:
     """Return motions, each with its level."""
     if path.is_dir() and not (path / TABLE).exists():
-        stations = _stations(path)
-        if stations:
-            return [(motion, None) for motion in _peer_motions(stations, ways)]
+        stations, listed = _stations(path)
+        if stations or listed:
+            return [(motion, None) for motion in _peer_motions(path, ways)]
     path = path / TABLE if path.is_dir() else path
     if path.name.endswith(PEER_TABLE):
-        return [(motion, None) for motion in _peer_motions(_stations(path.parent), ways)]
+        return [(motion, None) for motion in _peer_motions(path.parent, ways)]
     columns_of_table, rows = _table(path)
     wrong = [column for column in columns_of_table if column not in _COLUMNS]
     if wrong or not ({"x", "y"} <= set(columns_of_table) or "record" in columns_of_table):
@@ -222,21 +226,18 @@ def _way(name: str, text: str) -> object:
 _RSN = re.compile(r"RSN(\d{1,6})_", re.IGNORECASE)
 
 
-def _stations(folder: Path) -> list[tuple[str, list[Path]]]:
-    """Return name and AT2 files of each record of a folder of PEER: of its table, else all."""
-    if not folder.is_dir():
-        return []
+def _stations(folder: Path) -> tuple[list[tuple[str, list[Path]]], bool]:
+    """Return name and AT2 files of each record of a folder of PEER, and whether its table lists them."""
     tables = sorted(path for path in folder.iterdir() if path.name.endswith(PEER_TABLE))
     if tables:
-        return _listed_stations(tables[0])
+        return _listed_stations(tables[0]), True
     groups: dict[str, list[Path]] = {}
     for path in sorted(folder.iterdir()):
         number = _RSN.match(path.name)
         if number and path.suffix.lower() == ".at2":
             groups.setdefault(number[1], []).append(path)
-    return [
-        (f"RSN{number}", paths) for number, paths in sorted(groups.items(), key=lambda each: int(each[0]))
-    ]
+    ordered = sorted(groups.items(), key=lambda each: int(each[0]))
+    return [(f"RSN{number}", paths) for number, paths in ordered], False
 
 
 def _listed_stations(table: Path) -> list[tuple[str, list[Path]]]:
@@ -276,7 +277,7 @@ def _listed_stations(table: Path) -> list[tuple[str, list[Path]]]:
             continue
         names = [cells[place].replace("\\", "/").rpartition("/")[2] for place in places if place is not None]
         files = [
-            here.get(name.lower(), table.parent / name) for name in names if name and name.upper() != "NONE"
+            here.get(name.lower(), table.parent / name) for name in names if name.lower().endswith(".at2")
         ]
         words = [f"RSN{cells[number]}" if number is not None else ""]
         words += [cells[place].strip('"') for place in (event, station) if place is not None]
@@ -284,22 +285,31 @@ def _listed_stations(table: Path) -> list[tuple[str, list[Path]]]:
     return found
 
 
-def _peer_motions(stations: Sequence[tuple[str, list[Path]]], ways: Mapping[str, Any]) -> list[GroundMotion]:
+def _peer_motions(folder: Path, ways: Mapping[str, Any]) -> list[GroundMotion]:
+    stations, listed = _stations(folder)
     if not stations:
-        raise ValueError("the table of PEER lists no records")
+        raise ValueError(f"the table of PEER in {folder} lists no records")
     # a download without any vertical component is one of horizontal motions
     verticals = any(path.exists() for _, paths in stations for path in paths[2:])
     motions = []
     for name, paths in stations:
         files = paths if verticals else paths[:2]
         try:
-            motions.append(_of_station(files, name, ways))
+            motions.append(_of_station(files, name, ways, listed=listed))
         except ValueError as error:
             raise ValueError(f"{name}: {error}") from None
     return motions
 
 
-def _of_station(paths: Sequence[Path], name: str, ways: Mapping[str, Any]) -> GroundMotion:
+def _of_station(paths: Sequence[Path], name: str, ways: Mapping[str, Any], *, listed: bool) -> GroundMotion:
     if not 2 <= len(paths) <= 3:
         raise ValueError(f"must have two or three files, got {', '.join(path.name for path in paths)[:120]}")
-    return read_record(paths, name=name, **ways)
+    try:
+        return read_record(paths, name=name, **ways)
+    except DirectionError:
+        if not listed:
+            raise
+    # titles such as L and T: the table still tells horizontal from vertical
+    motion = read_record(*paths, name=name, **ways)
+    order = "x is horizontal 1 and y horizontal 2 of the table, their azimuths are not stated"
+    return motion.changed(motion.acceleration, order)

@@ -1,8 +1,7 @@
 """Engines by name; each is imported only when it is asked for.
 
-Engines are declared as entry points of the group `rockwobble.engines`, so that a package of somebody
-else can bring one. Those of this package are declared there too, and known here besides: a checkout that is
-not installed has no entry points, and an engine is known by name where its package has no wheel.
+Those of this package stand in `_ENGINES`, with what each needs to run: an engine is known by name where its
+package has no wheel. Another package declares its own as an entry point of the group `rockwobble.engines`.
 """
 
 from __future__ import annotations
@@ -41,6 +40,7 @@ class BrokenEngineError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class _Entry:
+    engine: str  # class, in the module here that has the name of the engine
     package: str
     remedy: str
     module: str = ""  # where it is not called as the package
@@ -57,19 +57,22 @@ _WHEEL = sys.version_info < (3, 12) and sys.platform == "linux" and platform.mac
 _ENGINES: Mapping[str, _Entry] = MappingProxyType(
     {
         # without mujoco-core a folder of that name is left, which can be imported and holds nothing
-        "mujoco": _Entry("mujoco", "pip install 'mujoco>=4.0,<5'", part="rollout"),
+        "mujoco": _Entry("MujocoEngine", "mujoco", "pip install 'mujoco>=4.0,<5'", part="rollout"),
         "pybullet": _Entry(
+            "PybulletEngine",
             "pybullet",
             "pip install pybullet, which has wheels for Python 3.11 and older on Linux x86-64 only",
             standard=_WHEEL,
         ),
         "dart": _Entry(
+            "DartEngine",
             "dartpy",
             "pip install 'dartpy>=6.20,<7'",
             standard=not _WHEEL,
             libraries=_GRAPHICS,
         ),
         "drake": _Entry(
+            "DrakeEngine",
             "drake",
             "pip install 'drake>=1.51'",
             module="pydrake",
@@ -78,12 +81,13 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
             libraries={"libglib2.0-0": "libglib-2.0.so.0"},
         ),
         "exudyn": _Entry(
+            "ExudynEngine",
             "exudyn",
             "pip install 'exudyn>=1.13.6,<2'",
             standard=False,
             libraries=_GRAPHICS,
         ),
-        "rapier": _Entry("rapier3d", "pip install 'rapier3d>=0.36'", standard=False),
+        "rapier": _Entry("RapierEngine", "rapier3d", "pip install 'rapier3d>=0.36'", standard=False),
     }
 )
 
@@ -184,7 +188,7 @@ def engine_named(name: str) -> Engine:
     """
     if name in _ENGINES:
         module = importlib.import_module(f".{name}", __package__)
-        return cast(Engine, getattr(module, f"{name.capitalize()}Engine")())
+        return cast(Engine, getattr(module, _ENGINES[name].engine)())
     declared = _declared()
     if name not in declared:
         raise ValueError(f"engine must be one of {', '.join((*_ENGINES, *declared))}, got {name!r}")

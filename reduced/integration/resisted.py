@@ -17,7 +17,7 @@ from math import inf, sqrt
 from .._compile import inlined, jit
 from ..body import Body
 from ..equations import energy, flat_rhs, planar_rhs, recess_motion
-from ..restoring import standing_force
+from ..restoring import standing_force, with_tendon_load
 from ..rolling import (
     PIVOTS,
     across_inertia,
@@ -25,6 +25,7 @@ from ..rolling import (
     couple,
     couple_on,
     hold_time,
+    largest_at_rest,
     limit_of_pass,
     momenta_of,
     needed_to_stand,
@@ -156,7 +157,7 @@ def _make_ratio(model: System, error_ratio: Callable[..., float], *, pivots: boo
         speeds = (y[1] * y[1] + across * across) * (y_new[1] * y_new[1] + across_new * across_new)
         along = y[1] * y_new[1] + across * across_new
         unit = abs(y[1]) + abs(across) + body.p * sqrt(body.sin_alpha * y[0])
-        taken = body.delta * body.g * h
+        taken = body.delta * with_tendon_load(body, body.g, *sin_cos(y[0])) * h
         if along > 0.0 and along * along > _FOLLOWED * speeds:
             slow = min(y[1] * y[1] + across * across, y_new[1] * y_new[1] + across_new * across_new)
             stable = _STABLE * sqrt(slow)
@@ -278,7 +279,7 @@ def _make_system(
     @jit
     def placed(body: Body, y: State, theta: float, omega: float, phi: float, L: float) -> State:
         # an impact and a rest lose energy; an uplift begins with the work of the couple on its first tilt
-        lost = body.delta * body.g * (theta - y[0])
+        lost = body.delta * standing_force(body, 0.0) * (theta - y[0])
         if theta == 0.0:
             lost = energy(body, y[0], y[1], *momenta(y)) - 0.5 * body.A * omega * omega
         side = 1.0 if omega > 0.0 else -1.0 if omega < 0.0 else 0.0
@@ -338,7 +339,7 @@ def _make_system(
             limit = 2.0 * body.A * slow * slow * body.sin_alpha * y[0]
             room = 2.0 * _STOPS * rtol * y[0]
             # few states pass the first
-            if body.A * y[1] * y[1] < max(limit, room * body.delta * (body.g + a[2])):
+            if body.A * y[1] * y[1] < max(limit, room * largest_at_rest(body, y[0], a[2])):
                 s, c = sin_cos(y[0])
                 across = across_rate(body, s, c, *momenta(y))
                 inertia = across_inertia(body, s, c, pivots)

@@ -77,7 +77,8 @@ def fragility(
                 of_body = BODY - {"slab_mass_ratio", "columns"}
                 refuse(context, of_body, "does not go with --cylinder, which states the cylinder")
             bodies = cylinders_of(cylinder, body)
-            chosen = methods.methods(next(iter(bodies.values())))
+            tied = plan.tendon is not None
+            chosen = methods.methods(next(iter(bodies.values())), tendon=tied)
             methods_of(chosen, restitution=plan.restitution)  # before motions are read
             site = hazard.curve(plan.period)
             stripes = many.by_level()

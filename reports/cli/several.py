@@ -119,24 +119,28 @@ class ManyMethods:
     setting: options.Settings = None
     time_step: options.TimeStep = None
 
-    def methods(self, body: rw.Cylinder) -> list[str | rw.Run]:
+    def methods(self, body: rw.Cylinder, *, tendon: bool = False) -> list[str | rw.Run]:
         """Return reduced models by name, and each engine with those of the supports that it has.
 
         Parameters
         ----------
         body : Cylinder
             On which the settings are tried.
+        tendon : bool, optional
+            Whether it has a tendon, which the default models on flat ground do not know.
 
         Raises
         ------
         ValueError
             If an engine has none of the supports, or nothing has a setting.
         """
-        from rockwobble.compare.studies.fragility.runs import MODELS
+        from rockwobble.compare.studies.fragility.runs import MODELS, models_with_tendon
         from rockwobble.multibody.engines.registry import find_engine
 
         given, supports = settings(self.setting), self.support
-        chosen: list[str | rw.Run] = [] if self.model == ["none"] else list(self.model or MODELS)
+        chosen: list[str | rw.Run] = (
+            [] if self.model == ["none"] else list(self.model or (models_with_tendon() if tendon else MODELS))
+        )
         if not self.engine or self.engine == [options.NO_ENGINE]:
             if supports or given or self.time_step is not None:
                 raise ValueError("--support, --set and --time-step are for engines, give --engine as well")
@@ -221,6 +225,9 @@ _motion = options_in("Ground motion")
 class GridOptions(GridPlan, Reading):
     """The options that state a grid."""
 
+    record: list[Path] | None = _motion(
+        None, "File or folder of all components; may be repeated for several records."
+    )
     record_x: list[Path] | None = _motion(
         None, "East-west component, or zero; may be repeated for several records. Default: El Centro 1940."
     )
@@ -243,9 +250,13 @@ class GridOptions(GridPlan, Reading):
 
     def _motions(self) -> list[rw.GroundMotion]:
         x, y, z = self.record_x or [], self.record_y or [], self.record_z or []
+        if self.record:
+            if lone := first_given(self, "record_x", "record_y", "record_z"):
+                raise ValueError(f"--record holds all components, got {lone} beside it")
+            return [rw.read_record(path, **self.ways()) for path in self.record]
         if not x and not y:
             if lone := first_given(self, "record_z", *WAYS):
-                raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
+                raise ValueError(f"{lone} belongs to a record, give --record, or --record-x and --record-y")
             return [rw.el_centro_1940()]
         if len(x) != len(y) or len(z) not in (0, len(x)):
             raise ValueError(

@@ -236,7 +236,7 @@ def simulate(
             found = single_run(
                 case,
                 run,
-                answer=restated(context, "ensemble" if case.tendon else "advise", also=("support",)),
+                answer=restated(context, "advise", also=("support",)),
                 progress=progress,
             )
         if not len(found.trace.time):
@@ -300,7 +300,7 @@ def advise(
             from rockwobble.compare.studies.advice.advice import require_judged
 
             case = problem.case()
-            require_judged(case)
+            require_judged(case, plan.support)
             run = _run(case, engine, plan.support, time_step)
             claim_folder(context)
         echo([*record_lines([case.motion]), *case_warnings([case])])

@@ -152,7 +152,7 @@ def check(
         typer.Option(
             metavar="GROUP",
             help="Run one group of checks; may be repeated: equations, exact, conserved, rest, invariance, "
-            "order, trace, agreement, protocol, baseline. Default: all.",
+            "tendon, order, trace, agreement, protocol, baseline. Default: all.",
         ),
     ] = None,
     update_baseline: Annotated[
@@ -170,9 +170,9 @@ def check(
     """Check by physics that reduced models and engines are right, and still do what they did.
 
     One list of checks, tightest first: residuals in the equations of motion, exact solutions, conserved
-    quantities, rest and uplift, invariance, order of convergence, consistency of a trace, agreement with the
-    independent model, the protocol of an engine, stored numbers. Printed are failures, with value and bound,
-    and one line for each group.
+    quantities, rest and uplift, invariance, a tendon, order of convergence, consistency of a trace, agreement
+    with the independent model, the protocol of an engine, stored numbers. Printed are failures, with value
+    and bound, and one line for each group.
 
     A suite is compared with the bounds that it states; one that states none, with what the time step of each
     run leaves, measured by a second run of twice that step.

@@ -41,6 +41,7 @@ _DEMANDS = {
     "top_friction": "friction, top",
     "top_shear": "shear, top",
     "top_force": "normal force, top",
+    "tendon": "tendon force, W: a column alone",
 }
 # units of a table, and in the box, where W is the weight that its head names
 _UNITS = {"-": "", "weights": " W", "weights × b": " W b"}
@@ -94,6 +95,7 @@ def page_of(found: Advice) -> Page:
         "demanded": list(_demanded(found)),
         "together": _together(found),
         "wall": _wall(found),
+        "tendon_words": _tendon_words(found),
         "compared": _compared(found),
         "vertical_words": _vertical_words(found),
         "steps": _steps(found),
@@ -124,6 +126,7 @@ def _reasons(found: Advice) -> dict[str, str]:
         "overturning": _reason_of_overturning(found),
         "friction": _reason_of_friction(found, slip, few),
         "contact": contact,
+        "tendon": _reason_of_tendon(found),
         "trace": _reason_of_trace(found),
         "intensity": _reason_of_intensity(found),
         "engine": _reason_of_engine(found),
@@ -163,6 +166,40 @@ def _reason_of_friction(found: Advice, slip: float, few: str) -> str:
     if slip > 0.0:
         return f"{number(given)} is too little for {number(slip, 'percent')} of the time in motion"
     return f"{number(given)} suffices in 95 % of all runs" if grade == "satisfied" else few
+
+
+def _reason_of_tendon(found: Advice) -> str:
+    tendon = found.facts.get("tendon")
+    if tendon is None:
+        return ""
+    largest, limit = f"{number(found.largest_tension)} weights of a column", tendon["yield_force"]
+    if limit is None:
+        return f"no yield force was given, the demand is {largest}"
+    over = "above" if found.grades["tendon"] == "not satisfied" else "below"
+    return f"the demand, {largest}, is {over} its yield at {number(limit)}"
+
+
+def _ratios_of_tendon(found: Advice) -> dict[str, str]:
+    """Options that state the tendon by ratios, whichever the user gave."""
+    tendon = found.facts.get("tendon") or {}
+    return {f"tendon_{name}": f"{tendon[name]:.6g}" for name in ("prestress", "stiffness") if name in tendon}
+
+
+def _tendon_words(found: Advice) -> str:
+    """What a tendon does to uplift, stiffness and balance."""
+    tendon = found.facts.get("tendon")
+    if tendon is None:
+        return ""
+    stiffness, balance = tendon["initial_stiffness"], tendon["balance_tilt"]
+    way = "grows" if stiffness > 0.0 else "falls"
+    returns = "It brings the column back from every tilt"
+    if math.isfinite(balance):
+        returns = f"It brings the column back from tilts up to {number(balance)} α"
+    steel = f"prestress {number(tendon['prestress'])} W, stiffness {number(tendon['stiffness'])} W/b"
+    return (
+        f"Tendon: {steel}. Uplift at {number(tendon['uplift_factor'])} g tan α; initial stiffness "
+        f"{number(stiffness)} m g b, the couple {way} with the tilt. {returns}."
+    )
 
 
 def _reason_of_trace(found: Advice) -> str:
@@ -393,7 +430,7 @@ def _steps(found: Advice) -> list[str]:
             "friction unknown": command_line("advise", options | {"friction": "MU"}),
             "budget": command_line("compare", problem | {"support": support, "budget": True}),
             "engine": command_line("advise", options | {"engine": DEFAULT_ENGINE}),
-            "spectrum": spectrum_line(options, found.cylinder.tan_alpha),
+            "spectrum": spectrum_line(options | _ratios_of_tendon(found), found.cylinder.tan_alpha),
             "ensemble": command_line("ensemble", problem | {"support": support}),
             "ring": command_line("advise", options | {"support": "ring"}),
             "recess": command_line("advise", options | {"support": "recess"}),

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 # options of a problem that `rockwobble spectrum` has, too: it states the cylinder by slenderness alone
 _OF_SPECTRUM = (
     *("record", "record_x", "record_y", "record_z", "units", "resample", "scale"),
-    *("slab_mass_ratio", "gravity", "rolling_resistance", "support"),
+    *("slab_mass_ratio", "gravity", "rolling_resistance", "tendon_prestress", "tendon_stiffness", "support"),
 )
 
 

@@ -35,6 +35,7 @@ from rockwobble.compare.studies.advice.grades import (
     grade_intensity,
     grade_overturning,
     grade_share,
+    grade_tendon,
     grade_trace,
     overall,
 )
@@ -55,6 +56,7 @@ from rockwobble.compare.studies.advice.scales import (
 )
 from rockwobble.compare.studies.advice.trust import trust_of, verified
 from rockwobble.compare.studies.plans import AdvicePlan, SpectrumPlan
+from rockwobble.compare.studies.single_run import single_run
 from rockwobble.compare.studies.spectrum.maps import intensity_unit, tilt_maps, uplift_factor
 from rockwobble.models import (
     Case,
@@ -62,6 +64,7 @@ from rockwobble.models import (
     GroundMotion,
     InitialState,
     Run,
+    Tendon,
     WobblingFrame,
     el_centro_1940,
     plain_json,
@@ -108,14 +111,14 @@ def test_demands_of_samples_are_those_of_the_continuous_solution():
     moving = trace.open_base.sum() * 1e-4
     assert found["slip"] == pytest.approx(slip.duration / moving, rel=1e-3)
     assert 0.1 < found["friction"] < demands.largest_friction_needed
-    assert 0.0 < found["moment"] < demands.largest_restraining_moment / PIER.base_radius
+    assert 0.0 < found["moment"] < 2.0 * demands.largest_restraining_moment / PIER.base_radius
     assert 1.0 < found["force"] < demands.largest_normal_force
     shear = np.hypot(*trace.contact_force[trace.open_base, :2].T)
     assert np.mean(shear <= found["shear"]) == pytest.approx(1.0 - SPIKES, abs=1e-4)  # a sample
     assert found["lost"] == 0.0
     still = demands_of(reduced.simulate(case(0.5)))
-    assert {name for name, value in still.items() if value} == {"force"}  # its weight
-    assert still["force"] == 1.0
+    weight = {"force", "shear_with_force", "moment_with_force"}  # acts where nothing else does
+    assert {name: value for name, value in still.items() if value} == dict.fromkeys(weight, 1.0)
 
 
 def test_what_a_falling_cylinder_asks_is_no_demand():
@@ -403,7 +406,9 @@ def test_a_cylinder_at_rest_needs_nothing():
     found = advise(Case(PIER, SHORT.scaled(0.3)), copies=20)
     assert not found.moves
     assert found.grades == {}
-    assert not len(found.demands[found.demands["demand"] == "moment"])
+    demands = found.demands.set_index("demand")["value"]
+    assert demands["force"] == 1.0  # its weight
+    assert not demands.drop("force").any()
     assert found.facts["motion"]["uplift_factor"] == pytest.approx(uplift_factor(SHORT, 0.2, 9.81) / 0.3)
 
 
@@ -431,7 +436,8 @@ def test_shaking_as_strong_is_scanned_finely_and_holds_single_runs(advice):
     falls = scan.assign(peak_tilt=np.where(factors > 1.1, 0.5 * math.pi, scan["peak_tilt"]))
     found = with_table(advice, as_strong=falls)
     assert found.beside[1] == math.inf
-    assert found.grades["intensity"] == found.grades["overturning"] == "caution"
+    assert found.grades["intensity"] == "caution"
+    assert grade_overturning(False, found.lowest_factor, [0.0], tested=True) == "caution"
     assert found.lowest_factor == factors[factors > 1.1].min()
     assert not len(scan_as_strong(Case(PIER, SHORT), "recess", 0.5 * math.pi))
 
@@ -522,13 +528,27 @@ def test_a_run_cut_short_ends_when_asked_unless_it_falls():
     assert stands.facts["length"] == stands.response["end"] == 5.0
 
 
+def test_a_single_run_is_one_of_many_from_where_an_advice_says_so():
+    # a cylinder whose largest tilt an input 1 % off changes by half of it and more
+    slender = Cylinder(semidiagonal=6.0847320541999865, tan_alpha=0.08996054265853794)
+    chaotic = Case(slender, el_centro_1940().scaled(1.28359029043245))
+    single = single_run(chaotic, RECESS).facts["single_trace"]
+    advised = advise(chaotic, copies=100)
+    assert single["perturbation"] == advised.facts["perturbation"] == 0.01
+    assert single["copies_part"] == pytest.approx(advised.copies_part)
+    assert single["copies_part"] < advised.response["peak_time"]
+    # without passes nothing is magnified
+    swing = Case(slender, initial=InitialState(0.5 * slender.alpha, rolling_rate=1.0), duration=5.0)
+    assert single_run(swing, RECESS).facts["single_trace"]["copies_part"] == math.inf
+
+
 def test_flat_ground_asks_for_the_flat_ground_model():
     found = advise(
         Case(PIER, initial=InitialState(0.05, rolling_rate=0.5), duration=2.0), support="flat", copies=20
     )
     assert (found.facts["model"], found.facts["other_model"]) == ("flat-ground model", "recess model")
     assert found.groups["moment_95"].tolist() == [0.0]
-    assert (found.trust.kind, found.facts["vertical"], len(found.planar)) == ("trace", None, 0)
+    assert (found.trust.kind, found.vertical.source, len(found.planar)) == ("trace", "", 0)
 
 
 def test_bad_numbers_are_refused():
@@ -556,3 +576,48 @@ def test_a_prediction_of_an_engine_is_the_same_after_a_second_of_rest() -> None:
     first, later = predictions
     assert first.reason == later.reason != ""
     assert later.length == pytest.approx(first.length, rel=COUNTED)
+
+
+@pytest.mark.parametrize(
+    ("tension", "force", "tested", "grade"),
+    [
+        (0.99, 1.0, True, "satisfied"),
+        (1.01, 1.0, True, "not satisfied"),
+        (0.5, 1.0, False, "not tested"),
+        (0.5, None, True, "caution"),
+    ],
+)
+def test_a_tendon_is_graded_by_its_yield(
+    tension: float, force: float | None, tested: bool, grade: str
+) -> None:
+    assert grade_tendon(tension, force, tested=tested) == grade
+
+
+def test_an_advice_says_what_a_tendon_does() -> None:
+    """Uplift, initial stiffness and balance are those of the static couple; a demand is its tension."""
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    tendon = Tendon(prestress=0.5, stiffness=1.0, yield_force=0.6)
+    case = Case(pier, el_centro_1940().scaled(2.0), duration=12.0, tendon=tendon)
+    found, plain = (advise(each, copies=20) for each in (case, Case(pier, case.motion, duration=12.0)))
+    facts = found.facts["tendon"]
+    assert facts["uplift_factor"] == 1.5
+    ratio = found.facts["motion"]["uplift_factor"] / plain.facts["motion"]["uplift_factor"]
+    assert ratio == pytest.approx(1.5, rel=1e-12)
+    b, h = pier.base_radius, pier.mass_centre_height
+
+    def couple(tilt: float) -> float:  # over m g
+        pull = tendon.prestress + tendon.stiffness * 2.0 * math.sin(0.5 * tilt)
+        return b * math.cos(tilt) - h * math.sin(tilt) + b * pull * math.cos(0.5 * tilt)
+
+    assert couple(facts["balance_tilt"] * pier.alpha) == pytest.approx(0.0, abs=1e-12)
+    # V'' upright, over m g b
+    assert facts["initial_stiffness"] == pytest.approx((couple(1e-6) - couple(0.0)) / 1e-6 / b, rel=1e-4)
+    rows = found.demands.set_index("demand")
+    assert rows["value"]["tendon"] > 0.6
+    assert found.grades["tendon"] == "not satisfied"
+    assert "tendon" not in plain.grades
+    # the scale from which is searched follows the raised uplift
+    starts = found.lowest["start"].to_numpy() / plain.lowest["start"].to_numpy()
+    assert starts == pytest.approx(1.5, rel=1e-12)
+    with pytest.raises(ValueError, match="is for support 'recess', got 'flat'"):
+        advise(case, support="flat", copies=20)

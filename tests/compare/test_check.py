@@ -29,12 +29,13 @@ from rockwobble.compare.check import (
     lagrange,
     laws,
     reduced_model,
+    restraint,
     run_checks,
     subject,
     trajectories,
 )
 from rockwobble.compare.check.invariance import _holds
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, WobblingFrame
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Tendon, Trace, WobblingFrame
 from rockwobble.models.trace_source import Known
 from rockwobble.reduced.body import body_of
 
@@ -109,6 +110,35 @@ def lighter_slab(case: Case, options: Options) -> Case:
     if isinstance(body, WobblingFrame):
         body = WobblingFrame(body.cylinder, 0.999 * body.slab_mass_ratio, body.columns)
     return dataclasses.replace(case, cylinder=body)
+
+
+def other_tendon(prestress: float, stiffness: float) -> Question:
+    """A subject whose tendon is stated by so many times its constants."""
+
+    def other(case: Case, options: Options) -> Case:
+        given = case.tendon
+        if given is None:
+            return case
+        tendon = Tendon(prestress=prestress * given.prestress, stiffness=stiffness * given.stiffness)
+        return dataclasses.replace(case, tendon=tendon, duration=case.length)
+
+    return other
+
+
+def alone(case: Case, options: Options) -> Case:
+    # a tendon that misses the gap at the slab
+    tied = case.tendon is not None and case.cylinder.slab_mass_ratio > 0.0
+    return other_tendon(0.5, 0.25)(case, options) if tied else case
+
+
+def of_large_piers(case: Case, options: Options) -> Case:
+    large = case.cylinder.semidiagonal > 1.0
+    return case if large else other_tendon(1.0, 1.0 + 1e-7)(case, options)
+
+
+def always_pulled(case: Case, options: Options) -> Case:
+    tendon = case.tendon and Tendon(prestress=case.tendon.prestress + 1e-9)
+    return dataclasses.replace(case, tendon=tendon, duration=case.length)
 
 
 def vertical_reversed(motion: GroundMotion) -> GroundMotion:
@@ -199,6 +229,17 @@ def test_the_reduced_models_hold(right: Subject, group: str) -> None:
         (laws.turning, "recess", field("peak_tilt", lambda peak: 0.999 * peak)),
         (laws.turning, "flat", field("extrema", lambda rows: rows * [1.0001, 1.0, 1.0, 1.0])),
         (agreement.kept_numbers, "recess", field("tilt", lambda tilt: tilt + 1e-6)),
+        (lagrange.residual_with_tendon, "recess", asked(other_tendon(1.0, 1.0 + 1e-7))),
+        (restraint.releases, "recess", asked(other_tendon(1.0 + 1e-7, 1.0))),
+        (restraint.rocking, "planar", asked(other_tendon(1.0, 1.0 + 1e-6))),
+        (restraint.stored_energy, "recess", asked(other_tendon(1.0 + 1e-6, 1.0))),
+        (restraint.second_gap, "recess", asked(alone)),
+        (restraint.load_at_rest, "recess", asked(other_tendon(1.01, 1.0))),
+        (restraint.raised_uplift, "recess", asked(other_tendon(1.0 + 1e-6, 1.0))),
+        (restraint.raised_uplift, "planar", asked(other_tendon(0.0, 1.0))),
+        (restraint.balance, "recess", asked(other_tendon(1.05, 1.05))),
+        (restraint.size, "recess", asked(of_large_piers)),
+        (restraint.without_force, "recess", asked(always_pulled)),
     ],
 )  # fmt: skip
 def test_a_check_finds_a_fault_of_its_kind(right: Subject, measure: Any, support: str, fault: Any) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from rockwobble.models import Diagnostic
 from rockwobble.models.diagnostic import CODES, REASONS
 
@@ -11,3 +13,10 @@ def test_every_code_has_words_of_its_own() -> None:
     meanings = [Diagnostic(code=code, detail=detail).meaning for code, detail in details.items()]
     assert all(" " in meaning for meaning in meanings)
     assert len(set(meanings)) == len(CODES)
+
+
+def test_facts_that_say_the_same_are_equal_whatever_their_numbers_were_made_of() -> None:
+    first = Diagnostic(code="slip", time=float("nan"), size=np.float64(2.0))
+    assert first == Diagnostic(code="slip", duration=np.float64("nan"), size=2)
+    assert first != Diagnostic(code="slip", size=2.0, time=1.0)
+    assert repr(first.size) == "2.0"

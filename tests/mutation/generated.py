@@ -226,7 +226,7 @@ def tried(root: Path, fault: GeneratedFault, tests: Sequence[Reach]) -> Row:
 def _run(root: Path, command: list[str], *, limit: float) -> tuple[bool, str]:
     """Return whether a command failed, and its last line."""
     environment = os.environ | {
-        "PYTHONPATH": f"{root / '.editable'}{os.pathsep}{root / 'tests'}",
+        "PYTHONPATH": f"{root / 'src'}{os.pathsep}{root / 'tests'}",
         "PYTHONDONTWRITEBYTECODE": "1",
     }
     try:

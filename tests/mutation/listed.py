@@ -58,6 +58,7 @@ def mutations() -> tuple[Mutation, ...]:
         *_terms(-1.0, "sign"),
         *_constants(),
         *_structure(),
+        *_tendons(),
         *_engines(),
     )
 
@@ -135,6 +136,46 @@ def _structure() -> list[Mutation]:
         Mutation(name="uplift at the next sample", faults=(late,), group="rest"),
         Mutation(name="no-twist constraint dropped", faults=(rolling,), group="trace"),
         Mutation(name="L decays", faults=(leak,), group="conserved"),
+    ]
+
+
+def _tendons() -> list[Mutation]:
+    """Constants and terms of a tendon; the balance tilt shortens runs alone, and a test looks at it."""
+    changes = {
+        f"{factor} {field}": scaled_argument("tied", "TiedBody", field, number)
+        for factor, number in (("1 % off:", 1.01), ("sign:", -1.0))
+        for field in ("prestress", "stiffness")
+    }
+    changes |= {
+        "1 % off: gaps of the force": scaled_argument("tied", "TiedBody", "gaps", 1.01),
+        "a gap missing": before_assignment("tied", "stiffness", "gaps = 1"),
+    }
+    bodies = {
+        "half angle: couple": ("_tendon(body, s, u)", "return without_fault(body, s, 2.0 * u * u - 1.0)"),
+        "half angle: series": (
+            "_half_cosine(body, v)",
+            "return 1.0 - v",
+        ),
+        "half angle: energy": (
+            "_tendon_energy(body, energy, c)",
+            "return without_fault(body, energy, 2 * c * c - 1)",
+        ),
+        "half angle: pull": ("_pull(body, c)", "return without_fault(body, 2.0 * c * c - 1.0)"),
+        "uplift: no prestress": ("_weight_and_prestress(body, az)", "return body.g + az"),
+        "uplift: prestress 1 % off": (
+            "_weight_and_prestress(body, az)",
+            "return without_fault(body, az) + 0.01 * body.prestress",
+        ),
+    }
+    faults = {name: Fault(file="restoring.py", change=change) for name, change in changes.items()}
+    faults |= {name: _around("restoring.py", *parts) for name, parts in bodies.items()}
+    faults["force at the top"] = _around(
+        "forces.py",
+        "top_force(body, base, ground, states, gamma)",
+        "return without_fault(body, base, ground, states, 1.01 * gamma)",
+    )
+    return [
+        Mutation(name=f"tendon, {name}", faults=(fault,), group="tendon") for name, fault in faults.items()
     ]
 
 

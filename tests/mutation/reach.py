@@ -65,7 +65,7 @@ class Recorder:
 
     def __init__(self, root: Path) -> None:
         self._folders = {f"{(root / name).resolve()}/": f"{name}/" for name in PACKAGES}
-        self._folders |= {f"{root / '.editable/rockwobble' / name}/": f"{name}/" for name in PACKAGES}
+        self._folders |= {f"{root / 'src/rockwobble' / name}/": f"{name}/" for name in PACKAGES}
         self._running: dict[int, CodeType] = {}
         self._fixtures: dict[str, set[str]] = {}
         self._tests: dict[str, tuple[float, set[str], Sequence[str]]] = {}

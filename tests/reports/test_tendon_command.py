@@ -37,9 +37,9 @@ def test_ratios_and_a_drawing_state_the_same_tendon(tmp_path: Path) -> None:
     assert "Tendon: prestress 0.9061 weights of a column, stiffness 5.437 weights per base radius" in page
     largest = traces[0].peak_tendon_force
     assert f"largest {largest:.3g} weights of a column" in page
-    # a command of its own that takes a tendon
+    # the answer is an advice, which takes a tendon
     answer = json.loads((tmp_path / "drawn" / "manifest.json").read_text())["about"]["single_trace"]["answer"]
-    assert answer.startswith("rockwobble ensemble")
+    assert answer.startswith("rockwobble advise")
     assert "--tendon-force" in answer
 
 
@@ -59,7 +59,10 @@ def test_ratios_and_a_drawing_state_the_same_tendon(tmp_path: Path) -> None:
             ["simulate", "--tendon-prestress", "2", "--tendon-yield", "1"],
             "yield_force must be above the prestress, 2 weights, got 1",
         ),
-        (["advise", "--tendon-stiffness", "1"], "an advice is for a cylinder or frame without a tendon"),
+        (
+            ["advise", "--tendon-stiffness", "1", "--support", "ring"],
+            "an advice on a body with a tendon is for",
+        ),
         (["simulate", "--support", "flat", "--tendon-prestress", "1"], ""),
     ],
 )

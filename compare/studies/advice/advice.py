@@ -11,10 +11,11 @@ from typing import Literal, TypedDict
 import numpy as np
 import pandas as pd
 
-from rockwobble.models import Case, Cylinder, Run, Trace, el_centro_1940
+from rockwobble import reduced
+from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace, el_centro_1940
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.cylinder import cylinder_of
 from rockwobble.models.doubts import doubts_of_cases
-from rockwobble.models.number_checks import require_kind
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.support import support_named
 from rockwobble.models.trace import NO_PEAK
@@ -41,6 +42,7 @@ from .grades import (
     grade_intensity,
     grade_overturning,
     grade_share,
+    grade_tendon,
     grade_trace,
     overall,
 )
@@ -60,7 +62,7 @@ from .members import (
     with_vertical,
     without_vertical,
 )
-from .scales import planar_runs, scan_as_strong, scan_scales
+from .scales import held_by, planar_runs, scan_as_strong, scan_scales
 from .trust import (
     BAND_STEP,
     Trust,
@@ -119,6 +121,7 @@ class Response(TypedDict):
     in_one_plane: bool
     largest_normal_force: float
     slip: float
+    tension: float  # of a tendon, largest until it falls [weights of one column]; NaN without one
     lost: float
     tolerance: float
 
@@ -145,11 +148,12 @@ class Advice(Results, kind=KIND):
     trace, engine : DataFrame
         time [s], tilt [alpha] and, of the reduced model, friction_needed [-]; no row without an engine.
 
-    Its facts are the problem (case, cylinder, motion, release, length, gravity, rolling_resistance, friction:
-    None unless it was given), the support with its model and the other_model; the response of the model;
-    trust, prediction and verification as in `Trust`, `Prediction` and `Verification`; other_support, ratios
-    of the largest tilts there (`ratios_of`), None where there are none; vertical, as in `Vertical`; what the
-    other records are; mass of a cylinder [t] or None; perturbation and seed of the copies, and the hash of
+    Its facts are the problem (case, cylinder, motion, release, length, gravity, rolling_resistance, tendon,
+    friction: None unless it was given), the support with its model and the other_model; the response of the
+    model; trust, prediction and verification as in `Trust`, `Prediction` and `Verification`; other_support,
+    ratios of the largest tilts there (`ratios_of`), None where there are none; vertical, as in `Vertical`;
+    what the other records are; mass of a cylinder [t] or None; perturbation and seed of the copies, and the
+    hash of
     all inputs. options are those of the command line that stated the problem, None where it was not used.
 
     Examples
@@ -264,12 +268,16 @@ class Advice(Results, kind=KIND):
     def grades(self) -> dict[str, Grade]:
         """Grade of each topic that there is something to say about; the criteria are in `grades`."""
         response, facts, engine = self.response, self.facts, self.verification
+        tendon = facts.get("tendon")  # none in what an earlier version saved
         if response["outcome"] in NO_PEAK:
             return {"trace": "not satisfied"}
         if not self.moves:
             return {}
         shaken, friction = facts["motion"] is not None, facts["friction"]
-        (slip, lost), spread = self.missing, bool(self.counting["lost_95"].notna().any())
+        (slip, lost), spread = (
+            self.missing,
+            bool((~self.counting["single"] & self.counting["lost_95"].notna()).any()),
+        )
         slides = friction is not None and friction < self.cylinder.tan_alpha and response["uplift_time"] > 0.0
         found: dict[str, Grade] = {
             "overturning": grade_overturning(
@@ -287,6 +295,10 @@ class Advice(Results, kind=KIND):
             "contact": grade_share(lost, tested=spread),
             "trace": grade_trace(self.trust.kind, tested=self.copies_differ),
         }
+        if tendon is not None:
+            found["tendon"] = grade_tendon(
+                self.largest_tension, tendon["yield_force"], tested=self.copies_differ
+            )
         if shaken and not self.overturned:
             low, high = self.beside
             found["intensity"] = grade_intensity(low, self.peak, high)
@@ -295,6 +307,13 @@ class Advice(Results, kind=KIND):
             differs = (engine.outcome == "overturned") != self.overturned or not engine.moves
             found["engine"] = grade_engine(engine.outcome, engine.divergence, differs=differs)
         return found
+
+    @property
+    def largest_tension(self) -> float:
+        """Design demand on the tendon [weights of one column]; NaN without one."""
+        values = self.demands.set_index("demand")["value"]
+        found = float(values.get("tendon", math.nan))
+        return found if math.isfinite(found) else self.response["tension"]
 
     @property
     def verdict(self) -> str:
@@ -333,7 +352,7 @@ class Advice(Results, kind=KIND):
             "engine": self.verification is None,
             "spectrum": grades.get("overturning") != "satisfied" and self.facts["motion"] is not None,
             "ensemble": self.trust.kind == "statistics",
-            "ring": holds.guided,
+            "ring": holds.guided and self.facts.get("tendon") is None,
             "recess": not holds.guided and not holds.walls,
             "vertical": self.vertical.source == "other",
             "records": self.facts["records"] == "synthetic",
@@ -346,6 +365,7 @@ class Advice(Results, kind=KIND):
         return overall(grade for topic, grade in self.grades.items() if topic != "overturning")
 
 
+@with_argument_kinds
 def advise(
     case: Case,
     run: Run | None = None,
@@ -400,11 +420,7 @@ def advise(
     >>> found.trust.kind, found.grades["engine"]
     ('trace', 'not tested')
     """
-    require_kind("case", case, Case)
-    if run is not None:
-        require_kind("run", run, Run)
     require_case(case)
-    require_judged(case)
     plan = AdvicePlan(
         support=support or ("recess" if run is None else run.support),
         copies=copies,
@@ -412,6 +428,7 @@ def advise(
         seed=seed,
         mass=mass,
     )
+    require_judged(case, plan.support)
     if run is not None:
         if run.support != plan.support:
             raise ValueError(f"support must be that of the run, {run.support}, got {plan.support}")
@@ -436,7 +453,8 @@ def advise(
         if moves:  # in this process: other ones take longer to begin than hundreds of reduced runs
             groups[COPIES] = plan.perturbed(case)
             perturbed = [simulate_run(each, model) for each in groups[COPIES]]
-            others = [simulate_run(each, other, sample_step=BAND_STEP) for each in groups[COPIES]]
+            if case.tendon is None:  # no other model knows one
+                others = [simulate_run(each, other, sample_step=BAND_STEP) for each in groups[COPIES]]
         rows = [*member_rows(COPIES, perturbed), *member_rows(OTHER, others)]
     with stage("other records as strong, planar analysis and the vertical component"):
         records, source = ({}, "") if trace.outcome in NO_PEAK else other_records(case)
@@ -479,7 +497,7 @@ def advise(
         "trace": _samples(trace, alpha).assign(friction_needed=trace.friction_needed),
         "engine": _samples(engine, alpha),
     }
-    form = _contrast(others, perturbed) if _differ(group_table(members)) else None
+    form = _contrast(others, perturbed) if others and _differ(group_table(members)) else None
     facts = {
         **_problem(case),
         "friction": case.friction if friction_given else None,
@@ -504,16 +522,40 @@ def advise(
     return advice_of(tables, facts)
 
 
-def require_judged(case: Case) -> None:
+def require_judged(case: Case, support: str) -> None:
     """Refuse a case that no advice judges.
 
     Raises
     ------
     ValueError
-        If it has a tendon.
+        If it has a tendon on a support whose reduced model knows none.
     """
-    if case.tendon is not None:
-        raise ValueError(f"an advice is for a cylinder or frame without a tendon, got {case.tendon!r}")
+    if case.tendon is not None and not support_named(support).guided:
+        raise ValueError(f"an advice on a body with a tendon is for support 'recess', got {support!r}")
+
+
+def _threshold(case: Case, motion: GroundMotion) -> float:
+    """Return the factor on a ground motion at which a case uplifts [-]."""
+    alone = uplift_factor(motion, case.cylinder.tan_alpha, case.gravity, until=case.length)
+    return alone * held_by(case)
+
+
+def _restraint(case: Case) -> dict[str, object] | None:
+    """Facts of the tendon of a case; None without one.
+
+    uplift_factor, by which it raises the threshold of uplift; initial_stiffness [m g b], and balance_tilt
+    [alpha], infinite where the couple brings the body back from every tilt.
+    """
+    tendon, body = case.tendon, case.cylinder
+    if tendon is None:
+        return None
+    return {
+        **dataclasses.asdict(tendon),
+        "gaps": tendon.gaps(body),
+        "uplift_factor": tendon.uplift_factor(body),
+        "initial_stiffness": tendon.initial_stiffness(body),
+        "balance_tilt": reduced.balance_tilt_of_case(case) / body.alpha,
+    }
 
 
 def advice_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, object]) -> Advice:
@@ -555,7 +597,8 @@ def _problem(case: Case) -> dict[str, object]:
         "time_step": motion.time_step,
         "peak": motion.peak,
         "has_vertical": motion.has_vertical,
-        "uplift_factor": uplift_factor(motion, cylinder.tan_alpha, case.gravity, until=case.length),
+        "uplift_factor": held_by(case)
+        * uplift_factor(motion, cylinder.tan_alpha, case.gravity, until=case.length),
     }
     return {
         "case": case.name,
@@ -565,6 +608,7 @@ def _problem(case: Case) -> dict[str, object]:
         "length": case.length,
         "gravity": case.gravity,
         "rolling_resistance": case.rolling_resistance,
+        "tendon": _restraint(case),
     }
 
 
@@ -582,6 +626,7 @@ def _response(trace: Trace) -> Response:
         "in_one_plane": moves and not trace.rolling_rate.any(),
         "largest_normal_force": assumed.largest_normal_force if assumed else math.nan,
         "slip": own["slip"],
+        "tension": own.get("tendon", math.nan),
         "lost": own["lost"],
         "tolerance": tolerance_of(trace),
     }
@@ -611,7 +656,9 @@ def vertical_effect(
     if record is None:
         record = el_centro_1940(vertical=True)
         source, record, duration = "other", record.scaled(motion.peak / record.peak), None
-    threshold = uplift_factor(record, case.cylinder.tan_alpha, case.gravity, until=case.length)
+    threshold = held_by(case) * uplift_factor(
+        record, case.cylinder.tan_alpha, case.gravity, until=case.length
+    )
     about = Vertical(source=source, record=record.name, uplift_factor=threshold)
     if plan is None:
         return about, {}
@@ -632,7 +679,9 @@ def weaker_rows(case: Case, groups: Mapping[str, Sequence[Case]], model: Run) ->
     motion = case.motion
     if motion is None or motion.peak == 0.0:
         return []
-    threshold = uplift_factor(motion, case.cylinder.tan_alpha, case.gravity, until=case.length)
+    threshold = held_by(case) * uplift_factor(
+        motion, case.cylinder.tan_alpha, case.gravity, until=case.length
+    )
     return [
         row
         for factor in weaker_factors(threshold)

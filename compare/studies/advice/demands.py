@@ -18,7 +18,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder, Trace
+from rockwobble import reduced
+from rockwobble.models import Case, Cylinder, Trace
 from rockwobble.models.support import support_named
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody.ring import rim_overhang
@@ -41,7 +42,8 @@ _BASE = {"friction": "-", "shear": "weights", "force": "weights"}
 _TOP = {f"top_{name}": unit for name, unit in _BASE.items()}
 _RECESS = {"moment": "weights × b", "shear_and_wall": "weights", "tilt": "alpha"}
 # demands of a run with their units
-UNITS: Mapping[str, str] = {**_BASE, **_TOP, **_RECESS}
+_TENDON = "tendon"  # tension, in weights of a column alone
+UNITS: Mapping[str, str] = {**_BASE, **_TOP, **_RECESS, _TENDON: "weights"}
 # what else there is of each run
 SHARES = ("slip", "lost")
 # demand: what acts at the time at which a run reaches it
@@ -50,15 +52,25 @@ _NOT_PLANE = "all runs stay in one plane, in which no moment arises: a real moti
 
 
 def fall_of(trace: Trace) -> float:
-    """Return when a run that overturns last passes alpha [s], inf where it does not: a fall asks nothing."""
+    """Return when a run that overturns last passes its balance [s], inf where it does not.
+
+    A fall asks nothing.
+    """
     if trace.outcome != "overturned":
         return math.inf
-    below = trace.time[trace.tilt <= trace.case.cylinder.alpha]
+    below = trace.time[trace.tilt <= balance_of(trace.case)]
     return float(below[-1]) if len(below) else 0.0
 
 
+def balance_of(case: Case) -> float:
+    """Return the balance tilt, at most pi/2 [rad]."""
+    if case.tendon is None:
+        return case.cylinder.alpha
+    return min(reduced.balance_tilt_of_case(case), 0.5 * math.pi)
+
+
 def demands_of(trace: Trace) -> dict[str, float]:
-    """Return the demands of a run on ground, recess and slab, until it last passes alpha if it overturns.
+    """Return the demands of a run on ground, recess and slab, until it last passes its balance if it falls.
 
     Samples at which the base is closed, see `Trace.open_base`, ask nothing.
 
@@ -71,7 +83,8 @@ def demands_of(trace: Trace) -> dict[str, float]:
         the sum at one time of shear and of the force on a wall that supplies the moment over the lever arm b
         [weights]: each not exceeded in 99 % of the moving time. shear_with_force, shear_with_moment,
         moment_with_shear and moment_with_force: what acts when shear and moment are reached. tilt, the
-        largest [alpha]: at least `PASSED` where it passes the balance. slip and lost, shares of that time
+        largest [alpha]: at least `PASSED` of the balance where it passes that. tendon, the largest tension
+        [weights of one column], with a tendon. slip and lost, shares of that time
         in which the friction of the case does not suffice and in which contact is lost, at base or top. All
         zero, and a force of one weight, where nothing moves.
     """
@@ -84,13 +97,21 @@ def demands_of(trace: Trace) -> dict[str, float]:
     largest = trace.peak_tilt / cylinder.alpha
     if trace.outcome == "overturned":
         largest = float(trace.tilt[moving].max()) / cylinder.alpha if moving.any() else 0.0
-    if trace.outcome == "overturned" or largest > 1.0:
-        largest = max(PASSED, largest)
+    balance = balance_of(trace.case) / cylinder.alpha
+    if trace.outcome == "overturned" or largest > balance:
+        largest = max(PASSED * balance, largest)
+    tendon = trace.case.tendon
+    pull = {}
+    if tendon is not None:
+        pull = {_TENDON: tendon.tension(cylinder, min(largest * cylinder.alpha, 0.5 * math.pi))}
     if not moving.any():
         for names, *_ in ends:
             found |= dict(zip(names, (0.0, 0.0, 1.0), strict=True))
         together = {f"{name}_with_{part}": float(part == "force") for name, part in _pairs()}
-        return found | {"moment": 0.0, "shear_and_wall": 0.0, "tilt": largest, **together, **_none_missing()}
+        return found | {
+            **{"moment": 0.0, "shear_and_wall": 0.0, "tilt": largest},
+            **{**pull, **together, **_none_missing()},
+        }
     lengths = np.diff(trace.time, append=trace.time[-1])[moving]
     lost, slips = np.zeros((2, len(lengths)), dtype=bool)
     series: dict[str, Array] = {}
@@ -108,7 +129,7 @@ def demands_of(trace: Trace) -> dict[str, float]:
         found[f"{name}_with_{part}"] = float(series[part][places[name]])
     time = max(float(lengths.sum()), 1e-300)
     shares = {"slip": lengths[slips & ~lost].sum() / time, "lost": lengths[lost].sum() / time}
-    return found | {"tilt": largest, **shares}
+    return found | {"tilt": largest, **pull, **shares}
 
 
 def weaker_factors(threshold: float) -> list[float]:
@@ -125,8 +146,8 @@ def weaker_factors(threshold: float) -> list[float]:
 
     Examples
     --------
-    >>> [round(factor, 2) for factor in weaker_factors(0.3)]
-    [0.16, 0.19, 0.23, 0.28, 0.33, 0.39, 0.46, 0.55, 0.66, 0.78, 0.93]
+    >>> [round(factor, 3) for factor in weaker_factors(0.5)]
+    [0.273, 0.324, 0.386, 0.459, 0.545, 0.648, 0.771, 0.917]
     """
     if not 0.0 < threshold < math.inf:
         return []
@@ -174,8 +195,14 @@ def demand_table(
             continue
         if name in _RECESS and not (facts.guided or facts.walls):
             continue
+        if name == _TENDON and name not in members:
+            continue
         rows.append({"demand": name, "unit": unit, **_largest(name, groups)})
-        if name == "moment" and rows[-1]["value"] == 0.0:
+        if (
+            name == "moment"
+            and rows[-1]["value"] == 0.0
+            and any(runs["tilt"].gt(0.0).any() for *_, runs in groups)
+        ):
             rows[-1] |= {"value": math.nan, "reason": _NOT_PLANE}
     recess = {row["demand"]: row for row in rows}
     if "tilt" in recess:
@@ -193,6 +220,7 @@ def demand_table(
     table["per_tonne"] = table["value"] * arms
     top = table["demand"].isin(_TOP)
     carried = np.where(top, cylinder.slab_mass_ratio, 1.0 + cylinder.slab_mass_ratio)
+    carried = np.where(table["demand"] == _TENDON, 1.0, carried)
     table["for_mass"] = table["per_tonne"] * carried * (math.nan if mass is None else mass)
     return table
 

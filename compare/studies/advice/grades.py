@@ -70,6 +70,12 @@ CRITERIA: Mapping[str, Criterion] = MappingProxyType(
             caution=f"lost {_BRIEFLY}",
             not_satisfied="lost for longer: the models do not know flight",
         ),
+        "tendon": Criterion(
+            satisfied="its tension stays below yield in 95 % of the runs of each group",
+            not_tested=_FEW,
+            caution="no yield force was given",
+            not_satisfied="it yields: what comes after is not modelled",
+        ),
         "trace": Criterion(
             satisfied="the largest tilt comes before two methods, or the copies, diverge",
             not_tested="the copies are all one run",
@@ -129,6 +135,15 @@ def grade_share(missing: float, *, asked: bool = True, slides: bool = False, tes
         return "not satisfied"
     if missing > 0.0 or not asked:
         return "caution"
+    return "satisfied" if tested else "not tested"
+
+
+def grade_tendon(tension: float, yield_force: float | None, *, tested: bool) -> Grade:
+    """Return the grade of a tendon by its largest tension and its yield force [weights of one column]."""
+    if yield_force is None:
+        return "caution"
+    if tension > yield_force:
+        return "not satisfied"
     return "satisfied" if tested else "not tested"
 
 

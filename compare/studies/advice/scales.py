@@ -65,7 +65,7 @@ def scan_scales(case: Case, support: str = "recess") -> tuple[pd.DataFrame, pd.D
         peaks = run(FACTORS)
         start = 0.0
         if not case.is_release:
-            start = uplift_of_series(name, motion, tan_alpha, gravity, until=case.length)
+            start = uplift_of_series(name, motion, tan_alpha, gravity, until=case.length) * held_by(case)
         alpha, stands = case.cylinder.alpha, not case.is_release
         search = search_lowest(FACTORS, peaks, start=start, step=step, alpha=alpha, stands=stands)
         found = run_searches([search], at)[0]
@@ -142,6 +142,11 @@ def planar_shares(runs: pd.DataFrame) -> list[dict[str, float]]:
             row |= share.columns(name) | {name: int(which.sum()), f"{name}_share": share.value}
         rows.append(row)
     return rows
+
+
+def held_by(case: Case) -> float:
+    """Return by what a tendon raises the threshold of uplift [-]."""
+    return 1.0 if case.tendon is None else case.tendon.uplift_factor(case.cylinder)
 
 
 def _peaks(case: Case, factors: Array, *, series: str, support: str, rtol: float = RTOL) -> Array:

@@ -15,7 +15,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder, GroundMotion
+from rockwobble.models import Cylinder, GroundMotion, Tendon
 from rockwobble.models.number_checks import require_one_of, require_positive
 
 Array = NDArray[np.float64]
@@ -150,18 +150,22 @@ def velocity_unit(cylinder: Cylinder, gravity: float = 9.81) -> float:
     return gravity * cylinder.tan_alpha / body_of(cylinder, gravity).p
 
 
-def uplift_scale(motion: GroundMotion, cylinder: Cylinder, gravity: float = 9.81) -> float:
+def uplift_scale(
+    motion: GroundMotion, cylinder: Cylinder, gravity: float = 9.81, tendon: Tendon | None = None
+) -> float:
     """Return the least factor on a motion with which it uplifts a cylinder; infinite where none does.
 
     From (25), |a| = (g + az) tan(alpha): |a| - az tan(alpha) is convex between two samples, so that it is
-    largest at one. Rolling resistance, which raises the threshold, is left out.
+    largest at one. A tendon adds its prestress to g; rolling resistance, which raises the threshold, too, is
+    left out.
     """
+    held = 1.0 if tendon is None else tendon.uplift_factor(cylinder)
     a = motion.acceleration
     needed = np.hypot(a[:, 0], a[:, 1])
     if a.shape[1] > 2:
         needed = needed - a[:, 2] * cylinder.tan_alpha
     largest = float(needed.max())
-    return gravity * cylinder.tan_alpha / largest if largest > 0.0 else math.inf
+    return gravity * cylinder.tan_alpha * held / largest if largest > 0.0 else math.inf
 
 
 def measures_of(

@@ -40,6 +40,11 @@ MODELS: Mapping[str, str] = {
 }
 
 
+def models_with_tendon() -> tuple[str, ...]:
+    """Return the names of the models with a tendon: on flat ground the base wanders from its anchor."""
+    return tuple(name for name in MODELS if name != "flat")
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Method:
     """One method.
@@ -212,6 +217,7 @@ class Task:
             gravity=case.gravity,
             slab_mass_ratio=cylinder.slab_mass_ratio,
             rolling_resistance=case.rolling_resistance,
+            tendon=case.tendon,
             support=self.run.support,
             **{"rtol": _RTOL, **self.run.settings},
         )[0]
@@ -326,6 +332,7 @@ class RunPlan:
             gravity=self.options.gravity,
             friction=self.options.friction,
             rolling_resistance=self.options.rolling_resistance,
+            tendon=self.options.tendon,
             name=motion.name,
         )
         factors = self.factors(cylinder, motion)
@@ -340,7 +347,7 @@ class RunPlan:
         rows, asked = [], self.options
         for name, cylinder in self.cylinders.items():
             own = measures_of(self.motions, cylinder, gravity=asked.gravity, period=asked.period)
-            lifts = [uplift_scale(motion, cylinder, asked.gravity) for motion in self.motions]
+            lifts = [uplift_scale(motion, cylinder, asked.gravity, asked.tendon) for motion in self.motions]
             for index, motion in enumerate(self.motions):
                 for step, scale in self.factors(cylinder, motion).items():
                     found = {measure: scale * values[index] for measure, values in own.items()}
@@ -411,7 +418,8 @@ def default_levels(
 ) -> tuple[float, ...]:
     """Return levels from a little above uplift to where most overturn, each the same factor above the last.
 
-    In another measure than the peak acceleration: what the median motion has at these levels.
+    A tendon raises the lowest as it raises uplift, and the highest by its way to the balance besides. In
+    another measure than the peak acceleration: what the median motion has at these levels.
     """
     over = [
         intensity(asked.measure, motion, cylinder, gravity=asked.gravity, period=asked.period)
@@ -419,8 +427,21 @@ def default_levels(
         for cylinder in cylinders.values()
         for motion in motions
     ]
+    held = [_hold_of(body, asked) for body in cylinders.values()]
+    low, high = _LOWEST * min(of for of, _ in held), _HIGHEST * max(of * barrier for of, barrier in held)
     middle = float(np.median(over))
-    return tuple(float(f"{middle * level:.3g}") for level in np.geomspace(_LOWEST, _HIGHEST, LEVELS))
+    return tuple(float(f"{middle * level:.3g}") for level in np.geomspace(low, high, LEVELS))
+
+
+def _hold_of(body: Cylinder, asked: FragilityPlan) -> tuple[float, float]:
+    """Return by what a tendon raises the couple at uplift, and the velocity that its way to balance takes."""
+    from rockwobble import reduced
+
+    tendon = asked.tendon
+    if tendon is None:
+        return 1.0, 1.0
+    balance = reduced.balance_tilt_of_case(Case(body, duration=1.0, gravity=asked.gravity, tendon=tendon))
+    return tendon.uplift_factor(body), math.sqrt(min(balance, 0.5 * math.pi) / body.alpha)
 
 
 def _together(singles: Sequence[Task]) -> Iterator[Task]:

@@ -12,6 +12,7 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.models import Cylinder, GroundMotion, HazardCurve, Run
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
 from rockwobble.models.number_checks import require_each, require_positive
 from rockwobble.models.plain_json import fields_of
@@ -27,7 +28,17 @@ from ..plans import FragilityPlan
 from .fit import TOO_FEW
 from .intensity import velocity_unit
 from .risk import RARE, exposures_of, measure_factor, risk_tables
-from .runs import MODELS, Method, RunPlan, default_levels, methods_of, motions_by_level, own_model, run_plan
+from .runs import (
+    MODELS,
+    Method,
+    RunPlan,
+    default_levels,
+    methods_of,
+    models_with_tendon,
+    motions_by_level,
+    own_model,
+    run_plan,
+)
 from .tables import (
     DEFAULT_LIMITS,
     LIMITS,
@@ -300,11 +311,15 @@ def _inverted(row: Row) -> Row:
     }
 
 
+_ALL = tuple(MODELS)
+
+
+@with_argument_kinds
 def fragility(
     cylinders: Cylinder | Mapping[str, Cylinder] | Sequence[Cylinder],
     motions: Sequence[GroundMotion] | Mapping[float, Sequence[GroundMotion]],
     *,
-    methods: Iterable[str | Run] = tuple(MODELS),
+    methods: Iterable[str | Run] = _ALL,
     measure: str = "peak_acceleration",
     levels: Sequence[float] | None = None,
     scales: Sequence[float] | None = None,
@@ -317,6 +332,8 @@ def fragility(
     step_factor: float = 1.0,
     friction: float = 1.0,
     rolling_resistance: float = 0.0,
+    tendon_prestress: float = 0.0,
+    tendon_stiffness: float = 0.0,
     gravity: float = 9.81,
     workers: int | None = None,
     scheduler: str | None = None,
@@ -334,9 +351,9 @@ def fragility(
         its own, which are scaled to it (multiple stripes): at least two a level, and no `levels` beside it.
     methods : iterable of str or Run, optional
         Reduced models by name, "recess", "flat", "planar-x", "planar-y", "worse-plane" (of the two, motion
-        by motion), and runs of engines with any support. Default: all five models. The first is the one
-        whose efficient measure is sought. In a ring, whose walls have no top, a cylinder that leans on a
-        wall beyond its balance at the end has overturned.
+        by motion), and runs of engines with any support. Default: all five models, with a tendon all but
+        flat. The first is the one whose efficient measure is sought. In a ring, whose walls have no top, a
+        cylinder that leans on a wall beyond its balance at the end has overturned.
     measure : str, optional
         Intensity, one of `MEASURES`.
     levels : sequence of float, optional
@@ -360,6 +377,8 @@ def fragility(
         Coefficient of cylinder and ground.
     rolling_resistance : float, optional
         Length of the couple against rolling [m].
+    tendon_prestress, tendon_stiffness : float, optional
+        Of a tendon in each body [weights of one column, and these per base radius].
     gravity : float, optional
         g [m/s^2].
     workers, scheduler, progress : optional
@@ -411,8 +430,12 @@ def fragility(
         step_factor=step_factor,
         friction=friction,
         rolling_resistance=rolling_resistance,
+        tendon_prestress=tendon_prestress,
+        tendon_stiffness=tendon_stiffness,
         gravity=gravity,
     )
+    if methods is _ALL and asked.tendon is not None:
+        methods = models_with_tendon()
     chosen = methods_of(methods, restitution=asked.restitution)
     if asked.levels is None and asked.scales is None and motions:  # without, the plan says what is missing
         asked = replace(asked, levels=default_levels(bodies, motions, asked))
@@ -445,6 +468,7 @@ def _facts(plan: RunPlan) -> dict[str, object]:
         "limits": [name for name in LIMITS if name in (asked.limits or DEFAULT_LIMITS)],
         **{name: getattr(asked, name) for name in named},
         **({"rolling_resistance": asked.rolling_resistance} if asked.rolling_resistance else {}),
+        **({} if asked.tendon is None else {"tendon": fields_of(asked.tendon)}),
         "inputs": fingerprint([(task.name, task.label, task.key()) for task in plan.tasks()]),
     }
 

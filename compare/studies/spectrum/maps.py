@@ -17,10 +17,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
+from rockwobble.models import Case, Cylinder, GroundMotion, Run, WobblingFrame
 from rockwobble.models.number_checks import require_increasing
 
 from ...metrics.pair import overturned
+from ...runs.choice import require_runnable
 from ...runs.execution import run_tables
 from ...runs.progress import ProgressCallback
 from ..plans import SpectrumPlan
@@ -103,6 +104,8 @@ _FACTS = (
     "probes",
     "slab_mass_ratio",
     "rolling_resistance",
+    "tendon_prestress",
+    "tendon_stiffness",
 )
 
 
@@ -145,6 +148,8 @@ class TiltMaps:
         Mass of a slab over that of the cylinders that carry it [-]; 0 without one.
     rolling_resistance : float
         [m]
+    tendon_prestress, tendon_stiffness : float
+        Of a tendon [weights of one column, and these per base radius].
     """
 
     tan_alpha: float
@@ -161,6 +166,8 @@ class TiltMaps:
     probes: int = 0
     slab_mass_ratio: float = 0.0
     rolling_resistance: float = 0.0
+    tendon_prestress: float = 0.0
+    tendon_stiffness: float = 0.0
 
     @property
     def alpha(self) -> float:
@@ -313,7 +320,14 @@ def require_cases(tan_alpha: float, motion: GroundMotion, plan: SpectrumPlan) ->
     sizes = SpectrumPlan.SIZES[:2] if plan.semidiagonals is None else plan.semidiagonals
     for size in (sizes[0], sizes[-1]):
         body = WobblingFrame(Cylinder(semidiagonal=float(size), tan_alpha=tan_alpha), plan.slab_mass_ratio)
-        Case(body, motion, gravity=plan.gravity, rolling_resistance=plan.rolling_resistance)
+        case = Case(
+            body,
+            motion,
+            gravity=plan.gravity,
+            rolling_resistance=plan.rolling_resistance,
+            tendon=plan.tendon,
+        )
+        require_runnable(case, Run(None, plan.support))
 
 
 def tilt_maps(
@@ -372,7 +386,11 @@ def tilt_maps(
     gravity = asked.gravity
     unit = intensity_unit(tan_alpha, motion, gravity)
     require_cases(tan_alpha, motion, asked)
-    start = {name: uplift_of_series(name, motion, tan_alpha, gravity) / unit for name in SERIES}
+    held = 1.0
+    if asked.tendon is not None:
+        column = Cylinder(semidiagonal=1.0, tan_alpha=tan_alpha)
+        held = asked.tendon.uplift_factor(WobblingFrame(column, asked.slab_mass_ratio))
+    start = {name: held * uplift_of_series(name, motion, tan_alpha, gravity) / unit for name in SERIES}
     parts = [
         SpectrumPart(
             series=name,
@@ -412,6 +430,8 @@ def tilt_maps(
         support=asked.support,
         slab_mass_ratio=asked.slab_mass_ratio,
         rolling_resistance=asked.rolling_resistance,
+        tendon_prestress=asked.tendon_prestress,
+        tendon_stiffness=asked.tendon_stiffness,
         semidiagonals=sizes,
         intensities=levels,
         peak_tilt={

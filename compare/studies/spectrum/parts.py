@@ -94,7 +94,8 @@ class SpectrumPart:
     def key(self) -> str:
         """Return the hash of all that its result depends on."""
         plan, motion = self.plan, self.motion
-        named = ("gravity", "slab_mass_ratio", "rolling_resistance", "support", "search_step", "probes")
+        of_body = ("slab_mass_ratio", "rolling_resistance", "tendon")
+        named = ("gravity", *of_body, "support", "search_step", "probes")
         return fingerprint(
             {name: getattr(plan, name) for name in named}
             | {name: getattr(self, name) for name in ("series", "semidiagonals", "levels", "unit", "start")}
@@ -121,6 +122,7 @@ def run_part(part: SpectrumPart, *, workers: int | None = None) -> pd.DataFrame:
         gravity=plan.gravity,
         slab_mass_ratio=plan.slab_mass_ratio,
         rolling_resistance=plan.rolling_resistance,
+        tendon=plan.tendon,
         **series_options(part.series, plan.support),
     )
     peaks = run(sizes, scales=part.unit * levels, workers=workers)

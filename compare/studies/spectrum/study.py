@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
 from rockwobble.models.records.units import sources_of
 
@@ -25,7 +26,7 @@ from ...runs.progress import ProgressCallback
 from ...storage.manifest import Number
 from ...storage.provenance import fingerprint, reduced_makers
 from ...storage.results import Results
-from ..plans import PROBES, STEP, SpectrumPlan
+from ..plans import PROBES, STEP, SpectrumPlan, tendon_of
 from .maps import KIND, TiltMaps, maps_of, record_frame, safe_gaps, tilt_maps
 from .parts import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, series_options
 
@@ -219,6 +220,7 @@ def _single(spectrum: TiltMaps, series: str, i: int, scale: float) -> float:
             spectrum.motion.scaled(scale),
             gravity=spectrum.gravity,
             rolling_resistance=spectrum.rolling_resistance,
+            tendon=tendon_of(spectrum.tendon_prestress, spectrum.tendon_stiffness),
         ),
         rtol=CHECK_RTOL,
         sample_step=spectrum.motion.duration,
@@ -285,6 +287,7 @@ class OverturningSpectrum(Results, kind=KIND):
         }
 
 
+@with_argument_kinds
 def spectrum(
     tan_alpha: float,
     motion: GroundMotion,
@@ -294,6 +297,8 @@ def spectrum(
     slab_mass_ratio: float = 0.0,
     gravity: float = 9.81,
     rolling_resistance: float = 0.0,
+    tendon_prestress: float = 0.0,
+    tendon_stiffness: float = 0.0,
     support: str = "recess",
     search_step: float = STEP,
     probes: int = PROBES,
@@ -318,6 +323,8 @@ def spectrum(
         g [m/s^2].
     rolling_resistance : float, optional
         Length of the couple against rolling [m].
+    tendon_prestress, tendon_stiffness : float, optional
+        Of a tendon [weights of one column, and these per base radius].
     support : {"recess", "flat"}, optional
         Of the model in three dimensions.
     search_step : float, optional
@@ -349,6 +356,8 @@ def spectrum(
         slab_mass_ratio=slab_mass_ratio,
         gravity=gravity,
         rolling_resistance=rolling_resistance,
+        tendon_prestress=tendon_prestress,
+        tendon_stiffness=tendon_stiffness,
         support=support,
         search_step=search_step,
         probes=probes,

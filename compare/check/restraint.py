@@ -1,0 +1,183 @@
+"""What a tendon must do: its energy, its couple by exact solutions, uplift, load, balance and scale.
+
+All follow from the energies of `lagrange`, in which the tendon is stretched by places: from O to the centre
+of the base, and under a slab by as much once more. In a recess both depend on the tilt alone, so that B, L
+and the quadratures of `laws` stay, with another V.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Tendon, Trace
+from rockwobble.models.cylinder import PIER
+
+from .lagrange import TENDON, Shape, energy, potential, shape_of, slope
+from .laws import height_energy, period_and_turn, planar_quarter
+from .measurement import (
+    FRAME_RELEASE,
+    RELEASE,
+    SHOCK,
+    SHOCK_TIMES,
+    Bound,
+    Result,
+    at_most,
+    largest,
+    polyline,
+    steady,
+)
+from .subject import Subject
+
+_QUADRATURE = "quadrature of the energies, good to 1e-9"
+_HELD = dataclasses.replace(RELEASE, tendon=TENDON)
+_HELD_FRAME = dataclasses.replace(FRAME_RELEASE, tendon=TENDON)
+_SHAKEN = Case(PIER, polyline(SHOCK_TIMES, 2.0 * SHOCK, 0.5), duration=4.0)
+# tilt over alpha of releases on both sides of the balance: so near, and so far
+_NEAR, _TILT = 0.005, 0.5
+
+
+def _held(subject: Subject) -> dict[str, Case]:
+    """Return a release of a column, and of a frame where the subject knows one."""
+    return {"column": _HELD} | ({"frame": _HELD_FRAME} if subject.carries_slab else {})
+
+
+def releases(subject: Subject, support: str) -> Iterator[Result]:
+    """Period, regained tilt and angle of turn of a release are those of the quadrature with its energy."""
+    for of, case in _held(subject).items():
+        start = case.initial
+        assert start is not None
+        time, turn = period_and_turn(shape_of(case.cylinder, TENDON), start.tilt, start.rolling_rate)
+        found = subject.simulate(case, support)
+        maxima = found.extrema[(found.extrema[:, 3] > 0.0) & (found.extrema[:, 0] > 0.5 * time)]
+        first = maxima[0] if len(maxima) else np.full(4, math.nan)
+        bound = subject.within(3.0, _QUADRATURE)
+        yield at_most(f"period with a tendon, {of}", abs(first[0] / time - 1.0), bound)
+        yield at_most(f"tilt regained with a tendon, {of}", abs(first[1] / start.tilt - 1.0), bound)
+        if "rolling_angle" in subject.knows:
+            off = math.remainder(first[2] - start.rolling_angle - turn, 2.0 * math.pi)
+            yield at_most(f"angle of turn with a tendon, {of}", abs(off) / turn, bound)
+
+
+def rocking(subject: Subject, support: str) -> Iterator[Result]:
+    """Time from rest to upright in one plane with a tendon: a quadrature."""
+    tilt = _TILT * PIER.alpha
+    quarter = planar_quarter(shape_of(PIER, TENDON), tilt)
+    case = Case(PIER, initial=InitialState(tilt), duration=1.5 * quarter, tendon=TENDON)
+    found = subject.simulate(case, support)
+    minima = found.extrema[found.extrema[:, 3] < 0.0]
+    off = largest(minima[:1, 0] / quarter - 1.0)
+    bound = subject.within(30.0, _QUADRATURE)
+    yield at_most("planar rocking with a tendon, time to upright", off, bound)
+
+
+def stored_energy(subject: Subject, support: str) -> Iterator[Result]:
+    """Energy of a release is constant and counts what the tendon stores, P0 e + kt e^2/2."""
+    for of, case in _held(subject).items():
+        found = subject.simulate(case, support)
+        bound = subject.within(10.0, "no loss; near passes magnify the error of a step")
+        yield at_most(
+            f"energy of a release with a tendon, {of}", np.ptp(found.energy) / found.energy[0], bound
+        )
+        if not {"tilt_rate", "rolling_rate"} <= subject.knows:
+            continue
+        state = found.tilt, found.rolling_angle, found.tilt_rate, found.rolling_rate
+        stated = energy(shape_of(case.cylinder, TENDON), *state)
+        off = largest(found.energy - stated) / found.energy[0]
+        yield at_most(f"stated energy of a release with a tendon, {of}", off, bound)
+
+
+def second_gap(subject: Subject, support: str) -> Iterator[Result]:
+    """One gap more, at a slab, doubles the elongation: what a prestress alone stores at one tilt."""
+    stored = []
+    for body in (PIER, FRAME_RELEASE.cylinder):
+        start = InitialState(_TILT * PIER.alpha)
+        tilted = Case(body, initial=start, duration=0.05, tendon=Tendon(prestress=1.0))
+        whole = subject.simulate(tilted, support).energy[0]
+        weight = height_energy(shape_of(body), np.array([start.tilt]))[0]
+        stored.append((whole - weight) * (1.0 + 2.0 * body.slab_mass_ratio))
+    bound = subject.within(10.0, "in a frame it crosses a gap at either end of the column")
+    yield at_most(
+        "elongation under a slab over twice that without", abs(stored[1] / stored[0] / 2.0 - 1.0), bound
+    )
+
+
+def load_at_rest(subject: Subject, support: str) -> Iterator[Result]:
+    """A column that stands presses on the ground with its weight and the prestress."""
+    case = Case(PIER, steady([0.0, 0.0], 0.4), tendon=TENDON)
+    found = subject.simulate(case, support, sample_step=0.1)
+    off = found.contact_force[1:4] - [0.0, 0.0, 1.0 + TENDON.prestress]
+    bound = subject.within(1.0, "Newton's law", "weights")
+    yield at_most("contact force at rest with a tendon", largest(off), bound)
+
+
+def raised_uplift(subject: Subject, support: str) -> Iterator[Result]:
+    """Uplift at g tan(alpha) (1 + n P0/(w m g)), w = 1 + 2 gamma: the rate of the static couple upright."""
+    upright = 1e-9  # [rad]
+    for of, case in _held(subject).items():
+        shape = shape_of(case.cylinder, TENDON)
+        threshold = _couple(shape, upright) / shape.h
+        motion = GroundMotion(np.outer([0.0, 1.5], [threshold, 0.0]), 1.5)
+        found = subject.simulate(Case(case.cylinder, motion, tendon=TENDON), support, sample_step=0.05)
+        bound = subject.within(50.0, "closed form, to some steps", "s")
+        yield at_most(f"time of uplift with a tendon, {of}", abs(found.uplift_time - 1.0), bound)
+
+
+def _couple(shape: Shape, tilt: float) -> float:
+    """Return the static couple V' at a tilt [m^2/s^2]."""
+    return slope(lambda at: potential(shape, at, 0.0 * at, np.zeros((1, 3))), tilt)
+
+
+def balance(subject: Subject, support: str) -> Iterator[Result]:
+    """A release within the tilt at which the static couple vanishes comes back, one beyond it falls."""
+    shape = shape_of(PIER, TENDON)
+    low, high = PIER.alpha, 0.5 * math.pi
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if _couple(shape, middle) > 0.0 else (low, middle)
+    for word, factor, expected in (("within", 1.0 - _NEAR, False), ("beyond", 1.0 + _NEAR, True)):
+        start = InitialState(factor * low)
+        found = subject.simulate(Case(PIER, initial=start, duration=10.0, tendon=TENDON), support)
+        wrong = float((found.outcome == "overturned") is not expected)
+        bound = Bound(0.0, "where the couple of weight and tendon changes its sign")
+        yield at_most(f"end of a release 0.5 % {word} the balance", wrong, bound, note=found.outcome)
+
+
+def size(subject: Subject, support: str) -> Iterator[Result]:
+    """A hundredth of the size with the same tendon, in weights, moves ten times as fast (Froude)."""
+    start = RELEASE.initial
+    assert start is not None
+    faster = dataclasses.replace(start, rolling_rate=10.0 * start.rolling_rate)
+    small = Cylinder(semidiagonal=PIER.semidiagonal / 100.0, tan_alpha=PIER.tan_alpha)
+    little = Case(small, initial=faster, duration=0.1 * RELEASE.length, tendon=TENDON)
+    found = subject.simulate(little, support, sample_step=0.001)
+    plain = subject.simulate(_HELD, support, sample_step=0.01)
+    same = len(found.time) == len(plain.time)
+    off = largest(found.tilt - plain.tilt) / PIER.alpha if same else math.nan
+    bound = Bound(subject.repeatability, "rounding, magnified by the passes", "alpha")
+    yield at_most("a hundredth of the size with a tendon", off, bound)
+
+
+def without_force(subject: Subject, support: str) -> Iterator[Result]:
+    """A tendon without prestress and stiffness is none, to the bit."""
+    if support == "planar":
+        start = InitialState(_TILT * PIER.alpha)
+        case = Case(PIER, initial=start, duration=3.0)
+    else:
+        case = RELEASE if subject.cases is None and "stepper" in subject.options else _SHAKEN
+    none, free = (
+        subject.simulate(dataclasses.replace(case, tendon=tendon, duration=case.length), support)
+        for tendon in (None, Tendon())
+    )
+    bound = Bound(
+        subject.repeatability if "stepper" in subject.options else 0.0, "no force, no motion", "alpha"
+    )
+    yield at_most("a tendon that does not pull", _apart(none, free), bound)
+
+
+def _apart(one: Trace, other: Trace) -> float:
+    same = len(one.time) == len(other.time)
+    return largest(one.tilt - other.tilt) / PIER.alpha if same else math.nan

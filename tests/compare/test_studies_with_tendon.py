@@ -1,0 +1,76 @@
+"""Fragility, spectrum, sweep and ensemble with a tendon: runs of it, and bounds that follow its uplift."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import rockwobble as rw
+from rockwobble import reduced
+from rockwobble.compare.studies.fragility.runs import default_levels
+from rockwobble.compare.studies.plans import FragilityPlan
+from rockwobble.models import synthetic_motions
+
+PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+TENDON = rw.Tendon(prestress=0.5, stiffness=2.0)
+STEEL = {"tendon_prestress": TENDON.prestress, "tendon_stiffness": TENDON.stiffness}
+MOTIONS = synthetic_motions(4, peak=1.0, seed=3)
+
+
+@pytest.mark.parametrize("slab", [0.0, 1.0])
+def test_a_fragility_runs_the_tendon_and_leaves_out_flat_ground(slab: float) -> None:
+    body = rw.WobblingFrame(PIER, slab) if slab else PIER
+    found = rw.fragility({"it": body}, MOTIONS, levels=[3.0, 9.0], resamples=50, workers=1, **STEEL)
+    assert "flat-ground model" not in found.facts["methods"]
+    runs = found.runs[found.runs["method"] == "recess model"].set_index(["motion", "step"])
+    for motion in MOTIONS:
+        scale = 9.0 * 9.81 * PIER.tan_alpha / motion.peak
+        own = reduced.simulate(rw.Case(body, motion.scaled(scale), tendon=TENDON), rtol=1e-7)
+        assert runs["peak_tilt"][motion.name, 1] == pytest.approx(own.peak_tilt / PIER.alpha, rel=1e-9)
+    with pytest.raises(ValueError, match="got support 'flat'"):
+        rw.fragility(PIER, MOTIONS, methods=["flat"], levels=[3.0], workers=1, **STEEL)
+
+
+def test_levels_begin_above_the_raised_uplift_and_end_where_most_overturn() -> None:
+    plain = default_levels({"it": PIER}, MOTIONS, FragilityPlan())
+    held = default_levels({"it": PIER}, MOTIONS, FragilityPlan(**STEEL))
+    assert held[0] / plain[0] == pytest.approx(TENDON.uplift_factor(PIER), rel=5e-3)  # three digits
+    options = {"methods": ["recess"], "limits": ["overturned"], "resamples": 50, "workers": 1}
+    shares = rw.fragility(PIER, MOTIONS, **options, **STEEL).counts.groupby("intensity")[["k", "n"]].sum()
+    assert shares["k"].iloc[0] == 0
+    assert shares["k"].iloc[-1] > 0.5 * shares["n"].iloc[-1]
+
+
+def test_a_spectrum_searches_from_the_raised_uplift() -> None:
+    options = {"semidiagonals": [3.0], "intensities": [2.0, 6.0], "search_step": 0.2, "probes": 20}
+    motion = rw.el_centro_1940()
+    found, plain = (rw.spectrum(0.2, motion, workers=1, **options, **steel) for steel in (STEEL, {}))
+    lowest, other = (each.tables["lowest"].set_index("series")["intensity"]["3d"] for each in (found, plain))
+    assert lowest > other
+    pier = rw.Cylinder(semidiagonal=3.0, tan_alpha=0.2)
+    peak = float(np.hypot(*motion.acceleration[:, :2].T).max())
+    case = rw.Case(pier, motion.scaled(lowest * 9.81 * 0.2 / peak), tendon=TENDON)
+    assert reduced.simulate(case, rtol=1e-7).outcome == "overturned"
+
+
+def test_a_sweep_and_an_ensemble_run_the_tendon() -> None:
+    motion = rw.el_centro_1940()
+    grid = rw.Grid(semidiagonals=[6.0], tan_alphas=[0.2], scales=[3.0], motions=[motion], **STEEL)
+    case = rw.Case(PIER, motion.scaled(3.0), tendon=TENDON)
+    peak = reduced.simulate(case, rtol=1e-7).peak_tilt
+    assert rw.sweep(grid, workers=1).table["peak_tilt"][0] == peak
+    members = rw.ensemble(case, runs=[], copies=3, workers=1)
+    assert list(members.methods["method"]) == ["recess model"]
+
+
+def test_the_balance_of_a_case_is_alpha_without_a_tendon() -> None:
+    release = rw.InitialState(0.1)
+    tilts = [
+        reduced.balance_tilt_of_case(rw.Case(PIER, initial=release, duration=1.0, tendon=tendon))
+        for tendon in (None, rw.Tendon(), rw.Tendon(prestress=0.5), rw.Tendon(stiffness=6.0))
+    ]
+    assert tilts[0] == tilts[1] == PIER.alpha
+    assert PIER.alpha < tilts[2] < 0.5 * math.pi
+    assert np.isinf(tilts[3])

@@ -1,0 +1,112 @@
+"""Motion with a tendon, with and without rolling resistance, against an integration of its own."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from tendon import Pier
+from tied_motion import Model
+
+import rockwobble as rw
+from rockwobble import reduced
+
+G = 9.81
+PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+STEEL = rw.Tendon(prestress=0.4, stiffness=3.0)
+
+
+def model_of(case: rw.Case, plane: float | None) -> Model:
+    cylinder, tendon = case.cylinder, case.tendon
+    assert tendon is not None
+    b = cylinder.base_radius
+    pier = Pier(
+        b=b,
+        h=cylinder.mass_centre_height,
+        slab=cylinder.slab_mass_ratio,
+        prestress=tendon.prestress * G,
+        stiffness=tendon.stiffness * G / b,
+    )
+    return Model(pier=pier, delta=case.rolling_resistance, plane=plane)
+
+
+@pytest.mark.parametrize("slab", [0.0, 1.3], ids=["column", "frame"])
+@pytest.mark.parametrize("share", [0.0, 0.01], ids=["lossless", "resisted"])
+@pytest.mark.parametrize("plane", [None, 0.0], ids=["recess", "planar"])
+@pytest.mark.parametrize("tan_alpha", [0.15, 0.5])
+def test_a_release(tan_alpha: float, plane: float | None, share: float, slab: float) -> None:
+    column = rw.Cylinder(semidiagonal=3.0, tan_alpha=tan_alpha)
+    body = rw.WobblingFrame(column, slab) if slab else column
+    spin = 0.7 if plane is None else 0.0
+    release = rw.InitialState(0.6 * column.alpha, rolling_rate=spin)
+    length = share * column.base_radius
+    case = rw.Case(body, initial=release, duration=3.0, tendon=STEEL, rolling_resistance=length)
+    trace = reduced.simulate(case, plane=plane, rtol=1e-12)
+    own = model_of(case, plane).released(release.tilt, spin, trace.time)
+    assert np.abs(trace.tilt - own[:, 0]).max() < 1e-9 * column.alpha
+    if plane is None:
+        assert np.abs(trace.rolling_angle - own[:, 2]).max() < 1e-8
+    if share:
+        lost = own[:, 4] / (1.0 + 2.0 * slab)  # per unit of the mass that gravity moves
+        assert lost[-1] > 1e-3 * trace.energy[0]
+        assert np.abs(trace.energy_lost - lost).max() < 1e-8 * trace.energy[0]
+
+
+@pytest.mark.parametrize("slab", [0.0, 1.3], ids=["column", "frame"])
+@pytest.mark.parametrize("share", [0.0, 0.01], ids=["lossless", "resisted"])
+@pytest.mark.parametrize("plane", [None, 0.4], ids=["recess", "planar"])
+def test_under_a_record(plane: float | None, share: float, slab: float) -> None:
+    body = rw.WobblingFrame(PIER, slab) if slab else PIER
+    motion = rw.el_centro_1940(vertical=True).scaled(4.0)
+    length = share * PIER.base_radius
+    case = rw.Case(body, motion, duration=9.0, tendon=STEEL, rolling_resistance=length)
+    trace = reduced.simulate(case, plane=plane, rtol=1e-12, sample_step=motion.time_step)
+    uplift, times, own = model_of(case, plane).shaken(motion.acceleration, motion.time_step, 9.0)
+    assert trace.uplift_time == pytest.approx(uplift, abs=1e-11)
+    same = np.searchsorted(trace.time, times - 1e-9)
+    assert trace.tilt.max() > 0.2 * PIER.alpha
+    assert np.abs(trace.tilt[same] - own[:, 0]).max() < 1e-7 * PIER.alpha
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_tied_column_stands_on_its_rim_where_the_couple_holds_it(sign: float) -> None:
+    """What the couple holds grows with the tension, and the balance is beyond alpha."""
+    length = 0.01 * PIER.base_radius
+    tendon = rw.Tendon(prestress=0.3, stiffness=1.0)
+    b, h = PIER.base_radius, PIER.mass_centre_height
+
+    def left(tilt: float, share: float) -> float:
+        tension = tendon.prestress + 2.0 * tendon.stiffness * math.sin(0.5 * tilt)
+        pull = tension * math.cos(0.5 * tilt)
+        return b * math.cos(tilt) - h * math.sin(tilt) + b * pull + share * length * (1.0 + pull)
+
+    for share, stays in ((0.99 * sign, True), (1.01 * sign, False)):
+        low, high = PIER.alpha, 1.5
+        for _ in range(60):
+            low, high = (
+                (0.5 * (low + high), high)
+                if left(0.5 * (low + high), share) > 0.0
+                else (low, 0.5 * (low + high))
+            )
+        release = rw.InitialState(low)
+        case = rw.Case(PIER, initial=release, duration=3.0, tendon=tendon, rolling_resistance=length)
+        trace = reduced.simulate(case)
+        assert bool((trace.tilt == low).all()) == stays
+
+
+def test_the_exit_from_a_fall_changes_no_answer_with_rolling_resistance() -> None:
+    motion, scales = rw.el_centro_1940(vertical=True), np.geomspace(3.0, 30.0, 8)
+    for stiffness in (0.0, 1.0, 4.0):
+        tendon = rw.Tendon(prestress=0.5, stiffness=stiffness)
+        options = {"tendon": tendon, "rolling_resistance": 0.02}
+        peaks = reduced.peak_tilts([PIER.semidiagonal], 0.2, motion, scales, **options)[0]
+        for scale, peak in zip(scales, peaks, strict=True):
+            # a pulse at the very end keeps the exit out of reach
+            late = np.zeros((502, 3))
+            late[500, 0] = 1e4
+            a = np.vstack([motion.acceleration * scale, late])
+            open_end = rw.GroundMotion(a, motion.time_step, "open")
+            case = rw.Case(PIER, open_end, duration=motion.duration, **options)
+            trace = reduced.simulate(case, rtol=1e-7)
+            assert (peak == 0.5 * math.pi) == (trace.outcome == "overturned")
