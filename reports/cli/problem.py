@@ -32,7 +32,7 @@ class Body(Plan):
     diameter: float | None = _cylinder(None, "2b, in m; with --height in place of the two above.", above=0.0)
     height: float | None = _cylinder(None, "2h, in m.")
     mass_centre_height: float | None = _cylinder(
-        None, "Height of the mass centre above the base, in m; with --diameter and --height. Default: half of that."
+        None, "Height of the mass centre, in m; with --diameter and --height. Default: half of that."
     )
     transverse_inertia: float | None = _cylinder(
         None, "I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder."
