@@ -8,6 +8,11 @@ import warnings
 from importlib.metadata import version as version_of
 from pathlib import Path
 
+from sphinx.application import Sphinx
+
+from rockwobble.models import Cylinder
+from rockwobble.reports.pages.explore import State, explore_page, standard_shakings
+
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE / "_extensions"))
 NOTEBOOKS = [f"notebooks/{path.stem}" for path in (HERE / "notebooks").glob("*.ipynb")]
@@ -78,3 +83,16 @@ if found := re.search(r"^repository-code:\s*(\S+)", _CITATION, re.MULTILINE):
 
 # the debugger of the notebooks' kernel warns that its files are frozen; no notebook is debugged here
 warnings.filterwarnings("ignore", message=".*frozen modules.*")
+
+
+def setup(app: Sphinx) -> None:
+    """Put the page of `rockwobble explore` beside the others."""
+
+    def write_explore(app: Sphinx) -> None:
+        if app.builder.format == "html":
+            pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+            state = State(height=2.0 * pier.half_height, diameter=2.0 * pier.base_radius)
+            page = explore_page(standard_shakings(), state)
+            (Path(app.outdir) / "explore.html").write_text(page, encoding="utf-8")
+
+    app.connect("builder-inited", write_explore)

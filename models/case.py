@@ -9,6 +9,7 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any, Literal
 
+from .argument_kinds import with_argument_kinds
 from .bounds import Bounds
 from .cylinder import Cylinder, WobblingFrame
 from .ground_motion import GroundMotion
@@ -130,11 +131,11 @@ class Case:
                 f"rolling_resistance must be from 0 to below the base radius, "
                 f"{self.cylinder.base_radius:g} m, got {length!r} m"
             )
-        if not self.name:
+        if isinstance(self.name, str) and not self.name:
             name = "free response" if self.motion is None else self.motion.name
             object.__setattr__(self, "name", name or "record")
-        if self.name.splitlines() != [self.name]:
-            raise ValueError(f"the name of a case must be one line, got {self.name!r}")
+        if not isinstance(self.name, str) or self.name.splitlines() != [self.name]:
+            raise ValueError(f"the name of a case must be one line, got {quoted(self.name)}")
         # kept as it was given, so that a copy with another motion follows that motion
         run_duration(self.motion, self.duration)
 
@@ -274,6 +275,7 @@ class Run:
         return partial(Run, **self.settings), (self.engine, self.support, self.time_step)
 
 
+@with_argument_kinds
 @dataclass(frozen=True, slots=True, repr=False)
 class Suite(Brief):
     """Cases times runs.

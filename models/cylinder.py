@@ -221,7 +221,7 @@ class WobblingFrame(Cylinder):
             raise ValueError(
                 f"slab_mass_ratio must be from 0 to {LARGEST_SLAB_MASS_RATIO:g}, got {slab_mass_ratio!r}"
             )
-        whole = isinstance(columns, Real) and float(columns).is_integer() and not isinstance(columns, bool)
+        whole = isinstance(columns, Real) and columns % 1 == 0 and not isinstance(columns, bool)
         if not whole or columns < 1 or columns == 2:
             raise ValueError(
                 f"columns must be 3 or more, or 1 under a slab that cannot turn, got {quoted(columns)}"

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
+from .argument_kinds import with_argument_kinds
 from .shown import Brief
 
 # code: (unit of size and bound, meaning); why a run failed
@@ -104,6 +105,7 @@ def parted(cell: str) -> list[str]:
     return cell.split(_SEPARATOR) if cell else []
 
 
+@with_argument_kinds
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Diagnostic(Brief):
     """A fact about a motion; programs decide by code, time and size, never by words.
@@ -145,7 +147,7 @@ class Diagnostic(Brief):
 
     def __post_init__(self) -> None:
         if self.code not in CODES:
-            raise ValueError(f"code must be one of {', '.join(CODES)}, got {self.code!r}")
+            raise ValueError(f"code must be one of models.diagnostic.CODES, got {self.code!r}")
         reasons = REASONS.get(self.code)
         if reasons and self.detail not in reasons:
             raise ValueError(f"detail must be one of {', '.join(reasons)}, got {self.detail!r}")

@@ -60,7 +60,7 @@ class GroundMotion:
             raise ValueError(f"acceleration must be real numbers, got {acceleration.dtype} numbers")
         try:
             samples = np.array(acceleration, dtype=np.float64, order="C")
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise ValueError("acceleration must be numbers in 2 or 3 columns [m/s^2]") from None
         if samples.ndim != 2 or samples.shape[1] not in (2, 3) or samples.shape[0] < 2:
             raise ValueError(

@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .number_checks import require_increasing, require_one_of, require_positive
+from .argument_kinds import with_argument_kinds
+from .number_checks import require_increasing, require_numbers, require_one_of, require_positive
 from .shown import Brief
 
 Array = NDArray[np.float64]
@@ -35,6 +36,7 @@ _SPECTRAL = ("sa", "sa_mean")
 _NAMES = ", ".join(HAZARD_MEASURES)
 
 
+@with_argument_kinds
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class HazardCurve(Brief):
     """Hazard curve of a site: annual frequency of exceedance against intensity.
@@ -81,7 +83,7 @@ class HazardCurve(Brief):
     def __post_init__(self) -> None:
         measure_of(self.measure, self.period)
         x = require_increasing("intensity of a hazard curve", self.intensity)
-        frequency = np.array(self.annual_frequency, dtype=np.float64)
+        frequency = require_numbers("annual_frequency", self.annual_frequency)
         if len(x) < 2 or frequency.shape != x.shape:
             raise ValueError(
                 "a hazard curve needs an annual frequency for each of two or more intensities, got "
@@ -143,6 +145,7 @@ def measure_of(measure: str, period: float | None) -> tuple[str, float | None]:
     return measure, period
 
 
+@with_argument_kinds
 def read_hazard(
     path: str | Path,
     *,

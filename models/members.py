@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from .argument_kinds import with_argument_kinds
 from .case import Case
 from .ground_motion import GroundMotion
 
@@ -20,6 +21,7 @@ def require_perturbation(perturbation: float) -> None:
         raise ValueError(f"perturbation must be above 0 and at most {MOST_PERTURBED:g}, got {perturbation!r}")
 
 
+@with_argument_kinds
 def perturbed_copies(case: Case, count: int, *, perturbation: float, seed: int) -> list[Case]:
     """Return one problem `count` times, each with slightly different conditions.
 
@@ -78,6 +80,7 @@ def perturbed(case: Case, first: float, second: float) -> Case:
     return dataclasses.replace(case, motion=motion.changed(acceleration, "perturbed"))
 
 
+@with_argument_kinds
 def with_motions(case: Case, motions: Sequence[GroundMotion]) -> list[Case]:
     """Return one problem under each of several ground motions, as long as each of them.
 

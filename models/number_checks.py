@@ -51,9 +51,21 @@ def require_sample_step(sample_step: float, duration: float) -> float:
     return step
 
 
+def require_numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    """Return an array of numbers as it is shaped, or raise ValueError unless all are real numbers."""
+    try:
+        # numpy would drop an imaginary part
+        found = None if np.iscomplexobj(values) else np.array(values, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        found = None
+    if found is None:
+        raise ValueError(f"{name} must be numbers, got {quoted(values)}")
+    return found
+
+
 def require_increasing(name: str, values: ArrayLike) -> NDArray[np.float64]:
     """Return a read-only array (n,), or raise ValueError unless it is positive, finite and increasing."""
-    found = np.array(values, dtype=np.float64)
+    found = require_numbers(name, values)
     good = found.ndim == 1 and found.size and found[0] > 0.0 and (np.diff(found) > 0.0).all()
     if not (good and np.isfinite(found).all()):
         raise ValueError(f"{name} must be positive, finite and increasing, got {quoted(values)}")
@@ -64,14 +76,8 @@ def require_increasing(name: str, values: ArrayLike) -> NDArray[np.float64]:
 def require_one_of(name: str, value: object, allowed: Iterable[str]) -> None:
     """Raise ValueError unless `value` is one of the words that are allowed."""
     words = tuple(allowed)
-    if value not in words:
+    if not isinstance(value, str) or value not in words:
         raise ValueError(f"{name} must be one of {', '.join(words)}, got {quoted(value)}")
-
-
-def require_kind(name: str, value: object, kind: type) -> None:
-    """Raise ValueError unless a value is of a kind."""
-    if not isinstance(value, kind):
-        raise ValueError(f"{name} must be of kind {kind.__name__}, got {quoted(value)}")  # noqa: TRY004 - bad input is a ValueError
 
 
 def require_each(name: str, values: object, kind: type) -> None:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from .argument_kinds import with_argument_kinds
 from .ground_motion import GroundMotion
 from .number_checks import require_finite, require_one_of, require_positive
 from .record_source import PULSE, SYNTHETIC, source_of_samples
@@ -19,6 +20,7 @@ SAMPLES_PER_PERIOD = 400
 MOST_STILL = 1e7  # samples of still ground before a motion: a tenth of a gigabyte
 
 
+@with_argument_kinds
 def pulse(
     kind: str, *, amplitude: float, period: float, azimuth: float = 0.0, start: float = 0.0
 ) -> GroundMotion:
@@ -82,6 +84,7 @@ _TIME_STEP = 0.01
 _RISE, _STRONG, _DECAY = 0.15, 0.4, 4.0
 
 
+@with_argument_kinds
 def synthetic_motions(count: int, *, peak: float, seed: int, duration: float = 20.0) -> list[GroundMotion]:
     """Return `count` synthetic ground motions of two components: filtered noise with an envelope.
 

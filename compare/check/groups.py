@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockwobble.models import Case, Suite, Trace, read_suite
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import line
@@ -299,6 +300,7 @@ class Checks:
         return line("Checks", [counts, *failed, *self.facts["subjects"]])
 
 
+@with_argument_kinds
 def check(
     engine: str | None = None,
     *,

@@ -9,6 +9,7 @@ from pathlib import Path
 import pandas as pd
 
 from rockwobble.models import AGREEMENT, Case, Run, Suite, Trace
+from rockwobble.models.argument_kinds import with_argument_kinds
 
 from ..external.trajectory import External, read_trajectories
 from ..external.verdict import Row
@@ -30,6 +31,7 @@ from .result import Comparison, comparison_of
 from .summary import SUMMARY_COLUMNS, external_row, lost_row, summary_row
 
 
+@with_argument_kinds
 def comparison(
     case_or_suite: Case | Suite,
     *,

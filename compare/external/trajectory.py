@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, Diagnostic, Run, Trace
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.shown import Brief
 from rockwobble.multibody.passes import TurningPoint, passes_between, turning_points
 
@@ -28,6 +29,7 @@ _FALLEN = 0.5 * math.pi - 0.01
 _SAME_START = 0.1
 
 
+@with_argument_kinds
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class External(Brief):
     """A file of a trajectory, and how to read it; `rockwobble.compare.external.table` says what it may hold.

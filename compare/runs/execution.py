@@ -14,6 +14,7 @@ from typing import TypeVar
 import pandas as pd
 
 from rockwobble.models import Case, Run, Trace
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import TimeStep
 from rockwobble.models.parquet_file import pack, read
 from rockwobble.models.shown import Brief
@@ -67,6 +68,7 @@ class Job(Brief):
         return f"{self.case.name}, {self.label}"
 
 
+@with_argument_kinds
 def simulate(
     case: Case,
     *,

@@ -16,6 +16,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Trace, perturbed_copies
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.diagnostic import joined
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.number_checks import require_each
@@ -102,6 +103,7 @@ class Ensemble(Results, kind=KIND):
         }
 
 
+@with_argument_kinds
 def ensemble(
     case_or_members: Case | Suite | Sequence[Case],
     *,

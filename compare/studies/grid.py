@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import Brief
@@ -108,6 +109,7 @@ class GridChunk:
         return reduced.simulate(case, **{"rtol": _RTOL, **options}).outcome
 
 
+@with_argument_kinds
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Grid(Brief, GridPlan):
     """Every size with every slenderness, scale, motion and model, each run from rest for its peak tilt.

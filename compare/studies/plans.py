@@ -12,9 +12,7 @@ from ..runs.plan import Plan, option
 if TYPE_CHECKING:
     from rockwobble.models import Case, Tendon
 
-_ROLLING = (
-    "Length of the couple against the rolling of the rim, in m, below every base radius; 0 loses nothing."
-)
+_ROLLING = "Rolling resistance length, in m, below every base radius; 0 loses nothing."
 MASS = "Mass of the cylinder, or of one column without a slab, in t: forces in kN and moments in kNm."
 _PLANE = "Planar motion: azimuth of the vertical plane that holds it, in rad."
 _RESTITUTION = (

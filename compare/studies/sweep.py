@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, GroundMotion, Run, Suite, Trace
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.diagnostic import joined
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.plain_json import fields_of
@@ -197,6 +198,7 @@ _TRIES = 3
 Chunk = GridChunk | CaseChunk
 
 
+@with_argument_kinds
 def sweep(
     plan: Grid | Suite | Iterable[Case],
     *,

@@ -127,6 +127,8 @@ _OTHER_UNITS = frozenset(
         "cts",
     ]
 )
+# "acc_e_cm_s2", "ax_m_per_s2", "az_mps2", of names that allow no slash
+_UNIT_IN_NAME = re.compile(r"[\s_]([cmk]?m)(?:_per_|_p_|p|_)?s(?:ec)?(?:_?\^?-?[2²]|_s)$", re.IGNORECASE)
 _BRACKETS = re.compile(r"[\[({<]([^\[\](){}<>]*)[\])}>]")
 
 
@@ -219,6 +221,9 @@ def _unit_apart(text: str) -> tuple[str, str]:
     words = _BRACKETS.sub(kept, text)
     if unit:
         return words.strip(), unit
+    in_name = _UNIT_IN_NAME.search(words)
+    if in_name:
+        return words[: in_name.start()].strip(), f"{in_name[1]}/s2"
     behind = re.search(r"(?:[\s_,:]+in\s+|[\s_,:/]+)(\S+)$", words.strip())
     if behind and _quantity_of_unit(behind[1]):
         rest = words.strip()[: behind.start()]
@@ -226,7 +231,9 @@ def _unit_apart(text: str) -> tuple[str, str]:
         letters = re.sub(r"[^\w]|_", "", rest)
         if behind[1].casefold() == _NORTH_SOUTH and _by_words(rest).kind != "time":
             return words.strip(), ""
-        if len(behind[1]) > 1 or (behind[1].casefold() in "sg" and len(letters) > 2):
+        # "t/s" is a quantity over its unit, "N/S" a direction
+        over = "/" in words[behind.start() : behind.end()] and letters.casefold() not in ("", "n")
+        if len(behind[1]) > 1 or (behind[1].casefold() in "sg" and (over or len(letters) > 2)):
             return rest, behind[1]
     return words.strip(), ""
 
@@ -389,7 +396,7 @@ def names_of(header: Sequence[str], width: int) -> tuple[list[ColumnName] | None
     for place in range(len(lines) - 1, -1, -1):
         last = place == max(set(range(len(lines))) - of_units, default=0)
         for cells in _splittings(lines[place][:_LONGEST_LINE], width):
-            if any(_STATEMENT.search(cell) for cell in cells):
+            if any(_STATEMENT.search(cell) or cell.endswith("=") for cell in cells):
                 continue
             stated = [cell.strip(" []()") for cell in cells]
             of_all = all(_quantity_of_unit(cell) or cell in ("-", "") for cell in stated)
@@ -415,6 +422,30 @@ def names_of(header: Sequence[str], width: int) -> tuple[list[ColumnName] | None
             for name, unit in zip(best, units, strict=True)
         ]
     return best and settled(best), [line for at, line in enumerate(lines) if at not in used | of_units]
+
+
+def names_that_hold(header: Sequence[str], width: int, words: Sequence[str]) -> list[ColumnName] | None:
+    """Return the names of `width` columns by the line of a header that holds all words; None without one.
+
+    For words that the user gives, which may be names that say nothing by themselves, such as HN1; numbers
+    of columns are passed over.
+    """
+    wanted = {compared(word) for word in words if not word.strip().isdecimal()}
+    for line in reversed(header[:_MOST_LINES] if wanted else ()):
+        for cells in _splittings(line[:_LONGEST_LINE], width):
+            if wanted <= {form for cell in cells for form in (compared(cell), compared(without_unit(cell)))}:
+                return settled([column_name(cell) for cell in cells])
+    return None
+
+
+def compared(name: str) -> str:
+    """Return a name as names are compared: without case, accents, blanks and punctuation."""
+    return re.sub(r"[\W_]+", "", plain(name))
+
+
+def without_unit(name: str) -> str:
+    """Return a name up to its first bracket."""
+    return re.sub(r"[\[(].*", "", name)
 
 
 def quantities_of(line: str) -> set[Kind]:

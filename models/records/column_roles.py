@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .column_names import ColumnName, listed, plain
+from .column_names import ColumnName, compared, listed, plain, without_unit
 from .component import STEP_OPTION, Direction, ReadingOptions, RecordFile
 from .table import Table
 from .times import is_counting, rises_evenly, since_epoch, stated_step
@@ -217,17 +217,13 @@ class Columns:
             return place
         for form in (
             lambda name: name.strip(),
-            _compared,
-            lambda name: _compared(re.sub(r"[\[(].*", "", name)),
+            compared,
+            lambda name: compared(without_unit(name)),
         ):
             matches = [at for at, name in enumerate(self.names or ()) if form(name.text) == form(text)]
             if len(matches) == 1:
                 return matches[0]
         return None
-
-
-def _compared(name: str) -> str:
-    return re.sub(r"[\W_]+", "", plain(name))
 
 
 def _runs_one_way(values: NDArray[np.float64]) -> bool:

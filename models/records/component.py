@@ -15,7 +15,10 @@ from numpy.typing import NDArray
 Direction = Literal["x", "y", "z"]
 """Of a component: x east, y north, z up."""
 
-_UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)  # what spreadsheets call "Unicode text"
+# what spreadsheets call "Unicode text"
+_UTF16 = {"utf-16-le": codecs.BOM_UTF16_LE, "utf-16-be": codecs.BOM_UTF16_BE}
+# blanks that do not break, and the minus sign of typesetters
+_TYPESET = str.maketrans({"\u00a0": " ", "\u2007": " ", "\u2009": " ", "\u202f": " ", "\u2212": "-"})
 # the largest of the networks are below 50 MB; what is larger is another file by mistake
 LARGEST_FILE = 200_000_000  # [bytes]
 # 1 g is 9.81 m/s^2, the default gravity of every model here, so that a/g stays what the file says
@@ -102,7 +105,7 @@ class RecordFile:
             text = content.decode("utf-8-sig")
         except UnicodeDecodeError:  # an older file, whose m/s² is one byte shorter
             text = content.decode("cp1252", errors="replace")
-        return tuple(text.splitlines())
+        return tuple((text if text.isascii() else text.translate(_TYPESET)).splitlines())
 
     @property
     def text(self) -> tuple[str, ...]:
@@ -129,16 +132,22 @@ def open_record(path: Path) -> RecordFile:
     Raises
     ------
     ValueError
-        If it cannot be read, is empty, no regular file, text in UTF-16, beyond 200 MB, or has a line that is
-        longer than any record in one line.
+        If it cannot be read, is empty, no regular file, damaged text in UTF-16, beyond 200 MB, or has a line
+        that is longer than any record in one line.
     """
     try:
         content = _bytes(path)
     except (OSError, ValueError) as error:  # ValueError: also for a null byte in the name
         reason = getattr(error, "strerror", None) or error
         raise ValueError(f"cannot read the record {path}: {reason}") from None
-    if content.startswith(_UTF16):
-        raise ValueError(f"the record {path} is text in UTF-16: save it as UTF-8 or plain text")
+    encoding = _utf16(content)
+    if encoding is not None:
+        try:
+            content = content.decode(encoding).removeprefix("\ufeff").encode()
+        except UnicodeDecodeError:
+            raise ValueError(
+                f"the record {path} is text in UTF-16 that is damaged: save it as UTF-8"
+            ) from None
     file = RecordFile(path, content)
     if not content or (file.lines is not None and not any(line.strip() for line in file.lines)):
         raise ValueError(f"the record {path} is empty")
@@ -148,6 +157,20 @@ def open_record(path: Path) -> RecordFile:
             f"the record {path} has a line of {longest:,} characters, allowed are {_LONGEST_LINE:,}: break it"
         )
     return file
+
+
+def _utf16(content: bytes) -> str | None:
+    """Return the encoding of a text in UTF-16, by its mark or by every second byte of its begin."""
+    for encoding, (zeros, others) in {"utf-16-le": (1, 0), "utf-16-be": (0, 1)}.items():
+        begin = content[:200]
+        if content.startswith(_UTF16[encoding]) or (
+            len(begin) > 20
+            and not any(begin[zeros::2])
+            and begin[others::2].isascii()
+            and all(begin[others::2])
+        ):
+            return encoding
+    return None
 
 
 def _bytes(path: Path) -> bytes:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..argument_kinds import with_argument_kinds
 from ..ground_motion import GroundMotion
 from ..number_checks import require_finite, require_one_of, require_positive
 from ..record_source import ComponentSource, RecordSource
@@ -25,6 +26,7 @@ ZERO = "zero"  # in the place of a file: planar motion
 _G = METRES_PER_SECOND_SQUARED["g"]
 
 
+@with_argument_kinds
 def read_record(
     x_path: str | Path | Sequence[str | Path],
     y_path: str | Path | None = None,
@@ -286,6 +288,7 @@ _NORTH_SOUTH = "RSN6_IMPVALL.I_I-ELC180-hor1.AT2"
 _UP = "RSN6_IMPVALL.I_I-ELC-UP.AT2"
 
 
+@with_argument_kinds
 @cache
 def el_centro_1940(vertical: bool = False) -> GroundMotion:
     """Return the record of El Centro Array #9, Imperial Valley, 18 May 1940 (PEER RSN6).

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..argument_kinds import with_argument_kinds
 from ..ground_motion import GroundMotion
 from .directions import DirectionError
 from .files import ZERO, read_record
@@ -19,6 +20,7 @@ _WAYS = ("units", "columns", "time_step", "lengths", "remove_mean", "rotate", "r
 _COLUMNS = ("name", "record", "x", "y", "z", "scale", "level", *_WAYS)
 
 
+@with_argument_kinds
 def read_records(
     folder: str | Path,
     *,
@@ -75,6 +77,7 @@ def read_records(
     return [motion for motion, _ in _read(Path(folder), ways)]
 
 
+@with_argument_kinds
 def read_records_by_level(folder: str | Path, **ways: Any) -> dict[float, list[GroundMotion]]:
     r"""Return the ground motions of a folder by the column level of its records.csv: multiple stripes.
 

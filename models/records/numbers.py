@@ -195,23 +195,6 @@ def numbers_of_lines(file: RecordFile, lines: Sequence[str], begin: int) -> NDAr
     )
 
 
-def without_fill(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], tuple[str, ...]]:
-    """Return values without what fills the last line after the last sample, such as 9999.9, and a note of it.
-
-    Examples
-    --------
-    >>> without_fill(np.array([0.1, 0.2, -999.0, -999.0]))
-    (array([0.1, 0.2]), ('2 fill values of -999 after the last sample are left out',))
-    """
-    last = float(values[-1]) if len(values) else 0.0
-    if not re.fullmatch(r"-?9{3,}(?:\.(?:9+|0))?", repr(last)):
-        return values, ()
-    others = np.flatnonzero(values != last)
-    count = len(values) - (int(others[-1]) + 1 if len(others) else 0)
-    note = f"{count} fill value{'s' * (count > 1)} of {last:g} after the last sample are left out"
-    return values[: len(values) - count], (note,)
-
-
 def only_numbers(text: str) -> bool:
     """Return whether a text holds nothing but finite numbers, which may touch."""
     left = re.sub(NUMBER, " ", text)

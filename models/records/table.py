@@ -30,6 +30,8 @@ _WORD = re.compile(r"[^\W\d_]{2}")
 _COMMA_NUMBER = re.compile(r"[-+]?\d*,\d+(?:[EeDd][-+]?\d+)?")
 _LONGEST_HEADER = 5000  # lines in which numbers begin, if the text is a record
 _BEGIN_OF_NUMBER = frozenset("0123456789+-.,nNiI")
+_LONGEST_BARRED = 400  # characters of a line that is looked at for bars
+_RULE = re.compile(r"[-+:|= ]{1,400}")  # of a table, below its names; also a blank line
 _EMPTY_CELL = re.compile(r"[,;][ \t]*[,;]|(?:^|\n)[ \t]*[,;]")
 
 
@@ -146,6 +148,17 @@ def with_clock(file: RecordFile) -> RecordFile:
     if not has_clock_time(file.text[-1]):
         return file
     return RecordFile(file.path, "\n".join(with_seconds(file.text, _is_row)).encode())
+
+
+def without_bars(file: RecordFile) -> RecordFile:
+    """Return a file whose bars between columns, "| 0.01 | 0.2 |", are semicolons; the same without any."""
+    if "|" not in file.text[-1][:_LONGEST_BARRED]:
+        return file
+    lines = [
+        "" if _RULE.fullmatch(text := line.strip()) else text.strip("|").replace("|", ";")
+        for line in file.text
+    ]
+    return RecordFile(file.path, "\n".join(lines).encode())
 
 
 def table_of(file: RecordFile) -> Table:

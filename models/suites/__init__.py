@@ -60,6 +60,8 @@ from importlib.resources import as_file, files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..argument_kinds import with_argument_kinds
+
 if TYPE_CHECKING:
     from ..case import Suite
 
@@ -82,6 +84,7 @@ def shipped_suites() -> tuple[str, ...]:
     return tuple(sorted(name.removesuffix(ENDING) for name in names if name.endswith(ENDING)))
 
 
+@with_argument_kinds
 def read_suite(path: str | Path) -> Suite:
     """Read a suite from a TOML file; the docstring of this module says what it may hold.
 

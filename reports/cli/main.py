@@ -18,15 +18,16 @@ from typer.main import get_command
 from ..console import BAD_INPUT, FAILED, INTERRUPTED, complain, forgive_output
 from .command import StrictCommand
 
-# heading in the help text: the module of its commands, and their names
-_GROUPS: Mapping[str, tuple[str, Sequence[str]]] = {
-    "One problem": ("single", ("compare", "advise", "simulate")),
-    "Many problems": ("many", ("spectrum", "sweep", "ensemble", "fragility")),
-    "Results": ("results", ("show", "report", "view")),
-    "Trust": ("trust", ("check", "certify", "verify")),
-    "Published studies": ("published", ("validity", "figures", "tradeoff", "extremes")),
-}
-_COMMANDS = {name: (group, module) for group, (module, names) in _GROUPS.items() for name in names}
+# heading in the help text, the module of its commands, and their names
+_GROUPS: Sequence[tuple[str, str, Sequence[str]]] = (
+    ("One problem", "single", ("compare", "advise", "simulate")),
+    ("One problem", "play", ("explore",)),
+    ("Many problems", "many", ("spectrum", "sweep", "ensemble", "fragility")),
+    ("Results", "results", ("show", "report", "view")),
+    ("Trust", "trust", ("check", "certify", "verify")),
+    ("Published studies", "published", ("validity", "figures", "tradeoff", "extremes")),
+)
+_COMMANDS = {name: (group, module) for group, module, names in _GROUPS for name in names}
 
 
 @cache

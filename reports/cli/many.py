@@ -50,7 +50,7 @@ def fragility(
     out: options.Out = Path("rockwobble-fragility"),
     overwrite: options.Overwrite = False,
 ) -> None:
-    """Say how probable it is that shaking of an intensity overturns a cylinder, by several methods.
+    """Fragility curves: probability of overturning against intensity, by several methods.
 
     Every motion is scaled to the same intensities and moves every cylinder by every method, so that
     methods are compared motion by motion. Lognormal curves by maximum likelihood, with bands by
@@ -200,7 +200,7 @@ def ensemble(
     out: options.Out = Path("rockwobble-ensemble"),
     overwrite: options.Overwrite = False,
 ) -> None:
-    """Compare the peak tilts of many members by each method, member by member.
+    """Compare distributions of peak tilt between methods.
 
     Without options: El Centro on R = 6 m, tan alpha = 0.2, with 20 slightly perturbed copies. With
     --synthetic, --p695 or --records the members are ground motions, with a SUITE its cases, by its runs,
@@ -308,7 +308,7 @@ def sweep(
     out: options.Out = Path("rockwobble-sweep"),
     overwrite: options.Overwrite = False,
 ) -> None:
-    """Run every combination, and keep each chunk of runs as soon as it is finished.
+    """Peak tilt over a grid of sizes, slendernesses and scales.
 
     A grid takes every size with every slenderness, scale, record and model, from rest, for its
     peak tilt; friction is assumed to suffice. A suite takes every case with every run.

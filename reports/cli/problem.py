@@ -32,7 +32,7 @@ class Body(Plan):
     diameter: float | None = _cylinder(None, "2b, in m; with --height in place of the two above.", above=0.0)
     height: float | None = _cylinder(None, "2h, in m.")
     mass_centre_height: float | None = _cylinder(
-        None, "Of the mass centre above the base, in m; with --diameter and --height. Default: half of that."
+        None, "Height of the mass centre, in m; with --diameter and --height. Default: half of that."
     )
     transverse_inertia: float | None = _cylinder(
         None, "I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder."
@@ -285,7 +285,7 @@ class Problem(Release, Record, Restraint, Body):
     )
     rolling_resistance: float = _ground(
         0.0,
-        "Length of the couple against the rolling of the rim, in m, below the base radius; 0 loses nothing.",
+        "Rolling resistance length, in m, below the base radius; 0 loses nothing.",
     )
 
     def case(self) -> rw.Case:

@@ -77,7 +77,7 @@ def extremes(
     out: options.Out = Path("rockwobble-extremes"),
     overwrite: options.Overwrite = False,
 ) -> None:
-    """Take one thing at a time to its extreme: is the answer right, and if not, does the run say so.
+    """Stress tests: one parameter at its extreme, and whether wrong answers are flagged.
 
     Spin, slenderness, size, gravity, intensity, sample spacing, duration, time step, contact stiffness,
     friction. Each verdict is backed by an exact answer, an invariant or a converged reference; a wrong run

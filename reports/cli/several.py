@@ -32,7 +32,7 @@ class ManyMotions(Reading):
         "(files), or record (file or folder of all), maybe z, name, units, scale, level and the options "
         "below.",
     )
-    synthetic: int | None = _motions(None, "So many synthetic motions.", least=2)
+    synthetic: int | None = _motions(None, "Number of synthetic motions.", least=2)
 
     @property
     def given(self) -> str:

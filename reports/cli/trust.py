@@ -50,7 +50,7 @@ class SubjectOptions(Plan):
         None, "Compare the engine runs of a suite with the models: a TOML file, or one that ships."
     )
     support: str | None = _subject(None, "What model or trajectory is of: recess or flat. Default: recess.")
-    tolerance: float | None = _subject(None, "How exact model or trajectory claims to be. Default: 0.001.")
+    tolerance: float | None = _subject(None, "Claimed relative accuracy. Default: 0.001.")
     workers: options.Workers = None
 
     def subject(self) -> Subject:

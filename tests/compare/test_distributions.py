@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 import pytest
 from scipy.special import betainc, betaincinv
-from scipy.stats import PermutationMethod, binom, binomtest, norm, wilcoxon
+from scipy.stats import PermutationMethod, beta, binom, binomtest, norm, wilcoxon
 
 from rockwobble.compare.metrics.statistics import (
     CONFIDENCE,
@@ -172,6 +172,45 @@ def test_an_interval_ends_where_the_binomial_distribution_says():
         inside = quantile_interval(values, 0.5)
         assert (inside.low < index) == (left_out > 1.0 - CONFIDENCE)
     assert inside.low + inside.high == pytest.approx(31.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [6, 7, 22, 44, 301])
+@pytest.mark.parametrize("share", [0.03, 0.16, 0.5, 0.84, 0.97])
+def test_an_end_of_the_interval_of_a_quantile_leaves_out_its_part(count: int, share: float) -> None:
+    # of the values 1, 2, ... an end is the index of its order statistic, whose share of what is drawn has the
+    # beta distribution
+    ends = quantile_interval(np.arange(1.0, count + 1.0), share)
+    outside = [
+        beta.sf(share, ends.low, count + 1.0 - ends.low) if math.isfinite(ends.low) else 0.0,
+        beta.cdf(share, ends.high, count + 1.0 - ends.high) if math.isfinite(ends.high) else 0.0,
+    ]
+    left_out = 1.0 - CONFIDENCE
+    parts = [0.5 * left_out] * 2 if all(outside) else [left_out if part else 0.0 for part in outside]
+    assert outside == pytest.approx(parts, rel=1e-9)  # of the root
+
+
+@pytest.mark.parametrize("total", [1, 6, 22, 301])
+def test_an_end_of_the_interval_of_a_share_leaves_out_its_part(total: int) -> None:
+    part = 0.5 * (1.0 - CONFIDENCE)
+    for count in range(0, total + 1, max(1, total // 7)):
+        ends = share_interval(count, total)
+        # the count, or one farther out, has this probability where the end is right
+        if count:
+            assert binom.sf(count - 1, total, ends.low) == pytest.approx(part, rel=1e-9)
+        if count < total:
+            assert binom.cdf(count, total, ends.high) == pytest.approx(part, rel=1e-9)
+    assert binom.pmf(0, total, largest_share_unseen(total)) == pytest.approx(1.0 - CONFIDENCE, rel=1e-9)
+
+
+@pytest.mark.parametrize(("only", "only_there"), [(0.1, 0.1), (0.3, 0.1), (0.0, 0.4)])
+def test_the_interval_of_a_difference_of_shares_becomes_that_of_a_normal_one(
+    only: float, only_there: float
+) -> None:
+    count = 100_000_000
+    ends = paired_difference(round(only * count), round(only_there * count), count)
+    deviation = math.sqrt((only + only_there - (only - only_there) ** 2) / count)
+    outside = norm.cdf((np.array([ends.low, -ends.high]) - [ends.value, -ends.value]) / deviation)
+    assert outside == pytest.approx([0.5 * (1.0 - CONFIDENCE)] * 2, rel=1e-3)
 
 
 @pytest.mark.parametrize(

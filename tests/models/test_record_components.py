@@ -93,11 +93,21 @@ def test_names_the_one_file_that_is_silent(write: Write) -> None:
         read_record(x, y)
 
 
+@pytest.mark.parametrize("mark", ["\ufeff", ""])
 @pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
-def test_says_that_a_file_is_in_utf_16(tmp_path: Path, encoding: str) -> None:
+def test_a_file_in_utf_16_is_read_as_one_in_utf_8(tmp_path: Path, encoding: str, mark: str) -> None:
+    path, same = tmp_path / "x", tmp_path / "same"
+    path.write_bytes((mark + columns(0.01, 4)).encode(encoding))
+    same.write_text(columns(0.01, 4), encoding="utf-8")
+    assert read_record(path, path, units="g") == read_record(same, same, units="g", name="x")
+
+
+def test_damaged_text_in_utf_16_is_called_that(tmp_path: Path) -> None:
     path = tmp_path / "x"
-    path.write_bytes(("\ufeff" + columns(0.01, 4)).encode(encoding))
-    with pytest.raises(ValueError, match=r"^the record .*x is text in UTF-16: save it as UTF-8"):
+    path.write_bytes(("\ufeff" + columns(0.01, 4)).encode("utf-16-le")[:-1])
+    with pytest.raises(
+        ValueError, match=r"^the record .*x is text in UTF-16 that is damaged: save it as UTF-8"
+    ):
         read_record(path, path, units="g")
 
 

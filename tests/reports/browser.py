@@ -55,6 +55,17 @@ _FRAME = (
 )
 
 
+def dumped(page: Path) -> str:
+    """Return the elements of a page once its scripts have run, as HTML."""
+    return _opened(page).stdout
+
+
+def _opened(page: Path) -> subprocess.CompletedProcess[str]:
+    command = [str(CHROMIUM), *_OPTIONS, f"--user-data-dir={page.parent / 'profile'}"]
+    command += [f"--virtual-time-budget={_PATIENCE}", "--dump-dom", page.as_uri()]
+    return subprocess.run(command, capture_output=True, text=True, timeout=_DEADLINE, check=True)
+
+
 def complaints(
     page: str, folder: Path, *, figures: int, further: str = "", widths: Iterable[str] = tuple(WIDTHS)
 ) -> list[str]:
@@ -96,9 +107,7 @@ def complaints_of_all(
         frames += [_FRAME.format(place=place, name=name, width=WIDTHS[name]) for name in widths]
     # a window narrower than 500 pixels is not to be had, a frame is
     (folder / "outer.html").write_text(_OUTER + "".join(frames))
-    command = [str(CHROMIUM), *_OPTIONS, f"--user-data-dir={folder / 'profile'}"]
-    command += [f"--virtual-time-budget={_PATIENCE}", "--dump-dom", (folder / "outer.html").as_uri()]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=_DEADLINE, check=True)
+    done = _opened(folder / "outer.html")
     wrong: dict[int, list[str]] = {place: [] for place in range(len(pages))}
     for place, name in itertools.product(wrong, widths):
         said = re.search(rf'data-{name}{place}="([^"]*)"', done.stdout)

@@ -174,7 +174,7 @@ def test_made_up_records_are_the_members(tmp_path, in_this_process, monkeypatch,
 
 def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(p695.importlib.util, "find_spec", lambda name: None)
-    p695.p695_far_field.cache_clear()
+    p695._far_field_pair.cache_clear()
     assert call("ensemble", "--p695", "--peak", "2", "--engine", "none", "--out", str(tmp_path / "out")) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1

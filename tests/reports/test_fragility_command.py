@@ -176,7 +176,7 @@ def test_without_overturning_the_page_has_the_other_limits_alone() -> None:
 
 def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(p695.importlib.util, "find_spec", lambda name: None)
-    p695.p695_far_field.cache_clear()
+    p695._far_field_pair.cache_clear()
     assert call("fragility", "--p695", "--out", str(tmp_path / "out")) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1

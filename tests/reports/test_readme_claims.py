@@ -24,6 +24,20 @@ RATIOS = [
     ("fragility/p695", "all", "mujoco recess", "recess model"),
     ("fragility/p695", "all", "pybullet recess", "recess model"),
 ]
+# the same of the guide to fragility
+GUIDE_RATIOS = [
+    ("fragility/p695", "all", "planar x", "recess model"),
+    ("fragility/p695", "all", "planar y", "recess model"),
+    ("fragility/p695", "all", "worse plane", "recess model"),
+    ("fragility/synthetic", "all", "worse plane", "recess model"),
+    ("fragility/p695", "all", "flat-ground model", "recess model"),
+    ("fragility/synthetic", "all", "flat-ground model", "recess model"),
+    ("fragility/p695", "all", "mujoco ring", "mujoco recess"),
+    ("fragility/p695", "all", "mujoco recess", "recess model"),
+    ("fragility/p695", "all", "pybullet recess", "recess model"),
+    ("fragility/p695", "all", "mujoco flat", "flat-ground model"),
+    ("fragility/p695", "all", "pybullet flat", "flat-ground model"),
+]
 
 
 def words(path: str) -> str:
@@ -53,6 +67,12 @@ def test_each_ratio_of_the_readme_is_that_of_its_table() -> None:
     assert stated == [printed_ratio(*row) for row in RATIOS]
 
 
+def test_each_ratio_of_the_guide_to_fragility_is_that_of_its_table() -> None:
+    # a number may name its plane: "(1.21 to 1.97, north-south)"
+    text = re.sub(r", (?:east-west|north-south)\)", ")", words("docs/guide/fragility.md"))
+    assert re.findall(RATIO, text) == [printed_ratio(*row) for row in GUIDE_RATIOS]
+
+
 def test_the_ratios_of_the_guide_to_risk_are_those_of_its_table() -> None:
     stated = re.findall(RATIO, words("docs/guide/risk.md"))
     assert stated == [printed_ratio(*row) for row in RATIOS if row[0] == "risk/p695"]
@@ -80,6 +100,17 @@ def test_what_a_pass_costs_with_default_settings_is_that_of_the_table() -> None:
     assert [name for _, name in losses] == ["Rapier", "MuJoCo", "PyBullet", "DART", "Drake"]
     for loss, name in losses:
         assert f"{100.0 * (1.0 - table.loc[(name.lower(), 'default'), 'tilt']):.2g}" == loss
+
+
+def test_the_guide_to_engines_has_the_default_settings_of_the_table() -> None:
+    table = pd.read_csv(PUBLISHED / "simulators" / "simulators.csv").set_index(["simulator", "settings"])
+    rows = re.findall(
+        r"\| (\w+) [\d.]+ \| (?:double|single) \| ([\d.]+)°, ([\d.]+) \|", words("docs/guide/engines.md")
+    )
+    assert len(rows) == 5
+    for name, turn, tilt in rows:
+        row = table.loc[(name.lower(), "default")]
+        assert (turn, tilt) == (f"{row['turn']:.2f}", f"{row['tilt']:.3f}")
 
 
 def test_times_and_agreement_are_those_that_are_published() -> None:

@@ -13,9 +13,9 @@ import pandas as pd
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace, el_centro_1940
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.cylinder import cylinder_of
 from rockwobble.models.doubts import doubts_of_cases
-from rockwobble.models.number_checks import require_kind
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.support import support_named
 from rockwobble.models.trace import NO_PEAK
@@ -365,6 +365,7 @@ class Advice(Results, kind=KIND):
         return overall(grade for topic, grade in self.grades.items() if topic != "overturning")
 
 
+@with_argument_kinds
 def advise(
     case: Case,
     run: Run | None = None,
@@ -419,9 +420,6 @@ def advise(
     >>> found.trust.kind, found.grades["engine"]
     ('trace', 'not tested')
     """
-    require_kind("case", case, Case)
-    if run is not None:
-        require_kind("run", run, Run)
     require_case(case)
     plan = AdvicePlan(
         support=support or ("recess" if run is None else run.support),

@@ -12,6 +12,7 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.models import Cylinder, GroundMotion, HazardCurve, Run
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
 from rockwobble.models.number_checks import require_each, require_positive
 from rockwobble.models.plain_json import fields_of
@@ -313,6 +314,7 @@ def _inverted(row: Row) -> Row:
 _ALL = tuple(MODELS)
 
 
+@with_argument_kinds
 def fragility(
     cylinders: Cylinder | Mapping[str, Cylinder] | Sequence[Cylinder],
     motions: Sequence[GroundMotion] | Mapping[float, Sequence[GroundMotion]],

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
 from rockwobble.models.records.units import sources_of
 
@@ -286,6 +287,7 @@ class OverturningSpectrum(Results, kind=KIND):
         }
 
 
+@with_argument_kinds
 def spectrum(
     tan_alpha: float,
     motion: GroundMotion,

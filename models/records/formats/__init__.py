@@ -35,6 +35,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from ..component import Component, ReadingOptions, RecordFile
+from ..fill import without_filled_end
 from . import (
     afad,
     at2,
@@ -54,6 +55,7 @@ from . import (
     others,
     sac,
     smc,
+    timeseries,
     values,
 )
 
@@ -92,6 +94,7 @@ READERS: tuple[Reader, ...] = (
     bbp,
     miniseed,
     sac,
+    timeseries,
     at2,
     lists,
     blocks,
@@ -113,6 +116,6 @@ def read_components(file: RecordFile, options: ReadingOptions) -> list[Component
             components = reader.read(file, options)
             for component in components:  # a step that the user gives must be that of the file
                 options.settled_step(component.path.name, component.time_step)
-            return components
+            return [without_filled_end(component) for component in components]
     file.text  # noqa: B018 - says that the file is binary where it is
     raise ValueError(f"{file.name} is of no format that is read here")

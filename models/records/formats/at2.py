@@ -6,7 +6,8 @@ import re
 
 from ..column_names import column_name
 from ..component import Component, ReadingOptions, RecordFile
-from ..numbers import NUMBER, block_of_numbers, parse_number, without_fill
+from ..fill import without_fill
+from ..numbers import NUMBER, block_of_numbers, parse_number
 from ..units import stated_unit
 
 NAME = "PEER AT2"

@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..column_names import ColumnName, names_of, refuse_other_quantity, refuse_scale, unit_of_time
+from ..column_names import (
+    ColumnName,
+    names_of,
+    names_that_hold,
+    refuse_other_quantity,
+    refuse_scale,
+    unit_of_time,
+)
 from ..column_roles import Columns, Roles
 from ..component import UNITS, Component, ReadingOptions, RecordFile
-from ..table import Table, table_of, with_clock
+from ..table import Table, table_of, with_clock, without_bars
 from ..times import even_step, is_counting, rises_evenly, since_epoch, stated_seconds, stated_step
 from ..units import stated_unit, unit_of
 
@@ -33,12 +40,15 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
         If names leave a doubt, or there are none for several columns; if a line holds something else than
         numbers, or the times do not rise in even steps.
     """
-    table = table_of(with_clock(file))
-    names, others = names_of(table.header, table.values.shape[1])
+    table = table_of(with_clock(without_bars(file)))
+    width = table.values.shape[1]
+    names, others = names_of(table.header, width)
     if names and not any(name.kind == "time" for name in names) and names[0].kind not in _NO_TIME:
         time = table.values[:, 0]
         if rises_evenly(time) and not is_counting(time):
             names, others = None, list(table.header)  # a sentence that looks like names
+    if options.columns:
+        names = names_that_hold(table.header, width, options.columns) or names
     columns = Columns(file, table, names)
     roles = columns.by_option(options) if options.columns else columns.by_names(options)
     step, start, notes = _clock(file, table, names, others, roles.time, options)

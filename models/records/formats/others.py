@@ -32,6 +32,11 @@ def _is_tar(file: RecordFile) -> bool:
 
 # name as its users know it, what tells it, what to do
 _FORMATS: tuple[tuple[str, Callable[[RecordFile], bool], str], ...] = (
+    (
+        "a spreadsheet of Excel",
+        lambda file: _ends(".xlsx", ".xlsm")(file) and _begins(b"PK")(file),
+        "save it as CSV",
+    ),
     ("a ZIP archive", _begins(b"PK\x03\x04", b"PK\x05\x06"), _UNPACK),
     ("a gzip archive", _begins(b"\x1f\x8b"), _UNPACK),
     ("a bzip2 archive", _begins(b"BZh"), _UNPACK),
@@ -49,6 +54,11 @@ _FORMATS: tuple[tuple[str, Callable[[RecordFile], bool], str], ...] = (
         _begins(b"\x89HDF\r\n\x1a\n"),
         "export the accelerations as columns 'time [s], E, N, Z' (CSV)",
     ),
+    ("Parquet", lambda file: file.content[:4] == b"PAR1" == file.content[-4:], _COLUMNS),
+    ("Arrow (Feather)", _begins(b"ARROW1"), _COLUMNS),
+    ("a pickle of Python", _begins(*(bytes((128, protocol)) for protocol in range(2, 6))), _COLUMNS),
+    ("TDMS of LabVIEW", _begins(b"TDSm"), _COLUMNS),
+    ("SEG-2", _begins(b"\x55\x3a", b"\x3a\x55"), "convert it to SAC or miniSEED of accelerations (obspy)"),
     ("a NumPy array", _begins(b"\x93NUMPY"), "write it as text: numpy.savetxt"),
     ("a spreadsheet of Excel", _begins(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"), "save it as CSV"),
     ("a PDF", _begins(b"%PDF-"), "give the file of the record itself"),

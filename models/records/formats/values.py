@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from ..column_names import names_of, refuse_other_quantity, refuse_scale, unit_of_time
 from ..component import UNITS, Component, ReadingOptions, RecordFile
-from ..numbers import is_number, numbers_of_lines, parted, widths_of, without_fill
+from ..fill import without_fill
+from ..numbers import is_number, numbers_of_lines, parted, widths_of
 from ..table import cells_of, first_row, is_comment, uncommented
 from ..times import even_step, is_counting, rises_evenly, stated_step
 from ..units import stated_unit, unit_of

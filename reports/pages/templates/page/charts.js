@@ -287,7 +287,7 @@ class Chart {
       .map(([value, text]) => [value, widthOf(text) > 0.36 * width ? wrapped(text, 0.36 * width) : text]);
     const lines = (text) => text.split("\n").length;
     const side = (ticks, title) => Math.max(0, ...ticks.map(([, text]) => widthOf(text))) + (title ? LINE * lines(title) : 0) + 12;
-    const left = side(yTicks, yTitle);
+    const left = Math.max(panel.left || 0, side(yTicks, yTitle));  // as far as a panel below it begins
     const [second, factor] = panel.second || [null, 1];
     const beside = second && this.ends.y.map((end) => (panel.y.log ? end + Math.log10(factor) : factor * end));
     const secondTicks = second ? ticksOf(second, beside, Math.max(2, Math.floor(height / 50))) : [];

@@ -1,0 +1,201 @@
+"""The command that writes a page to play with: `rockwobble explore`."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+import rockwobble as rw
+from rockwobble.compare.runs.plan import Plan, options_in
+
+from ..console import echo, interruptible, user_input
+from ..pages.cases import record_lines
+from . import options
+from .command import takes_options
+from .outputs import plan_of, require_own_file
+from .problem import (
+    FREE_DURATION,
+    Problem,
+    Reading,
+    Record,
+    first_given,
+    given_options,
+    refuse,
+    stated_options,
+)
+
+_several = options_in("Many ground motions")
+
+# of a problem, what the model of the page has not
+_NOT_OF_PAGE = {
+    "mass_centre_height",
+    "transverse_inertia",
+    "axial_inertia",
+    "columns",
+    "friction",
+    "tendon_yield",
+}
+_NOT_OF_PAGE |= {"tendon_yield_force"}
+_RECORD = {field.name for field in fields(Record)} - {"scale"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Records(Plan):
+    """The option that names several ground motions."""
+
+    records: Path | None = _several(
+        None, "Folder of up to 10 records, as for ensemble, in place of one record; --units and others apply."
+    )
+
+
+Plane = Annotated[
+    float | None,
+    options.method("Begin with planar motion: azimuth of the vertical plane that holds it, in rad."),
+]
+Support = Annotated[str, options.method("Begin with recess (ideal recess) or flat (flat ground).")]
+Out = Annotated[Path, options.output("File for the page.")]
+Open = Annotated[
+    bool | None,
+    options.output("Show it in the browser. Default: where there is a terminal.", "--open/--no-open"),
+]
+
+
+@takes_options
+def explore(
+    context: typer.Context,
+    problem: Problem,
+    several: Records,
+    support: Support = "recess",
+    plane: Plane = None,
+    out: Out = Path("explore.html"),
+    overwrite: options.Overwrite = False,
+    opened: Open = None,
+) -> None:
+    """Write a page to play with: sliders for column, shaking and support; the motion, at once.
+
+    The reduced model runs in the page, which needs nothing else: it works offline, from a mail or on a
+    phone. The options say where its sliders stand at first.
+
+    Without options: R = 6 m, tan alpha = 0.2 under the 1940 El Centro record, with a pulse and two
+    synthetic ground motions to choose from.
+
+    Example: rockwobble explore --diameter 0.3 --height 1.2 --record-x EW.AT2 --record-y NS.AT2
+    """
+    with interruptible(), user_input():
+        from rockwobble.compare.storage.files import replace_files, require_file
+        from rockwobble.models.number_checks import require_one_of
+
+        from ..pages.explore import explore_page, plan_in_page
+
+        refuse(context, _NOT_OF_PAGE, "is not part of the model in the page")
+        require_one_of("--support", support, ("recess", "flat"))
+        if plane is not None and "support" in given_options(context):
+            raise ValueError("--plane holds the motion on any support, got --support beside it")
+        require_file("--out", out)
+        plan = plan_of(context)
+        if not overwrite:
+            require_own_file("--out", out, plan, plan_in_page)
+        shakings = _shakings(context, problem, several.records)
+        page = explore_page(
+            shakings,
+            _state(problem, several.records, support, plane),
+            gravity=problem.gravity,
+            duration=problem.duration if problem.release_tilt_deg is None else None,
+            free=problem.duration or FREE_DURATION,
+            plan=plan,
+        )
+        echo(record_lines([each.motion for each in shakings]))
+        content = page.encode()
+        replace_files(out.parent, {out.name: content})
+    print(f"{out}: {len(content) / 1000:.0f} kB, {len(shakings)} ground motions")
+    if sys.stdout.isatty() if opened is None else opened:
+        import webbrowser
+
+        webbrowser.open(out.resolve().as_uri())
+
+
+def _shakings(context: typer.Context, problem: Problem, records: Path | None) -> Sequence[Any]:
+    """Return the ground motions of the page: those of a folder, one record, or what ships.
+
+    Raises
+    ------
+    ValueError
+        If a folder and a record are given, or neither can be read.
+    """
+    from ..pages.explore import Shaking, standard_shakings
+
+    one = first_given(problem, "record", "record_x", "record_y", "record_z")
+    ways = {name: value for name, value in problem.ways().items() if value not in (None, False)}
+    if records is not None:
+        if one:
+            raise ValueError(f"--records names all ground motions, got {one} beside it")
+        motions = rw.read_records(records, **problem.ways())
+        made = _call("rw.read_records", str(records), **ways)
+        return [Shaking(motion=motion, python=f"{made}[{place}]") for place, motion in enumerate(motions)]
+    if not one:
+        if lone := first_given(problem, *(field.name for field in fields(Reading))):
+            raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
+        return standard_shakings()
+    motion = replace(problem, scale=1.0).motion()
+    assert motion is not None
+    paths = [problem.record] if problem.record else [problem.record_x, problem.record_y, problem.record_z]
+    made = _call("rw.read_record", *(str(path) for path in paths if path is not None), **ways)
+    stated = {
+        name.replace("_", "-"): value for name, value in stated_options(context).items() if name in _RECORD
+    }
+    return [Shaking(motion=motion, python=made, options=stated)]
+
+
+def _call(name: str, *values: object, **named: object) -> str:
+    """Return a call in Python."""
+    return f"{name}({', '.join([*map(repr, values), *(f'{key}={value!r}' for key, value in named.items())])})"
+
+
+def _state(problem: Problem, records: Path | None, support: str, plane: float | None) -> Any:
+    """Return where the sliders stand at first.
+
+    Raises
+    ------
+    ValueError
+        If an option is out of range, or two do not go together.
+    """
+    from ..pages.explore import State
+
+    initial, cylinder = problem.initial(), problem.cylinder()
+    if initial is not None and (
+        given := first_given(problem, "record", "record_x") or ("--records" if records else "")
+    ):
+        raise ValueError(f"--release-tilt-deg takes the place of a record here, got {given} beside it")
+    # what the models refuse is refused here, too
+    rw.Case(
+        cylinder,
+        initial=initial or rw.InitialState(tilt=0.5 * cylinder.alpha),
+        duration=problem.duration or FREE_DURATION,
+        gravity=problem.gravity,
+        rolling_resistance=problem.rolling_resistance,
+    )
+    tendon = problem.tendon(cylinder, problem.gravity)
+    if tendon is not None and support == "flat":
+        raise ValueError("the models have no tendon on --support flat, got both")
+    released: dict[str, Any] = {} if initial is None else {
+        "record": -1, "tilt": math.degrees(initial.tilt), "lean": math.degrees(initial.rolling_angle),
+        "rate": initial.rolling_rate,
+    }  # fmt: skip
+    return State(
+        height=2.0 * cylinder.half_height,
+        diameter=2.0 * cylinder.base_radius,
+        slab=cylinder.slab_mass_ratio,
+        intensity=problem.scale,
+        support=support if plane is None else "planar",
+        plane=0.0 if plane is None else math.degrees(plane),
+        loss=1e3 * problem.rolling_resistance,
+        prestress=tendon.prestress if tendon else 0.0,
+        stiffness=tendon.stiffness if tendon else 0.0,
+        **released,
+    )

@@ -1,0 +1,239 @@
+"""The page to play with: one file in which the reduced models run, with ground motions and a first state."""
+
+from __future__ import annotations
+
+import base64
+import importlib.metadata
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rockwobble.models import GroundMotion, el_centro_1940
+from rockwobble.models.synthetic import pulse, synthetic_motions
+
+from .sentences import fragment
+
+MOST_RECORDS = 10  # of a page: each is some 100 kB of it
+_MOST_INTENSITY = 10.0  # of the slider, times the record or the intensity that is given
+# [s], [m/s^2], [s]: of the motions beside El Centro
+_SYNTHETIC_LENGTH, _SYNTHETIC_PEAK, _PULSE_PERIOD, _SEED = 12.0, 3.0, 0.8, 1
+
+_LEFT = 56  # [pixel] of the graphs over time, one below the other
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shaking:
+    """A ground motion of the page.
+
+    Attributes
+    ----------
+    motion : GroundMotion
+    python : str
+        Expression that makes it.
+    options : mapping of str to str or bool, optional
+        Options of the command line that name it, by their flags without dashes; None where there are none.
+    """
+
+    motion: GroundMotion
+    python: str
+    options: Mapping[str, str | bool] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class State:
+    """What the sliders of the page are set to at first, by the names that its address has.
+
+    Attributes
+    ----------
+    height, diameter : float
+        [m]
+    slab : float
+        Mass of the slab over that of the columns [-].
+    record : int
+        Place of the ground motion; -1 is a release over still ground.
+    intensity : float
+        Factor on the ground motion.
+    tilt, lean : float
+        Tilt and direction of a release [deg].
+    rate : float
+        Rolling rate at release [rad/s].
+    support : {"recess", "flat", "planar"}
+    plane : float
+        Azimuth of the plane of planar motion [deg].
+    loss : float
+        Length of rolling resistance [mm].
+    prestress, stiffness : float
+        As of `Tendon`.
+    """
+
+    height: float
+    diameter: float
+    slab: float = 0.0
+    record: int = 0
+    intensity: float = 1.0
+    tilt: float = 5.0
+    lean: float = 0.0
+    rate: float = 0.5
+    support: str = "recess"
+    plane: float = 0.0
+    loss: float = 0.0
+    prestress: float = 0.0
+    stiffness: float = 0.0
+
+
+def standard_shakings() -> list[Shaking]:
+    """Return El Centro, a pulse and two synthetic ground motions."""
+    synthetic = synthetic_motions(2, peak=_SYNTHETIC_PEAK, seed=_SEED, duration=_SYNTHETIC_LENGTH)
+    made = f"rw.synthetic_motions(2, peak={_SYNTHETIC_PEAK}, seed={_SEED}, duration={_SYNTHETIC_LENGTH})"
+    sine = pulse("one-sine", amplitude=_SYNTHETIC_PEAK, period=_PULSE_PERIOD)
+    return [
+        Shaking(motion=el_centro_1940(), python="rw.el_centro_1940()", options={}),
+        Shaking(
+            motion=sine,
+            python=f'rw.pulse("one-sine", amplitude={_SYNTHETIC_PEAK}, period={_PULSE_PERIOD})',
+        ),
+        *(Shaking(motion=motion, python=f"{made}[{place}]") for place, motion in enumerate(synthetic)),
+    ]
+
+
+def explore_page(
+    shakings: Sequence[Shaking],
+    state: State,
+    *,
+    gravity: float = 9.81,
+    duration: float | None = None,
+    free: float = 10.0,
+    plan: str = "",
+) -> str:
+    """Return the page as HTML that needs nothing else.
+
+    Parameters
+    ----------
+    shakings : sequence of Shaking
+        Up to `MOST_RECORDS`.
+    state : State
+    gravity : float, optional
+        [m/s^2]
+    duration : float, optional
+        Length of the runs under a ground motion [s]. Default: that of the motion.
+    free : float, optional
+        Length of a release [s].
+    plan : str, optional
+        Hash of the command that writes it.
+
+    Raises
+    ------
+    ValueError
+        If there are no ground motions, or too many.
+    """
+    if not 1 <= len(shakings) <= MOST_RECORDS:
+        raise ValueError(f"a page holds 1 to {MOST_RECORDS} ground motions, got {len(shakings)}")
+    values = {name: getattr(state, name) for name in State.__slots__}
+    given = {
+        "records": [_stated(each) for each in shakings],
+        "state": values,
+        "gravity": gravity,
+        "duration": duration,
+        "free": free,
+        "most": _MOST_INTENSITY * max(1.0, state.intensity),
+    }
+    return fragment(
+        "explore/explore.html.j2",
+        given=given,
+        panels=_panels(),
+        plan=plan,
+        version=importlib.metadata.version("rockwobble"),
+    )
+
+
+def plan_in_page(content: bytes) -> str | None:
+    """Return the hash of the command that wrote a page; None for another file."""
+    found = re.search(rb'<meta name="rockwobble-explore" content="(\w*)">', content)
+    return found[1].decode() if found else None
+
+
+def _stated(shaking: Shaking) -> dict[str, object]:
+    motion = shaking.motion
+    columns = dict(zip("xyz", np.asarray(motion.acceleration, dtype=np.float64).T, strict=False))
+    return {
+        "name": motion.name or "record",
+        "dt": motion.time_step,
+        "python": shaking.python,
+        "options": None if shaking.options is None else dict(shaking.options),
+        # doubles: a state that is copied out of the page gives the same numbers
+        **{key: _doubles(columns[key]) if key in columns else None for key in "xyz"},
+    }
+
+
+def _doubles(values: ArrayLike) -> str:
+    return base64.b64encode(np.asarray(values, dtype="<f8").tobytes()).decode()
+
+
+def _panels() -> dict[str, dict[str, object]]:
+    """Return the empty panels that the page fills, as `charts.js` takes them."""
+
+    def axis(title: str, unit: str, *, log: bool = False, low: float | None = None) -> dict[str, object]:
+        ends = {"low": low, "high": None}
+        # a logarithmic axis of the map spans little more than a decade
+        marks = [factor * 10.0**power for power in range(-4, 4) for factor in (1, 2, 5)] if log else []
+        ticks = [[mark, f"{mark:g}"] for mark in marks]
+        return {
+            "title": f"{title} [{unit}]",
+            "unit": f" {unit}",
+            "log": log,
+            "ticks": ticks,
+            "reverse": False,
+            **ends,
+        }
+
+    def panel(height: int, x: dict[str, object], y: dict[str, object], **more: object) -> dict[str, object]:
+        shown: dict[str, object] = {"second": None, "equal": False, "link": "", "ground": "#ffffff"}
+        shown |= {"legend": [], "more": 0}
+        return {"height": height, "x": x, "y": y, "layers": [], **shown, **more}
+
+    def entry(name: str, colour: str, dash: str = "") -> dict[str, object]:
+        return {"name": name, "colour": colour, "dash": dash, "symbol": "", "width": 2}
+
+    time = axis("time", "s")
+    return {
+        "tilt": panel(230, time, axis("tilt", "deg", low=0.0), link="time", left=_LEFT),
+        "ground": panel(
+            200,
+            time,
+            axis("ground", "g"),
+            link="time",
+            left=_LEFT,
+            legend=[entry("east", "#0072B2", "solid"), entry("north", "#D55E00", "solid")],
+        ),
+        "path": panel(
+            300,
+            axis("east", "m"),
+            axis("north", "m"),
+            equal=True,
+            legend=[
+                entry("base at rest", "#bbbbbb", "solid"),
+                entry("contact point", "#0072B2", "solid"),
+                entry("top of the column", "#D55E00", "solid"),
+            ],
+        ),
+        "map": panel(
+            300,
+            axis("size R", "m", log=True),
+            axis("peak ground acceleration", "g", log=True),
+            legend=[
+                entry(name, colour)
+                for name, colour in (
+                    ("no uplift", "#e8e8e8"),
+                    ("peak below α/4", "#dbe9f6"),
+                    ("to α/2", "#9ecae1"),
+                    ("to 3α/4", "#4292c6"),
+                    ("to α", "#08519c"),
+                    ("beyond α", "#E69F00"),
+                    ("overturns", "#B00020"),
+                )
+            ],
+        ),
+    }

@@ -1,0 +1,324 @@
+// One run through a record: uplift, steps, turning points, rest, overturning, and what is asked of the ground.
+
+const REST = 1e-8;  // of alpha: at rest again below the energy of a standstill at this tilt
+const CLOSED = 1e-3;  // of alpha: no demand is taken below
+const HAIR = 1e-6;  // of 1/p: an uplift so near to the next sample is taken up there
+const FIRST_STEP = 1e-3;  // of 1/p
+const FOLLOWED = 40;  // of 1/p: for so long a motion that goes on when its time is over is followed to a maximum
+const BUDGET = 400000;  // steps
+
+// -- rolling resistance: what holds a body that is tilted and still, and what a pass without spin takes
+
+function acrossOf(o, y, flat) {
+  const s = Math.sin(y[0]), t = Math.tan(y[0] / 2), H = o.J + (2 * o.E + o.C * t) * t;
+  const twist = flat ? y[5] * H / (o.J * o.C - o.E * o.E) : 0;
+  return (s - (o.E + o.C * t) / H) * twist - y[3] / (s * H);
+}
+
+function acrossInertia(o, theta, flat) {
+  const s = Math.sin(theta), c = Math.cos(theta), t = Math.tan(theta / 2), beside = o.b * c - o.h * s;
+  if (flat) return (o.J * o.C - o.E * o.E) / (o.I1 * s * s + o.I2 * c * c + o.mu * beside * beside);
+  return o.J + (2 * o.E + o.C * t) * t;
+}
+
+// Excess of the push over the couple, its rate, the push on the tilt and along the lean, and the rates of both.
+function pushOn(o, y, piece, elapsed) {
+  const ax = piece.x + piece.sx * elapsed, ay = piece.y + piece.sy * elapsed, az = piece.z + piece.sz * elapsed;
+  let [tilting, turning] = needed(o, y[0], y[2], ax, ay, o.g + az);
+  const [tilting1, turning1] = needed(o, y[0], y[2], piece.sx, piece.sy, piece.sz);
+  const tendon = pull(o, Math.sin(y[0]), Math.cos(y[0]));
+  tilting += o.b * tendon;
+  const below = (o.h + o.b) * IN_PLANE * (Math.abs(ax) + Math.abs(ay) + o.g * o.b / o.h);
+  if (Math.abs(turning) <= below) turning = 0;
+  const size = Math.hypot(tilting, turning), allowed = o.delta * (o.g + az + tendon);
+  const growth = size ? (tilting * tilting1 + turning * turning1) / size - o.delta * piece.sz : 0;
+  return { excess: size - allowed, growth, tilting, turning, tilting1, turning1, allowed, allowed1: o.delta * piece.sz };
+}
+
+// For how long the couple holds it; the squares of push and couple are parabolas in the time.
+function holdTime(o, y, piece, elapsed) {
+  const { tilting, turning, tilting1, turning1, allowed, allowed1 } = pushOn(o, y, piece, elapsed);
+  const excess = tilting ** 2 + turning ** 2 - allowed ** 2;
+  if (allowed <= 0 || excess > 0) return 0;
+  const half = tilting * tilting1 + turning * turning1 - allowed * allowed1, bend = tilting1 ** 2 + turning1 ** 2 - allowed1 ** 2;
+  const under = half * half - bend * excess;
+  if (under < 0 || (bend <= 0 && half <= 0)) return Infinity;
+  const root = Math.sqrt(under), time = half > 0 ? -excess / (half + root) : (root - half) / bend;
+  return time > 1e-9 / o.p ? time : 0;
+}
+
+// Whether a motion is so slow that what is left of the couple stops it.
+function stops(o, y, piece, elapsed) {
+  const slow = 40 * o.rtol * o.p, limit = 2 * o.A * slow * slow * o.sa * y[0], room = 0.2 * o.rtol * y[0];
+  if (o.A * y[1] * y[1] >= Math.max(limit, room * o.delta * (o.g + pull(o, Math.sin(y[0]), Math.cos(y[0]))))) return false;
+  const across = acrossOf(o, y, false), inertia = acrossInertia(o, y[0], false), kinetic = o.A * y[1] * y[1] + inertia * across * across;
+  const { excess, growth } = pushOn(o, y, piece, elapsed);
+  let time = 1e-6 / o.p;
+  if (kinetic >= limit) time = 2 * Math.sqrt(kinetic * Math.max(o.A, inertia)) / Math.max(-excess, 1e-300);
+  return (kinetic < limit || kinetic < -excess * room) && Math.max(excess, excess + growth * time) < 0;
+}
+
+// Turn of a pass of vanishing spin under the couple, and the ratio of the tilt rates: x = theta' over the speed.
+function limitOfPass(o) {
+  const e = o.delta * o.mu * o.b, parts = 400;
+  let turn = 0, taken = 0;
+  for (let i = 0; i <= parts; i++) {
+    const end = i === 0 || i === parts;
+    let x = Math.cos(Math.PI * i / parts);
+    turn += (end ? 0.5 : 1) / (x * x + (1 - x * x) * (o.J + e * x) / (o.A + e * x));
+    x = 2 * i / parts - 1;
+    taken += (end ? 1 : i % 2 ? 4 : 2) / ((o.A - o.J) * x * x + e * x + o.J);
+  }
+  return [turn * Math.PI / parts, Math.exp(-0.5 * Math.log((o.A + e) / (o.A - e)) - e * taken / (3 * parts))];
+}
+
+// Below this spin, that of a steady wobble of the same energy times a tenth of the tolerance, there is none.
+function leastSpin(o, y) {
+  const lever = (o.g + o.q) * o.b, level = Math.max(energy(o, y[0], y[1], y[3], 0), 0) / (1.5 * lever);
+  return 0.1 * o.rtol * Math.sqrt(o.J * lever * level) * level;
+}
+
+// -- rest: too little energy is left to matter, and the ground holds the base
+
+function sitsDown(o, y, flat, ax, ay, az) {
+  const limit = REST * o.alpha;
+  if (y[0] > 10 * limit) return false;
+  const held = 1 + o.delta / o.b;
+  let share = (1 + az / o.g) * held - Math.hypot(ax, ay) * o.ca / (o.g * o.sa);
+  share = (share + held * o.q / o.g) / (1 + o.q / o.g);
+  if (share <= 0 || excess(o, ax, ay, az) >= 0) return false;
+  return energy(o, y[0], y[1], y[3], flat ? y[5] : 0) < share * energy(o, limit, 0, 0, 0);
+}
+
+// -- forces on the base, over the mass that it carries: outward, across, up
+
+function contactForce(o, flat, y, ax, ay, az, slopes, out, place) {
+  derivative(o, flat, y, ax, ay, az, 0, slopes);
+  const theta = y[0], omega = y[1], S = flat ? y[5] : 0, s = Math.sin(theta), c = Math.cos(theta), t = Math.tan(theta / 2), sec = 1 + t * t;
+  const roll = o.E + o.C * t, reach = o.h + o.b * t, H = o.J + (2 * o.E + o.C * t) * t, H1 = roll * sec;
+  const D = s * reach, D1 = o.b * s + o.h * c, D2 = o.b * c - o.h * s, phiRate = slopes[2], twist = flat ? slopes[4] : 0;
+  const ar = ax * Math.cos(y[2]) + ay * Math.sin(y[2]), at = ay * Math.cos(y[2]) - ax * Math.sin(y[2]);
+  const spin = y[3] ? y[3] / (s * s * H) : 0, q = reach * roll / H, q1 = 0.5 * sec * (o.b * roll + o.C * reach) / H - q * H1 / H;
+  const twisting = flat ? (slopes[5] * H + S * H1 * omega) / (o.J * o.C - o.E * o.E) : 0;
+  const outward = D1 * slopes[1] + D2 * omega * omega - phiRate * (D * phiRate - o.b * twist);
+  const across = spin * omega * (2 * o.b * t - D * H1 / H) + omega * twist * (0.5 * D1 * o.I2 * sec / H + q1) + (q - o.b) * twisting;
+  let sideways = o.nu * across + at * (1 - o.nu * reach * reach / H);
+  // what the couple takes off L' is all of L' beyond the push of the ground and the twist
+  if (o.delta > 0 && s > 0) {
+    const free = -s * reach * at - (flat ? o.mu * o.b * D1 * omega * twist : 0);
+    sideways -= o.nu * reach / H * (free - slopes[3]) / s;
+  }
+  const half = Math.sin(theta / 2), pull = (o.q + 2 * o.k * half) * o.nu / o.gaps;
+  out[place] = o.nu * outward + ar + pull * half;
+  out[place + 1] = sideways;
+  out[place + 2] = o.g + az + o.nu * (D2 * slopes[1] - D1 * omega * omega) + pull * Math.cos(theta / 2);
+}
+
+// -- the run
+
+// In `problem`: what `bodyOf` takes; support "recess", "flat" or "planar" with an azimuth; release { tilt, azimuth, rate } or
+// none; restitution of impacts in a plane; duration. `motion` has samples x, y, z (or none), dt and a scale, or is null.
+// Returns the outcome and, at each `sampleStep`, the motion.
+function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {}) {
+  const o = bodyOf(problem, rtol), planar = problem.support === "planar", flat = problem.support === "flat", n = flat ? 8 : 4;
+  const azimuth = planar ? problem.azimuth || 0 : 0, release = problem.release, scale = motion ? motion.scale : 0;
+  const length = motion ? motion.x.length : 0, dt = motion ? motion.dt : 1, ca = Math.cos(azimuth), sa = Math.sin(azimuth);
+  const sample = (i) => {
+    if (i >= length) return [0, 0, 0];
+    const x = scale * motion.x[i], y = scale * motion.y[i], z = motion.z ? scale * motion.z[i] : 0;
+    return planar ? [x * ca + y * sa, 0, z] : [x, y, z];
+  };
+  const pieceAfter = (i) => {
+    if (i >= length - 1) return { x: 0, y: 0, z: 0, sx: 0, sy: 0, sz: 0, begin: Math.max(length - 1, 0) * dt, length: Infinity, step: dt };
+    const a = sample(i), b = sample(i + 1);
+    return { x: a[0], y: a[1], z: a[2], sx: (b[0] - a[0]) / dt, sy: (b[1] - a[1]) / dt, sz: (b[2] - a[2]) / dt, begin: i * dt, length: dt, step: dt };
+  };
+  let last = Math.max(length - 1, 0);
+  while (last > 0 && !sample(last - 1).some(Boolean) && !sample(last).some(Boolean)) last--;
+  const stillFrom = last * dt, duration = problem.duration;
+  const impact = Math.max(0, (o.A * (problem.restitution ?? 1) - o.delta * o.mu * o.b) / (o.A + o.delta * o.mu * o.b));
+
+  const y = new Float64Array(8), k = new Float64Array(8), out = new Float64Array(8), kOut = new Float64Array(8);
+  const error = new Float64Array(8), part = new Float64Array(8), kPart = new Float64Array(8);
+  const run = { outcome: "stands", peak: 0, upliftTime: NaN, endTime: NaN, passes: 0, rests: false, closest: Infinity, steps: 0 };
+  let resting = true, side = 0, sense = 0, h = FIRST_STEP / o.p, restart = true, lastMaximum = -1, minimum = false;
+  let now = 0, index = 0, piece = pieceAfter(0), elapsed = 0, nextSample = 0, following = false, end = duration, passLimit = null;
+
+  if (release && release.tilt > 0) {
+    const s = Math.sin(release.tilt), t = Math.tan(release.tilt / 2);
+    y[0] = release.tilt;
+    y[2] = planar ? (Math.cos(release.azimuth - azimuth) >= 0 ? 0 : Math.PI) : release.azimuth;
+    y[3] = planar ? 0 : s * s * (o.J + (2 * o.E + o.C * t) * t) * (release.rate || 0);
+    resting = false; run.upliftTime = 0; run.peak = y[0];
+    derivative(o, flat, y, piece.x, piece.y, piece.z, 0, k);
+    if (k[1] < 0) lastMaximum = 0;
+  }
+
+  const NAMES = ["time", "tilt", "rate", "angle", "momentum", "twist", "twistMomentum", "x", "y", "outward", "across", "normal"], width = NAMES.length;
+  let rows = new Float64Array(sampleStep ? width * (Math.ceil(duration / sampleStep) + 3) : 0), count = 0;
+  const record = () => {
+    if (!sampleStep) return;
+    const place = width * count++;
+    if (place + width > rows.length) { const longer = new Float64Array(2 * place + width); longer.set(rows); rows = longer; }
+    rows[place] = now;
+    for (let i = 0; i < 8; i++) rows[place + i + 1] = y[i];
+    rows[place + 3] = resting ? NaN : y[2] + azimuth;
+    const ax = piece.x + piece.sx * elapsed, ay = piece.y + piece.sy * elapsed, az = piece.z + piece.sz * elapsed;
+    if (!resting) contactForce(o, flat, y, ax, ay, az, kPart, rows, place + 9);
+    else { rows[place + 9] = Math.hypot(ax, ay); rows[place + 11] = o.g + az + o.q * o.nu / o.gaps; }
+  };
+  const isPlanar = (state) => state[3] === 0 && (!flat || state[5] === 0);
+  const partial = (time) => step(o, flat, n, y, k, time, piece, elapsed, side, part, kPart, error);
+  // time in a step at which `value` of the state changes its sign from that at `low`
+  const crossing = (value, low, high, sign) => {
+    let at = (low + high) / 2;
+    for (let i = 0; i < 60 && high - low > 1e-13 * high; i++) {
+      partial(at);
+      const miss = value(part), slope = value(kPart, true);
+      if (miss * sign > 0) low = at; else high = at;
+      const guess = at - miss / slope;
+      if (Math.abs(guess - at) <= 1e-13 * high) break;
+      at = guess > low && guess < high ? guess : (low + high) / 2;
+    }
+    partial(at);
+    return at;
+  };
+  const sitDown = () => { y.fill(0, 0, 2); y[3] = y[5] = 0; resting = true; sense = 0; side = 0; run.restTime = now; };
+
+  record(); nextSample = 1;
+  for (;;) {
+    if (now >= end) {
+      const grows = flat && o.delta > 0 && energy(o, y[0], y[1], y[3], y[5]) > energy(o, Math.min(run.peak, o.alpha), 0, 0, 0);
+      if (resting || (lastMaximum >= stillFrom && !grows)) break;
+      if (o.delta > 0 && !flat && y[1] === 0 && isPlanar(y) && holdTime(o, y, pieceAfter(length), 0) === Infinity) break;
+      if (following) { run.outcome = energy(o, y[0], y[1], y[3], flat ? y[5] : 0) < energy(o, Math.min(o.balance, HALF_PI), 0, 0, 0) && y[0] < o.balance ? "stands" : "undecided"; break; }
+      following = true; end = now + FOLLOWED / o.p;
+      index = length; piece = pieceAfter(index); piece.begin = now; elapsed = 0; restart = true;
+    }
+    // to the next record sample or the next sample asked for, at the latest
+    const pieceEnd = piece.begin + piece.length, sampleTime = sampleStep ? nextSample * sampleStep : Infinity;
+    let until = Math.min(pieceEnd, sampleTime, end);
+    if (pieceEnd - until < 1e-9 * dt) until = Math.min(pieceEnd, end);
+    const stop = until >= pieceEnd ? piece.length : until - piece.begin;
+    while (elapsed < stop) {
+      if (run.steps > BUDGET) { run.outcome = "undecided"; run.endTime = now; return finish(); }
+      if (resting) {
+        const at = upliftIn(o, { ...piece, length: stop }, elapsed);
+        if (at < 0 || (at > elapsed && stop - at < HAIR / o.p)) { elapsed = stop; now = until; break; }
+        const up = upliftOf(o, piece, at), time = Math.min(up.length, stop - at);
+        lifted(o, piece, up, time, y[2], y);
+        if (Number.isNaN(run.upliftTime)) run.upliftTime = piece.begin + at;
+        elapsed = at + time; run.steps++;
+        if (y[0] <= 0) { y[0] = y[1] = y[3] = 0; continue; }
+        resting = false; restart = true; h = 0.1 * time; side = 0; minimum = false; lastMaximum = -1;
+        run.peak = Math.max(run.peak, y[0]);
+        now = Math.min(piece.begin + elapsed, until);
+        continue;
+      }
+      const still = piece.x === 0 && piece.y === 0 && piece.sx === 0 && piece.sy === 0;
+      if (o.delta > 0) {
+        if (!flat) {
+          if (!still) sense = 0;
+          else {
+            if (sense === 0 && y[3]) sense = Math.sign(y[3]);
+            if (y[3] && Math.abs(y[3]) < leastSpin(o, y)) { y[3] = 0; side = Math.sign(y[1]); restart = true; }
+          }
+        }
+        if (y[1] === 0 && isPlanar(y)) {  // still, tilted
+          const wait = holdTime(o, y, piece, elapsed);
+          if (wait > 0) { elapsed = Math.min(elapsed + wait, stop); now = elapsed >= stop ? until : piece.begin + elapsed; restart = true; continue; }
+          const push = pushOn(o, y, piece, elapsed);
+          side = push.turning ? 0 : push.tilting < 0 ? 1 : -1; restart = true;
+          if (push.turning) h = Math.min(h, 1e-6 / o.p);
+        }
+      }
+      if (restart) { derivative(o, flat, y, piece.x + piece.sx * elapsed, piece.y + piece.sy * elapsed, piece.z + piece.sz * elapsed, side, k); restart = false; }
+      let size = Math.min(h, stop - elapsed);
+      if (stop - elapsed - size < 1e-3 * size) size = stop - elapsed;
+      const lowest = step(o, flat, n, y, k, size, piece, elapsed, side, out, kOut, error);
+      run.steps++;
+      if (sense && y[3] && out[3] * sense < 0) out[3] = 0;
+      const inPlane = isPlanar(y) && isPlanar(out);
+      let ratio = ratioOf(o, flat, y, error, inPlane);
+      if (!inPlane && lowest <= 0) ratio = NaN;
+      else if (o.delta > 0 && !inPlane && ratio <= 1) ratio = Math.max(ratio, turnOfCouple(size));
+      if (!(ratio <= 1)) {
+        h = size * (Number.isNaN(ratio) ? 0.1 : Math.max(0.1, 0.9 * ratio ** -0.2));
+        if (h < 1e-15 * Math.max(1, now)) { run.outcome = "undecided"; run.endTime = now; return finish(); }
+        continue;
+      }
+      const grown = size * Math.min(4, 0.9 * Math.max(ratio, 1e-4) ** -0.2);
+      h = size < h ? Math.max(h, grown) : grown;
+      let taken = size, landed = false, fell = out[0] >= HALF_PI, turned = 0;
+      if (y[1] * out[1] < 0 || (o.delta > 0 && inPlane && y[1] === 0 && out[1] * side < 0)) {
+        if (y[1] === 0) { h = size / 32; continue; }
+        turned = crossing((state) => state[1], 0, size, Math.sign(y[1]));
+        const tilt = part[0];
+        if (!inPlane || tilt > 0) {
+          if (y[1] > 0) { maximumAt(tilt, piece.begin + elapsed + turned); if (following && !(flat && o.delta > 0)) return finish(); }
+          else { minimum = true; run.closest = Math.min(run.closest, tilt); }
+        }
+        if (o.delta > 0 && inPlane && tilt > 0) { taken = turned; out.set(part); out[1] = 0; fell = false; }
+      }
+      if (inPlane && out[0] <= 0) {
+        landed = true;
+        const hops = turned && y[1] > 0;
+        taken = crossing((state) => state[0], hops ? turned : 0, size, 1);
+        out.set(part);
+      } else if (fell) { taken = crossing((state) => state[0] - (state === part ? HALF_PI : 0), 0, size, -1); out.set(part); }
+      y.set(out); k.set(kOut);
+      elapsed = taken === size && size === stop - elapsed ? stop : elapsed + taken;
+      now = elapsed >= stop ? until : piece.begin + elapsed;
+      if (fell) { y[0] = HALF_PI; run.outcome = "overturned"; run.peak = HALF_PI; run.endTime = now; if (sampleStep) record(); return finish(); }
+      run.peak = Math.max(run.peak, y[0]);
+      if (taken !== size) restart = true;
+      if (landed) {
+        minimum = true;
+        let turn = y[2] > 0 ? -Math.PI : Math.PI, kept = impact;
+        if (sense) { passLimit ??= limitOfPass(o); turn = sense * passLimit[0]; kept = passLimit[1]; run.side = true; }
+        run.closest = 0;
+        y[0] = 0; y[1] = kept * Math.abs(y[1]); y[2] += turn; y[3] = 0; side = Math.sign(y[1]);
+        if (!planar && isPlanar(y) && Number.isNaN(run.sideTime ?? NaN)) run.sideTime = now;
+        if (y[1] === 0) { sitDown(); continue; }
+      } else if (inPlane) side = Math.sign(y[1]); else side = 0;
+      if (sitsDown(o, y, flat, piece.x + piece.sx * elapsed, piece.y + piece.sy * elapsed, piece.z + piece.sz * elapsed)) sitDown();
+      else if (o.delta > 0 && !inPlane && !flat && stops(o, y, piece, elapsed)) { y[1] = y[3] = 0; side = 0; restart = true; }
+    }
+    now = until;
+    if (sampleStep && now >= sampleTime - 1e-9 * sampleStep) { if (now < duration - 1e-9) record(); else if (following) record(); nextSample++; }
+    if (elapsed >= piece.length) {
+      index++;
+      piece = pieceAfter(index);
+      if (index >= length - 1 && !following) piece.begin = now;
+      elapsed = 0;
+      if (index === length - 1 || index === 0) restart = true;
+    }
+    if (now >= end && !following) record();
+  }
+  return finish();
+
+  function maximumAt(tilt, time) {
+    run.peak = Math.max(run.peak, tilt);
+    if (minimum && lastMaximum >= 0) run.passes++;
+    lastMaximum = time; minimum = false;
+  }
+
+  // over 1 where a step does not follow the turn of the couple and is too long not to matter
+  function turnOfCouple(size) {
+    const before = acrossOf(o, y, flat), after = acrossOf(o, out, flat), first = y[1] ** 2 + before ** 2, second = out[1] ** 2 + after ** 2;
+    const along = y[1] * out[1] + before * after, loss = o.delta * (o.g + pull(o, Math.sin(y[0]), Math.cos(y[0]))) * size;
+    if (along > 0 && along * along > 0.64 * first * second) {
+      const stable = 2 * Math.sqrt(Math.min(first, second));
+      return loss > 0.1 * o.A * stable ? loss / (acrossInertia(o, out[0], flat) * stable) : 0;
+    }
+    return 2 * loss / (o.A * rtol * (Math.abs(y[1]) + Math.abs(before) + o.p * Math.sqrt(o.sa * y[0])));
+  }
+
+  function finish() {
+    run.rests = resting;
+    if (run.outcome !== "overturned") while (count && rows[width * (count - 1)] > duration * (1 + 1e-12)) count--;
+    NAMES.forEach((name, i) => { run[name] = Float64Array.from({ length: count }, (_, j) => rows[width * j + i]); });
+    run.body = o;
+    return run;
+  }
+}

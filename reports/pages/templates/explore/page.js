@@ -1,0 +1,443 @@
+// The page: sliders state a problem, a worker solves it, and the view, the graphs and the map show it.
+(function explore() {
+  const root = document.getElementById("explore"), find = (name) => root.querySelector(`[data-part="${name}"]`);
+  const given = JSON.parse(document.getElementById("given").textContent), records = given.records, DEG = 180 / Math.PI, GRAVITY = given.gravity;
+  const doubles = (text) => text && new Float64Array(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
+  const motions = records.map(({ x, y, z, dt }) => ({ x: doubles(x), y: doubles(y), z: doubles(z), dt }));
+  const peaks = motions.map(({ x, y }) => x.reduce((most, value, i) => Math.max(most, Math.hypot(value, y[i])), 0) / GRAVITY);
+  const BLUE = "#0072B2", RED = "#B00020", ORANGE = "#D55E00", GREY = "#8a8a8a", AGREEMENT = 0.01;  // of alpha
+
+  // -- the problem: what each slider states, with unit, bounds and place
+
+  const FIELDS = {
+    height: ["column", "height [m]", 0.1, 40, "log"], diameter: ["column", "diameter [m]", 0.02, 12, "log"],
+    intensity: ["shaking", "intensity [× record]", 0.02, given.most, "log"],
+    tilt: ["release", "release at a tilt of [deg]", 0.1, 60, "log"], rate: ["release", "rolling rate at release [rad/s]", -2, 2],
+    lean: ["release", "direction of the lean, from east [deg]", -180, 180], plane: ["plane", "azimuth of the plane, from east [deg]", -90, 90],
+    slab: ["more", "slab over column mass [-]", 0, 10], loss: ["more", "rolling resistance [mm]", 0, 200],
+    prestress: ["more", "tendon prestress [weights of a column]", 0, 5], stiffness: ["more", "tendon stiffness [weights per base radius]", 0, 50],
+  };
+  const standard = given.state, state = { ...standard };
+  for (const [name, field] of Object.entries(FIELDS)) {  // whatever was given has its place on the slider
+    [field[2], field[3]] = [Math.min(field[2], standard[name]), Math.max(field[3], standard[name])];
+  }
+  for (const [name, [place, title, low, high, kind]] of Object.entries(FIELDS)) {
+    const log = kind === "log", to = (value) => (log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low)) * 1000;
+    const from = (share) => Number((log ? low * (high / low) ** (share / 1000) : low + (high - low) * share / 1000).toPrecision(4));
+    const field = find(place).appendChild(Object.assign(document.createElement("div"), { className: "field" }));
+    field.dataset.field = name;
+    field.innerHTML = `<label for="of-${name}">${title}</label><input type="number" id="of-${name}" min="${low}" max="${high}" step="any">`
+      + `<input type="range" min="0" max="1000" step="1" aria-label="${title}">`;
+    const [number, slider] = field.querySelectorAll("input");
+    const set = (value) => { state[name] = value; changed(); };
+    slider.addEventListener("input", () => { const value = from(Number(slider.value)); number.value = value; slider.ariaValueText = String(value); set(value); });
+    number.addEventListener("input", () => {
+      const value = Number(number.value), fits = number.value !== "" && value >= low && value <= high;
+      number.ariaInvalid = fits ? "false" : "true";
+      if (fits) { slider.value = to(value); set(value); }
+    });
+    FIELDS[name].show = () => { const value = state[name]; number.value = Number(value.toPrecision(5)); number.ariaInvalid = "false"; slider.value = to(value); slider.ariaValueText = number.value; };
+  }
+  records.forEach(({ name }, i) => find("record").add(new Option(name, i)));
+  find("record").add(new Option("none: release from a tilt", -1));
+  for (const name of ["record", "support"]) {
+    find(name).addEventListener("change", () => { state[name] = name === "record" ? Number(find(name).value) : find(name).value; changed(); });
+  }
+
+  const alphaOf = (at) => Math.atan2(at.diameter, at.height);
+  // what the model takes, which has no tendon on flat ground
+  const problemOf = (at) => {
+    const released = at.record < 0, tendon = at.support !== "flat", lean = at.support === "planar" ? at.plane : at.lean;
+    return {
+      height: at.height, diameter: at.diameter, gamma: at.slab, delta: Math.min(at.loss / 1000, 0.45 * at.diameter), gravity: GRAVITY,
+      prestress: tendon ? at.prestress : 0, stiffness: tendon ? at.stiffness : 0, support: at.support, azimuth: at.plane / DEG,
+      release: released ? { tilt: at.tilt / DEG, azimuth: lean / DEG, rate: at.support === "planar" ? 0 : at.rate } : null,
+      record: at.record, intensity: at.intensity, duration: released ? given.free : given.duration || (motions[at.record].x.length - 1) * motions[at.record].dt,
+    };
+  };
+
+  // -- the address holds what differs from the standard
+
+  const differing = () => Object.fromEntries(Object.entries(state).filter(([name, value]) => value !== standard[name]));
+  const readAddress = () => {
+    Object.assign(state, standard);
+    for (const [name, text] of new URLSearchParams(location.hash.slice(1))) {
+      const value = Number(text), field = FIELDS[name];
+      if (field && text !== "" && value >= field[2] && value <= field[3]) state[name] = value;
+      else if (name === "record" && (value === -1 || records[value])) state.record = value;
+      else if (name === "support" && [...find("support").options].some((option) => option.value === text)) state.support = text;
+    }
+  };
+  let addressTimer = 0;
+  const writeAddress = () => {
+    clearTimeout(addressTimer);  // browsers allow few changes a second
+    addressTimer = setTimeout(() => history.replaceState(null, "", `#${new URLSearchParams(differing())}`), 300);
+  };
+  addEventListener("hashchange", () => { readAddress(); showFields(); changed(); });
+
+  // -- runs: the worker has one request at a time, and the newest one next
+
+  const source = document.getElementById("model").textContent, address = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+  const [worker, mapper] = [0, 1].map(() => { const made = new Worker(address); made.postMessage({ motions }); return made; });
+  let busy = false, waiting = null, requested = 0, shown = null, pinned = null;
+  const besideOf = (at) => ({
+    pinned, stronger: { ...at, intensity: at.intensity * (1 + 1e-6), tilt: at.record < 0 ? at.tilt * (1 + 1e-6) : at.tilt },
+    planar: { ...at, support: "planar" }, other: { ...at, support: at.support === "flat" ? "recess" : "flat" },
+  })[find("beside").value];
+  const ask = (request) => {
+    if (busy) { waiting = request; return; }
+    busy = true;
+    worker.postMessage({ id: request.id, problems: [request.at, request.beside].filter(Boolean).map(problemOf) });
+    shown = request;
+  };
+  worker.onmessage = ({ data }) => {
+    busy = false;
+    const { at, beside, begin } = shown;
+    show(at, data.runs[0], beside, data.runs[1]);
+    root.dataset.took = Math.round(performance.now() - begin);
+    root.dataset.solved = data.took.toFixed(1);
+    if (waiting) { const next = waiting; waiting = null; ask(next); }
+  };
+  let drawn = false;
+  const changed = () => {
+    const at = { ...state }, released = at.record < 0;
+    find("follows").textContent = `R = ${number(Math.hypot(at.height, at.diameter) / 2)} m, tan α = ${number(at.diameter / at.height)}, α = ${number(alphaOf(at) * DEG)}°`;
+    const hide = { intensity: released, tilt: !released, rate: !released || at.support === "planar", lean: !released || at.support === "planar", plane: at.support !== "planar" };
+    for (const [name, hidden] of Object.entries(hide)) root.querySelector(`[data-field="${name}"]`).hidden = hidden;
+    const refused = (at.prestress || at.stiffness) && at.support === "flat";
+    find("refused").textContent = refused ? "The tendon is left out: the model has none on flat ground." : "";
+    ask({ id: ++requested, at, beside: besideOf(at), begin: performance.now() });
+    writeAddress();
+    askMap(at);
+    if (!find("text").hidden) find("text").hidden = true;
+  };
+  const showFields = () => {
+    for (const field of Object.values(FIELDS)) field.show();
+    find("record").value = state.record; find("support").value = state.support;
+  };
+  const number = (value, digits = 3) => (value === 0 ? "0" : Math.abs(value) >= 1000 ? value.toFixed(0) : String(Number(value.toPrecision(digits)))).replace("-", "−");
+
+  // -- what a run becomes: poses for the view, lines for the graphs
+
+  const bodyOf = (at, run, colour, opacity) => {
+    const b = at.diameter / 2, n = run.time.length, body = { ...run, at, colour, opacity, contact_x: new Float64Array(n), contact_y: new Float64Array(n), alpha: alphaOf(at) };
+    for (let i = 0; i < n; i++) {
+      const angle = Number.isNaN(run.angle[i]) ? 0 : run.angle[i];
+      body.contact_x[i] = run.x[i] + b * Math.cos(angle);
+      body.contact_y[i] = run.y[i] + b * Math.sin(angle);
+    }
+    return body;
+  };
+  const poseAt = (body, time) => {
+    const { time: t } = body, last = t.length - 1, low = Math.max(0, Math.min(last, Math.floor(time / 0.01 + 1e-6))), next = Math.min(low + 1, last);
+    const share = next > low ? Math.min(Math.max((time - t[low]) / (t[next] - t[low]), 0), 1) : 0;
+    const [from, to] = [low, next].map((i) => (Number.isNaN(body.angle[i]) ? null : body.angle[i]));
+    const angle = from === null ? to ?? 0 : to === null ? from : from + share * (to - from), b = body.at.diameter / 2;
+    const mix = (values) => values[low] + share * (values[next] - values[low]), x = mix(body.x), y = mix(body.y);
+    return { sample: low, tilt: mix(body.tilt), rolling_angle: angle, twist: mix(body.twist), contact_x: x + b * Math.cos(angle), contact_y: y + b * Math.sin(angle) };
+  };
+  // extremes of each stretch, so that a graph has few points and no peak less
+  const thinned = (x, y, most = 1200) => {
+    if (x.length <= most) return [Array.from(x), Array.from(y)];
+    const out = [[], []], stretch = 2 * x.length / most;
+    for (let k = 0; k < most / 2; k++) {
+      let low = Math.floor(k * stretch), high = low;
+      for (let i = low; i < Math.min((k + 1) * stretch, x.length); i++) { if (!(y[i] >= y[low])) low = i; if (!(y[i] <= y[high])) high = i; }
+      for (const i of [Math.min(low, high), Math.max(low, high)]) { out[0].push(x[i]); out[1].push(y[i]); }
+    }
+    return out;
+  };
+  const line = ([x, y], colour, name, more = {}) => ({ kind: "line", name, x, y, style: { colour, dash: "solid", symbol: "" }, width: 1.4, size: 5, opacity: 1, open: [0], steps: false, clip: true, notes: [], ...more });
+  const rule = (axis, at, text, colour) => ({ kind: "rule", name: text, axis, at, until: null, text, colour, dash: "dash", side: "right" });
+
+  let bodies = [], now = 0, length = 1, playing = false, before = 0, laterTimer = 0;
+  // a graph over time, with the time of the view in it
+  class Graph extends Chart {
+    draw() {
+      super.draw();
+      if (!this.at || this.panel.equal) return;
+      if (this.place.id === "map") {  // where the sliders stand
+        this.here = element(this.sheet, "circle", { r: 6, fill: "#fff", stroke: "#000", "stroke-width": 2.5 });
+        this.follow();
+        return;
+      }
+      this.cursor = element(this.sheet, "line", { y1: this.at.frame.top, y2: this.at.frame.bottom, stroke: "#222", "stroke-width": 1.2 });
+      this.follow();
+    }
+
+    follow() {
+      if (this.here) {
+        const [x, y] = [this.at.x(Math.hypot(state.height, state.diameter) / 2), this.at.y(state.record < 0 ? NaN : state.intensity * peaks[state.record])];
+        this.here.setAttribute("visibility", Number.isFinite(x) && Number.isFinite(y) ? "visible" : "hidden");
+        if (Number.isFinite(y)) { this.here.setAttribute("cx", x); this.here.setAttribute("cy", y); }
+      }
+      if (!this.cursor) return;
+      const place = this.at.x(now), inside = place >= this.at.frame.left && place <= this.at.frame.right;
+      this.cursor.setAttribute("visibility", inside ? "visible" : "hidden");
+      if (inside) for (const end of ["x1", "x2"]) this.cursor.setAttribute(end, place);
+    }
+  }
+  for (const place of root.querySelectorAll(".unfilled")) place.className = "chart";  // after charts.js drew those that are filled
+  const graphs = Object.fromEntries(["tilt", "ground", "path", "map"].map((name) => [name, new Graph(document.getElementById(name))]));
+  graphs.tilt.linked = graphs.ground.linked = [graphs.tilt, graphs.ground];
+  const redraw = (chart, layers, ends) => { chart.panel.layers = layers; chart.reset(); if (ends) chart.ends.x = ends; chart.whole.hidden = true; chart.draw(); };
+  for (const chart of [graphs.tilt, graphs.ground]) {
+    chart.sheet.addEventListener("click", (event) => {
+      const u = event.clientX - chart.sheet.getBoundingClientRect().left;
+      if (u > chart.at.frame.left && u < chart.at.frame.right) seek(chart.at.x.back(u));
+    });
+  }
+
+  function show(at, run, besideAt, besideRun) {
+    const first = !drawn, fell = run.outcome === "overturned", main = bodyOf(at, run, fell ? RED : BLUE, 1), motion = motions[at.record];
+    bodies = [main, ...(besideRun ? [bodyOf(besideAt, besideRun, GREY, 0.4)] : [])];
+    drawn = true;
+    length = Math.max(...bodies.map((body) => body.time[body.time.length - 1]), 0.01);
+    find("time").max = length;
+    outcome(main); results(main, motion); parting();
+
+    const ends = [0, length];
+    const tilts = (body, colour, name) => line(thinned(body.time, body.tilt.map((tilt) => tilt * DEG)), colour, name);
+    const top = Math.max(...bodies.map((body) => Math.min(body.peak, 1.6 * body.alpha))), alpha = main.alpha * DEG, near = top > 0.25 * main.alpha;
+    graphs.tilt.panel.y.high = Math.max(1.08 * top * DEG, near ? 1.15 * alpha : 0, 1e-9);
+    redraw(graphs.tilt, [...(bodies[1] ? [tilts(bodies[1], GREY, "beside it")] : []), tilts(main, main.colour, "tilt"), ...(near ? [rule("y", alpha, `α = ${number(alpha)}°`, RED)] : [])], ends);
+    clearTimeout(laterTimer);
+    laterTimer = setTimeout(() => showFurther(main, motion, ends), first ? 0 : 80);  // once the sliders rest
+
+    const most = Math.max(...bodies.map((body) => (body.outcome === "overturned" ? Math.PI / 2 : body.peak))), chosen = find("magnify").dataset.chosen;
+    const factors = [1, 3, 10, 30].filter((factor) => factor === 1 || factor * most < 60 / DEG), best = factors.filter((factor) => factor === 1 || factor * most < 30 / DEG).at(-1);
+    find("magnify").replaceChildren(...factors.map((factor) => new Option(`${factor} ×`, factor)));
+    find("magnify").value = factors.includes(Number(chosen)) ? chosen : best;
+    if (first) {
+      seek(Number.isNaN(run.upliftTime) ? 0 : Math.max(0, run.upliftTime - 0.2));
+      if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play();
+    } else seek(Math.min(now, length));
+  }
+  // ground and paths
+  function showFurther(main, motion, ends) {
+    const { at } = main, scale = at.intensity / GRAVITY, key = String([at.record, at.intensity, ends]);
+    if (key !== graphs.ground.key) {
+      graphs.ground.key = key;
+      const axis = motion && Float64Array.from(motion.x, (_, i) => i * motion.dt);
+      const shakes = motion ? [["x", "east", BLUE], ["y", "north", ORANGE], ["z", "up", "#009E73"]].filter(([key]) => motion[key]) : [];
+      redraw(graphs.ground, shakes.length ? shakes.map(([key, name, colour]) => line(thinned(axis, motion[key].map((value) => value * scale)), colour, name, { width: 1 })) : [line([[0, length], [0, 0]], GREY, "still")], ends);
+    }
+    // a line is broken where the column stands, and where it jumps: in a pass
+    const path = (body, x, y, jump, colour, name) => {
+      const points = [[], []];
+      for (let i = 0, last = -1; i < x.length; i++) {
+        const gap = !(body.tilt[i] > 1e-3 * body.alpha) || Number.isNaN(x[i]) || (last >= 0 && Math.hypot(x[i] - x[last], y[i] - y[last]) > jump);
+        if (!gap && last >= 0 && i - last < body.thin) continue;
+        points[0].push(gap ? NaN : x[i]); points[1].push(gap ? NaN : y[i]);
+        last = i;
+      }
+      return line(points, colour, name, { width: 1.2 });
+    };
+    const b = at.diameter / 2, circle = Array.from({ length: 73 }, (_, i) => i * Math.PI / 36), paths = [];
+    for (const body of [...bodies].reverse()) {
+      const top = body.tilt.map((tilt) => (tilt < 1.3 * body.alpha ? at.height * Math.sin(tilt) + b * (1 - Math.cos(tilt)) : NaN));  // not the fall
+      body.thin = Math.ceil(body.tilt.length / 2500);
+      const own = body === main ? [ORANGE, "top of the column"] : [GREY, "beside it"];
+      paths.push(path(body, body.contact_x, body.contact_y, b, body === main ? main.colour : GREY, "contact point"));
+      paths.push(path(body, top.map((r, i) => body.x[i] + r * Math.cos(body.angle[i])), top.map((r, i) => body.y[i] + r * Math.sin(body.angle[i])), Infinity, ...own));
+    }
+    redraw(graphs.path, [line([circle.map((angle) => b * Math.cos(angle)), circle.map((angle) => b * Math.sin(angle))], "#bbb", "base at rest", { width: 1 }), ...paths]);
+  }
+  const outcome = ({ outcome: end, endTime, upliftTime, peak, alpha }) => {
+    const words = { overturned: `Overturns at ${number(endTime, 4)} s`, undecided: "Not decided: rounding, not the shaking, says how it ends" }[end]
+      || (Number.isNaN(upliftTime) ? "Stands, and does not uplift" : peak > alpha ? "Stands, after a tilt beyond α" : "Stands");
+    if (find("outcome").textContent !== words) find("outcome").textContent = words;
+    find("outcome").className = end;
+  };
+  const results = (body, motion) => {
+    const { at, peak, alpha, normal, outward, across } = body, o = body.body, fell = body.outcome === "overturned", moved = !Number.isNaN(body.upliftTime);
+    let friction = 0, least = Infinity;
+    for (let i = 0; i < normal.length; i++) if (body.tilt[i] > 1e-3 * alpha && !(fell && body.tilt[i] > 1.2 * alpha)) {
+      friction = Math.max(friction, normal[i] > 0 ? Math.hypot(outward[i], across[i]) / normal[i] : Infinity);
+      least = Math.min(least, normal[i] / GRAVITY);
+    }
+    const ends = o.gaps, topShift = ends * at.diameter / 2 * (1 - Math.cos(peak)) + at.height * Math.sin(peak), rows = [
+      ["peak tilt", fell ? "falls" : moved ? `${number(peak * DEG)}° = ${number(peak / alpha)} α` : "0"],
+      [ends > 1 ? "displacement of the slab" : "displacement of the top", fell ? "falls" : moved ? `${number(topShift)} m` : "0 m"],
+      [motion ? "uplift" : "released", moved ? motion ? `at ${number(body.upliftTime, 4)} s` : "at 0 s" : "none"],
+      ["peak of the ground", motion ? `${number(at.intensity * peaks[at.record])} g` : "still"],
+      ["uplifts from", `${number(o.slope * (1 + o.q / GRAVITY))} g`],
+      ["friction demand", Number.isFinite(least) ? friction === Infinity ? "contact is lost" : number(friction) : "none"],
+      ["least normal force", Number.isFinite(least) ? `${number(least)} weights` : "1 weight"],
+    ];
+    const { prestress, stiffness } = problemOf(at);
+    if (prestress || stiffness) rows.push(["tendon force", `${number(prestress + stiffness * o.gaps * 2 * Math.sin(Math.min(peak, Math.PI / 2) / 2))} weights`]);
+    find("results").replaceChildren(...rows.map(([name, value]) => {
+      const row = document.createElement("div");
+      for (const [tag, text] of [["dt", name], ["dd", value]]) row.appendChild(Object.assign(document.createElement(tag), { textContent: text }));
+      return row;
+    }));
+  };
+  // first time at which both tilts differ by 1 % of alpha
+  const parting = () => {
+    const [main, beside] = bodies, place = find("parts");
+    if (!beside) { place.textContent = ""; return; }
+    const n = Math.min(main.tilt.length, beside.tilt.length);
+    let i = 0;
+    while (i < n && Math.abs(main.tilt[i] - beside.tilt[i]) <= AGREEMENT * main.alpha) i++;
+    const end = { overturned: "overturns", stands: "stands", undecided: "is not decided" }[beside.outcome];
+    place.textContent = `It ${end}${beside.outcome === "stands" ? `, peak ${number(beside.peak / beside.alpha)} α` : ""}; ${i < n ? `they part at ${number(main.time[i], 4)} s` : "they do not part"}.`;
+  };
+
+  // -- the view and its clock
+
+  const draw = rockwobbleStage(find("plot"), () => {
+    const at = bodies.length ? bodies[0].at : state, fell = bodies.some((body) => body.outcome === "overturned");
+    return { b: at.diameter / 2, height: at.height, slab: at.slab > 0, reach: fell ? 0.75 * at.height + at.diameter : 0 };
+  }, () => picture());
+  function picture() {
+    if (!bodies.length) return;
+    draw(bodies.map((body) => { const at = poseAt(body, now); return { body, at, first: at.sample - 400, last: at.sample }; }), Number(find("magnify").value));
+    find("clock").textContent = `${now.toFixed(2)} s of ${length.toFixed(2)} s`;
+    find("time").value = now;
+    graphs.tilt.follow(); graphs.ground.follow();
+  }
+  function seek(time) { now = Math.min(Math.max(time, 0), length); picture(); }
+  const pause = () => { playing = false; find("play").textContent = "Play"; };
+  function play() {
+    if (now >= length - 1e-9) now = Math.max(0, (bodies[0].upliftTime || 0) - 0.2);
+    playing = true; find("play").textContent = "Pause";
+    requestAnimationFrame((stamp) => { before = stamp; tick(stamp); });
+  }
+  function tick(stamp) {
+    if (!playing) return;
+    now += Math.min((stamp - before) / 1000, 0.25) * Number(find("speed").value);
+    before = stamp;
+    if (now >= length) { now = length; pause(); }
+    picture();
+    requestAnimationFrame(tick);
+  }
+  find("play").addEventListener("click", () => (playing ? pause() : play()));
+  find("time").addEventListener("input", () => { pause(); seek(Number(find("time").value)); });
+  find("magnify").addEventListener("change", () => { find("magnify").dataset.chosen = find("magnify").value; picture(); });
+  find("beside").addEventListener("change", changed);
+  find("pin").addEventListener("click", () => {
+    pinned = { ...state };
+    find("beside").options[1].disabled = false;
+    find("beside").value = "pinned";
+    changed();
+  });
+  find("reset").addEventListener("click", () => { Object.assign(state, standard); showFields(); changed(); });
+
+  // -- the map: size by intensity, coarse at first, made in a worker of its own
+
+  const CELLS = 40, SIZES = [1 / 4, 4], palette = ["#e8e8e8", "#dbe9f6", "#9ecae1", "#4292c6", "#08519c", "#E69F00", RED], classes = ["no uplift", "below 0.25 α", "to 0.5 α", "to 0.75 α", "to α", "beyond α", "overturns"];
+  const classOf = (peak) => (peak === Infinity ? 6 : peak > 1 ? 5 : peak === 0 ? 0 : 1 + Math.min(3, Math.floor(peak * 4)));
+  let map = null, mapTimer = 0, mapKey = "";
+  const spread = (i) => (i + 0.5) / CELLS, geometric = (low, high, share) => low * (high / low) ** share;
+  const cellOf = (column, row) => ({ ...map.at, height: map.at.height * geometric(...SIZES, spread(column)), diameter: map.at.diameter * geometric(...SIZES, spread(column)), intensity: geometric(...map.intensities, spread(row)) });
+  function askMap(at) {
+    const { height, diameter, intensity, ...others } = at, key = JSON.stringify([others, diameter / height]);
+    document.querySelector(".graph.map").hidden = at.record < 0;
+    if (at.record < 0) { map = null; mapKey = ""; return; }
+    if (map && Math.abs(diameter / height / (map.at.diameter / map.at.height) - 1) < 1e-3 && JSON.stringify(others) === map.others) { graphs.map.follow(); return; }
+    if (key === mapKey) return;
+    mapKey = key;
+    map = null;  // the worker stops after the row that it is at
+    graphs.map.place.classList.add("stale");
+    clearTimeout(mapTimer);
+    mapTimer = setTimeout(() => {  // once the sliders rest
+      // around the uplift of the column: from half of it on
+      const uplift = diameter / height / peaks[at.record];
+      map = { at, others: JSON.stringify(others), intensities: [0.5 * uplift, 16 * uplift], values: new Float64Array(CELLS * CELLS).fill(NaN), id: ++requested };
+      row(8, 0);
+    }, 500);
+  }
+  const row = (level, place) => {
+    const size = level;
+    mapper.postMessage({ id: map.id, level, place, row: Array.from({ length: CELLS / size }, (_, i) => problemOf(cellOf(i * size + (size - 1) / 2, place * size + (size - 1) / 2))) });
+  };
+  mapper.onmessage = ({ data }) => {
+    if (!map || data.id !== map.id) return;
+    const { level, place, peaks: found } = data;
+    found.forEach((peak, i) => { for (let r = 0; r < level; r++) for (let c = 0; c < level; c++) map.values[(place * level + r) * CELLS + i * level + c] = peak; });
+    const last = (place + 1) * level >= CELLS;
+    if (last || place % (8 / level) === 0) drawMap();
+    if (!last) row(level, place + 1);
+    else if (level > 1) row({ 8: 4, 4: 2, 2: 1 }[level], 0);
+    root.dataset.map = last && level === 1 ? "whole" : "partial";
+  };
+  function drawMap() {
+    graphs.map.place.classList.remove("stale");
+    const R = (share) => geometric(...SIZES, share) * Math.hypot(map.at.height, map.at.diameter) / 2, edges = Array.from({ length: CELLS + 1 }, (_, i) => i / CELLS);
+    const y = edges.map((share) => geometric(...map.intensities, share) * peaks[map.at.record]);
+    redraw(graphs.map, [
+      { kind: "heat", name: "map", x: edges.map(R), y, cells: Array.from(map.values, (peak) => (Number.isNaN(peak) ? -1 : classOf(peak))), palette, written: [],
+        said: (column, line, i) => [`R = ${number(R(spread(column)))} m`, `peak ground acceleration ${number(geometric(...map.intensities, spread(line)) * peaks[map.at.record])} g`, Number.isNaN(map.values[i]) ? "not yet known" : map.values[i] === Infinity ? "overturns" : `peak ${number(map.values[i])} α`] },
+    ]);
+  }
+  graphs.map.sheet.addEventListener("click", (event) => {
+    if (!map) return;
+    const edges = graphs.map.sheet.getBoundingClientRect(), [R, pga] = [10 ** graphs.map.at.x.back(event.clientX - edges.left), 10 ** graphs.map.at.y.back(event.clientY - edges.top)];
+    const factor = R / (Math.hypot(map.at.height, map.at.diameter) / 2), bound = (name, value) => Number(Math.min(Math.max(value, FIELDS[name][2]), FIELDS[name][3]).toPrecision(6));
+    Object.assign(state, { height: bound("height", map.at.height * factor), diameter: bound("diameter", map.at.diameter * factor), intensity: bound("intensity", pga / peaks[map.at.record]) });
+    showFields(); changed();
+  });
+
+  // -- taken along
+
+  const options = (at) => {
+    const problem = problemOf(at), record = records[at.record], planar = at.support === "planar", found = { diameter: at.diameter, height: at.height };
+    if (at.slab) found["slab-mass-ratio"] = at.slab;
+    if (problem.delta) found["rolling-resistance"] = problem.delta;
+    if (problem.prestress) found["tendon-prestress"] = problem.prestress;
+    if (problem.stiffness) found["tendon-stiffness"] = problem.stiffness;
+    if (record) Object.assign(found, record.options, at.intensity === 1 ? {} : { scale: at.intensity });
+    else Object.assign(found, { "release-tilt-deg": at.tilt, duration: given.free }, planar ? {} : { "release-azimuth-deg": at.lean, "rolling-rate": at.rate });
+    if (GRAVITY !== 9.81) found.gravity = GRAVITY;
+    if (record && given.duration) found.duration = given.duration;
+    if (planar) found.plane = problem.azimuth; else if (at.support === "flat") found.support = "flat";
+    return found;
+  };
+  const commandOf = (at) => (at.record >= 0 && !records[at.record].options ? "# a synthetic motion is a matter of Python: copy that\n" : "")
+    + `rockwobble simulate ${Object.entries(options(at)).map(([name, value]) => (value === true ? `--${name}` : `--${name} ${/^[\w./:,+-]+$/.test(value) ? value : `'${String(value).replaceAll("'", "'\\''")}'`}`)).join(" ")}`;
+  const pythonOf = (at) => {
+    const problem = problemOf(at), lines = ["import math", "", "import rockwobble as rw", "", `body = rw.Cylinder.from_dimensions(base_radius=${at.diameter / 2}, height=${at.height})`];
+    if (at.slab) lines.push(`body = rw.WobblingFrame(body, slab_mass_ratio=${at.slab})`);
+    if (at.record >= 0) lines.push(`motion = (${records[at.record].python}).scaled(${at.intensity})`);
+    const more = [at.record >= 0 ? "motion" : "None"];
+    if (problem.release) more.push(`initial=rw.InitialState(tilt=${problem.release.tilt}, rolling_angle=${problem.release.azimuth}, rolling_rate=${problem.release.rate})`);
+    if (problem.release || given.duration) more.push(`duration=${problem.duration}`);
+    if (problem.delta) more.push(`rolling_resistance=${problem.delta}`);
+    if (GRAVITY !== 9.81) more.push(`gravity=${GRAVITY}`);
+    if (problem.prestress || problem.stiffness) more.push(`tendon=rw.Tendon(prestress=${problem.prestress}, stiffness=${problem.stiffness})`);
+    const how = { recess: "", flat: ', support="flat"', planar: `, plane=${problem.azimuth}` }[at.support];
+    lines.push(`case = rw.Case(body, ${more.join(", ")})`, `trace = rw.simulate(case${how})`, 'print(trace.outcome, math.degrees(trace.peak_tilt), "deg")', "");
+    return lines.join("\n");
+  };
+  const copy = async (text, what) => {
+    find("text").textContent = text; find("text").hidden = false;
+    let words = `${what} copied`;
+    try { await navigator.clipboard.writeText(text); } catch { words = `${what}: select and copy it below`; }
+    find("copied").textContent = words;
+  };
+  const download = (name, content) => {
+    const link = Object.assign(document.createElement("a"), { download: name, href: URL.createObjectURL(content) });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  };
+  const taken = {
+    link: () => copy(`${location.href.split("#")[0]}#${new URLSearchParams(differing())}`, "Link"),
+    command: () => copy(commandOf(state), "Command"), python: () => copy(pythonOf(state), "Python"),
+    csv: () => {
+      const { time, tilt, angle, contact_x: x, contact_y: y, normal } = bodies[0], rows = ["time [s],tilt [rad],azimuth [rad],contact_x [m],contact_y [m],normal_force [weight]"];
+      for (let i = 0; i < time.length; i++) rows.push([time[i], tilt[i], ...(Number.isNaN(angle[i]) ? ["", "", ""] : [angle[i], x[i], y[i]]), normal[i] / GRAVITY].map((value) => (value === "" ? "" : Number(value.toPrecision(12)))).join());
+      download("rockwobble-trace.csv", new Blob([`${rows.join("\n")}\n`], { type: "text/csv" }));
+    },
+    png: () => find("plot").toBlob((blob) => download("rockwobble-view.png", blob)),
+    svg: () => {
+      const sheet = graphs.tilt.sheet.cloneNode(true);
+      for (const [name, value] of [["xmlns", "http://www.w3.org/2000/svg"], ["font-family", "sans-serif"]]) sheet.setAttribute(name, value);
+      download("rockwobble-tilt.svg", new Blob([sheet.outerHTML], { type: "image/svg+xml" }));
+    },
+  };
+  for (const [name, act] of Object.entries(taken)) find(name).addEventListener("click", act);
+
+  window.rockwobbleExplore = { state, set: (values) => { Object.assign(state, values); showFields(); changed(); }, commandOf, pythonOf };
+  readAddress(); showFields(); changed();
+}());

@@ -1,0 +1,19 @@
+// Runs in the background: a request is answered by a run and the one beside it, or by a row of the map.
+let motions = [];
+const motionOf = ({ record, intensity }) => (record < 0 ? null : { ...motions[record], scale: intensity });
+
+onmessage = ({ data }) => {
+  if (data.motions) { motions = data.motions; return; }
+  if (data.row) {
+    const peaks = data.row.map((problem) => {
+      const run = simulateMotion(problem, motionOf(problem), { rtol: 1e-6, sampleStep: 0 });
+      return run.outcome === "overturned" ? Infinity : run.peak / run.body.alpha;
+    });
+    postMessage({ id: data.id, level: data.level, place: data.place, peaks });
+    return;
+  }
+  const begin = performance.now();
+  const runs = data.problems.map((problem) => simulateMotion(problem, motionOf(problem)));
+  const arrays = runs.flatMap((run) => Object.values(run).filter((value) => value instanceof Float64Array));
+  postMessage({ id: data.id, runs, took: performance.now() - begin }, arrays.map((array) => array.buffer));
+};

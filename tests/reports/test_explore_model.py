@@ -1,0 +1,221 @@
+"""The model that the page of `explore` runs, against the reduced models that it repeats, in a browser."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from browser import dumped, needs_chromium
+from numpy.typing import NDArray
+
+from rockwobble.compare.comparison.prediction import disturbed
+from rockwobble.models import (
+    CLOSED_TILT,
+    Case,
+    Cylinder,
+    GroundMotion,
+    InitialState,
+    Tendon,
+    Trace,
+    WobblingFrame,
+    el_centro_1940,
+)
+from rockwobble.models.synthetic import synthetic_motions
+from rockwobble.reduced import simulate
+
+SCRIPTS = Path(__file__).parents[2] / "reports" / "pages" / "templates" / "explore"
+COUNT, SEED = 40, 11
+STEP = 0.05  # of the samples [s]
+AGREES = 1e-6  # of alpha: what the page may be off while nothing but its own error counts
+AGREES_IN_PLACE = 1e-4  # of the radius: the rolling angle turns by pi within a pass, at an error of its time
+AGREES_IN_FORCE = 1e-3  # of the weight: the centrifugal force of a pass has its peak there
+DISTURBED = 1e-9  # of gravity: a copy so far off predicts when chance comes in; the page errs by less
+DECIDED = 1e-6  # of gravity: where copies so far off end alike, how it ends is no matter of chance
+ROWS = ("tilt", "angle", "x", "y", "outward", "across", "normal")
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A case, and how it is supported: recess, flat, or planar in an azimuth [rad]."""
+
+    case: Case
+    support: str
+    azimuth: float = 0.0
+
+    def solved(self, case: Case, rtol: float = 1e-11) -> Trace:
+        options: dict[str, Any] = {"support": self.support}
+        if self.support == "planar":
+            options = {"plane": self.azimuth}
+        return simulate(case, rtol=rtol, sample_step=STEP, **options)
+
+    def stated(self) -> dict[str, object]:
+        """Return it as the page has it."""
+        case, body = self.case, self.case.cylinder
+        initial, tendon, motion = case.initial, case.tendon, case.motion
+        values: dict[str, object] = {
+            "diameter": 2.0 * body.base_radius,
+            "height": 2.0 * body.half_height,
+            "gamma": body.slab_mass_ratio,
+            "delta": case.rolling_resistance,
+            "prestress": tendon.prestress if tendon else 0.0,
+            "stiffness": tendon.stiffness if tendon else 0.0,
+            "support": self.support,
+            "azimuth": self.azimuth,
+            "duration": case.length,
+            "release": None,
+            "motion": None,
+        }
+        if initial is not None:
+            rate = initial.rolling_rate
+            values["release"] = {"tilt": initial.tilt, "azimuth": initial.rolling_angle, "rate": rate}
+        if motion is not None:
+            columns = np.asarray(motion.acceleration, dtype=np.float64).T.tolist()
+            values["motion"] = dict(zip("xyz", columns, strict=False)) | {
+                "dt": motion.time_step,
+                "scale": 1.0,
+            }
+        return values
+
+
+def problems() -> list[Problem]:
+    """Releases and records on all supports, with and without slab, loss and tendon."""
+    random = np.random.default_rng(SEED)
+    records = [el_centro_1940(), *synthetic_motions(3, peak=4.0, seed=SEED)]
+    found = []
+    for place in range(COUNT):
+        support = ("recess", "flat", "planar", "recess")[place % 4]
+        tan_alpha = float(random.uniform(0.1, 0.5))
+        body: Cylinder = Cylinder(semidiagonal=float(random.uniform(1.0, 12.0)), tan_alpha=tan_alpha)
+        if place % 5 == 1:
+            body = WobblingFrame(body, float(random.uniform(0.3, 3.0)))
+        azimuth = float(random.uniform(-math.pi, math.pi))
+        loss = place % 3 == 1
+        tendon = None
+        if place % 3 != 0 and place % 12 != 4 and place % 24 != 10 and support != "flat":
+            tendon = Tendon(prestress=float(random.uniform(0, 1)), stiffness=float(random.uniform(0, 8)))
+        initial, motion = None, None
+        if (place // 4) % 3 == 0:
+            rate = 0.0 if support == "planar" else float(random.uniform(0.05, 0.8))
+            tilt = float(random.uniform(0.2, 0.9)) * body.alpha
+            initial = InitialState(tilt=tilt, rolling_angle=azimuth, rolling_rate=rate)
+        else:
+            motion = records[place % len(records)]
+            uplift = 9.81 * tan_alpha * (tendon.uplift_factor(body) if tendon else 1.0)
+            motion = motion.scaled(float(random.uniform(1.2, 4.0)) * uplift / motion.peak)
+            if place % 7 == 3:
+                x, y = np.asarray(motion.acceleration).T[:2]
+                motion = GroundMotion(np.column_stack([x, y, 0.4 * x[::-1]]), motion.time_step, motion.name)
+        case = Case(
+            body,
+            motion,
+            initial=initial,
+            duration=12.0 if motion is None else min(motion.duration, 20.0),
+            rolling_resistance=float(random.uniform(0.001, 0.02)) * body.base_radius if loss else 0.0,
+            tendon=tendon,
+        )
+        found.append(Problem(case, support, azimuth))
+    return found
+
+
+RUNS = """
+const NUMBERS = ["outcome", "peak", "upliftTime"], ROWS = ["time", "tilt", "angle", "x", "y", "outward", "across", "normal"];
+const found = PROBLEMS.map((each) => {
+  const run = simulateMotion(each, each.motion, { sampleStep: STEP });
+  return Object.fromEntries([...NUMBERS.map((name) => [name, run[name]]), ...ROWS.map((name) => [name, Array.from(run[name])])]);
+});
+document.body.textContent = JSON.stringify(found);
+"""  # noqa: E501
+
+
+def on_the_page(
+    solved: list[Problem], folder: Path, *, broken: tuple[str, str] | None = None
+) -> list[dict[str, Any]]:
+    """Return what the scripts of the page make of problems; `broken`: a text of theirs, and another."""
+    scripts = "\n".join((SCRIPTS / name).read_text() for name in ("model.js", "motion.js"))
+    if broken is not None:
+        assert scripts.count(broken[0]) == 1
+        scripts = scripts.replace(*broken)
+    runs = RUNS.replace("PROBLEMS", json.dumps([each.stated() for each in solved])).replace("STEP", str(STEP))
+    page = folder / "model.html"
+    page.write_text(f'<!doctype html><meta charset="utf-8"><body><script>{scripts}{runs}</script></body>')
+    text = dumped(page)
+    return json.loads(text[text.index("[{") : text.rindex("}]") + 2])
+
+
+@pytest.fixture(scope="module")
+def solved() -> list[tuple[Problem, Trace, Trace]]:
+    """Problems, with the motion of each and that of a disturbed copy."""
+    return [
+        (each, each.solved(each.case), each.solved(disturbed(each.case, DISTURBED))) for each in problems()
+    ]
+
+
+def apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
+    count = min(len(one), len(other))
+    return np.abs(one[:count] - other[:count])
+
+
+def agreement(trace: Trace, copy: Trace) -> int:
+    """Return for how many samples a disturbed copy is within what the page may be off."""
+    leaves = apart(trace.tilt, copy.tilt) > AGREES * trace.case.cylinder.alpha
+    return int(leaves.argmax()) if leaves.any() else len(leaves)
+
+
+def complaints_of(solved: list[tuple[Problem, Trace, Trace]], runs: list[dict[str, Any]]) -> list[str]:
+    """Return what differs between page and package."""
+    wrong = []
+    for place, ((problem, trace, copy), run) in enumerate(zip(solved, runs, strict=True)):
+        body, until = problem.case.cylinder, agreement(trace, copy)
+        rows = {name: np.array(run[name], dtype=np.float64)[:until] for name in ROWS}
+        opened = trace.tilt[:until] > CLOSED_TILT * body.alpha
+        radius = body.base_radius
+        point = np.column_stack([rows["x"], rows["y"]])
+        point += radius * np.column_stack([np.cos(rows["angle"]), np.sin(rows["angle"])])
+        force, weight = trace.contact_force[:until], problem.case.gravity
+        off = {
+            "tilt": (apart(rows["tilt"], trace.tilt) / body.alpha, AGREES),
+            "contact": (np.abs(point - trace.contact_point[:until])[opened] / radius, AGREES_IN_PLACE),
+            "normal force": (apart(rows["normal"] / weight, force[:, 2])[opened], AGREES_IN_FORCE),
+            "horizontal force": (
+                apart(np.hypot(rows["outward"], rows["across"]) / weight, np.hypot(*force[:, :2].T))[opened],
+                AGREES_IN_FORCE,
+            ),
+        }
+        label = f"{place} {problem.support}"
+        for name, (size, allowed) in off.items():
+            if not size.max(initial=0.0) <= allowed:
+                wrong.append(f"{label}: {name} off by {size.max():.2g} until {trace.time[until - 1]:.2f} s")
+        ends = {problem.solved(disturbed(problem.case, by)).outcome for by in (DECIDED, -DECIDED)}
+        if ends == {trace.outcome} and run["outcome"] != trace.outcome:
+            wrong.append(f"{label}: {run['outcome']}, not {trace.outcome}")
+    return wrong
+
+
+@needs_chromium
+def test_the_page_moves_as_the_reduced_models(solved, tmp_path: Path):
+    assert len({trace.outcome for _, trace, _ in solved}) == 2
+    runs = on_the_page([each for each, _, _ in solved], tmp_path)
+    assert complaints_of(solved, runs) == []
+
+
+@needs_chromium
+@pytest.mark.parametrize(
+    "broken",
+    [
+        # terms of recess, tendon, couple and uplift, 1e-4 off; of the place on flat ground, 1e-3
+        ("s * H1 / 2) / o.A", "s * H1 / 2.0002) / o.A"),
+        ("(o.b * o.I1 - o.h * o.I2 * t) / H * at", "(o.b * o.I1 - 1.001 * o.h * o.I2 * t) / H * at"),
+        ("q = gaps * prestress * g / w", "q = 1.0001 * gaps * prestress * g / w"),
+        ("share = load / (o.A * speed", "share = 1.0001 * load / (o.A * speed"),
+        ("(o.ca * c + o.sa * s) * ar", "(o.ca * c + 1.0001 * o.sa * s) * ar"),
+        ("mu = (1 + 4 * gamma) / w", "mu = (1 + 4.0004 * gamma) / w"),
+    ],
+)
+def test_a_term_that_is_off_is_found(broken, solved, tmp_path: Path):
+    runs = on_the_page([each for each, _, _ in solved], tmp_path, broken=broken)
+    assert complaints_of(solved, runs) != []

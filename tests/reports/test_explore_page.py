@@ -1,0 +1,140 @@
+"""The page of `explore`: what the command writes and refuses, and the page in a browser."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser import complaints, needs_chromium
+
+from rockwobble.reports.cli.main import main
+
+MOST = 400_000  # bytes with El Centro
+PEER = "example\nof a record\nACCELERATION IN G\nNPTS= 5, DT= .01 SEC\n 0.0 0.1 0.3 -.2 0.0\n"
+
+# a worker that answers in the page itself: the browser's own time, which runs ahead, waits for no other
+WORKER = """
+class Worker {
+  constructor(address) {
+    const asked = new XMLHttpRequest();
+    asked.open("GET", address, false);
+    asked.send();
+    this.inside = new Function("postMessage", `let onmessage; ${asked.responseText}; return (data) => onmessage({ data });`);
+    this.run = this.inside((data) => setTimeout(() => this.onmessage({ data })));
+  }
+  postMessage(data) { if (!data.row || data.level === 8) this.run(data); }
+}
+"""  # noqa: E501
+# moved, the page must say what it shows; its address, its command and its Python must have the state
+MOVED = """
+window.lookFurther = (found) => {
+  const root = document.getElementById("explore"), part = (name) => root.querySelector(`[data-part="${name}"]`);
+  const say = (words) => found.push(words);
+  if (part("outcome").textContent !== "Stands") say(`at first it says ${part("outcome").textContent}`);
+  if (!part("results").textContent.includes("0.243 α")) say(`peak: ${part("results").textContent}`);
+  const slider = root.querySelector('[data-field="intensity"] input[type="range"]');
+  for (const [name, value] of [["beside", "stronger"]]) { part(name).value = value; part(name).dispatchEvent(new Event("change")); }
+  slider.value = 800;
+  slider.dispatchEvent(new Event("input"));
+  const { state, commandOf, pythonOf } = window.rockwobbleExplore;
+  if (!commandOf(state).includes(`--scale ${state.intensity}`)) say(commandOf(state));
+  if (!pythonOf(state).includes(`.scaled(${state.intensity})`)) say(pythonOf(state));
+  for (const input of root.querySelectorAll("input, select, canvas, button")) {
+    if (!(input.labels && input.labels.length) && !input.ariaLabel && !input.textContent.trim()) say(`no label: ${input.outerHTML}`);
+  }
+};
+"""  # noqa: E501
+
+
+def call(*arguments: str) -> int:
+    with pytest.raises(SystemExit) as ended:
+        main(["explore", "--no-open", *arguments])
+    return int(ended.value.code or 0)
+
+
+def given(page: Path) -> dict[str, Any]:
+    """Return what the page was given."""
+    found = re.search(r'id="given">(.*?)</script>', page.read_text(encoding="utf-8"), re.DOTALL)
+    assert found
+    return json.loads(found[1])
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    for name in ("EW.AT2", "NS.AT2"):
+        (tmp_path / name).write_text(PEER)
+    return tmp_path
+
+
+@needs_chromium
+def test_the_page_is_drawn_and_says_what_it_shows(folder: Path) -> None:
+    assert call() == 0
+    page = (folder / "explore.html").read_text(encoding="utf-8")
+    assert len(page.encode()) <= MOST
+    page = page.replace("<body>", f"<body><script>{WORKER}</script>")
+    assert complaints(page, folder, figures=4, further=MOVED) == []
+
+
+def test_the_options_are_where_the_sliders_stand(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    size = ["--diameter", "0.5", "--height", "3", "--slab-mass-ratio", "1", "--rolling-resistance", "0.002"]
+    record = ["--record-x", "EW.AT2", "--record-y", "NS.AT2", "--scale", "2"]
+    assert call(*size, *record, "--support", "flat", "--out", "mine.html") == 0
+    assert "mine.html: " in capsys.readouterr().out
+    found = given(folder / "mine.html")
+    state = {name: found["state"][name] for name in ("diameter", "height", "slab", "loss", "intensity")}
+    assert state == pytest.approx(
+        {"diameter": 0.5, "height": 3.0, "slab": 1.0, "loss": 2.0, "intensity": 2.0}
+    )
+    assert found["state"]["support"] == "flat"
+    (stated,) = found["records"]
+    assert stated["options"] == {"record-x": "EW.AT2", "record-y": "NS.AT2"}
+    assert stated["python"] == "rw.read_record('EW.AT2', 'NS.AT2')"
+
+
+def test_a_release_and_a_plane_are_where_it_begins(folder: Path) -> None:
+    assert call("--release-tilt-deg", "4", "--rolling-rate", "0.3", "--duration", "7") == 0
+    found = given(folder / "explore.html")
+    assert (found["state"]["record"], found["state"]["rate"], found["free"]) == (-1, 0.3, 7.0)
+    assert found["state"]["tilt"] == pytest.approx(4.0)
+    assert call("--plane", "1", "--overwrite") == 0
+    state = given(folder / "explore.html")["state"]
+    assert (state["support"], state["plane"]) == ("planar", pytest.approx(57.2957795))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["--friction", "0.5"], "--friction is not part of the model in the page"),
+        (["--support", "ring"], "--support must be one of recess, flat, got 'ring'"),
+        (["--plane", "0", "--support", "flat"], "--plane holds the motion on any support, got --support"),
+        (["--tendon-prestress", "1", "--support", "flat"], "the models have no tendon on --support flat"),
+        (
+            ["--release-tilt-deg", "3", "--record-x", "EW.AT2", "--record-y", "NS.AT2"],
+            "--release-tilt-deg takes the place of a record here, got --record-x beside it",
+        ),
+        (["--records", ".", "--record", "EW.AT2"], "--records names all ground motions, got --record"),
+        (["--units", "g"], "--units belongs to a record, give --record-x and --record-y as well"),
+        (["--diameter", "-1", "--height", "3"], "--diameter must be above 0, got -1"),
+        (["--out", "none/explore.html"], "--out must be a file in a folder that exists, got none"),
+        (["--out", "EW.AT2"], "--out EW.AT2 holds something else: name another file, or replace it by"),
+    ],
+)
+def test_what_does_not_go_is_refused(
+    arguments: list[str], line: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call(*arguments) == 2
+    assert capsys.readouterr().err.startswith(f"rockwobble: {line}")
+    assert not (folder / "explore.html").exists()
+    assert (folder / "EW.AT2").read_text() == PEER
+
+
+def test_a_page_of_other_options_is_not_replaced(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert call() == 0
+    assert call() == 0  # the same again
+    assert call("--scale", "2") == 2
+    assert "what this command has made with other options" in capsys.readouterr().err
+    assert call("--scale", "2", "--overwrite") == 0
