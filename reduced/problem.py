@@ -261,9 +261,26 @@ class Problem:
 
 
 def balance_tilt_of_case(case: Case) -> float:
-    """Return the tilt at which the static couple of a case vanishes [rad]: alpha without a tendon.
+    """Return the tilt at which the static couple of a case vanishes: alpha without a tendon.
 
-    Infinite where there is none below pi/2, so that nothing but shaking or spin overturns the body.
+    Parameters
+    ----------
+    case : Case
+        Of a cylinder or frame, with or without a tendon.
+
+    Returns
+    -------
+    float
+        Balance tilt [rad]; infinite where there is none below pi/2, so that nothing but shaking or spin
+        overturns the body.
+
+    Examples
+    --------
+    >>> from rockwobble.models import Cylinder, Tendon
+    >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> case = Case(pier, duration=1.0, tendon=Tendon(prestress=0.5))
+    >>> round(balance_tilt_of_case(case) / pier.alpha, 3)
+    1.492
     """
     return float(balance(Problem(case).body))
 
