@@ -357,7 +357,7 @@ def check(
     --------
     >>> import rockwobble as rw
     >>> rw.check(only=["equations"])
-    Checks(4 passed, reduced model)
+    Checks(5 passed, reduced model)
     """
     given = [engine, model, trajectory, suite]
     if sum(each is not None for each in given) > 1:

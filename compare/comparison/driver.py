@@ -81,10 +81,9 @@ def comparison(
 
     Raises
     ------
-    TypeError
-        If `case_or_suite` is none.
     ValueError
-        If an engine, a support, a setting, a file or the folder is not usable; nothing is written then.
+        If an argument is of another kind, or an engine, a support, a setting, a file or the folder is not
+        usable; nothing is written then.
 
     Examples
     --------
@@ -96,8 +95,6 @@ def comparison(
     >>> found.summary[["engine", "support", "reference_support", "diverged"]].values.tolist()
     [['mujoco', 'recess', 'recess', False]]
     """
-    if not isinstance(case_or_suite, Case | Suite):
-        raise TypeError(f"a comparison is of a Case or a Suite, got {case_or_suite!r}")
     if out is not None:
         require_writable(out)
     if until is not None and not until > 0.0:
@@ -179,9 +176,6 @@ def _runs(case_or_suite: Case | Suite, runs: Iterable[Run] | None, *, needed: bo
     chosen = chosen or default_runs()
     if not chosen:
         raise ValueError("there must be at least one engine to compare with, found none installed")
-    for run in chosen:
-        if not isinstance(run, Run):
-            raise TypeError(f"runs must be Run values, such as Run('mujoco', 'recess'), got {run!r}")
     return chosen
 
 

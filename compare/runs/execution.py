@@ -113,29 +113,14 @@ def simulate(
     return simulate_run(case, Run(engine, support, time_step, **settings), sample_step=sample_step)
 
 
-def require_case(case: object) -> None:
-    """Check that what is to run is a case.
-
-    Raises
-    ------
-    TypeError
-        If not, saying how one is made.
-    """
-    if not isinstance(case, Case):
-        raise TypeError(f"case must be a Case, such as Case(cylinder, motion), got {case!r}")
-
-
 def simulate_run(case: Case, run: Run, *, sample_step: float = SAMPLE_STEP) -> Trace:
     """Run a reduced model or an engine on a case, as `run` says.
 
     Raises
     ------
-    TypeError
-        If `case` is none.
     ValueError
         What `reduced.simulate` or `multibody.simulate` raises.
     """
-    require_case(case)
     if run.engine is None:
         from rockwobble import reduced
 

@@ -128,7 +128,7 @@ def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeyp
 
 def test_what_is_no_case_is_refused_by_its_name(case):
     for call in (simulate, comparison):
-        with pytest.raises(TypeError, match=r"Case.*, got Cylinder\("):
+        with pytest.raises(ValueError, match=r"Case.*, got Cylinder\("):
             call(case.cylinder)
 
 

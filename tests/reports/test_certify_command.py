@@ -47,7 +47,7 @@ def changed(certificate: Path, folder: Path) -> Path:
 
 def test_a_certificate_says_what_holds_and_what_is_open(certificate: Path) -> None:
     found = json.loads(certificate.read_text())
-    assert len(found["fingerprint"]) == 13
+    assert len(found["fingerprint"]) == 14
     assert {claim["status"] for claim in found["claims"]} == {"verified"}
     assert all(claim["measured"] <= claim["bound"] for claim in found["claims"])
     assert any("no experiment" in point for point in found["not_covered"])

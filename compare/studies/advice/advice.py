@@ -23,7 +23,7 @@ from rockwobble.models.trace import NO_PEAK
 from ...metrics.pair import overturned, tolerance_of
 from ...metrics.statistics import Contrast, contrast
 from ...runs.choice import require_runnable
-from ...runs.execution import Job, job_fingerprint, require_case, simulate_run
+from ...runs.execution import Job, job_fingerprint, simulate_run
 from ...runs.progress import ProgressCallback, stages
 from ...storage.manifest import Number
 from ...storage.provenance import fingerprint
@@ -420,7 +420,6 @@ def advise(
     >>> found.trust.kind, found.grades["engine"]
     ('trace', 'not tested')
     """
-    require_case(case)
     plan = AdvicePlan(
         support=support or ("recess" if run is None else run.support),
         copies=copies,
