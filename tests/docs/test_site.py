@@ -143,7 +143,8 @@ def test_no_term_is_used_before_it_is_a_link_to_the_glossary(pages: dict[str, Pa
 
 @needs_chromium
 def test_every_page_is_drawn_quiet_and_no_wider_than_the_window(tmp_path: Path) -> None:
-    wrong, waiting = [], names()
+    # what `rockwobble explore` writes is looked at in its own test, by a worker that the browser waits for
+    wrong, waiting = [], [name for name in names() if name != "explore.html"]
     while waiting:
         together, waiting = waiting[:TOGETHER], waiting[TOGETHER:]
         sources = []
