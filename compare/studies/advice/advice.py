@@ -49,6 +49,7 @@ from .grades import (
 from .members import (
     BESIDE_THE_PROBLEM,
     COPIES,
+    DEMAND_STEP,
     HORIZONTAL,
     OTHER,
     VELOCITY,
@@ -80,7 +81,6 @@ VERTICAL_COUNT = 20  # pairs of copies with and without the vertical component
 # members of each group that are run at each intensity of weaker shaking: all other records, and as many
 # copies, of which 95 % are all but one
 WEAKER_COUNT = 22
-WEAKER_STEP = 0.02  # [s] of their samples: what 99 % of the time is not exceeded needs no more
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -451,7 +451,7 @@ def advise(
     with stage(f"{plan.copies} perturbed copies"):
         if moves:  # in this process: other ones take longer to begin than hundreds of reduced runs
             groups[COPIES] = plan.perturbed(case)
-            perturbed = [simulate_run(each, model) for each in groups[COPIES]]
+            perturbed = [simulate_run(each, model, sample_step=DEMAND_STEP) for each in groups[COPIES]]
             if case.tendon is None:  # no other model knows one
                 others = [simulate_run(each, other, sample_step=BAND_STEP) for each in groups[COPIES]]
         rows = [*member_rows(COPIES, perturbed), *member_rows(OTHER, others)]
@@ -664,7 +664,8 @@ def vertical_effect(
     runs: dict[str, list[Trace]] = {}
     for name, each in ((VERTICAL, record), (HORIZONTAL, without_vertical(record))):
         shaken = dataclasses.replace(case, motion=each, duration=duration)
-        runs[name] = [simulate_run(copy, model) for copy in plan.perturbed(shaken, VERTICAL_COUNT)]
+        copies = plan.perturbed(shaken, VERTICAL_COUNT)
+        runs[name] = [simulate_run(copy, model, sample_step=DEMAND_STEP) for copy in copies]
     found = _contrast(*runs.values())
     ratios = None if found is None or not found.compared else ratios_of(found)
     kept = {"own": HORIZONTAL, "shipped": VERTICAL}.get(source, "")
@@ -685,7 +686,7 @@ def weaker_rows(case: Case, groups: Mapping[str, Sequence[Case]], model: Run) ->
         row
         for factor in weaker_factors(threshold)
         for name, cases in groups.items()
-        for row in run_rows(name, cases[:WEAKER_COUNT], model, factor, sample_step=WEAKER_STEP)
+        for row in run_rows(name, cases[:WEAKER_COUNT], model, factor)
     ]
 
 
