@@ -223,13 +223,14 @@ def damaged_line(lines: Sequence[str]) -> int | None:
     touched = 0
     for begin in range(0, len(lines), CHUNK):
         chunk = lines[begin : begin + CHUNK]
-        if plain_numbers("\n".join(chunk)) is not None:
+        text = "\n".join(chunk)
+        if plain_numbers(text) is not None:
             continue
-        for at, line in enumerate(chunk, start=begin):
-            if plain_numbers(line) is None:
-                if not only_numbers(line):
+        if not only_numbers(text):
+            for at, line in enumerate(chunk, start=begin):
+                if plain_numbers(line) is None and not only_numbers(line):
                     return at
-                touched += len(line)
+        touched += len(text)
         if touched > _LONGEST_TOUCHING:
             return None
     return None

@@ -174,6 +174,8 @@ def view(
 
     Example: rockwobble view --scale 2 --support flat
     """
+    from ..figures.playback import require_something_to_play
+
     with interruptible():
         with user_input():
             if folder is not None:
@@ -194,7 +196,10 @@ def view(
             echo(describe(case))
             with user_input(), shown_progress() as progress:
                 comparison = rw.comparison(case, runs=[run], progress=progress)
-        show_and_save(comparison.of_case(name), out)
+        found = comparison.of_case(name)
+        with user_input():
+            require_something_to_play(found)
+        show_and_save(found, out)
     if sys.stdout.isatty() if opened is None else opened:
         import webbrowser
 

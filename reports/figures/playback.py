@@ -7,9 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.compare import Comparison
 from rockwobble.models import Trace
 
-from .case_view import CaseView
+from .case_view import CaseView, case_views
 from .interactive import packed
 
 # in a second: between them the page interpolates
@@ -52,6 +53,18 @@ def playback(view: CaseView) -> dict[str, object] | None:
         "magnify": _magnifications(view),
         "trail": round(_TRAIL * _PICTURES),
     }
+
+
+def require_something_to_play(found: Comparison) -> None:
+    """Refuse a comparison of one case in which nothing moves.
+
+    Raises
+    ------
+    ValueError
+    """
+    (view,) = case_views(found)
+    if playback(view) is None:
+        raise ValueError(f"there is nothing to play in {view.case.name!r}: the cylinder never uplifts")
 
 
 def _body(label: str, trace: Trace, colour: str, opacity: float) -> dict[str, object]:

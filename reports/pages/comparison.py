@@ -27,7 +27,7 @@ from ..figures.comparison import (
     turn_picture,
 )
 from ..figures.picture import Line, Picture
-from ..figures.playback import playback
+from ..figures.playback import playback, require_something_to_play
 from .cases import describe, group_of
 from .findings import (
     CAUSES,
@@ -332,17 +332,10 @@ def _short(label: str, support: str) -> str:
 
 
 def _player_page(found: View) -> Page:
-    """Return the page that plays a comparison of one case.
-
-    Raises
-    ------
-    ValueError
-        If nothing moves.
-    """
+    """Return the page that plays a comparison of one case; a ValueError if nothing moves."""
+    require_something_to_play(found)
     (view,) = case_views(found)
     spec = playback(view)
-    if spec is None:
-        raise ValueError(f"there is nothing to play in {view.case.name!r}: the cylinder never uplifts")
     return Page(
         name="view",
         template="comparison/view",

@@ -71,6 +71,15 @@ def test_nothing_is_played_where_nothing_moves():
         page_of(made.of_case("still"))
 
 
+def test_a_view_of_what_never_uplifts_is_one_line(tmp_path, in_this_process, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as end:
+        main(["view", "--scale", "0.01"])
+    assert end.value.code == 2
+    assert capsys.readouterr().err.splitlines()[-1].startswith("rockwobble: there is nothing to play in")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_stored_results_are_played_and_drawn_again_without_a_run(comparison, tmp_path, monkeypatch, capsys):
     stored = tmp_path / "stored"
     comparison.save(stored)
