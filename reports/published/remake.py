@@ -75,6 +75,10 @@ STUDIES = {
     "--levels 1.25,1.5,1.75,2.1,2.5,3,3.6,4.3,5.2,6.3,7.6,9.2,12 --limit overturned --friction 3 "
     "--step-factor 8 --engine mujoco --support recess --support flat --hazard risk/en1998-k3.csv "
     "--hazard-measure pga",
+    # the pier above with a tendon that pulls with half its weight, and one weight more for each base radius
+    "risk/tendon": "fragility --p695 --cylinder pier=6,0.2 --levels 1.5,2.1,3,4.3,6.3,9.2,13,18 "
+    "--limit overturned --friction 3 --step-factor 8 --engine mujoco --support recess "
+    "--tendon-prestress 0.5 --tendon-stiffness 1 --hazard risk/en1998-k3.csv --hazard-measure pga",
     "extremes": "extremes",
     "tradeoff": "tradeoff --quick",  # the full extent takes an hour of one core
     "validity": "validity",
