@@ -15,11 +15,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, Run, Suite, Trace, perturbed_copies
+from rockwobble.models import Case, Run, Suite, Tendon, Trace, perturbed_copies
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.diagnostic import joined
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.number_checks import require_each
+from rockwobble.models.plain_json import fields_of
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.trace import NO_PEAK
 
@@ -187,6 +188,9 @@ def ensemble(
         results = simulate_all(jobs, workers=workers, progress=progress, cache=cache)
     table = _members(jobs, results)
     about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
+    about |= {"slab_mass_ratio": _of_all(case.cylinder.slab_mass_ratio for case in members)}
+    for name in ("gravity", "rolling_resistance", "tendon"):
+        about[name] = _of_all(getattr(case, name) for case in members)
     about |= {"methods": {label: _compared_with(run) for label, run in methods.items()}}
     about |= {"doubts": doubts_of_cases(members)}
     about |= {"record_sources": sources_of(case.motion for case in members)}
@@ -208,6 +212,14 @@ def ensemble_of(members: pd.DataFrame, about: Mapping[str, object]) -> Ensemble:
         "contrasts": contrast_table(members, methods),
     }
     return Ensemble(tables=tables, facts=about)
+
+
+def _of_all(values: Iterable[float | Tendon | None]) -> object:
+    """Return what all have, as plain fields; "differs" where there are several."""
+    value, *others = set(values)
+    if others:
+        return "differs"
+    return fields_of(value) if isinstance(value, Tendon) else value
 
 
 def _range(members: Sequence[Case], name: str) -> dict[str, float]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -27,12 +29,7 @@ def describe(case: Case) -> list[str]:
     if resistance > 0.0:
         lines.append(f"Rolling resistance: {case.rolling_resistance:g} m ({resistance:.3g} b)")
     tendon = case.tendon
-    if tendon is not None:
-        lines.append(
-            f"Tendon: prestress {tendon.prestress:.4g} weights of a column, stiffness {tendon.stiffness:.4g} "
-            "weights per base radius"
-            + (f", yields at {tendon.yield_force:.4g}" if tendon.yield_force is not None else "")
-        )
+    lines += conditions({"gravity": case.gravity, "tendon": tendon and dataclasses.asdict(tendon)})
     if motion is not None:
         # here, because the help of the command line needs no numpy
         from rockwobble.compare.studies.spectrum.maps import uplift_factor
@@ -56,6 +53,42 @@ def describe(case: Case) -> list[str]:
     lines += case_warnings([case])
     lines.append(f"Length of the run: {case.length:.4g} s")
     return lines
+
+
+_GRAVITY = 9.81  # [m/s^2], of which a page says nothing
+DIFFERS = "differs"  # a condition that cases have several of
+
+
+def conditions(facts: Mapping[str, Any]) -> list[str]:
+    """Return a line on each condition of a study that is not the usual one.
+
+    Parameters
+    ----------
+    facts : mapping
+        gravity [m/s^2], slab_mass_ratio [-], rolling_resistance [m]; tendon, a mapping of its fields, or
+        tendon_prestress and tendon_stiffness. Each may be missing, or be `DIFFERS`.
+    """
+    gravity = facts.get("gravity", _GRAVITY)
+    slab, resistance = facts.get("slab_mass_ratio", 0.0), facts.get("rolling_resistance", 0.0)
+    tendon = facts.get("tendon") or {
+        name: facts.get(f"tendon_{name}", 0.0) for name in ("prestress", "stiffness")
+    }
+    pulls = tendon if isinstance(tendon, str) else any(tendon.values()) and _of_tendon(tendon)
+    stated = {
+        "Slab": slab and (slab if slab == DIFFERS else f"{slab:g} times the mass of its columns"),
+        "Rolling resistance": resistance and (resistance if resistance == DIFFERS else f"{resistance:g} m"),
+        "Tendon": pulls,
+        "Gravity": gravity != _GRAVITY and (gravity if gravity == DIFFERS else f"{gravity:g} m/s²"),
+    }
+    return [f"{name}: {words}" for name, words in stated.items() if words]
+
+
+def _of_tendon(fields: Mapping[str, Any]) -> str:
+    yields = fields.get("yield_force")
+    return (
+        f"prestress {fields['prestress']:.4g} weights of a column, stiffness {fields['stiffness']:.4g} "
+        "weights per base radius"
+    ) + (f", yields at {yields:.4g}" if yields is not None else "")
 
 
 MOST_SHOWN = 12  # sources of records; the pages have the same number

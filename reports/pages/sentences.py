@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockwobble.compare.runs.choice import REDUCED
 
+from .cases import conditions
 from .diagnostics import warnings
 
 if TYPE_CHECKING:
@@ -63,6 +64,7 @@ def the(label: str, engine: str) -> str:
 _FILTERS = {
     **{"seconds": seconds, "small": small, "listed": listed, "the": the, "degrees": math.degrees},
     "warnings": warnings,
+    "conditions": conditions,
     "lookup": lambda name, table: table[name],
 }
 

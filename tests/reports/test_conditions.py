@@ -1,0 +1,91 @@
+"""No page leaves out a condition that is not the usual one: it would be read as of another problem."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+import rockwobble as rw
+from rockwobble.compare.storage.results import Results
+from rockwobble.models import synthetic_motions
+from rockwobble.reports.pages import page_of
+from rockwobble.reports.pages.cases import conditions, describe
+
+BODY = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+FRAME = rw.WobblingFrame(BODY, slab_mass_ratio=0.3)
+MOTIONS = synthetic_motions(3, peak=1.5, seed=2, duration=4.0)
+TENDON = {"tendon_prestress": 0.25, "tendon_stiffness": 1.75}
+# two that stand in one plane are not compared: all pages have gravity, and one of the others
+STATED = {
+    "slab": ({"slab_mass_ratio": 0.3}, ["0.3 times"]),
+    "resistance": ({"rolling_resistance": 0.0625}, ["0.0625"]),
+    "tendon": (TENDON, ["restress 0.25", "stiffness 1.75"]),
+}
+
+
+def case_of(options: dict[str, float], motion: rw.GroundMotion) -> rw.Case:
+    tendon = rw.Tendon(prestress=0.25, stiffness=1.75) if "tendon_prestress" in options else None
+    return rw.Case(
+        FRAME if "slab_mass_ratio" in options else BODY,
+        motion,
+        gravity=options["gravity"],
+        rolling_resistance=options.get("rolling_resistance", 0.0),
+        tendon=tendon,
+        name=motion.name,
+    )
+
+
+def a_fragility(options: dict[str, Any]) -> Results:
+    body = {"pier": FRAME if options.pop("slab_mass_ratio", 0.0) else BODY}
+    return rw.fragility(body, MOTIONS, levels=[1.0, 2.0], methods=["recess"], workers=1, **options)
+
+
+def a_sweep(options: dict[str, Any]) -> Results:
+    size = {"semidiagonals": [6.0], "tan_alphas": [0.2], "scales": [1.0], "motions": MOTIONS}
+    return rw.sweep(rw.Grid(**size, **options), workers=1)
+
+
+def a_spectrum(options: dict[str, Any]) -> Results:
+    sizes, intensities = [5.0, 6.0], [1.0, 2.0]
+    return rw.spectrum(0.2, MOTIONS[0], semidiagonals=sizes, intensities=intensities, workers=1, **options)
+
+
+def an_ensemble(options: dict[str, Any]) -> Results:
+    return rw.ensemble([case_of(options, motion) for motion in MOTIONS], runs=[], workers=1)
+
+
+def an_advice(options: dict[str, Any]) -> Results:
+    return rw.advise(case_of(options, MOTIONS[0]), copies=20)
+
+
+STUDIES = (a_fragility, a_sweep, a_spectrum, an_ensemble, an_advice)
+# a grid has no resistance
+ASKED = [(each, name) for each in STUDIES for name in STATED if (each, name) != (a_sweep, "resistance")]
+
+
+@pytest.mark.parametrize(("study", "condition"), ASKED)
+def test_a_page_states_them(study: Callable[[dict[str, Any]], Results], condition: str) -> None:
+    options, words = STATED[condition]
+    text = page_of(study({"gravity": 3.75, **options}).made_by("rockwobble")).markdown()
+    for each in [*words, "ravity", "3.75 m/s²"]:
+        assert each in text, each
+
+
+def test_a_case_in_words_has_them() -> None:
+    for options, words in STATED.values():
+        text = "\n".join(describe(case_of({"gravity": 3.75, **options}, MOTIONS[0])))
+        for each in [*words, "3.75 m/s²"]:
+            assert each in text, each
+
+
+def test_an_ensemble_of_several_says_so() -> None:
+    members = [rw.Case(BODY, MOTIONS[0], gravity=gravity, name=str(gravity)) for gravity in (9.81, 3.75)]
+    found = rw.ensemble(members, runs=[], workers=1)
+    assert "Gravity: differs" in page_of(found.made_by("rockwobble")).markdown()
+
+
+def test_what_is_usual_is_not_said() -> None:
+    assert conditions({}) == []
+    assert conditions({"gravity": 9.81, "tendon_prestress": 0.0, "slab_mass_ratio": 0.0}) == []
