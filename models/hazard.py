@@ -248,13 +248,14 @@ def _frequencies(path: Path, values: Array, years: float | None) -> Array:
 
 def _two_columns(path: Path, text: str, years: float | None) -> tuple[Array, Array]:
     lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
-    rows = [[cell.strip() for cell in re.split(r"[,;\t]|\s+", line.strip())] for line in lines]
-    if not rows or any(len(row) != 2 for row in rows):
+    rows = [_cells(line) for line in lines]
+    titled = bool(rows) and not _is_number(rows[0][0])
+    if len(rows) == titled or any(len(row) != 2 for row in rows[titled:]):
         raise ValueError(
             f"{path.name} is no hazard curve: expected two columns, intensity and annual frequency of "
             "exceedance"
         )
-    if not _is_number(rows[0][0]):
+    if titled:
         header = " ".join(rows.pop(0)).lower()
         if years is None and re.search(r"poe|prob|p_", header):
             raise ValueError(
@@ -262,6 +263,13 @@ def _two_columns(path: Path, text: str, years: float | None) -> tuple[Array, Arr
                 "years=)"
             )
     return _numbers(path, rows, years)
+
+
+def _cells(line: str) -> list[str]:
+    """Cells of a line; beside semicolons and tabs a comma is that of a decimal."""
+    if ";" in line or "\t" in line:
+        return [cell.strip().replace(",", ".") for cell in re.split("[;\t]", line.strip())]
+    return [cell.strip() for cell in (line.split(",") if "," in line else line.split())]
 
 
 def _is_number(text: str) -> bool:

@@ -78,6 +78,11 @@ def openquake(imt: str) -> str:
             {"years": 50.0},
         ),
         ("a,f\n" + "\n".join(f"{9.81 * x!r},{y}" for x, y in zip(X, RATE, strict=True)), {"units": "m/s2"}),
+        ("PGA (g), rate [1/a]\n" + "\n".join(f"{x}, {y}" for x, y in zip(X, RATE, strict=True)), {}),
+        (
+            "PGA in g;Rate\n" + "\n".join(f"{x};{y}" for x, y in zip(X, RATE, strict=True)).replace(".", ","),
+            {},
+        ),
         (openquake("PGA"), {}),
         (openquake("SA(0.2)"), {"measure": "sa_mean", "period": 0.2}),
         (usgs(newer=False), {"measure": "sa_mean", "period": 0.2}),

@@ -41,6 +41,8 @@ RARE = -math.log1p(-0.02) / 50.0  # exceeded with 2 % in 50 years [1/year]
 FAR = 5.0  # factor on a motion beyond which its scaling is doubted
 # motions that overturn: of fewer, resamples are mostly of none, and each share has its exact bound instead
 _FEWEST_OVERTURNING = 3
+# standard error of a resample, over that of all motions
+_LEAST_ERROR = 0.2
 
 
 def lognormal_frequency(hazard: HazardCurve, centre: float, dispersion: float) -> float:
@@ -216,31 +218,87 @@ class Exposure:
             known = np.maximum((~np.isnan(self.y)).sum(axis=0), 1)
             shares = np.nansum(self.y, axis=0)[None] / known
             distant = np.nansum(np.where(self.x > self.far[:, None], self.y, 0.0), axis=0)[None] / known
-            of_far = self._of_shares(hazard, distant).total
-            return replace(self._of_shares(hazard, shares), far=of_far)
+            of_far = self.of_shares(hazard, distant).total
+            return replace(self.of_shares(hazard, shares), far=of_far)
         return frequencies_of(hazard, self.x, self.y, self.uplift, self.far)
 
-    def _of_shares(self, hazard: HazardCurve, shares: Array) -> Frequencies:
+    def of_shares(self, hazard: HazardCurve, shares: Array) -> Frequencies:
         """Return the annual frequency of each of some sets of shares (B, S)."""
         x, ones = np.tile(self.x.mean(axis=0), (len(shares), 1)), np.ones(len(shares))
         return frequencies_of(hazard, x, shares, self.uplift.min() * ones, np.inf * ones)
-
-    def resampled(self, hazard: HazardCurve, single: Array, weights: Array) -> Array:
-        """Return the annual frequency of each set of weights (B, R), from that of each motion (R,)."""
-        if not self.stripes:
-            known = ~np.isnan(single)
-            return np.asarray(weights[:, known] @ single[known] / weights[:, known].sum(axis=1))
-        runs, over = Sample(x=self.x, y=self.y).counts(weights)[1:]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            shares = over / runs  # NaN where all motions of a level that were drawn failed
-        return self._of_shares(hazard, shares).total
 
     def largest(self, hazard: HazardCurve) -> float:
         """Return the annual frequency by the upper ends of the intervals of the shares (Clopper-Pearson)."""
         runs, over = (~np.isnan(self.y)).sum(axis=0), np.nansum(self.y, axis=0)
         ends = [share_interval(int(k), int(n)).high if n else 1.0 for k, n in zip(over, runs, strict=True)]
-        bound = self._of_shares(hazard, np.array([ends]))
+        bound = self.of_shares(hazard, np.array([ends]))
         return float((bound.total + bound.missing)[0])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Resampled:
+    """An annual frequency, or a ratio of two, with those of resamples of its motions.
+
+    Attributes
+    ----------
+    value : float
+    drawn : ndarray, shape (B,)
+        Of each resample.
+    parts : ndarray, shape (1 + B, R) or None
+        What each motion adds to the logarithm of the value and of each that is drawn, to first order; None of
+        stripes, whose levels have motions of their own.
+    weights : ndarray, shape (1 + B, R)
+        How often each motion counts in them.
+    """
+
+    value: float
+    drawn: Array
+    parts: Array | None
+    weights: Array
+
+    def over(self, other: Resampled) -> Resampled:
+        """Return the ratio to another of the same resamples."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            parts = None if self.parts is None or other.parts is None else self.parts - other.parts
+            ratio, ratios = self.value / other.value, np.asarray(self.drawn / other.drawn)
+        return replace(self, value=ratio, drawn=ratios, parts=parts)
+
+    def interval(self, motions: int) -> Interval:
+        """Return the 95 % interval: of the logarithm over its standard error, as the resamples have it.
+
+        A frequency is a mean of which few motions have the most. The shares of the resamples themselves (the
+        percentiles) are too narrow for it, on the side of the danger: B. Efron and R. J. Tibshirani, An
+        Introduction to the Bootstrap, 1993, 12.5.
+        """
+        if self.parts is None or not self.value > 0.0:
+            return interval(self.value, self.drawn, motions)
+        counts = self.weights.sum(axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            errors = np.sqrt((self.weights * self.parts**2).sum(axis=1) * counts / (counts - 1.0))
+            # a resample of motions that are alike by chance has no error of its own
+            of_drawn = np.maximum(errors[1:], _LEAST_ERROR * errors[0])
+            deviations = (np.log(self.drawn) - math.log(self.value)) / of_drawn
+        found = interval(0.0, deviations, motions)
+        low, high = (self.value * np.exp(-end * errors[0]) for end in (found.high, found.low))
+        return Interval(value=self.value, low=float(low), high=float(high))
+
+
+def resampled(exposure: Exposure, hazard: HazardCurve, single: Array, weights: Array) -> Resampled:
+    """Return the annual frequency with that of each set of weights (B, R), from that of each motion (R,)."""
+    once = np.vstack([np.ones((1, weights.shape[1])), weights])
+    if exposure.stripes:
+        runs, over = Sample(x=exposure.x, y=exposure.y).counts(weights)[1:]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            shares = over / runs  # NaN where all motions of a level that were drawn failed
+        drawn = exposure.of_shares(hazard, shares).total
+        return Resampled(value=float(single.mean()), drawn=drawn, parts=None, weights=once)
+    known = ~np.isnan(single)
+    numbers = np.where(known, single, 0.0)
+    counts = once @ known.astype(float)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        means = once @ numbers / counts
+        parts = known * (numbers / means[:, None] - 1.0) / counts[:, None]
+    return Resampled(value=float(means[0]), drawn=means[1:], parts=parts, weights=once)
 
 
 def risk_tables(
@@ -274,16 +332,16 @@ def risk_tables(
     rows: list[dict[str, float | str]] = []
     parts = []
     for cylinder in blocks.cylinders:
-        reference: tuple[float, Array] | None = None
+        reference: Resampled | None = None
         for method in blocks.methods:
             exposure = exposures.get((cylinder, method))
             if exposure is None:
                 continue
             single = exposure.frequencies(hazard)
-            drawn = exposure.resampled(hazard, single.total, weights)
+            drawn = resampled(exposure, hazard, single.total, weights)
             stated = _stated(hazard, exposure, single, drawn, blocks.fewest)
             value = float(stated["annual_frequency"])
-            reference = (value, drawn) if reference is None else reference
+            reference = drawn if reference is None else reference
             curve = curves[cylinder, method]
             fit = math.nan if curve is None else lognormal_frequency(hazard, *curve)
             about = {"cylinder": cylinder, "method": method}
@@ -294,7 +352,7 @@ def risk_tables(
                     "annual_frequency_fit": fit,
                     "probability": -math.expm1(-value * years),
                     "margin": math.nan if curve is None else math.exp(curve[0]) / hazard.intensity_at(RARE),
-                    **_ratio(value, drawn, *reference, blocks.fewest).columns("ratio"),
+                    **_ratio(drawn, reference, blocks.fewest).columns("ratio"),
                 }
             )
             parts.append(_contributions(hazard, exposure, curve).assign(**about))
@@ -302,7 +360,7 @@ def risk_tables(
 
 
 def _stated(
-    hazard: HazardCurve, exposure: Exposure, single: Frequencies, drawn: Array, motions: int
+    hazard: HazardCurve, exposure: Exposure, single: Frequencies, drawn: Resampled, motions: int
 ) -> dict[str, float | int]:
     """Return the annual frequency with its interval and with what it rests on."""
     total, tail, missing, far = (
@@ -312,7 +370,9 @@ def _stated(
     if overturning < _FEWEST_OVERTURNING:
         found = Interval(value=total, low=0.0, high=exposure.largest(hazard))
     else:
-        found = interval(total, drawn, motions)
+        found = drawn.interval(motions)
+        # where so few overturn that many resamples are of none, these have no upper end
+        found = replace(found, high=min(found.high, max(exposure.largest(hazard), total)))
     share = 1.0 / total if total > 0.0 else math.nan
     return {
         **found.columns("annual_frequency"),
@@ -325,13 +385,16 @@ def _stated(
     }
 
 
-def _ratio(value: float, drawn: Array, reference: float, others: Array, motions: int) -> Interval:
+def _ratio(drawn: Resampled, reference: Resampled, motions: int) -> Interval:
     """Return a frequency over that of the reference, both of the same resamples."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = math.nan if not reference > 0.0 else value / reference
-        return interval(ratio, np.asarray(drawn / others), motions)
+    if drawn is reference:
+        return Interval(value=1.0, low=1.0, high=1.0) if drawn.value > 0.0 else _UNKNOWN
+    if not reference.value > 0.0:
+        return _UNKNOWN
+    return drawn.over(reference).interval(motions)
 
 
+_UNKNOWN = Interval(value=math.nan, low=math.nan, high=math.nan)
 _POINTS = 200  # of the picture
 
 
