@@ -356,3 +356,30 @@ def test_far_scaled_records_are_counted_and_synthetic_motions_are_not(found: rw.
     weak = points.assign(scale=100.0 * points["scale"], uplift_scale=100.0 * points["uplift_scale"])
     scaled = rw.compare.Fragility(tables={**found.tables, "points": weak}, facts=found.facts)
     assert scaled.risk(SITE)["far_share"].to_numpy() == pytest.approx(1.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(("lowest", "all_far"), [(5.05, True), (0.6, False)])
+def test_a_factor_above_5_is_far(found: rw.compare.Fragility, lowest: float, all_far: bool) -> None:
+    more = lowest / found.points["uplift_scale"].min()
+    points = found.points.assign(synthetic=False, scale=more * found.points["scale"])
+    points = points.assign(uplift_scale=more * points["uplift_scale"])
+    scaled = rw.compare.Fragility(tables={**found.tables, "points": points}, facts=found.facts)
+    share = scaled.risk(SITE)["far_share"].iloc[0]
+    assert share == pytest.approx(1.0, abs=1e-9) if all_far else 0.0 < share < 0.999
+
+
+def test_the_margin_is_the_median_of_the_curve_over_what_is_exceeded_with_2_percent_in_50_years(found):
+    table = found.risk(SITE).set_index("method")
+    fits = found.fits[found.fits["limit"] == "overturned"].set_index("method")
+    rare = SITE.intensity[0] * (SITE.annual_frequency[0] / (-math.log(0.98) / 50.0)) ** 0.5  # its power is -2
+    for method in ("recess model", "planar x"):
+        centre = math.log(table["margin"][method] * rare)
+        of_curve = lognormal_frequency(SITE, centre, fits["dispersion"][method])
+        # dispersion hardly differs by the measure: it is stated in the unit of the levels
+        assert table["annual_frequency_fit"][method] == pytest.approx(of_curve, rel=0.5)
+        assert table["annual_frequency_fit"][method] > SITE.exceedance(math.exp(centre))
+
+
+def test_below_the_first_point_of_a_hazard_its_frequency_counts() -> None:
+    hazard = power_law(low=0.1)
+    assert lognormal_frequency(hazard, math.log(1e-4), 0.3) == pytest.approx(hazard.annual_frequency[0])

@@ -272,9 +272,8 @@ class Resampled:
         """
         if self.parts is None or not self.value > 0.0:
             return interval(self.value, self.drawn, motions)
-        counts = self.weights.sum(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
-            errors = np.sqrt((self.weights * self.parts**2).sum(axis=1) * counts / (counts - 1.0))
+            errors = np.sqrt((self.weights * self.parts**2).sum(axis=1))
             # a resample of motions that are alike by chance has no error of its own
             of_drawn = np.maximum(errors[1:], _LEAST_ERROR * errors[0])
             deviations = (np.log(self.drawn) - math.log(self.value)) / of_drawn
