@@ -180,7 +180,7 @@ def test_the_ratio_of_two_methods_is_known_better_than_either() -> None:
             x = np.tile(levels, (motions, 1))
             sample = Exposure(x=x, y=y, made=np.full(x.shape, True), uplift=low, far=far)
             both.append(resampled(sample, hazard, sample.frequencies(hazard).total, weights))
-        of_ratio, alone = both[1].over(both[0]).interval(motions), both[0].interval(motions)
+        of_ratio, alone = both[1].over(both[0], motions), both[0].interval(motions)
         widths.append(math.log(of_ratio.high / of_ratio.low) / math.log(alone.high / alone.low))
         # of the means of two lognormal frequencies, each level within its width
         truth = math.exp(-0.3 * K + 0.5 * (0.1 * K) ** 2)

@@ -41,8 +41,9 @@ RARE = -math.log1p(-0.02) / 50.0  # exceeded with 2 % in 50 years [1/year]
 FAR = 5.0  # factor on a motion beyond which its scaling is doubted
 # motions that overturn: of fewer, resamples are mostly of none, and each share has its exact bound instead
 _FEWEST_OVERTURNING = 3
-# standard error of a resample, over that of all motions
-_LEAST_ERROR = 0.2
+# standard error of a resample, at least, over that of all motions: one that lacks the few which have most of
+# the mean knows nothing of its error
+_LEAST_ERROR = 0.6
 
 
 def lognormal_frequency(hazard: HazardCurve, centre: float, dispersion: float) -> float:
@@ -237,31 +238,28 @@ class Exposure:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Resampled:
-    """An annual frequency, or a ratio of two, with those of resamples of its motions.
+    """An annual frequency with those of resamples of its motions.
 
     Attributes
     ----------
     value : float
     drawn : ndarray, shape (B,)
         Of each resample.
-    parts : ndarray, shape (1 + B, R) or None
-        What each motion adds to the logarithm of the value and of each that is drawn, to first order; None of
-        stripes, whose levels have motions of their own.
-    weights : ndarray, shape (1 + B, R)
-        How often each motion counts in them.
+    errors : ndarray, shape (1 + B,) or None
+        Standard errors of the logarithm of the value and of each that is drawn; None of stripes, whose levels
+        have motions of their own.
     """
 
     value: float
     drawn: Array
-    parts: Array | None
-    weights: Array
+    errors: Array | None
 
-    def over(self, other: Resampled) -> Resampled:
-        """Return the ratio to another of the same resamples."""
+    def over(self, other: Resampled, motions: int) -> Interval:
+        """Return the ratio to another of the same resamples, with its 95 % interval: that of their ratios."""
+        if not other.value > 0.0:
+            return Interval(value=math.nan, low=math.nan, high=math.nan)
         with np.errstate(divide="ignore", invalid="ignore"):
-            parts = None if self.parts is None or other.parts is None else self.parts - other.parts
-            ratio, ratios = self.value / other.value, np.asarray(self.drawn / other.drawn)
-        return replace(self, value=ratio, drawn=ratios, parts=parts)
+            return interval(self.value / other.value, np.asarray(self.drawn / other.drawn), motions)
 
     def interval(self, motions: int) -> Interval:
         """Return the 95 % interval: of the logarithm over its standard error, as the resamples have it.
@@ -270,34 +268,33 @@ class Resampled:
         percentiles) are too narrow for it, on the side of the danger: B. Efron and R. J. Tibshirani, An
         Introduction to the Bootstrap, 1993, 12.5.
         """
-        if self.parts is None or not self.value > 0.0:
+        if self.errors is None or not self.value > 0.0:
             return interval(self.value, self.drawn, motions)
+        error, of_drawn = self.errors[0], np.maximum(self.errors[1:], _LEAST_ERROR * self.errors[0])
         with np.errstate(divide="ignore", invalid="ignore"):
-            errors = np.sqrt((self.weights * self.parts**2).sum(axis=1))
-            # a resample of motions that are alike by chance has no error of its own
-            of_drawn = np.maximum(errors[1:], _LEAST_ERROR * errors[0])
             deviations = (np.log(self.drawn) - math.log(self.value)) / of_drawn
         found = interval(0.0, deviations, motions)
-        low, high = (self.value * np.exp(-end * errors[0]) for end in (found.high, found.low))
+        low, high = (self.value * np.exp(-end * error) for end in (found.high, found.low))
         return Interval(value=self.value, low=float(low), high=float(high))
 
 
 def resampled(exposure: Exposure, hazard: HazardCurve, single: Array, weights: Array) -> Resampled:
     """Return the annual frequency with that of each set of weights (B, R), from that of each motion (R,)."""
-    once = np.vstack([np.ones((1, weights.shape[1])), weights])
     if exposure.stripes:
         runs, over = Sample(x=exposure.x, y=exposure.y).counts(weights)[1:]
         with np.errstate(divide="ignore", invalid="ignore"):
             shares = over / runs  # NaN where all motions of a level that were drawn failed
         drawn = exposure.of_shares(hazard, shares).total
-        return Resampled(value=float(single.mean()), drawn=drawn, parts=None, weights=once)
+        return Resampled(value=float(single.mean()), drawn=drawn, errors=None)
     known = ~np.isnan(single)
-    numbers = np.where(known, single, 0.0)
-    counts = once @ known.astype(float)
+    counted = np.vstack([np.ones((1, weights.shape[1])), weights])[:, known]
+    counts = counted.sum(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        means = once @ numbers / counts
-        parts = known * (numbers / means[:, None] - 1.0) / counts[:, None]
-    return Resampled(value=float(means[0]), drawn=means[1:], parts=parts, weights=once)
+        means = counted @ single[known] / counts
+        # what each motion adds to the logarithm of the mean, to first order
+        parts = (single[known] / means[:, None] - 1.0) / counts[:, None]
+    errors = np.sqrt((counted * parts**2).sum(axis=1))
+    return Resampled(value=float(means[0]), drawn=means[1:], errors=errors)
 
 
 def risk_tables(
@@ -351,7 +348,7 @@ def risk_tables(
                     "annual_frequency_fit": fit,
                     "probability": -math.expm1(-value * years),
                     "margin": math.nan if curve is None else math.exp(curve[0]) / hazard.intensity_at(RARE),
-                    **_ratio(drawn, reference, blocks.fewest).columns("ratio"),
+                    **drawn.over(reference, blocks.fewest).columns("ratio"),
                 }
             )
             parts.append(_contributions(hazard, exposure, curve).assign(**about))
@@ -384,16 +381,6 @@ def _stated(
     }
 
 
-def _ratio(drawn: Resampled, reference: Resampled, motions: int) -> Interval:
-    """Return a frequency over that of the reference, both of the same resamples."""
-    if drawn is reference:
-        return Interval(value=1.0, low=1.0, high=1.0) if drawn.value > 0.0 else _UNKNOWN
-    if not reference.value > 0.0:
-        return _UNKNOWN
-    return drawn.over(reference).interval(motions)
-
-
-_UNKNOWN = Interval(value=math.nan, low=math.nan, high=math.nan)
 _POINTS = 200  # of the picture
 
 
