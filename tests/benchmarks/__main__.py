@@ -35,6 +35,7 @@ SCRIPTS = (
     "speed",
     "step_errors",
     "sweep_overhead",
+    "tendons",
     "who_can_rock",
 )
 

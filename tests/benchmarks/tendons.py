@@ -1,0 +1,189 @@
+"""What a tendon does for overturning: medians over prestress and stiffness, in 3D and in planes.
+
+The bodies meet the same motions at the same intensities, and ratios of medians are of the same resamples of
+the motions. Stiffness is stated over the one at which the static couple neither falls nor grows with the
+tilt, w h/(n^2 b) weights per base radius.
+
+`python tests/benchmarks tendons` prints the tables that are published; ``--motions p695`` (or a number of
+synthetic ones) makes that of medians first, ``--engine mujoco`` that of flat ground, where the tendon takes
+the place of the recess, and ``--out FOLDER`` writes them there, medians with their figure.
+"""
+
+from __future__ import annotations
+
+import itertools
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockwobble import multibody
+from rockwobble.compare.metrics.statistics import quantile_interval
+from rockwobble.compare.studies.fragility.fit import Curves, interval, resamples
+from rockwobble.compare.studies.fragility.study import fragility
+from rockwobble.compare.studies.fragility.tables import Key, blocks_of, curves_of
+from rockwobble.models import Case, Cylinder, GroundMotion, Tendon, WobblingFrame
+from rockwobble.reports.figures.palette import run_styles
+from rockwobble.reports.figures.picture import Axis, Band, Line, Panel, Picture
+from rockwobble.reports.figures.svg import svg
+
+from .console import options_of, show
+from .decks import METHODS, RESAMPLES, SEED, motions_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+PUBLISHED = Path(__file__).parents[2] / "reports" / "published" / "tendons"
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+BODIES = {
+    "pier": PIER,
+    "pier under a deck": WobblingFrame(PIER, 0.5),
+    "column": Cylinder(semidiagonal=3.0, tan_alpha=0.15),
+    "tower": Cylinder(semidiagonal=10.0, tan_alpha=0.1),
+}
+PRESTRESS = (0.0, 0.25, 0.5, 1.0)
+STIFFNESS = (
+    0.0,
+    0.5,
+    1.0,
+    1.5,
+)  # over the neutral one: at it and beyond the couple brings it back from all tilts
+LEVELS = tuple(float(f"{level:.3g}") for level in np.geomspace(1.5, 60.0, 12))  # over g tan(alpha)
+FLAT_LEVEL, FLAT_STEP = 2.75, 5e-4  # [g tan(alpha)], [s]
+_OVERTURNED = "overturned"
+
+
+def neutral_stiffness(body: Cylinder) -> float:
+    """Return the stiffness at which the slope of the static couple is 0 [weights per base radius]."""
+    gaps = 2 if body.slab_mass_ratio > 0.0 else 1
+    return (1.0 + 2.0 * body.slab_mass_ratio) / (gaps**2 * body.tan_alpha)
+
+
+def medians(motions: Sequence[GroundMotion]) -> Iterator[dict[str, float | str]]:
+    """Yield medians with intervals, and ratios to the body without a tendon and to 3D."""
+    weights = resamples(len(motions), RESAMPLES, SEED)
+    for name, body in BODIES.items():
+        without: list[dict[Key, Curves]] = []
+        for stiffness, prestress in itertools.product(STIFFNESS, PRESTRESS):
+            found = fragility(
+                {name: body},
+                motions,
+                methods=METHODS,
+                levels=LEVELS,
+                resamples=RESAMPLES,
+                seed=SEED,
+                limits=[_OVERTURNED],
+                tendon_prestress=prestress,
+                tendon_stiffness=stiffness * neutral_stiffness(body),
+            )
+            blocks = blocks_of(found.runs, found.points, [_OVERTURNED], str(found.facts["measure"]))
+            curves = [curves_of(blocks), curves_of(blocks, weights)]
+            without = without or curves
+            for method in blocks.methods:
+                of_3d = blocks.methods[0]
+                own, alone, in_3d = (
+                    [each[name, which, _OVERTURNED].centre for each in of]
+                    for of, which in ((curves, method), (without, method), (curves, of_3d))
+                )
+                yield {
+                    **{"body": name, "prestress": prestress, "stiffness": stiffness, "method": method},
+                    **_stated("median", own, None, len(motions)),
+                    **_stated("over_without", own, alone, len(motions)),
+                    **_stated("over_3d", own, in_3d, len(motions)),
+                }
+
+
+def _stated(name: str, centres: list[Array], over: list[Array] | None, motions: int) -> dict[str, float]:
+    differences = [
+        each - (0.0 if over is None else other) for each, other in zip(centres, over or centres, strict=True)
+    ]
+    return interval(float(differences[0][0]), differences[1], motions).exponential().columns(name)
+
+
+def on_flat_ground(motions: Sequence[GroundMotion], engine: str) -> Iterator[dict[str, float | str]]:
+    """Yield where the base of the pier lies after each prestress: medians over what does not overturn it."""
+    scale = FLAT_LEVEL * 9.81 * PIER.tan_alpha
+    for prestress in PRESTRESS:
+        tendon = Tendon(prestress=prestress) if prestress else None
+        left, fallen = [], 0
+        for motion in motions:
+            case = Case(PIER, motion.scaled(scale / motion.peak), friction=3.0, tendon=tendon)
+            trace = multibody.simulate(case, engine=engine, support="flat", time_step=FLAT_STEP)
+            fallen += trace.outcome == _OVERTURNED
+            if trace.outcome == "stands":
+                left.append(float(np.hypot(*trace.centre_of_mass[-1, :2])) / PIER.base_radius)
+        found = quantile_interval(np.array(left), 0.5)
+        yield {
+            **{"engine": engine, "prestress": prestress, "motions": len(motions), "overturned": fallen},
+            **found.columns("displacement"),
+        }
+
+
+def picture(table: pd.DataFrame) -> Picture:
+    """Return the medians of the pier in 3D over the prestress, by stiffness."""
+    own = table[(table["body"] == "pier") & (table["method"] == "recess model")]
+    names = [f"stiffness {each:g} of the neutral" for each in STIFFNESS]
+    styles, lines = run_styles(names), []
+    bands: list[Band] = []  # of the intervals without stiffness
+    for name, stiffness in zip(names, STIFFNESS, strict=True):
+        rows = own[own["stiffness"] == stiffness]
+        x, y, low, high = (
+            rows[each].to_numpy(float) for each in ("prestress", "median", "median_low", "median_high")
+        )
+        lines.append(Line(x=x, y=y, name=name, style=styles[name]))
+        if not bands:
+            bands.append(Band(x=x, low=low, high=high, colour="#e8e8e8"))
+    panel = Panel(
+        x=Axis(label="prestress", unit="weights of the pier", low=-0.05, high=1.05),
+        y=Axis(label="median overturning intensity", unit="g tan α", low=0.0),
+        layers=[*bands, *lines],
+        height=3.2,
+    )
+    title = "Overturning of a pier with a tendon, in three dimensions"
+    return Picture(name="tendons", title=title, panels=[panel], legend="below")
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Print the tables; make them first where motions or an engine are named."""
+    import pandas as pd
+
+    parser = options_of("tendons", "Median overturning intensities with a tendon.")
+    parser.add_argument("--motions", help="p695, or a number of synthetic motions, for the medians")
+    parser.add_argument("--engine", help="for flat ground under the motions of P-695")
+    parser.add_argument("--out", type=Path, help="folder for the tables and the figure")
+    options = parser.parse_args(arguments)
+    tables: dict[str, pd.DataFrame] = {}
+    if options.motions is not None:
+        tables[f"medians-{options.motions}"] = _table(medians(motions_of(options.motions)), len(BODIES) * 64)
+    if options.engine is not None:
+        rows = on_flat_ground(motions_of("p695"), options.engine)
+        tables[f"flat-{options.engine}"] = _table(rows, len(PRESTRESS))
+    if options.out is not None:
+        options.out.mkdir(parents=True, exist_ok=True)
+        for name, table in tables.items():
+            table.to_csv(options.out / f"{name}.csv", index=False, float_format="%.4g")
+            if name == "medians-p695":
+                (options.out / "tendons.svg").write_bytes(svg(picture(table)))
+    if not tables:
+        tables = {path.stem: pd.read_csv(path) for path in sorted(PUBLISHED.glob("*.csv"))}
+    for name, table in tables.items():
+        words = ("body", "method", "engine")
+        show(table, name, {column: "" if column in words else ".3g" for column in table.columns})
+    return 0
+
+
+def _table(rows: Iterator[dict[str, float | str]], count: int) -> pd.DataFrame:
+    """Return rows as a table, and say on standard error how many there are."""
+    import pandas as pd
+
+    found = []
+    for number, row in enumerate(rows, start=1):
+        found.append(row)
+        print(f"\r{number} of {count} rows", end="", file=sys.stderr, flush=True)
+    print(file=sys.stderr)
+    return pd.DataFrame(found)
