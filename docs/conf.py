@@ -8,6 +8,7 @@ import warnings
 from importlib.metadata import version as version_of
 from pathlib import Path
 
+from docutils import nodes
 from sphinx.application import Sphinx
 
 from rockwobble.models import Cylinder
@@ -86,7 +87,7 @@ warnings.filterwarnings("ignore", message=".*frozen modules.*")
 
 
 def setup(app: Sphinx) -> None:
-    """Put the page of `rockwobble explore` beside the others."""
+    """Put the page of `rockwobble explore` beside the others; label the cells of stacked tables."""
 
     def write_explore(app: Sphinx) -> None:
         if app.builder.format == "html":
@@ -95,4 +96,16 @@ def setup(app: Sphinx) -> None:
             page = explore_page(standard_shakings(), state)
             (Path(app.outdir) / "explore.html").write_text(page, encoding="utf-8")
 
+    def label_cells(app: Sphinx, doctree: nodes.document) -> None:
+        """Put its head before each cell of a table that a phone shows row by row."""
+        for table in doctree.findall(nodes.table):
+            if "stacked" not in table["classes"]:
+                continue
+            heads, *rows = ([*row.findall(nodes.entry)] for row in table.findall(nodes.row))
+            for row in rows:
+                for cell, head in zip(row[1:], heads[1:], strict=True):
+                    for paragraph in [*cell.findall(nodes.paragraph)][:1]:
+                        paragraph.insert(0, nodes.inline("", f"{head.astext()}: ", classes=["head-of-cell"]))
+
     app.connect("builder-inited", write_explore)
+    app.connect("doctree-read", label_cells)

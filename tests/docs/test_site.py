@@ -156,3 +156,14 @@ def test_every_page_is_drawn_quiet_and_no_wider_than_the_window(tmp_path: Path) 
         wrong += [f"{together[place]}: {line}" for place, lines in found.items() for line in lines]
     wrong = [line for line in wrong if THEME not in line]
     assert wrong == []
+
+
+def test_the_cells_of_a_table_that_is_shown_row_by_row_have_their_own_heads() -> None:
+    for page in ("guide/advice.html", "guide/limits.html", "guide/frames.html", "theory/tendon.html"):
+        text = (BUILT / page).read_text(encoding="utf-8")
+        for table in re.findall(r'<table[^>]*class="[^"]*stacked.*?</table>', text, flags=re.DOTALL):
+            heads = [re.sub("<[^>]*>", "", each) for each in re.findall(r"<th.*?</th>", table, re.DOTALL)]
+            heads = [html.unescape(" ".join(each.split())) for each in heads]
+            for row in re.findall(r"<tr.*?</tr>", table, flags=re.DOTALL)[1:]:
+                labels = re.findall(r'<span class="[^"]*head-of-cell[^"]*">(.*?)</span>', row)
+                assert [html.unescape(each).strip() for each in labels] == [f"{head}:" for head in heads[1:]]
