@@ -242,9 +242,9 @@ def _stations(folder: Path) -> tuple[list[tuple[str, list[Path]]], bool]:
 
 def _listed_stations(table: Path) -> list[tuple[str, list[Path]]]:
     try:
-        rows = list(
-            csv.reader(io.StringIO(table.read_text(encoding="utf-8-sig", errors="replace"), newline=""))
-        )
+        text = table.read_text(encoding="utf-8-sig", errors="replace")
+        # a blank before a quoted name is none of it
+        rows = list(csv.reader(io.StringIO(text, newline=""), skipinitialspace=True))
     except (OSError, csv.Error) as error:
         raise ValueError(f"the table of records {table} cannot be read: {error}") from None
     heads = [place for place, row in enumerate(rows) if any("filename" in cell.lower() for cell in row)]

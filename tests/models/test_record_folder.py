@@ -95,6 +95,12 @@ def test_a_download_is_read_as_it_comes(tmp_path: Path, table: bool, itself: boo
         assert motions[0].name == "RSN12, Quake, 1, Station 1"
 
 
+def test_a_blank_before_a_quoted_name_does_not_part_it(tmp_path: Path) -> None:
+    path = download(tmp_path) / "_SearchResults.csv"
+    path.write_text(path.read_text().replace(',"', ', "'))
+    assert read_records(tmp_path)[0].name == "RSN12, Quake, 1, Station 1"
+
+
 def test_a_download_of_horizontal_components_has_no_vertical(tmp_path: Path) -> None:
     verticals = [name_of(number, endings[2]) for number, endings in COMPONENTS.items()]
     for motion, number in zip(read_records(download(tmp_path, verticals)), COMPONENTS, strict=True):
