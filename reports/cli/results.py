@@ -174,7 +174,7 @@ def view(
 
     Example: rockwobble view --scale 2 --support flat
     """
-    from ..figures.playback import require_something_to_play
+    from ..figures.playback import require_motion
 
     with interruptible():
         with user_input():
@@ -198,7 +198,7 @@ def view(
                 comparison = rw.comparison(case, runs=[run], progress=progress)
         found = comparison.of_case(name)
         with user_input():
-            require_something_to_play(found)
+            require_motion(found)
         show_and_save(found, out)
     if sys.stdout.isatty() if opened is None else opened:
         import webbrowser

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rockwobble.compare import Comparison
 from rockwobble.models import Trace
 
-from .case_view import CaseView, case_views
+from .case_view import CaseView
 from .interactive import packed
 
 # in a second: between them the page interpolates
@@ -55,16 +55,16 @@ def playback(view: CaseView) -> dict[str, object] | None:
     }
 
 
-def require_something_to_play(found: Comparison) -> None:
+def require_motion(found: Comparison) -> None:
     """Refuse a comparison of one case in which nothing moves.
 
     Raises
     ------
     ValueError
     """
-    (view,) = case_views(found)
-    if playback(view) is None:
-        raise ValueError(f"there is nothing to play in {view.case.name!r}: the cylinder never uplifts")
+    if not any(_pose(trace)["tilt"].any() for trace in found.traces.values() if len(trace.time)):
+        (name,) = found.cases
+        raise ValueError(f"there is nothing to play in {name!r}: the cylinder never uplifts")
 
 
 def _body(label: str, trace: Trace, colour: str, opacity: float) -> dict[str, object]:

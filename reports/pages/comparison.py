@@ -27,7 +27,7 @@ from ..figures.comparison import (
     turn_picture,
 )
 from ..figures.picture import Line, Picture
-from ..figures.playback import playback, require_something_to_play
+from ..figures.playback import playback, require_motion
 from .cases import describe, group_of
 from .findings import (
     CAUSES,
@@ -333,7 +333,7 @@ def _short(label: str, support: str) -> str:
 
 def _player_page(found: View) -> Page:
     """Return the page that plays a comparison of one case; a ValueError if nothing moves."""
-    require_something_to_play(found)
+    require_motion(found)
     (view,) = case_views(found)
     spec = playback(view)
     return Page(

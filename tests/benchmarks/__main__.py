@@ -29,6 +29,7 @@ SCRIPTS = (
     "named_mistakes",
     "needs_coverage",
     "ring_losses",
+    "risk_coverage",
     "rolling_losses",
     "run_overhead",
     "scene_cost",
