@@ -82,7 +82,8 @@ def options_of(records: Path, **names: str) -> list[str]:
         ),
         ({"x": "x", "y": "y"}, ["--scale", "6"], {"overturning": "not satisfied"}),
         ({"x": "x", "y": "y"}, ["--friction", "0.1"], {"friction": "not satisfied"}),
-        ({"x": "x", "y": "y"}, ["--support", "flat", "--friction", "1"], {"friction": "satisfied"}),
+        # of six records one is more than 95 %: a spike of one sample at a near pass counts
+        ({"x": "x", "y": "y"}, ["--support", "flat", "--friction", "3"], {"friction": "satisfied"}),
         ({}, ["--release-tilt-deg", "5", "--rolling-rate", "0.5"], {"overturning": "satisfied"}),
         ({}, ["--release-tilt-deg", "0", "--duration", "2"], {}),
     ],
