@@ -137,6 +137,7 @@ def arguments() -> list[tuple[str, str]]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", VALID)
 def test_what_is_right_runs(name: str) -> None:
     lacking = name in OF_AN_EXTRA and p695.missing_packages()
@@ -145,6 +146,7 @@ def test_what_is_right_runs(name: str) -> None:
         getattr(rw, name)(**VALID[name])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "argument"), arguments(), ids=lambda part: part)
 def test_a_wrong_kind_is_one_line(name: str, argument: str) -> None:
     function: Callable[..., Any] = getattr(rw, name)

@@ -21,6 +21,7 @@ def examples(folder: str) -> list[doctest.DocTest]:
     return [test for name in names for test in finder.find(importlib.import_module(name)) if test.examples]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("folder", FOLDERS)
 def test_examples_of_the_docstrings(folder: str) -> None:
     runner = doctest.DocTestRunner()

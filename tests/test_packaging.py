@@ -75,6 +75,7 @@ def test_no_name_of_a_package_hides_its_module() -> None:
         assert not made & beside, name
 
 
+@pytest.mark.slow
 def test_no_module_binds_a_name_twice() -> None:
     # a second table of one name replaces the first without a word
     twice = []
@@ -114,6 +115,7 @@ def test_the_command_is_installed_and_knows_its_version() -> None:
     assert run(str(script), "--version").strip() == f"rockwobble {version('rockwobble')}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("module", ["models", "multibody", "compare", "reports.cli.main"])
 def test_importing_loads_no_engine_and_no_tables(module: str) -> None:
     print_heavy = f"import sys, rockwobble.{module}; print(*sorted(set({HEAVY!r}) & set(sys.modules)))"

@@ -191,6 +191,7 @@ def view(
                 (run,) = rr.with_settings(case, [asked], settings(setting))
                 rr.require_runnable(case, run)
                 name = case.name
+                require_motion(name, [rw.simulate(case)])  # before an engine runs for seconds
             claim_folder(context)
         if folder is None:
             echo(describe(case))
@@ -198,7 +199,7 @@ def view(
                 comparison = rw.comparison(case, runs=[run], progress=progress)
         found = comparison.of_case(name)
         with user_input():
-            require_motion(found)
+            require_motion(name, found.traces.values())
         show_and_save(found, out)
     if sys.stdout.isatty() if opened is None else opened:
         import webbrowser

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.compare import Comparison
 from rockwobble.models import Trace
 
 from .case_view import CaseView
@@ -55,15 +54,14 @@ def playback(view: CaseView) -> dict[str, object] | None:
     }
 
 
-def require_motion(found: Comparison) -> None:
-    """Refuse a comparison of one case in which nothing moves.
+def require_motion(name: str, traces: Iterable[Trace]) -> None:
+    """Refuse the traces of a case if nothing moves in any.
 
     Raises
     ------
     ValueError
     """
-    if not any(_pose(trace)["tilt"].any() for trace in found.traces.values() if len(trace.time)):
-        (name,) = found.cases
+    if not any(_pose(trace)["tilt"].any() for trace in traces if len(trace.time)):
         raise ValueError(f"there is nothing to play in {name!r}: the cylinder never uplifts")
 
 

@@ -333,8 +333,8 @@ def _short(label: str, support: str) -> str:
 
 def _player_page(found: View) -> Page:
     """Return the page that plays a comparison of one case; a ValueError if nothing moves."""
-    require_motion(found)
     (view,) = case_views(found)
+    require_motion(view.case.name, found.traces.values())
     spec = playback(view)
     return Page(
         name="view",

@@ -72,6 +72,7 @@ def with_sliding(found: dict[str, Table]) -> dict[str, Table]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_a_converged_solution_is_exact(judge: Judge, name: str) -> None:
     found = tables(name, tilt_and_azimuth)
@@ -108,6 +109,7 @@ def test_what_a_case_asks_for_is_needed_and_columns_not_read_are_named(judge: Ju
     assert "azimut" in judged.result["reason"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["turn-flat", "turn-recess", "scale-invariance"])
 def test_a_body_one_percent_too_large_fails_and_is_recognised(judge: Judge, name: str) -> None:
     judged = judge(name, sparse(tables(name, tilt_and_azimuth, larger=0.01)))
@@ -119,6 +121,7 @@ def test_a_body_one_percent_too_large_fails_and_is_recognised(judge: Judge, name
     assert 0.95 < judged.errors["period_1"] / (np.sqrt(1.01) - 1.0) < 1.3
 
 
+@pytest.mark.slow
 def test_another_gravity_is_recognised_as_another_time_scale(judge: Judge) -> None:
     judged = judge("turn-recess", sparse(tables("turn-recess", tilt_and_azimuth, gravity=10.0)))
     assert judged.verdict == "fail"
@@ -127,6 +130,7 @@ def test_another_gravity_is_recognised_as_another_time_scale(judge: Judge) -> No
     assert 1.0 <= (judged.mistakes["time_scale"] ** -2 - 1.0) / (10.0 / 9.81 - 1.0) <= 1.2
 
 
+@pytest.mark.slow
 def test_under_shaking_a_body_one_percent_too_large_fails_and_no_mistake_explains_it(judge: Judge) -> None:
     judged = judge("el-centro", tables("el-centro", tilt_and_azimuth, larger=0.01))
     assert judged.verdict == "fail"
@@ -155,6 +159,7 @@ def explicit_euler(name: str, step: float) -> dict[str, Table]:
     return found
 
 
+@pytest.mark.slow
 def test_a_coarse_step_fails_and_no_mistake_is_invented(judge: Judge) -> None:
     judged = judge(SINGLE, {SPIN: explicit_euler("turn-recess", 0.005)[SPIN]})
     assert judged.verdict == "fail"
@@ -217,6 +222,7 @@ MISTAKES: dict[str, tuple[Form, Callable[[Table], Table], dict[str, float | None
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_a_mistake_in_units_axes_or_clock_is_named(judge: Judge, mistake: str) -> None:
     form, change, wanted = MISTAKES[mistake]
@@ -227,6 +233,7 @@ def test_a_mistake_in_units_axes_or_clock_is_named(judge: Judge, mistake: str) -
         assert judged.mistakes[code] == (None if value is None else pytest.approx(value, rel=0.01))
 
 
+@pytest.mark.slow
 def test_two_mistakes_at_once_are_both_named_from_all_runs(judge: Judge) -> None:
     def change(table: Table) -> Table:
         angles = {key: np.degrees(sign * table[key]) for key, sign in (("tilt", 1.0), ("azimuth", -1.0))}
@@ -275,6 +282,7 @@ BAD = {  # what the reason must name
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", BAD)
 def test_a_file_that_cannot_be_judged_is_rejected_with_its_reason(judge: Judge, text: str) -> None:
     judged = judge("turn-flat", text)
@@ -282,6 +290,7 @@ def test_a_file_that_cannot_be_judged_is_rejected_with_its_reason(judge: Judge, 
     assert BAD[text] in judged.result["reason"]
 
 
+@pytest.mark.slow
 def test_a_third_of_every_peak_does_not_fit_the_distribution(judge: Judge) -> None:
     found = tables("records-distribution", tilt_and_azimuth)
     weak = {run: {"time": table["time"], "tilt": table["tilt"] / 3.0} for run, table in found.items()}

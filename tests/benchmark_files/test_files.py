@@ -119,6 +119,7 @@ def test_engines_of_hard_contact_tend_to_the_same_numbers(case: str, number: int
     assert all(abs(off) < near[engine] for engine, off in said)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", SHORT)
 def test_the_files_are_what_is_computed_here(case: str) -> None:
     definition = next(one for one in definitions() if one.name == case)
@@ -231,6 +232,7 @@ def test_programs_need_numpy_only(copied: Path) -> None:
         assert not {m for m in loaded - allowed if not m.startswith("_")}, name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", sorted((PUBLISHED / "examples").iterdir()), ids=lambda path: path.stem)
 def test_examples_of_every_format_are_exact(path: Path, copied: Path, tmp_path: Path) -> None:
     command = [sys.executable, "-E", "-s", str(copied / "check.py"), "turn-recess", str(path)]

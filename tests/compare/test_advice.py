@@ -104,6 +104,7 @@ def advice(few_records: None) -> Advice:
     return advise(Case(PIER, SHORT), copies=20)
 
 
+@pytest.mark.slow
 def test_demands_of_samples_are_those_of_the_continuous_solution():
     trace = reduced.simulate(Case(PIER, el_centro_1940(), friction=0.15), sample_step=1e-4)
     found, demands = demands_of(trace), trace.assumptions
@@ -143,6 +144,7 @@ def test_other_records_are_as_strong_by_either_peak():
     assert other_records(Case(PIER, initial=InitialState(0.1), duration=1.0)) == ({}, "")
 
 
+@pytest.mark.slow
 def test_answers_count_what_falls_and_leave_out_what_failed(advice):
     members = advice.members.copy()
     copies = members.index[members["group"] == "copies"]
@@ -301,6 +303,7 @@ def test_a_demand_is_the_largest_of_all_groups_and_of_weaker_shaking(advice):
     assert not len(demand_table(rows[:0], PIER, gravity=9.81, support="recess"))
 
 
+@pytest.mark.slow
 def test_a_mass_gives_kilonewtons_of_what_is_carried():
     frame, mass, gamma = WobblingFrame(PIER, slab_mass_ratio=0.5), 40.0, 0.5
     members = advise(Case(frame, SHORT), copies=20, mass=mass).demands.set_index("demand")
@@ -311,6 +314,7 @@ def test_a_mass_gives_kilonewtons_of_what_is_carried():
 PULSE = synthetic_motions(1, peak=4.0, seed=3, duration=8.0)[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("motion", [SHORT, PULSE], ids=["el_centro", "synthetic"])
 @pytest.mark.parametrize("body", [PIER, WobblingFrame(PIER, 0.5)], ids=["alone", "deck"])
 def test_no_demand_falls_where_the_record_is_scaled_up(motion, body, monkeypatch):
@@ -352,6 +356,7 @@ def test_top_and_slab_move_as_the_traces_say():
     assert list(top_displacement(PIER, [0.0, math.inf])) == [0.0, math.inf]
 
 
+@pytest.mark.slow
 def test_a_frame_has_demands_at_base_and_top():
     found = advise(Case(WobblingFrame(PIER, slab_mass_ratio=0.5), SHORT, friction=0.15), copies=20)
     base = ["friction", "shear", "force"]
@@ -374,6 +379,7 @@ def test_a_frame_has_demands_at_base_and_top():
     assert swapped["friction"] == own["top_friction"]
 
 
+@pytest.mark.slow
 def test_the_vertical_component_is_judged_by_pairs_of_copies():
     plan = AdvicePlan()
     own, without = vertical_effect(Case(PIER, el_centro_1940(vertical=True)), RECESS, plan)
@@ -403,6 +409,7 @@ def test_the_vertical_component_is_part_of_the_grade_of_overturning(advice):
     assert with_table(advice, members=pd.concat([members, beside])).grades == advice.grades
 
 
+@pytest.mark.slow
 def test_a_cylinder_at_rest_needs_nothing():
     found = advise(Case(PIER, SHORT.scaled(0.3)), copies=20)
     assert not found.moves
@@ -494,6 +501,7 @@ def test_what_only_the_vertical_moves_needs_no_recess() -> None:
     assert (len(found.demands), found.moves) == (0, False)
 
 
+@pytest.mark.slow
 def test_a_fall_that_the_record_does_not_see_is_a_fall_in_all_that_is_run():
     time = np.arange(121) * 0.01
     wave = 4.0 * 9.81 * 0.2 * np.sin(2.0 * np.pi * time / 1.2)  # one sine of 4 g tan(alpha) and 1.2 s
@@ -520,6 +528,7 @@ def test_a_fall_that_the_record_does_not_see_is_a_fall_in_all_that_is_run():
     assert cut.response["in_one_plane"]
 
 
+@pytest.mark.slow
 def test_a_run_cut_short_ends_when_asked_unless_it_falls():
     fallen = advise(case(4.0, duration=5.0), copies=20)
     assert fallen.overturned
@@ -529,6 +538,7 @@ def test_a_run_cut_short_ends_when_asked_unless_it_falls():
     assert stands.facts["length"] == stands.response["end"] == 5.0
 
 
+@pytest.mark.slow
 def test_a_single_run_is_one_of_many_from_where_an_advice_says_so():
     # a cylinder whose largest tilt an input 1 % off changes by half of it and more
     slender = Cylinder(semidiagonal=6.0847320541999865, tan_alpha=0.08996054265853794)
@@ -563,10 +573,12 @@ def test_bad_numbers_are_refused():
             advise(case(), **options)
 
 
+@pytest.mark.slow
 def test_advice_shows_itself(advice):
     shows_itself(advice, "outcome as given ", "grade ")
 
 
+@pytest.mark.slow
 def test_a_prediction_of_an_engine_is_the_same_after_a_second_of_rest() -> None:
     shaking, predictions = el_centro_1940().scaled(1.5), []
     for rest in (0, 1):
@@ -594,6 +606,7 @@ def test_a_tendon_is_graded_by_its_yield(
     assert grade_tendon(tension, force, tested=tested) == grade
 
 
+@pytest.mark.slow
 def test_an_advice_says_what_a_tendon_does() -> None:
     """Uplift, initial stiffness and balance are those of the static couple; a demand is its tension."""
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

@@ -200,6 +200,7 @@ def test_the_finer_runs_are_no_longer_than_the_traces_agree(engine):
         assert job.run.time_step == pytest.approx(trajectory.time_step * 0.5**level)
 
 
+@pytest.mark.slow
 def test_the_numerics_of_an_extrapolated_run_are_what_its_extrapolation_leaves():
     runs = [Run("mujoco", "recess", STEP), Run("mujoco", "recess", "extrapolated", finest_step=STEP / 2)]
     case = dataclasses.replace(CASE, duration=1.0)
@@ -211,6 +212,7 @@ def test_the_numerics_of_an_extrapolated_run_are_what_its_extrapolation_leaves()
     assert extrapolated["finest_step"] == pytest.approx(STEP / 8)
 
 
+@pytest.mark.slow
 def test_a_base_that_lands_flat_loses_what_the_model_keeps():
     # uplift along one direction, past upright itself, and on: the engine takes Housner's loss there
     time = np.arange(26) * 0.02

@@ -160,6 +160,7 @@ def test_the_interpreter_without_a_compiler_gives_the_same(certificate: dict[str
                 assert (apart < 1e-3 * np.array(one["allowed"][name])).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mutation", FAULTS, ids=lambda mutation: mutation.name)
 def test_a_fault_in_the_models_is_a_change_with_its_claim_and_term(
     certificate: dict[str, Any], mutation: Any
@@ -269,6 +270,7 @@ def test_a_motion_that_ends_earlier_is_a_change(certificate: dict[str, Any]) -> 
     assert compare_entries(one, one | {"signals": shorter}).word == CHANGED
 
 
+@pytest.mark.slow
 def test_the_copy_in_the_published_folder_reads_certificates_with_numpy_alone(
     certificate: dict[str, Any], tmp_path: Path
 ) -> None:

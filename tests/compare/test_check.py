@@ -192,6 +192,7 @@ def test_the_reduced_models_hold(right: Subject, group: str) -> None:
     assert all(each.group == group and each.subject == "reduced model" and each.reason for each in found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("measure", "support", "fault"),
     [
@@ -323,6 +324,7 @@ def restless(case: Case, support: str) -> dict[str, Any]:
     return {"time": found.time, "tilt": np.maximum(found.tilt, 1e-3)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("model", "fails", "holds"),
     [

@@ -33,6 +33,7 @@ def asked_of(name: str) -> tuple[str, ...]:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "group"), [(name, group) for name in available_engines() for group in asked_of(name)]
 )
@@ -50,6 +51,7 @@ def test_an_engine_that_is_installed_holds(name: str, group: str, monkeypatch: p
     assert [f"{each.name}: {each.value}, {each.note}" for each in found if each.failed] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("fault", "measure"),
     [

@@ -38,6 +38,7 @@ def made(time: np.ndarray, tilt: np.ndarray, **changes: Any) -> Trace:
     return dataclasses.replace(trace, **changes)
 
 
+@pytest.mark.slow
 def test_engines_that_follow_the_models_pass() -> None:
     findings = found(SHORT, Run("mujoco", "recess"), Run("mujoco", "flat"))
     assert [f.outcome for f in findings] == ["passed"] * 4
@@ -61,6 +62,7 @@ def test_a_base_that_every_contact_keeps_closed_is_no_error_of_the_model() -> No
     assert float(as_it_is.note.split()[1]) == pytest.approx(4.6, abs=0.02)
 
 
+@pytest.mark.slow
 @BOTH
 @pytest.mark.parametrize("support", ["recess", "flat"])
 def test_a_model_that_is_off_is_found_and_blamed(support: str) -> None:
@@ -71,6 +73,7 @@ def test_a_model_that_is_off_is_found_and_blamed(support: str) -> None:
     assert failed[-1].note.startswith("to 1.99 s; mujoco and pybullet agree to ")
 
 
+@pytest.mark.slow
 @BOTH
 def test_an_engine_that_is_off_is_found_and_blamed() -> None:
     failed = [f for f in found(SHORT, Run("pybullet", "recess", collision_margin=0.04)) if f.failed]
@@ -132,6 +135,7 @@ def test_of_a_release_the_first_seconds_are_taken_and_of_what_stands_nothing() -
     assert suite.in_motion(Case(PIER, duration=1.0)) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("spin", [0.5, 0.05, 0.0])
 def test_a_release_that_passes_upright_gives_no_alarm_and_finds_a_wrong_model(spin: float) -> None:
     case = dataclasses.replace(released(0.5, spin, 2.5), name=f"release, {spin:g} rad/s")

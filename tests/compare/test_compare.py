@@ -255,6 +255,7 @@ def test_no_run_is_held_against_itself(cylinder: Cylinder, run: Run, reference: 
     assert row["peak_tilt_difference"] != 0.0
 
 
+@pytest.mark.slow
 def test_the_same_run_in_other_processes_is_the_same(cylinder):
     release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.5)
     job = Job(case=Case(cylinder, initial=release, duration=1.0, name="release"), run=Run(None, "recess"))

@@ -38,6 +38,7 @@ def saved(tmp_path_factory) -> tuple[Comparison, Comparison]:
     return made, Comparison.load(folder)
 
 
+@pytest.mark.slow
 def test_the_summary_is_the_same(saved):
     pd.testing.assert_frame_equal(saved[0].summary, saved[1].summary, check_exact=True)
     assert (saved[0].versions, saved[0].until) == (saved[1].versions, saved[1].until)

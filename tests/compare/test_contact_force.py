@@ -10,6 +10,8 @@ import pytest
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, InitialState, Trace, el_centro_1940
 
+pytestmark = pytest.mark.slow
+
 # Of the force: the goal. Measured: 0.4 % in free response, 0.5 % under El Centro.
 FORCE = 0.01
 # Between passes: the model's tilt is above this share of alpha, and the uplift is 0.1 s past. Below it the

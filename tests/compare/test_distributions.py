@@ -104,6 +104,7 @@ def test_signed_ranks_are_those_of_scipy_where_it_is_exact():
     assert signed_rank_p(np.zeros(4)) == signed_rank_p(np.array([])) == 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("limit", [math.inf, 0.6], ids=["standing", "a quarter overturned"])
 @pytest.mark.parametrize("tied", [0.0, 0.3])
 def test_the_tests_keep_their_level_where_there_is_no_difference(limit, tied):

@@ -47,6 +47,7 @@ def traces(comparison):
     return case, *(comparison.traces[case.name, label] for label in ("recess model", "mujoco recess"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("problem", [(10.0, 0.1, 1.0), (6.0, 0.2, 2.0)])
 def test_engine_agrees_with_the_recess_model(run, problem):
     case, response, trajectory = traces(run(*problem))
@@ -67,6 +68,7 @@ def test_the_comparison_has_teeth(run, factor):
     assert tilt_rms_relative(make_pair(case.cylinder, wrong, trajectory, until=WINDOW)) > TEETH
 
 
+@pytest.mark.slow
 def test_traces_with_passes_near_upright_agree_for_twenty_seconds_of_the_record(run):
     comparison = run(6.0, 0.2, 1.0, 22.0)
     row = comparison.summary.iloc[0]

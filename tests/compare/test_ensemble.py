@@ -33,6 +33,7 @@ PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 CASE = Case(PIER, initial=InitialState(0.1, rolling_rate=0.5), duration=1.0, name="release")
 
 
+@pytest.mark.slow
 def test_what_a_wall_holds_beyond_its_balance_has_overturned_in_every_study():
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     cases = [

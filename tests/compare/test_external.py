@@ -80,6 +80,7 @@ def rows(case, path, **given):
     return table.loc["mujoco recess"], table.loc[path.stem]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_a_trajectory_that_goes_out_and_comes_back_has_the_same_metrics(in_recess, save, name):
     engine, external = rows(CASES[name], save(angles(in_recess[name])))

@@ -58,6 +58,7 @@ def file_of(trace, noise=0.0, seed=0):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sample_step", [0.004, 0.01, 0.02])
 @pytest.mark.parametrize(("body", "scale"), BODIES)
 def test_uplifts_of_right_samples_agree_within_their_uncertainty(save, body, scale, sample_step):

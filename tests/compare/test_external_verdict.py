@@ -93,6 +93,7 @@ def named(found):
 KINDS = [("mass", "recess")] + [(k, m) for k in ("angles", "both", "tilt") for m in ("recess", "flat")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "model"), KINDS)
 @pytest.mark.parametrize("name", CASES)
 def test_a_right_trajectory_follows_its_model_and_is_accused_of_nothing(save, name, kind, model):
@@ -129,6 +130,7 @@ def later(table, delay):
     return pd.concat([table.iloc[[0] * len(waits)].assign(time=waits), table])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("larger", [0.99, 1.01])
 @pytest.mark.parametrize(
     ("start", "code"),
@@ -180,6 +182,7 @@ MISTAKES = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("noise", [0.0, NOISE])
 @pytest.mark.parametrize("mistake", MISTAKES)
 @pytest.mark.parametrize("name", ["pier wobbles", "pier shaken"])
@@ -309,6 +312,7 @@ def test_under_shaking_another_size_or_gravity_is_no_time_scale(save, changes):
     assert found.mistakes == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change", [{"tilt": 1.02}, {"tilt": 1.05}, {"rolling_rate": 1.05}, {"rolling_rate": 1.2}]
 )
@@ -321,6 +325,7 @@ def test_another_start_is_no_mistake_of_the_file(save, name, change):
     assert verdict(name, save(other_body(name, initial=initial))).mistakes == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("loss", [0.005, 0.03])  # of the tilt, a second
 @pytest.mark.parametrize("name", ["pier wobbles", "pier passes", "planar"])
 def test_a_motion_that_dies_away_has_no_other_time_scale(save, name, loss):

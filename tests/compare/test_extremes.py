@@ -43,6 +43,7 @@ def test_a_fine_answer_of_the_recess_model_is_backed_by_the_exact_one(extreme: t
     assert found.error < 1e-5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("extreme", "run", "wanted", "limit"),
     [

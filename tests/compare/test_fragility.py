@@ -35,6 +35,7 @@ def rows(found: Fragility, method: str) -> pd.DataFrame:
     return found.runs[found.runs["method"] == method].sort_values(["motion", "step"])
 
 
+@pytest.mark.slow
 def test_every_method_runs_under_the_same_motions(found):
     methods = list(dict.fromkeys(found.runs["method"]))
     assert methods == ["recess model", "flat-ground model", "planar x", "planar y", "worse plane"]
@@ -58,6 +59,7 @@ def test_every_method_runs_under_the_same_motions(found):
         assert own["peak_tilt"] == pytest.approx(alone.peak_tilt / COLUMN.alpha, abs=1e-12), name
 
 
+@pytest.mark.slow
 def test_contact_is_asked_of_whole_solutions_which_have_the_peaks_of_the_kernel(found):
     # at the strongest level, where contact is lost
     options = {"methods": ["recess"], "levels": LEVELS[-1:], "resamples": 2, "workers": 1}
@@ -194,6 +196,7 @@ def test_pairs_leave_out_what_failed_by_either(found):
     assert (own["failed"], own["runs"]) == (COUNT, 11 * COUNT)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fate", [0, 1])
 def test_what_failed_runs_would_have_done_lies_within_the_bounds(found: Fragility, fate: int) -> None:
     """Runs that overturn, or that stand, are lost: what all of them say lies between the bounds."""
@@ -223,6 +226,7 @@ def test_what_failed_runs_would_have_done_lies_within_the_bounds(found: Fragilit
     assert after["ratio_most" if fate else "ratio_least"] == pytest.approx(before["ratio"], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_the_mean_of_the_cylinders_is_geometric():
     bodies = {"column": COLUMN, "pier": Cylinder(semidiagonal=6.0, tan_alpha=0.2)}
     found = fragility(bodies, MOTIONS, methods=["recess", "planar-x"], levels=LEVELS, resamples=20, workers=1)
@@ -258,6 +262,7 @@ def test_bodies_that_the_kernel_does_not_know_are_solved():
     assert found.runs["peak_tilt"].iloc[0] == pytest.approx(alone.peak_tilt / hollow.alpha, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("motions", "levels", "few"), [(5, 3, True), (6, 1, True), (6, 2, False)])
 def test_of_too_few_motions_or_levels_there_are_counts_and_no_curve(
     motions: int, levels: int, few: bool
@@ -272,6 +277,7 @@ def test_of_too_few_motions_or_levels_there_are_counts_and_no_curve(
     assert stated == [not few] * 4
 
 
+@pytest.mark.slow
 def test_a_second_call_runs_nothing_again(tmp_path, monkeypatch):
     def once() -> Fragility:
         return fragility(
@@ -294,6 +300,7 @@ def test_a_second_call_runs_nothing_again(tmp_path, monkeypatch):
     assert once().facts["inputs"] == first.facts["inputs"]
 
 
+@pytest.mark.slow
 def test_a_dask_worker_with_another_version_of_an_engine_is_refused(monkeypatch):
     distributed = pytest.importorskip("distributed")
     versions = itertools.count()  # another at each look
@@ -316,6 +323,7 @@ def test_a_dask_worker_with_another_version_of_an_engine_is_refused(monkeypatch)
         )
 
 
+@pytest.mark.slow
 def test_engines_run_beside_their_model_and_a_ring_holds_what_has_overturned():
     runs = [Run("mujoco", "recess"), Run("mujoco", "ring", ring_clearance=0.01, ring_inclination=0.5)]
     found = fragility(

@@ -37,6 +37,7 @@ def test_peaks_of_a_sine_in_closed_form():
     assert intensity("peak_velocity", motion, PIER) == pytest.approx(p * 5.0 * swing / (9.81 * 0.2), rel=4e-4)
 
 
+@pytest.mark.slow
 def test_a_spectrum_is_that_of_the_oscillator_itself():
     motion, period = el_centro_1940(), 0.7
     omega = 2.0 * math.pi / period

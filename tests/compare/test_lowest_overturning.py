@@ -156,6 +156,7 @@ def test_probes_go_down_until_none_overturns():
     assert run_searches([probe_below(1.0, 4.0, 2.0, probes=0, seed=(0,))], third)[0] == (2.0, 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("width", "chance"), [(2.0 / 500, 1.0), (0.5 / 500, 0.5), (0.1 / 500, 0.1)])
 def test_a_gap_narrower_than_every_step_is_found_as_often_as_is_stated(width: float, chance: float):
     """The probes lie one in each of 500 parts: a gap within one is hit as often as it is wide."""

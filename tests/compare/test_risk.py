@@ -136,6 +136,7 @@ def test_the_scale_of_uplift_is_where_the_model_begins_to_uplift(vertical: float
     assert below == 0.0 < above
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("motions", "dispersion", "lowest"),
     [(40, 0.35, 0.15), (22, 0.66, 0.225)],
@@ -167,6 +168,7 @@ def test_intervals_of_resampled_motions_cover_the_truth(motions, dispersion, low
     assert above / trials < 0.055  # half of the rest, on the side of the danger
 
 
+@pytest.mark.slow
 def test_the_ratio_of_two_methods_is_known_better_than_either() -> None:
     rng = np.random.default_rng(4)
     hazard, levels, motions = power_law(), np.log(np.geomspace(0.2, 5.0, 15)), 22
@@ -189,6 +191,7 @@ def test_the_ratio_of_two_methods_is_known_better_than_either() -> None:
     assert 0.93 - 0.022 <= covered / 400 <= 0.99
 
 
+@pytest.mark.slow
 def test_resampled_intervals_of_motions_by_level_cover_the_truth() -> None:
     """Each level has motions of its own, so that only shares are known, resampled within the level."""
     rng = np.random.default_rng(12)
@@ -227,6 +230,7 @@ def found() -> rw.compare.Fragility:
 SITE = HazardCurve(np.geomspace(0.05, 5.0, 30), 1e-3 * np.geomspace(0.05, 5.0, 30) ** -2.0, measure="pga")
 
 
+@pytest.mark.slow
 def test_risk_has_a_row_for_each_cylinder_and_method(found: rw.compare.Fragility) -> None:
     table = found.risk(SITE)
     assert list(table["method"]) == ["recess model", "planar x"]
@@ -289,6 +293,7 @@ def test_where_no_motion_overturns_a_bound_is_given() -> None:
     assert 0.0 < row["annual_frequency_most"] <= row["annual_frequency_high"]
 
 
+@pytest.mark.slow
 def test_motions_by_level_that_are_the_same_everywhere_are_stripes_of_all(
     found: rw.compare.Fragility,
 ) -> None:
@@ -308,6 +313,7 @@ def test_motions_by_level_that_are_the_same_everywhere_are_stripes_of_all(
     assert again.facts["motions_of_levels"] == [12] * 6
 
 
+@pytest.mark.slow
 def test_each_level_is_shaken_by_motions_of_its_own() -> None:
     pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     motions = rw.synthetic_motions(36, peak=1.0, seed=4)

@@ -162,6 +162,7 @@ def test_each_support_is_held_against_what_it_asks_for(case):
     assert found["mujoco ring, half the step"] == Run("mujoco", "ring", 1e-4)
 
 
+@pytest.mark.slow
 def test_a_ring_that_is_not_touched_follows_the_model_of_open_ground():
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     case = Case(pier, initial=InitialState(0.5 * pier.alpha, rolling_rate=0.5), duration=2.0, name="release")

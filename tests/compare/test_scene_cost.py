@@ -11,6 +11,7 @@ from rockwobble.compare.studies.scene_cost import scene_costs
 ENGINES = multibody.available_engines()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ENGINES)
 def test_every_scene_is_counted(engine: str) -> None:
     events: list[Progress] = []

@@ -63,6 +63,7 @@ def test_results_come_in_the_order_of_the_tasks(workers):
     assert told[-1].left == pytest.approx(0.0)
 
 
+@pytest.mark.slow
 def test_processes_are_kept_and_are_not_this_one():
     pids = run_tasks(os.getpgid, [0] * 8, workers=2)
     assert len(set(pids)) <= 2
@@ -75,12 +76,14 @@ def test_bad_input_is_raised_here_with_where_it_came_from():
     assert "refuse" in "".join(caught.value.__notes__)
 
 
+@pytest.mark.slow
 def test_a_process_that_dies_loses_only_its_own_task():
     found = run_tasks(signalled, [0, int(signal.SIGABRT), 0], workers=2)
     assert (found[0], found[2]) == (None, None)
     assert found[1] == Lost(f"the process ended with status -{signal.SIGABRT.value}")
 
 
+@pytest.mark.slow
 def test_a_task_whose_process_was_ended_from_outside_begins_again(tmp_path):
     again, once = (str(tmp_path / name) for name in ("a", "b"))
     assert run_tasks(die_once, [again], workers=2, tries=2) == [again]
@@ -175,6 +178,7 @@ def test_one_run_at_a_time_writes_to_a_folder_and_leftovers_go(tmp_path):
     assert not list(place.glob("*.part"))
 
 
+@pytest.mark.slow
 def test_no_scheduler_is_one_clear_line(monkeypatch):
     monkeypatch.setattr(dask_backend, "_PATIENCE", 0.5)
     with pytest.raises(ValueError, match="no Dask scheduler answers at 'tcp://127"):
@@ -183,6 +187,7 @@ def test_no_scheduler_is_one_clear_line(monkeypatch):
         run_tasks(abs, [1], scheduler="nonsense")
 
 
+@pytest.mark.slow
 def test_a_cluster_without_workers_is_said(monkeypatch):
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=None) as cluster:
@@ -203,6 +208,7 @@ def test_dask_gives_the_same_and_refuses_other_code():
             run_tasks(abs, [1], scheduler=address, makers=never_the_same)
 
 
+@pytest.mark.slow
 def test_a_function_that_cannot_be_imported_there_is_said(tmp_path):
     # the script's own functions are those of __main__, which is another module there
     script = tmp_path / "script.py"
@@ -220,6 +226,7 @@ def test_a_function_that_cannot_be_imported_there_is_said(tmp_path):
     assert "'own'" in run.stdout
 
 
+@pytest.mark.slow
 def test_a_script_without_a_main_guard_runs_once(tmp_path):
     script = tmp_path / "plain.py"
     script.write_text(
@@ -235,6 +242,7 @@ def test_a_script_without_a_main_guard_runs_once(tmp_path):
     assert done.stdout.split() == ["top", "7"]
 
 
+@pytest.mark.slow
 def test_workers_end_with_a_caller_that_iskilled(tmp_path):
     script = (
         "import os, time\n"
@@ -268,6 +276,7 @@ def test_an_answer_that_cannot_travel_is_an_error_of_its_task():
         run_tasks(memoryview, [b"", b""], workers=2)
 
 
+@pytest.mark.slow
 def test_what_a_task_prints_does_not_mix_with_its_answer():
     assert run_tasks(os.system, ["echo noise", "echo more"], workers=2) == [0, 0]
     assert run_tasks(print, ["noise", "more"], workers=2) == [None, None]

@@ -38,6 +38,7 @@ def alone(component: int) -> GroundMotion:
     return GroundMotion(acceleration, EL_CENTRO.time_step)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("series", "motion"), [(SPATIAL, EL_CENTRO), (PLANAR_X, alone(0)), (PLANAR_Y, alone(1))]
 )
@@ -64,6 +65,7 @@ def test_the_first_intensity_is_the_threshold_of_uplift(spectrum):
     assert (spectrum.peak_tilt[SPATIAL][:, 1] > 0.0).all()
 
 
+@pytest.mark.slow
 def test_the_same_bits_whatever_the_number_of_threads(spectrum):
     one = tilt_maps(
         0.1, EL_CENTRO, SpectrumPlan(semidiagonals=SIZES, intensities=INTENSITIES, probes=PROBES), workers=1
@@ -242,6 +244,7 @@ def test_what_falls_after_the_record_has_overturned_in_every_cell():
     assert cut.searched_from[PLANAR_Y] > 1e10
 
 
+@pytest.mark.slow
 def test_a_spectrum_resumes_with_the_same_bits_after_whatever_ended_it(tmp_path, monkeypatch):
     options = {"semidiagonals": np.linspace(1.0, 20.0, 9), "intensities": [1.0, 4.0, 8.0], "probes": 9}
     whole = tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options))

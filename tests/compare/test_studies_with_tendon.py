@@ -19,6 +19,7 @@ STEEL = {"tendon_prestress": TENDON.prestress, "tendon_stiffness": TENDON.stiffn
 MOTIONS = synthetic_motions(4, peak=1.0, seed=3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("slab", [0.0, 1.0])
 def test_a_fragility_runs_the_tendon_and_leaves_out_flat_ground(slab: float) -> None:
     body = rw.WobblingFrame(PIER, slab) if slab else PIER
@@ -43,6 +44,7 @@ def test_levels_begin_above_the_raised_uplift_and_end_where_most_overturn() -> N
     assert shares["k"].iloc[-1] > 0.5 * shares["n"].iloc[-1]
 
 
+@pytest.mark.slow
 def test_a_spectrum_searches_from_the_raised_uplift() -> None:
     options = {"semidiagonals": [3.0], "intensities": [2.0, 6.0], "search_step": 0.2, "probes": 20}
     motion = rw.el_centro_1940()

@@ -47,6 +47,7 @@ def test_the_table_holds_what_peak_tilts_gives_in_the_order_of_the_axes():
     assert 0 < (expected == "stands").sum() - (table.peak_tilt == 0.0).sum() < len(table)
 
 
+@pytest.mark.slow
 def test_no_cell_depends_on_chunks_workers_or_neighbours(tmp_path):
     whole = sweep(grid(), workers=1).table
     for options in ({"chunk_size": 1}, {"chunk_size": 3}, {"chunk_size": 7, "out": tmp_path, "workers": 2}):

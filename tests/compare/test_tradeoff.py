@@ -107,6 +107,7 @@ def test_the_ensemble_knows_what_chance_alone_does(monkeypatch: pytest.MonkeyPat
     assert max(peaks.references[support].doubt for support in ("recess", "flat")) < CONVERGED
 
 
+@pytest.mark.slow
 def test_all_methods_are_timed_in_turn_and_told_in_times_of_one(
     turn: Problem, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -47,6 +47,8 @@ from rockwobble.reduced import body, free_response, problem, steady_wobble_rate
 from rockwobble.reduced.body import Body
 from rockwobble.reduced.exact import _shape
 
+pytestmark = pytest.mark.slow
+
 Tables = Mapping[str, pd.DataFrame]
 # of the transverse inertia: far above every error of an engine, and no other body
 HEAVIER = 1.1

@@ -84,6 +84,7 @@ def test_what_is_installed_is_what_is_needed() -> None:
     assert shlex.split(RUN["packages"]) == ["python", "-m", "pip", "install", "$ROCKWOBBLE", "pytest"]
 
 
+@pytest.mark.slow
 def test_the_check_runs_and_writes_its_reports(repository: Path) -> None:
     done = run(RUN["models and engines of this machine"] + ONE_GROUP, repository)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -91,6 +92,7 @@ def test_the_check_runs_and_writes_its_reports(repository: Path) -> None:
     assert (repository / "summary.md").stat().st_size > 0
 
 
+@pytest.mark.slow
 def test_the_suite_is_collected_and_runs(repository: Path) -> None:
     done = run(RUN["suites, and tests of your own"], repository)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -47,6 +47,7 @@ def scene(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Mo
     return importlib.import_module(request.param)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of the engines' own modules
 @pytest.mark.parametrize("scene", ENGINES, indirect=True)
 def test_the_can_turns_and_tilts_as_it_must(scene: ModuleType) -> None:
@@ -111,6 +112,7 @@ def test_close_passes_amplify_as_stated() -> None:
     assert (high - low) / 2e-5 == pytest.approx(0.0818, abs=5e-5)
 
 
+@pytest.mark.slow
 def test_close_passes_amplify_in_an_engine_as_in_the_model() -> None:
     found = factors(1e-10, end=20.0, engine="mujoco", time_step=2e-4)
     assert found[0] == pytest.approx(63.1, rel=0.1)  # tolerances of the page

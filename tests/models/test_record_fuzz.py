@@ -11,6 +11,8 @@ import pytest
 
 from rockwobble.models import read_record
 
+pytestmark = pytest.mark.slow
+
 DAMAGED_FILES = 400  # per seed; some 2 s altogether
 LONGEST_MESSAGE = 250  # a line of a terminal or two, with the path of a temporary folder
 # a pattern that backtracks needs minutes for a line of 25 digits; this line takes milliseconds

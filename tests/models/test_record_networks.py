@@ -395,6 +395,7 @@ class TestWaveforms:
             assert "pip install 'rockwobble[formats]'" in refusal(tmp_path, name, content)
 
 
+@pytest.mark.slow
 def test_a_damaged_file_of_10_megabytes_ends_in_its_refusal(tmp_path: Path) -> None:
     allowed = 2.0  # [s]; a second on a machine with nothing else to do
     heads = [content.splitlines()[:12] for content in WHOLE.values() if isinstance(content, str)]
@@ -479,6 +480,7 @@ def test_a_step_that_contradicts_the_file_is_refused(tmp_path: Path) -> None:
         read_record(path, time_step=0.02)
 
 
+@pytest.mark.slow
 def test_a_header_with_nothing_or_noise_behind_it_is_refused(tmp_path: Path) -> None:
     random = np.random.default_rng(1)
     # tables of .bbp announce no length

@@ -291,6 +291,7 @@ def test_whatever_is_wrong_is_one_line_with_the_path_of_the_key(write, text, wor
     assert "pydantic" not in message
 
 
+@pytest.mark.slow
 def test_importing_the_models_loads_no_pydantic():
     import subprocess
     import sys

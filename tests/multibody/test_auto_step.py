@@ -19,6 +19,7 @@ ALPHA = 0.2
 ESTIMATE = 3.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("support", "tan_alpha"), [("recess", 0.2), ("flat", 3.0)])
 def test_the_error_is_as_estimated(
     engine: str, support: str, tan_alpha: float, run_release: Callable[..., Any]

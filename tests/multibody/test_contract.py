@@ -57,6 +57,7 @@ def test_fields_and_shapes(engine: str) -> None:
     np.testing.assert_array_equal(frame["contact_x"], run.contact_point[:, 0])
 
 
+@pytest.mark.slow
 def test_starts_in_the_stated_state(engine: str) -> None:
     initial = InitialState(0.12, tilt_rate=0.3, rolling_angle=-2.0, rolling_rate=0.7)
     run = multibody.simulate(Case(PIER, initial=initial, duration=0.05), engine=engine)
@@ -70,6 +71,7 @@ def test_starts_in_the_stated_state(engine: str) -> None:
     assert run.tilt[1] == pytest.approx(expected, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_a_run_repeats_bit_for_bit(engine: str, time_step: float | None) -> None:
     # from a second before it uplifts
     record = el_centro_1940().scaled(2.0)
@@ -90,6 +92,7 @@ def test_rotated_problem_has_a_rotated_answer(engine: str, time_step: float | No
     np.testing.assert_allclose(second.rolling_angle - 1.234, first.rolling_angle, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_overturning_ends_with_the_side_on_the_ground(engine: str, time_step: float | None) -> None:
     case = Case(PIER, initial=InitialState(1.3 * PIER.alpha), duration=10.0)
     run = multibody.simulate(case, engine=engine, time_step=time_step)
@@ -100,6 +103,7 @@ def test_overturning_ends_with_the_side_on_the_ground(engine: str, time_step: fl
     assert (np.diff(run.tilt) > 0.0).all()
 
 
+@pytest.mark.slow
 def test_progress_rises_to_one_and_interrupts(engine: str) -> None:
     seen: list[float] = []
     # told after each second of the run
@@ -138,6 +142,7 @@ def test_clients_are_closed_and_nothing_is_printed(
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_import_loads_no_engine() -> None:
     code = (
         "import sys, rockwobble.multibody as m; m.available_engines();"
@@ -228,6 +233,7 @@ def test_an_engine_that_does_not_load_is_named_with_the_reason(monkeypatch: pyte
         multibody.simulate(Case(PIER, initial=RELEASE, duration=0.1))
 
 
+@pytest.mark.slow
 def test_without_a_motion_but_standing_it_stands(engine: str) -> None:
     run = multibody.simulate(Case(PIER, duration=1.0), engine=engine)
     assert run.rests
@@ -244,6 +250,7 @@ def test_motion_ends_and_the_run_goes_on(engine: str, time_step: float | None) -
     assert np.ptp(run.energy[after]) < 5e-6
 
 
+@pytest.mark.slow
 def test_a_squat_cylinder_falls_flat_and_rests(engine: str, time_step: float | None) -> None:
     # planar rocking loses almost everything in each impact at tan alpha 1.2
     squat = Cylinder(semidiagonal=6.0, tan_alpha=1.2)

@@ -85,6 +85,7 @@ def pulse(over: float) -> Case:
     return Case(PIER, GroundMotion([[0.0, 0.0], [peak, 0.0], [0.0, 0.0]], 0.5), duration=1.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("over", [1.001, 1.1])
 def test_an_engine_opens_at_its_load_or_says_so(engine: str, over: float) -> None:
     case = pulse(over)

@@ -31,6 +31,7 @@ def relative_difference(run: Any, exact: Any, until: float) -> float:
     return float(np.sqrt(np.mean((tilt - exact.tilt[inside]) ** 2) / np.mean(exact.tilt[inside] ** 2)))
 
 
+@pytest.mark.slow
 def test_traces_agree_and_a_wrong_size_shows(
     engine: str, pier: Cylinder, solve_doubled: Callable[..., Any], time_step: float | None
 ) -> None:
@@ -44,6 +45,7 @@ def test_traces_agree_and_a_wrong_size_shows(
     assert relative_difference(run, solve_doubled(wrong, 6.0), 6.0) > 2.5 * TRACE[engine]
 
 
+@pytest.mark.slow
 def test_small_tilts_agree_beyond_twenty_seconds(pier: Cylinder, solve_forced: Callable[..., Any]) -> None:
     # passes at 1e-5 rad amplify everything: within 1 % of alpha until 22.9 s; 20 s are asked for
     motion = el_centro_1940()
@@ -66,6 +68,7 @@ def test_small_tilts_agree_beyond_twenty_seconds(pier: Cylinder, solve_forced: C
     assert np.abs(run.twist).max() < 1e-4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", range(6))
 def test_uplift(case: int, solve_forced: Callable[..., Any]) -> None:
     random = np.random.default_rng(case)
@@ -102,6 +105,7 @@ def test_an_engine_that_tips_early_is_seen(pier: Cylinder, monkeypatch: pytest.M
     assert early.uplift_time < many.uplift_time - 5 * many.time_step
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("support", ["recess", "flat"])
 def test_an_uplift_under_a_turning_load_leaves_next_to_no_error(
     engine: str, pier: Cylinder, solve_forced: Callable[..., Any], support: str
@@ -120,6 +124,7 @@ def test_an_uplift_under_a_turning_load_leaves_next_to_no_error(
     assert np.abs(errors).max() < 1.5e-7
 
 
+@pytest.mark.slow
 def test_vertical_motion(pier: Cylinder, solve_forced: Callable[..., Any]) -> None:
     motion = el_centro_1940(vertical=True).scaled(2.0)
     run = multibody.simulate(Case(pier, motion, duration=5.0))
@@ -129,6 +134,7 @@ def test_vertical_motion(pier: Cylinder, solve_forced: Callable[..., Any]) -> No
     assert relative_difference(run, flat, 5.0) > 0.05
 
 
+@pytest.mark.slow
 def test_open_ground_follows_the_rolling_model(pier: Cylinder, solve_forced: Callable[..., Any]) -> None:
     motion = el_centro_1940().scaled(2.0)
     run = multibody.simulate(Case(pier, motion, duration=6.0), support="flat")

@@ -18,6 +18,7 @@ STEPS_AS_SAMPLES = 1e-6
 P = math.sqrt(12.0 * 9.81 / (6.0 * (15.0 + math.cos(PIER.alpha) ** 2)))  # [1/s], section of the equations
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("support", ["recess", "flat"])
 def test_a_small_motion_that_loses_its_energy_is_said(engine: str, support: str) -> None:
     # a sixth in MuJoCo, half in Bullet, 4 % in DART, 1.5 % in Drake: all far less than 1e-3 of the energy of
@@ -100,6 +101,7 @@ def test_a_rolling_resistance_hides_no_loss_of_contact(rolling: str, length: flo
 
 # Friction that is plenty: the rim needs 0.25 here, and MuJoCo's cone bounds friction and couple together. The
 # largest misfit over the energy: 3e-5 were measured in MuJoCo and 1e-5 in PyBullet.
+@pytest.mark.slow
 @pytest.mark.parametrize("slab", [0.0, 1.0])
 @pytest.mark.parametrize(
     ("rolling", "friction"), [("mujoco", 20.0), ("mujoco", 5.0), ("pybullet", 20.0), ("pybullet", 0.5)]

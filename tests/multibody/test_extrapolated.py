@@ -33,6 +33,7 @@ SHAKEN = {"mujoco": 5e-6, "pybullet": 2e-5, "dart": 2e-5}
 ESTIMATE = 3.0  # Richardson is good for a factor
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", [name for name in SHAKEN if name in multibody.available_engines()])
 @pytest.mark.parametrize(
     ("support", "tan_alpha", "finest"),
@@ -56,6 +57,7 @@ def test_a_release_extrapolates(
     assert (run.time_step, run.run.time_step) == (pytest.approx(finest), "extrapolated")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", [name for name in SHAKEN if name in multibody.available_engines()])
 def test_a_shaken_run_extrapolates(engine: str, solve_forced: Callable[..., Any]) -> None:
     motion, cylinder = el_centro_1940(), Cylinder(semidiagonal=10.0, tan_alpha=0.1)

@@ -44,6 +44,7 @@ def table() -> list[tuple[float, ...]]:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("slenderness", "rate", "turn", "period"), table())
 def test_angle_of_turn(slenderness: float, rate: float, turn: float, period: float) -> None:
     cylinder = Cylinder.from_dimensions(base_radius=1.0, height=2.0 * slenderness)
@@ -58,6 +59,7 @@ def test_angle_of_turn(slenderness: float, rate: float, turn: float, period: flo
     assert run.facts == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tan_alpha", [0.1, 3.0])
 def test_free_response_for_eight_seconds(tan_alpha: float, solve_free: Solve) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
@@ -70,6 +72,7 @@ def test_free_response_for_eight_seconds(tan_alpha: float, solve_free: Solve) ->
     assert np.abs(run.rolling_angle - exact.rolling_angle).max() < 10.0 * TILT
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("integrator", ["trapezoidal", "generalized-alpha"])
 def test_second_order_under_excitation(integrator: str, pier: Cylinder, solve_released: Solve) -> None:
     # not zero at the start, and rough: a force shifted by a part of a step is first order

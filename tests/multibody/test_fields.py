@@ -124,6 +124,7 @@ def test_force_is_what_the_mass_centre_needs(run: Any) -> None:
     assert np.median(error[still]) < 1e-4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("vertical", [3.0, -2.0])
 def test_a_constant_vertical_acceleration_is_gravity(engine: str, vertical: float) -> None:
     motion = GroundMotion(np.tile([0.0, 0.0, vertical], (2, 1)), 1.0)
@@ -143,6 +144,7 @@ def test_a_constant_vertical_acceleration_is_gravity(engine: str, vertical: floa
     )
 
 
+@pytest.mark.slow
 def test_the_vertical_component_moves_the_uplift(engine: str, solve_forced: Callable[..., Any]) -> None:
     # the load of the rim is g + az: a ramp of the push reaches its share of it at a time of its own
     uplifts = []
@@ -158,6 +160,7 @@ def test_the_vertical_component_moves_the_uplift(engine: str, solve_forced: Call
     assert uplifts == sorted(uplifts)
 
 
+@pytest.mark.slow
 def test_the_ground_keeps_still_after_the_last_sample(engine: str) -> None:
     # the record ends at its largest: the run is that of a record with zeros after it
     push = np.array([[0.0, 0.0, 0.0], [1.5, 0.5, 2.0], [2.0, -1.0, -3.0]])
@@ -175,6 +178,7 @@ def test_the_ground_keeps_still_after_the_last_sample(engine: str) -> None:
     assert np.ptp(still.energy[(still.time > 0.205) & (still.time < 0.3)]) > 1e-2 * still.energy.max()
 
 
+@pytest.mark.slow
 def test_the_twist_of_a_whole_earthquake_does_not_jump(engine: str) -> None:
     # on flat ground it goes beyond a turn; a quaternion tells it up to two, and Bullet changes its sign
     case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())

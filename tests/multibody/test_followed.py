@@ -30,6 +30,7 @@ def one_sine(times_uplift: float, still: float = 0.0) -> GroundMotion:
     return GroundMotion(np.column_stack([push, 0.0 * push]), 0.01)
 
 
+@pytest.mark.slow
 def test_a_fall_that_the_record_cuts_off_overturns(engine: str) -> None:
     short, whole = (
         multibody.simulate(Case(PIER, one_sine(4.0, still)), engine=engine, time_step=STEP)
@@ -71,6 +72,7 @@ def test_a_fall_between_two_samples_is_its_start_and_its_end(sample_step: float)
     assert (run.outcome, len(run.contact_force)) == ("overturned", len(run.time))
 
 
+@pytest.mark.slow
 def test_wherever_still_ground_is_cut_the_fall_ends_alike() -> None:
     whole = multibody.simulate(Case(PIER, one_sine(4.0, still=6.0)), time_step=STEP)
     # at 1.3 s the base still comes down on the side from which it will rise and fall

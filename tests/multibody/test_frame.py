@@ -12,6 +12,8 @@ from rockwobble.models import Case, Cylinder, InitialState, Trace, WobblingFrame
 from rockwobble.multibody.engines.mujoco import MujocoEngine
 from rockwobble.multibody.engines.registry import engine_facts, find_engine
 
+pytestmark = pytest.mark.slow
+
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=0.5)
 COARSE = 2.5e-4  # [s] for Drake, whose steps cost ten times another's
 # of alpha at the default step, in the recess and on flat ground; measured up to 7.8e-7, in Drake 4.5e-6, in

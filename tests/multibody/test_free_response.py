@@ -11,6 +11,8 @@ import pytest
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, InitialState
 
+pytestmark = pytest.mark.slow
+
 # Largest tilt difference over 8 s at the default step, in alpha, for each tan(alpha). What is left is the
 # creep of the rim while it rolls, (1/1.8 - 1/2) h of its acceleration in every engine: 9e-7, 2e-6, 1.4e-5 and
 # 6.8e-5 at most.

@@ -11,6 +11,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_cen
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=3.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("direction", [0.0, 0.7])
 @pytest.mark.parametrize("friction", [0.2, 0.4])
 def test_sliding_distance(engine: str, friction: float, direction: float, time_step: float | None) -> None:
@@ -40,6 +41,7 @@ def test_enough_friction_holds(engine: str, time_step: float | None) -> None:
     assert run.facts == ()
 
 
+@pytest.mark.slow
 def test_too_little_friction_in_a_release_is_said(engine: str, time_step: float | None) -> None:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     initial = InitialState(pier.alpha / 2, rolling_rate=0.5)

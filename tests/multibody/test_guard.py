@@ -62,6 +62,7 @@ def test_a_guide_that_gives_way_fails() -> None:
     assert abs(free.residual_twist) > 0.02
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tan_alpha", [0.05, 0.5, 10.0])
 @pytest.mark.parametrize("friction", [0.0, 10.0])
 def test_extremes_are_sound_or_say_so(

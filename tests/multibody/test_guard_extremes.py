@@ -17,6 +17,7 @@ def at(engine: str, support: str, **given: Any) -> dict[str, Any]:
     return run(Trial(extreme="", value="", engine=engine, support=support, **given))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("support", ["recess", "flat"])
 @pytest.mark.parametrize(
     "given",

@@ -28,6 +28,7 @@ def error(support: str, time_step: float) -> float:
     return float(np.abs(found.tilt - reduced.simulate(RELEASE, support=support).tilt).max()) / COLUMN.alpha
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("support", ["recess", "flat"])
 def test_the_error_is_first_order_down_to_the_floor_of_single_precision(support: str) -> None:
     coarse = error(support, 1e-3)
@@ -43,6 +44,7 @@ def test_a_tilt_that_single_precision_does_not_know_is_no_motion() -> None:
     assert sure_tilt(slender, facts.rounding) > sure_tilt(slender, engine_facts("mujoco").rounding)
 
 
+@pytest.mark.slow
 def test_a_record_is_followed_and_uplifts_in_time() -> None:
     case = Case(Cylinder(semidiagonal=10.0, tan_alpha=0.1), el_centro_1940(), duration=8.0)
     found, model = multibody.simulate(case, engine="rapier"), reduced.simulate(case)
@@ -51,6 +53,7 @@ def test_a_record_is_followed_and_uplifts_in_time() -> None:
     assert abs(found.uplift_time - model.uplift_time) < 5e-3  # [s] half a sample
 
 
+@pytest.mark.slow
 def test_the_vertical_component_moves_the_uplift() -> None:
     motion = el_centro_1940().scaled(1.2)
     vertical = np.full((len(motion.acceleration), 1), -3.0)

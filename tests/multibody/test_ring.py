@@ -222,6 +222,7 @@ def test_a_wall_that_pushes_the_cylinder_down_is_no_joint() -> None:
     assert not codes & {"tension", "friction_needed"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("extreme", "outcome", "said"),
     [

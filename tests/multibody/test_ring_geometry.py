@@ -86,6 +86,7 @@ def test_overhang_of_the_rim_is_that_of_its_points(tilt: float) -> None:
     assert overhang == pytest.approx(design, abs=ROUNDING)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tan_alpha", [SLENDERNESS[0], SLENDERNESS[-1]])
 @pytest.mark.parametrize(("tilt", "inclination"), [angles for angles in ANGLES if angles[0] > angles[1]])
 def test_engine_touches_a_wall_just_where_the_geometry_says(
@@ -101,6 +102,7 @@ def test_engine_touches_a_wall_just_where_the_geometry_says(
     assert (_wall_contacts(cylinder, needed + MARGIN, inclination, poses) == 0).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tan_alpha", SLENDERNESS)
 def test_engine_touches_no_wall_that_leans_enough(tan_alpha: float) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)

@@ -61,6 +61,7 @@ def test_pybullet_delays_uplift_as_the_model_does() -> None:
     assert np.abs(trace.tilt - model.tilt).max() < 1e-7 * PIER.alpha  # 1e-9 were measured
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("support", ["recess", "flat"])
 @pytest.mark.parametrize("engine", GRIP)
 def test_a_frame_loses_at_both_ends(engine: str, support: str) -> None:

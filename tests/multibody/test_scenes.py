@@ -29,6 +29,7 @@ def test_there_is_one_scene_for_each_support() -> None:
     assert {path.stem for path in SCENES} == set(MujocoEngine().supports)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_scene_opens_steps_a_second_and_warns_of_nothing(path: Path) -> None:
     model = mujoco.MjModel.from_xml_path(str(path))

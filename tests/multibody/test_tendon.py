@@ -75,6 +75,7 @@ def ramp(slope: float, duration: float, azimuth: float = 0.4) -> GroundMotion:
     return GroundMotion(slope * np.outer(time, [math.cos(azimuth), math.sin(azimuth)]), 0.01, "ramp")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", RECESS)
 @pytest.mark.parametrize(("tendon", "gamma"), [(TENDONS[0], 0.0), (TENDONS[2], 0.0), (TENDONS[2], 1.0)])
 def test_a_release_in_the_recess_follows_the_reduced_model(name: str, tendon: Tendon, gamma: float) -> None:
@@ -101,6 +102,7 @@ def test_a_release_in_the_recess_follows_the_reduced_model(name: str, tendon: Te
             assert np.abs(other.tilt - model.tilt).max() > 2.0 * RELEASED[name] * PIER.alpha
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ENGINES)
 @pytest.mark.parametrize("gamma", [0.0, 1.0])
 def test_a_release_on_flat_ground_follows_newton_and_euler(name: str, gamma: float) -> None:
@@ -127,6 +129,7 @@ def test_a_release_on_flat_ground_follows_newton_and_euler(name: str, gamma: flo
         assert np.abs(gaps * (distance - 2.0 * b * np.sin(0.5 * tilt))).max() > 10.0 * ROLLED[name] * b
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", EXACT)
 def test_the_order_of_the_error(name: str) -> None:
     support = find_engine(name).supports[0]
@@ -140,6 +143,7 @@ def test_the_order_of_the_error(name: str) -> None:
     assert engine_facts(name).order - ORDER < slope < 2.0 + ORDER
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in ("mujoco", "pybullet") if name in ENGINES])
 @pytest.mark.parametrize("gamma", [0.0, 1.0])
 @pytest.mark.parametrize(("size", "tan_alpha", "scale"), [(10.0, 0.1, 1.0), (6.0, 0.2, 2.0)])
@@ -157,6 +161,7 @@ def test_el_centro_from_rest(size: float, tan_alpha: float, scale: float, gamma:
     assert engine.uplift_direction == pytest.approx(model.uplift_direction, abs=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in ENGINES if find_engine(name).uplifts])
 @pytest.mark.parametrize("gamma", [0.0, 1.0])
 def test_prestress_delays_uplift(name: str, gamma: float) -> None:
@@ -177,6 +182,7 @@ def test_prestress_delays_uplift(name: str, gamma: float) -> None:
     assert engine.friction_needed[before] == pytest.approx(ratio, abs=tolerance)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ENGINES)
 def test_a_tendon_without_prestress_and_stiffness_is_none(name: str) -> None:
     support = find_engine(name).supports[0]
@@ -204,6 +210,7 @@ def test_froude_scaling(name: str) -> None:
     assert big.energy == pytest.approx(factor * small.energy, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_in_a_ring_the_tendon_keeps_the_column_off_the_walls() -> None:
     tendon, pier = Tendon(prestress=1.0, stiffness=2.0), Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     motion = el_centro_1940().scaled(2.0 * tendon.uplift_factor(pier))
@@ -243,6 +250,7 @@ def test_an_engine_without_tendons_refuses_one_in_a_line(monkeypatch: pytest.Mon
     assert "\n" not in str(refused.value)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gamma", [0.0, 1.0])
 def test_beyond_the_balance_of_weight_and_tendon_it_falls_and_short_of_it_it_does_not(gamma: float) -> None:
     tendon = Tendon(prestress=0.8, stiffness=0.5)

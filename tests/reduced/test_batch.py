@@ -64,6 +64,7 @@ BARELY_LIFTED = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("model", "tan_alpha", "size", "intensity"), BARELY_LIFTED)
 def test_a_cell_that_chatters_is_its_single_run_to_the_bit(model, tan_alpha, size, intensity):
     scale = intensity * 9.81 * tan_alpha / BEGINNING.peak
@@ -95,6 +96,7 @@ def test_every_cell_is_its_single_run_to_the_bit(model):
     assert np.array_equal(peaks, single)
 
 
+@pytest.mark.slow
 def test_chatter_beyond_the_step_budget_is_masked():
     shape = np.sin(np.linspace(0.0, math.pi, 1001))
     angle = np.linspace(0.0, 2.0, 1001)

@@ -17,6 +17,7 @@ def response():
     return reduced.simulate(Case(PIER, el_centro_1940()), rtol=1e-10)
 
 
+@pytest.mark.slow
 def test_uplift_and_motion_follow_the_printed_equations(response):
     motion = el_centro_1940()
     paper = PaperModel(PIER.base_radius, PIER.half_height)

@@ -128,6 +128,7 @@ def any_cylinder(random: np.random.Generator) -> tuple[Cylinder, float]:
     return Cylinder(semidiagonal=size, tan_alpha=tan_alpha), random.uniform(0.1, 30.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(32))
 def test_release_at_a_maximum_of_tilt(seed: int) -> None:
     random = np.random.default_rng(seed)

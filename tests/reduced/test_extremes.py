@@ -184,6 +184,7 @@ def test_a_million_samples():
     assert response.outcome in {"stands", "overturned"}
 
 
+@pytest.mark.slow
 def test_chatter_without_a_seating_rule_ends_as_failed_with_words():
     weak = turning_wave(THRESHOLD * (1.0 + 1e-6))
     response = reduced.simulate(Case(PIER, weak), rest_tilt=0.0)

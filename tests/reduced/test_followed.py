@@ -36,6 +36,7 @@ def solve(given: Problem, model: str, still: float = 0.0, **options: Any) -> Tra
     return reduced.simulate(case, **{"rtol": 1e-9, "sample_step": 0.05, **MODELS[model], **options})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS)
 def test_still_ground_after_the_record_changes_no_peak(model: str) -> None:
     higher, later = 0, 0
@@ -63,6 +64,7 @@ def test_still_ground_after_the_record_changes_no_peak(model: str) -> None:
     assert later > 10
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS)
 def test_a_cell_whose_record_is_cut_is_its_single_run_to_the_bit(model: str) -> None:
     followed = 0
@@ -100,6 +102,7 @@ def test_what_had_its_maximum_over_still_ground_or_stands_is_not_followed() -> N
     assert reduced.simulate(weak).rests
 
 
+@pytest.mark.slow
 def test_all_maxima_on_flat_still_ground_are_alike_whatever_the_twist() -> None:
     """Lambda and S are functions of the tilt alone: the tilt is an oscillation between two turning points."""
     twisted = 0

@@ -14,6 +14,8 @@ from rockwobble.models import Case, Cylinder, el_centro_1940
 from rockwobble.reduced import _compile
 from rockwobble.reduced._compile import _is_ours
 
+pytestmark = pytest.mark.slow
+
 
 def test_scipy_is_loaded_by_what_uses_it():
     # every worker process imports this package, and few ask for an exact solution: 0.7 s of 1.6 s

@@ -171,6 +171,7 @@ def scales_of(given: Sample, state: State) -> Scales:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(40))
 def test_recess(seed: int) -> None:
     given = sample(seed, twisting=False)
@@ -227,6 +228,7 @@ def test_rolling(seed: int) -> None:
         )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("recess", [True, False])
 @pytest.mark.parametrize("seed", range(140, 156))
 def test_rolling_resistance(seed: int, recess: bool) -> None:

@@ -92,6 +92,7 @@ def cases(body: Cylinder, share: float) -> list[Case]:
     return [Case(body, el_centro_1940().scaled(2.0), duration=4.0, rolling_resistance=length), *releases]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.0, 0.02, 0.3])
 @pytest.mark.parametrize("kind", BODIES)
 @pytest.mark.parametrize("model", MODELS)

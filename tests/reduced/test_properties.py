@@ -22,6 +22,7 @@ def changed(x: Trace, y: Trace) -> bool:
     return x.outcome != y.outcome or not abs(x.peak_tilt - y.peak_tilt) <= SAME * x.peak_tilt
 
 
+@pytest.mark.slow
 def test_the_same_function_of_time_sampled_finer():
     firm, off = 0, []
     for seed in range(140):
@@ -83,6 +84,7 @@ def lifting_just_before_a_sample(given: Problem) -> GroundMotion:
     return GroundMotion(horizontal * (1.0002 * given.threshold / highest), given.motion.time_step)
 
 
+@pytest.mark.slow
 def test_a_weak_foreshock_that_comes_to_rest_before_the_main_shock():
     firm, off = 0, []
     for seed in range(90):
@@ -100,6 +102,7 @@ def test_a_weak_foreshock_that_comes_to_rest_before_the_main_shock():
     assert not off
 
 
+@pytest.mark.slow
 def test_after_a_rest_it_lifts_as_it_would_have_for_the_first_time():
     """Where the series of the uplift ends at a sample, the next step must not know of what was before."""
     count = 0
@@ -122,6 +125,7 @@ def test_after_a_rest_it_lifts_as_it_would_have_for_the_first_time():
     assert count > 60
 
 
+@pytest.mark.slow
 def test_two_runs_joined_at_a_rest():
     firm, off = 0, []
     for seed in range(80):
@@ -155,6 +159,7 @@ def planar_at_first(given: Problem, seed: int) -> GroundMotion:
     return motion.scaled(given.motion.peak / motion.peak)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("late", [False, True])
 def test_rotated_by_any_angle(late):
     firm, off = 0, []
@@ -175,6 +180,7 @@ def test_rotated_by_any_angle(late):
     assert not off
 
 
+@pytest.mark.slow
 def test_overturned_is_what_still_ground_for_as_long_as_it_takes_decides():
     """Records cut in the middle of the strong part."""
     fell, later = 0, 0
@@ -246,6 +252,7 @@ def test_samples_however_short_lift():
     assert peaks == pytest.approx([peaks[-1]] * 4, rel=2e-2)
 
 
+@pytest.mark.slow
 def test_the_error_falls_with_the_tolerance():
     firm, errors = 0, []
     tolerances = (1e-5, 1e-7, 1e-9)

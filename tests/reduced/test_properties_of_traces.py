@@ -81,6 +81,7 @@ def test_no_pass_joins_two_motions_across_a_rest():
 
 
 # 9 chatters, and its 28 thousand steps take as long to review as those of all others
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [seed for seed in range(24) if seed != 9])
 def test_demands_are_the_extrema_of_dense_samples(seed):
     given = problem(seed, sizes=(1.0, 20.0), released=seed % 2 == 0)
@@ -116,6 +117,7 @@ def test_any_rolling_rate_turns_by_its_exact_angle(tan_alpha):
         assert response.passes.angle_of_turn[0] == pytest.approx(exact.angle_of_turn, rel=1e-7), exponent
 
 
+@pytest.mark.slow
 def test_the_default_rest_threshold_keeps_the_peaks():
     """Of weak shaking that two tolerances give alike with it and with one a hundred times smaller."""
     converged, off = 0, []

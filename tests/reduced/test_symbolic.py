@@ -183,6 +183,7 @@ def recess_residuals(body: Body, motion: tuple[Any, Any]) -> list[Any]:
     return [equation.xreplace(found) for equation in motion]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0], indirect=True, ids=["cylinder"])
 def test_equations_18_and_19_follow_from_the_energies(motion: tuple[Any, Any]) -> None:
     s, c = sp.sin(tilt), sp.cos(tilt)
@@ -205,6 +206,7 @@ def test_equations_18_and_19_follow_from_the_energies(motion: tuple[Any, Any]) -
     assert vanishes(motion[1] - equation_19)
 
 
+@pytest.mark.slow
 def test_recess_equations_are_lagranges(motion: tuple[Any, Any], share: Any) -> None:
     body = constants(I1, I2, share)
     assert on_symbols(equations.recess_rhs)(body, *STATE)[0] == omega
@@ -213,6 +215,7 @@ def test_recess_equations_are_lagranges(motion: tuple[Any, Any], share: Any) -> 
         assert vanishes(residual)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [sp.Rational(101, 100), -1])
 @pytest.mark.parametrize("name", ["b", "h", "A", "J", "C", "E", "p2", "sin_alpha", "cos_alpha"])
 def test_a_changed_coefficient_is_seen(name: str, factor: Any, motion: tuple[Any, Any], share: Any) -> None:
@@ -228,6 +231,7 @@ def test_planar_equation_is_lagranges(motion: tuple[Any, Any], share: Any, direc
     assert vanishes(planar.subs(theta_2, acceleration))
 
 
+@pytest.mark.slow
 def test_energy_is_that_of_the_paper(paper: tuple[Any, Any], share: Any) -> None:
     kinetic, potential = (plain(part) for part in paper)
     body = constants(I1, I2, share)

@@ -45,6 +45,7 @@ def cases():
         yield pytest.param(body, y, tuple(a), tuple(slope), id=str(number))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("body", "y", "a", "slope"), list(cases()))
 def test_the_series_solve_the_equations(body, y, a, slope):
     h = 0.01

@@ -35,6 +35,7 @@ def apart(cylinder: rw.Cylinder, tendon: Tendon, gamma: float) -> Pier:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gamma", BODIES.values(), ids=BODIES)
 @pytest.mark.parametrize("tendon", TENDONS, ids=repr)
 @pytest.mark.parametrize("tan_alpha", [0.12, 0.35, 0.9])

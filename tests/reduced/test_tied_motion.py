@@ -53,6 +53,7 @@ def test_a_release(tan_alpha: float, plane: float | None, share: float, slab: fl
         assert np.abs(trace.energy_lost - lost).max() < 1e-8 * trace.energy[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("slab", [0.0, 1.3], ids=["column", "frame"])
 @pytest.mark.parametrize("share", [0.0, 0.01], ids=["lossless", "resisted"])
 @pytest.mark.parametrize("plane", [None, 0.4], ids=["recess", "planar"])

@@ -25,6 +25,7 @@ def rough(seed: int, time_step: float) -> Case:
     return Case(cylinder, GroundMotion(acceleration, time_step), duration=10.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time_step", [0.05, 0.1])
 @pytest.mark.parametrize("model", OPTIONS)
 def test_each_turn_of_the_samples_is_listed_and_each_that_is_listed_turns(

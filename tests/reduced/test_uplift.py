@@ -36,6 +36,7 @@ def test_a_step_lifts_at_once_with_the_acceleration_of_a_jump():
     assert response.tilt[5] == pytest.approx(0.5 * jump * 0.005**2, rel=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turning", [0.0, 3.0, -30.0, 3000.0])
 @pytest.mark.parametrize("jump", [0.0, 1.0])
 def test_the_solution_does_not_depend_on_where_the_series_is_left(turning, jump):

@@ -68,6 +68,7 @@ def options_of(records: Path, **names: str) -> list[str]:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("names", "more", "expected"),
     [
@@ -134,6 +135,7 @@ def printed(found: Advice, *, details: bool = False) -> str:
     return console.export_text()
 
 
+@pytest.mark.slow
 def test_details_are_printed_where_they_are_asked_for(found):
     short, long = printed(found), printed(found, details=True)
     assert short.count("\n") <= SCREEN < long.count("\n")
@@ -212,6 +214,7 @@ DIVERGENCES = {
 }
 
 
+@pytest.mark.slow
 def test_every_code_has_words(found):
     assert {*DIVERGENCES} >= {"in time", "later", "much later", "earlier", "never, as predicted"}
     engines = [ENGINE | {"divergence": each} for each in (*DIVERGENCES, *UNTESTED)]

@@ -15,6 +15,8 @@ from rockwobble.reports.pages import KINDS, page_of, stored_page
 from rockwobble.reports.pages import comparison as report
 from rockwobble.reports.pages.ensemble import page_of as ensemble_page
 
+pytestmark = pytest.mark.slow
+
 # of a player: moved, it must say where it is
 PLAYER = """
 window.lookFurther = (found) => {

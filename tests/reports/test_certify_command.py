@@ -103,6 +103,7 @@ def test_bad_input_is_said_before_anything_runs(run: Run) -> None:
     assert run("check", "--model", "a:b", "--trajectory", "c.csv") == 2
 
 
+@pytest.mark.slow
 def test_a_certificate_of_an_engine_holds_claims_of_that_engine_alone(
     run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -151,6 +151,7 @@ def test_no_engine_and_no_trajectory_leave_nothing_to_compare(folder, capsys):
     assert "--engine none leaves nothing to compare, give a --trajectory as well" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_compare_prints_and_writes(folder, no_engines, monkeypatch, capsys):
     no_engines()
     monkeypatch.setattr(page, "svg", lambda *_, **__: b"")  # tests of the page draw it
@@ -243,6 +244,7 @@ def test_simulate_a_reduced_model(folder, in_this_process, capsys):
     assert about["case"]["initial"]["rolling_rate"] == 0.5
 
 
+@pytest.mark.slow
 def test_simulate_says_from_when_on_its_trace_is_one_of_many(folder, in_this_process, capsys):
     slender = ["--semidiagonal", "6.0847320541999865", "--tan-alpha", "0.08996054265853794"]
     given = [*slender, "--scale", "1.28359029043245", "--support", "recess"]
@@ -295,6 +297,7 @@ def result(*arguments: str) -> dict[str, Any]:
     return made["about"] | {"inputs": made["inputs"]}
 
 
+@pytest.mark.slow
 def test_each_model_is_chosen_by_its_options(folder, in_this_process):
     release = ["--release-tilt-deg", "5", "--duration", "2"]
     spin = [*release, "--rolling-rate", "0.5"]
@@ -307,6 +310,7 @@ def test_each_model_is_chosen_by_its_options(folder, in_this_process):
     assert settings == {"plane": 0.3, "restitution": 0.9, "rest_tilt": 1e-6}
 
 
+@pytest.mark.slow
 def test_a_cylinder_by_its_dimensions_is_the_same_cylinder(folder, in_this_process):
     # R = 5 m and tan alpha = 3/4, on the moon and on ice
     same = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "1"]
@@ -350,6 +354,7 @@ def test_help_imports_nothing_heavy():
     assert done.stderr.strip() == "[]"
 
 
+@pytest.mark.slow
 def test_ctrl_c_stops_a_real_run_at_once_and_leaves_no_process(tmp_path):
     # hours of free response: it would run for an hour
     arguments = [
@@ -414,6 +419,7 @@ def test_a_run_that_takes_its_process_with_it_is_one_line_and_exit_code_1(folder
     assert not (folder / "rockwobble-simulate").exists()
 
 
+@pytest.mark.slow
 def test_results_are_whole_where_the_output_cannot_be_printed(tmp_path):
     words = ["simulate", "--release-tilt-deg", "5", "--duration", "1", "--out"]
     command = [sys.executable, "-m", "rockwobble", *words]

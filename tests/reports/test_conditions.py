@@ -65,6 +65,7 @@ STUDIES = (a_fragility, a_sweep, a_spectrum, an_ensemble, an_advice)
 ASKED = [(each, name) for each in STUDIES for name in STATED if (each, name) != (a_sweep, "resistance")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("study", "condition"), ASKED)
 def test_a_page_states_them(study: Callable[[dict[str, Any]], Results], condition: str) -> None:
     options, words = STATED[condition]

@@ -78,6 +78,7 @@ def test_a_default_run_has_what_loads(damaged):
     assert len(default_runs()) == 2 * len(registry.standard_engines()[1:])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["compare", "ensemble"])
 def test_a_command_without_an_engine_runs_what_loads_and_says_so(damaged, in_this_process, capsys, command):
     assert call(command, *COMMANDS[command]) == 0
@@ -104,6 +105,7 @@ def test_a_support_that_only_it_has_is_refused_for_it(damaged, monkeypatch, caps
     assert [line for line in lines if "rockwobble: " in line] == [f"rockwobble: engine {LINE}"]
 
 
+@pytest.mark.slow
 def test_advice_goes_without_its_engine_and_says_so(damaged, in_this_process, capsys):
     assert call("advise", "--copies", "20") == 0
     captured = capsys.readouterr()

@@ -70,6 +70,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 @needs_chromium
 def test_the_page_is_drawn_and_says_what_it_shows(folder: Path) -> None:
     assert call() == 0

@@ -99,6 +99,7 @@ def test_both_renderers_draw_the_same_numbers_thinned_to_what_can_be_seen():
         assert np.max(y) == pytest.approx(1.0, abs=1e-6)  # extremes are kept
 
 
+@pytest.mark.slow
 def test_a_map_shows_values_gaps_by_kind_and_its_scale():
     values = np.array([[-2.0, 1.0], [np.nan, 9.0]])
     shades = Shades(label="bias", unit="%", low=-2.0, high=4.0, centre=0.0)

@@ -53,6 +53,7 @@ def found() -> Fragility:
     return made_up()
 
 
+@pytest.mark.slow
 def test_each_question_gets_its_pairs(found):
     answers = main_contrasts(found)
     pairs = {
@@ -109,6 +110,7 @@ def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):
     assert marks.notes[0] == f"recess model: {counts['k'].iloc[0]} of 15"
 
 
+@pytest.mark.slow
 @needs_chromium
 def test_the_page_is_drawn_quiet_and_no_wider_than_the_window(found, tmp_path):
     page = page_of(found).html()
@@ -124,6 +126,7 @@ def test_a_cylinder_without_a_name_is_said_once(tmp_path, monkeypatch, capsys):
     assert capsys.readouterr().out.splitlines()[0] == "R = 6 m, tan alpha = 0.2"
 
 
+@pytest.mark.slow
 def test_files_of_a_small_study_and_its_page_again(tmp_path, capsys):
     cylinders = ["--cylinder", "pier=6,0.2", "--cylinder", "column=3,0.15"]
     assert call("fragility", *SMALL, *cylinders, "--out", str(tmp_path)) == 0
@@ -250,6 +253,7 @@ def stripes_folder(folder: Path, levels: tuple[float, ...] = (2.0, 9.0)) -> Path
     return folder
 
 
+@pytest.mark.slow
 def test_records_by_level_are_stripes_of_their_own(tmp_path: Path, capsys: Any) -> None:
     records = stripes_folder(tmp_path / "records")
     out = tmp_path / "out"

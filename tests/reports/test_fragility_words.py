@@ -28,6 +28,7 @@ def with_contrasts(found: Fragility, table: pd.DataFrame) -> Fragility:
     return dataclasses.replace(found, tables={**found.tables, "contrasts": table})
 
 
+@pytest.mark.slow
 def test_the_words_are_those_of_the_tables(found):
     words = " ".join(page_of(found).markdown().split())
     row = next(r for r in main_contrasts(found)["planar"] if r["cylinder"] == "all")
@@ -67,6 +68,7 @@ def by_one_method(found: Fragility, **changes: Any) -> str:
     return " ".join(page_of(one).markdown().split())
 
 
+@pytest.mark.slow
 def test_what_is_too_few_for_a_curve_is_counted(found):
     kept = [f"m{n}" for n in range(4)]
     few = fragility_of(

@@ -78,6 +78,7 @@ def test_settings_of_a_model_are_numbers(
     assert capsys.readouterr().err == f"rockwobble: {name} must be a number, got 'abc'\n"
 
 
+@pytest.mark.slow
 def test_auto_says_what_error_is_left(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     method = ["--engine", "mujoco", "--time-step", "auto", "--set", "step_tolerance=1e-4"]
     assert call("simulate", *RELEASE, *method, "--out", str(tmp_path)) == 0
@@ -97,6 +98,7 @@ def test_a_setting_goes_to_the_runs_that_know_it() -> None:
     assert (ring.time_step, free.time_step) == (None, "auto")
 
 
+@pytest.mark.slow
 def test_a_run_that_flies_in_a_ring_of_its_own_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

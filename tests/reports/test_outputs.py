@@ -48,6 +48,7 @@ PLANS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("command", PLANS)
 def test_a_folder_of_another_plan_or_command_is_refused(
@@ -73,6 +74,7 @@ def test_a_folder_of_another_plan_or_command_is_refused(
     assert call(*first, *out) == 2
 
 
+@pytest.mark.slow
 def test_the_content_of_a_record_is_part_of_the_plan(tmp_path: Path) -> None:
     record, out = tmp_path / "x.csv", ("--out", str(tmp_path / "out"))
     given = ("simulate", "--record-x", str(record), "--record-y", "zero", "--units", "g", *out)

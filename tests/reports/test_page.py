@@ -5,6 +5,8 @@ import re
 from html.parser import HTMLParser
 from pathlib import Path
 
+import pytest
+
 import rockwobble as rw
 from rockwobble.compare import SUMMARY_COLUMNS
 from rockwobble.compare.storage.manifest import Manifest
@@ -38,6 +40,7 @@ class Elements(HTMLParser):
             self.text.append(data)
 
 
+@pytest.mark.slow
 def test_page_is_whole_small_and_reproducible(comparison):
     made = comparison.made_by("rockwobble compare")
     page = page_of(made).html()
@@ -82,6 +85,7 @@ def test_still_ground_has_no_excitation_and_markup_in_a_name_stays_text(no_engin
     assert "&lt;b&gt;name&lt;/b&gt; &amp; co" in page
 
 
+@pytest.mark.slow
 def test_a_run_that_never_moves_or_fails_can_be_shown(no_engines):
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     case = Case(cylinder, duration=1.0, name="still")

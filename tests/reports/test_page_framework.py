@@ -146,6 +146,7 @@ def test_headings_are_reached_by_their_words():
     assert to_html("## Peak tilt, 3D") == '<h2 id="peak-tilt-3d">Peak tilt, 3D</h2>\n'
 
 
+@pytest.mark.slow
 @needs_chromium
 def test_nobody_stumbles_over_the_page(page, tmp_path):
     assert complaints(page.html(), tmp_path, figures=1) == []

@@ -15,6 +15,8 @@ from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages import stored_page
 from rockwobble.reports.paper import earthquake, overturning
 
+pytestmark = pytest.mark.slow
+
 SVG_LIMIT = 400_000  # bytes, of each committed picture
 
 

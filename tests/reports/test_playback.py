@@ -71,6 +71,7 @@ def test_nothing_is_played_where_nothing_moves():
         page_of(made.of_case("still"))
 
 
+@pytest.mark.slow
 def test_a_view_of_what_never_uplifts_is_one_line(tmp_path, in_this_process, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(SystemExit) as end:
@@ -80,6 +81,7 @@ def test_a_view_of_what_never_uplifts_is_one_line(tmp_path, in_this_process, mon
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_stored_results_are_played_and_drawn_again_without_a_run(comparison, tmp_path, monkeypatch, capsys):
     stored = tmp_path / "stored"
     comparison.save(stored)

@@ -95,6 +95,7 @@ def test_the_guide_states_the_needs_of_the_published_limits() -> None:
         assert "\n".join(rows) in guide
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["reduced", "mujoco"])
 def test_the_code_still_does_what_it_did_then(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):

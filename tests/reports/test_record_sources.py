@@ -75,6 +75,7 @@ def test_stored_results_keep_it(tmp_path: Path, record: Path) -> None:
     assert again.source == motion.source
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "page"),
     [

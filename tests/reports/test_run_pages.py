@@ -176,6 +176,7 @@ def test_a_path_is_parted_where_it_jumps_and_nowhere_else(support: str):
     assert len(x) < len(places)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "names"),
     [
@@ -201,6 +202,7 @@ def test_a_stored_folder_draws_its_pages_again(tmp_path, monkeypatch, capsys, co
     assert "eak tilt" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 @needs_chromium
 def test_pages_of_runs_are_drawn(swept, tmp_path: Path):
     pages = [page_of_run(RELEASE, rw.Run(None, "recess")), swept["grid"]]

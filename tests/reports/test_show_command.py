@@ -88,6 +88,7 @@ def test_show_says_how_far_it_is_and_nothing_when_it_is_done(tmp_path, capsys):
     assert [each["complete"] for each in described(tmp_path, capsys)] == [True]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("nothing_runs")
 def test_report_draws_again_here_or_elsewhere_and_leaves_the_results_as_they_are(stored, tmp_path, capsys):
     before = {path.name: path.read_bytes() for path in stored.iterdir()}

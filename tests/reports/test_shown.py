@@ -27,6 +27,7 @@ def test_trace_shows_itself():
     shows_itself(rw.simulate(RELEASE), "recess model", "stands at 1 s")
 
 
+@pytest.mark.slow
 def test_comparison_shows_itself_case_by_case(comparison):
     shows_itself(comparison, "cases 2")
     first, second = comparison.plot(), comparison.plot("lighter")

@@ -40,6 +40,7 @@ def call(*arguments: str) -> int:
     return ended.value.code
 
 
+@pytest.mark.slow
 def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, capsys):
     (tmp_path / "kept.txt").write_text("mine")
     coarse = ["--search-step", "0.4", "--probes", "3"]
@@ -70,6 +71,7 @@ def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, caps
     assert f"numpy {np.__version__}" in page
 
 
+@pytest.mark.slow
 def test_any_record_will_do(tmp_path: Path, monkeypatch, capsys):
     monkeypatch.setattr(Page, "files", lambda _: {})  # of one that is drawn other tests tell
     time = np.arange(0.0, 3.0, 0.02)
@@ -135,6 +137,7 @@ def said(found: TiltMaps, checked: pd.DataFrame | None = None, **columns: object
     return " ".join(console.file.getvalue().split())  # type: ignore[attr-defined]
 
 
+@pytest.mark.slow
 def test_the_headline_counts_what_is_missed(spectrum):
     falls = {name: spectrum.overturned(name) for name in SERIES}
     planar = falls["planar_x"] | falls["planar_y"]
@@ -214,6 +217,7 @@ def test_the_check_tells_chance_from_error(spectrum):
     assert "and 1 do not" in words
 
 
+@pytest.mark.slow
 def test_the_picture_is_small_and_says_why_a_cell_has_no_tilt(spectrum):
     picture = picture_of(spectrum)
     assert len(svg(picture)) < SVG_LIMIT
@@ -223,6 +227,7 @@ def test_the_picture_is_small_and_says_why_a_cell_has_no_tilt(spectrum):
     assert np.array_equal(np.isnan(space.values), fell | still | failed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("still", [0, 1])
 def test_a_record_of_one_component_has_a_picture_and_a_page(still):
     acceleration = np.array(el_centro_1940().acceleration[:1500])  # with the strongest shaking

@@ -116,6 +116,7 @@ def test_bad_input_gets_one_clear_line_before_anything_runs(folder, monkeypatch,
     assert sorted(path.name for path in folder.iterdir()) == before
 
 
+@pytest.mark.slow
 def test_a_suite_is_echoed_run_summed_up_and_written(folder, no_engines, capsys):
     no_engines()
     assert call("compare", "mine.suite.toml", "--out", "results") == 0
@@ -130,6 +131,7 @@ def test_a_suite_is_echoed_run_summed_up_and_written(folder, no_engines, capsys)
     assert page.count("<template id=") == 4
 
 
+@pytest.mark.slow
 def test_runs_of_a_suite_that_part_are_named_the_worst_first(folder, no_engines, monkeypatch, capsys):
     # an engine that has lost the case from the beginning
     no_engines(tilt=np.full(201, 0.3))
@@ -209,6 +211,7 @@ def test_the_slab_of_a_frame_and_its_resistance_are_stated():
     assert "(0.85 times the uplift threshold)" in loaded[3]
 
 
+@pytest.mark.slow
 def test_a_trajectory_is_one_more_run(folder, no_engines, monkeypatch, capsys):
     no_engines()
     arguments = [*RELEASE, "--trajectory", "table.csv", "--trajectory-angles", "rad"]
@@ -225,6 +228,7 @@ def test_a_trajectory_is_one_more_run(folder, no_engines, monkeypatch, capsys):
     assert both["run"].tolist() == ["mujoco recess", "table"]
 
 
+@pytest.mark.slow
 def test_the_page_of_many_cases_stays_small_and_draws_one_at_a_time(no_engines, monkeypatch):
     no_engines()
     monkeypatch.setattr(driver, "require_runnable", lambda case, run: None)

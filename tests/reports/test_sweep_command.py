@@ -50,6 +50,7 @@ def test_bad_input_of_a_sweep_gets_one_clear_line(tmp_path, capsys, arguments, w
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("full_at", ["sweep.parquet", "sweep.html", "manifest.json"])
 def test_a_full_disk_leaves_no_half_of_a_sweep_and_nothing_to_repeat(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, full_at: str

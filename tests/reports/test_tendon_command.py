@@ -21,6 +21,7 @@ def call(*arguments: str) -> int:
     return int(ended.value.code or 0)
 
 
+@pytest.mark.slow
 def test_ratios_and_a_drawing_state_the_same_tendon(tmp_path: Path) -> None:
     drawn = rw.Tendon.from_steel(
         prestress=400e3, axial_rigidity=30e6, length=10.0, column_mass=45e3, base_radius=0.8

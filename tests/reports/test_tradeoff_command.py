@@ -45,6 +45,7 @@ def found() -> Tradeoff:
     )
 
 
+@pytest.mark.slow
 def test_the_command_writes_its_pages_and_all_that_they_are_drawn_from(
     found: Tradeoff, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -73,6 +74,7 @@ def test_the_command_writes_its_pages_and_all_that_they_are_drawn_from(
     assert json.loads((tmp_path / "manifest.json").read_text())["kind"] == "tradeoff"
 
 
+@pytest.mark.slow
 def test_other_stored_numbers_have_other_conclusions(found: Tradeoff, tmp_path: Path) -> None:
     points = found.points.copy()
     points.loc[points["family"] == "mujoco", "ratio"] *= 2.0
@@ -101,5 +103,6 @@ def test_bad_input_is_one_line(tmp_path: Path) -> None:
     assert done.stderr.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_a_measurement_shows_itself(found: Tradeoff) -> None:
     shows_itself(found, "engine over recess model, largest 2100")

@@ -19,6 +19,8 @@ from rockwobble.reports.pages import page as page_module
 from rockwobble.reports.pages import page_of
 from rockwobble.reports.pages.page import Page
 
+pytestmark = pytest.mark.slow
+
 LARGEST = 8_000_000  # bytes of a page
 
 
