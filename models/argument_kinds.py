@@ -41,14 +41,14 @@ def with_argument_kinds(function: C) -> C:
         }
 
     @functools.wraps(function)
-    def checked(*args: Any, **kwargs: Any) -> Any:
+    def wrapper(*args: Any, **kwargs: Any) -> Any:
         bound = signature.bind(*args, **kwargs)  # a TypeError of Python itself, which names the argument
         for name, kind in kinds().items():
             if name in bound.arguments:
                 bound.arguments[name] = require_argument(name, bound.arguments[name], kind)
         return function(*bound.args, **bound.kwargs)
 
-    return cast("C", checked)
+    return cast("C", wrapper)
 
 
 def require_argument(name: str, value: Any, kind: Any) -> Any:

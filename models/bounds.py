@@ -43,7 +43,7 @@ class Bounds(Brief):
 
     Examples
     --------
-    >>> Bounds(tilt_rms=1e-3).given()
+    >>> Bounds(tilt_rms=1e-3).as_dict()
     {'tilt_rms': 0.001}
     """
 
@@ -60,11 +60,11 @@ class Bounds(Brief):
     reference: str = "own"
 
     def __post_init__(self) -> None:
-        for name, value in self.given().items():
+        for name, value in self.as_dict().items():
             object.__setattr__(self, name, require_positive(name, value, ""))
         require_one_of("reference", self.reference, REFERENCES)
 
-    def given(self) -> dict[str, float]:
+    def as_dict(self) -> dict[str, float]:
         """Return the bounds that ask something, by column."""
         names = (field.name for field in fields(self) if field.name != "reference")
         return {name: value for name in names if (value := getattr(self, name)) is not None}

@@ -83,23 +83,23 @@ REASONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 _SEPARATOR = ", "
 
 
-def joined(codes: Iterable[str]) -> str:
+def cell_of(codes: Iterable[str]) -> str:
     """Return codes, each once, as a cell of a table.
 
     Examples
     --------
-    >>> joined(["slip", "energy", "slip"])
+    >>> cell_of(["slip", "energy", "slip"])
     'slip, energy'
     """
     return _SEPARATOR.join(dict.fromkeys(codes))
 
 
-def parted(cell: str) -> list[str]:
+def codes_in(cell: str) -> list[str]:
     """Return the codes in a cell of a table.
 
     Examples
     --------
-    >>> parted("slip, energy"), parted("")
+    >>> codes_in("slip, energy"), codes_in("")
     (['slip', 'energy'], [])
     """
     return cell.split(_SEPARATOR) if cell else []
@@ -187,7 +187,7 @@ class Assumptions(Brief):
     >>> import rockwobble as rw
     >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> held = rw.simulate(rw.Case(pier, rw.el_centro_1940(), duration=15.0)).assumptions
-    >>> held.held, round(held.largest_friction_needed, 3), round(held.least_normal_force, 2)
+    >>> held.all_hold, round(held.largest_friction_needed, 3), round(held.least_normal_force, 2)
     (True, 0.221, 0.94)
     """
 
@@ -199,6 +199,6 @@ class Assumptions(Brief):
     friction: float
 
     @property
-    def held(self) -> bool:
+    def all_hold(self) -> bool:
         """Whether contact and friction held throughout."""
         return not self.breaches

@@ -137,7 +137,7 @@ class GroundMotion:
         factor = require_finite("factor", factor, "")
         with np.errstate(over="ignore"):  # the constructor refuses what is not finite
             scaled = self.acceleration * factor
-        return self if factor == 1.0 else self.changed(scaled, f"scaled by {factor:.6g}")
+        return self if factor == 1.0 else self.with_samples(scaled, f"scaled by {factor:.6g}")
 
     def rotated(self, angle: float) -> GroundMotion:
         """Return the motion turned by `angle` [rad] about the vertical, counter-clockwise from above.
@@ -166,9 +166,9 @@ class GroundMotion:
         x, y = self.acceleration[:, 0], self.acceleration[:, 1]
         turned[:, 0] = x * math.cos(angle) - y * math.sin(angle)
         turned[:, 1] = x * math.sin(angle) + y * math.cos(angle)
-        return self.changed(turned, f"rotated by {math.degrees(angle):.6g} deg")
+        return self.with_samples(turned, f"rotated by {math.degrees(angle):.6g} deg")
 
-    def changed(self, acceleration: ArrayLike, change: str) -> GroundMotion:
+    def with_samples(self, acceleration: ArrayLike, change: str) -> GroundMotion:
         """Return a motion of the same name, time step and source with other samples.
 
         Parameters
@@ -182,5 +182,5 @@ class GroundMotion:
         -------
         GroundMotion
         """
-        source = self.source and self.source.changed(change)
+        source = self.source and self.source.with_change(change)
         return GroundMotion(acceleration, self.time_step, self.name, source)

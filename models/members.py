@@ -77,7 +77,7 @@ def perturbed(case: Case, first: float, second: float) -> Case:
     acceleration = np.array(motion.acceleration)
     acceleration[:, 0] *= first
     acceleration[:, 1] *= second
-    return dataclasses.replace(case, motion=motion.changed(acceleration, "perturbed"))
+    return dataclasses.replace(case, motion=motion.with_samples(acceleration, "perturbed"))
 
 
 @with_argument_kinds

@@ -70,7 +70,8 @@ class RecordSource:
     --------
     >>> x = ComponentSource(axis="x", file="a.csv", label="E", unit="cm/s2", peak=0.25)
     >>> y = ComponentSource(axis="y", file="zero")
-    >>> RecordSource(format="columns", time_step=0.01, samples=301, components=(x, y)).changed("scaled by 2")
+    >>> source = RecordSource(format="columns", time_step=0.01, samples=301, components=(x, y))
+    >>> source.with_change("scaled by 2")
     a.csv: columns, 301 samples of 0.01 s, 3 s; x: E [cm/s2] 0.25 g; y: zero; scaled by 2
     """
 
@@ -109,7 +110,7 @@ class RecordSource:
         parts = [_component(each, named=len(files) > 1) for each in self.components]
         return "; ".join((facts, *parts, *self.notes, *self.changes))
 
-    def changed(self, change: str) -> RecordSource:
+    def with_change(self, change: str) -> RecordSource:
         """Return the source of a motion that was made of this one by `change`."""
         return replace(self, changes=(*self.changes, change))
 

@@ -77,18 +77,18 @@ class Shown:
 
     __slots__ = ()
 
-    def _said(self) -> Mapping[str, str]:
+    def _main_facts(self) -> Mapping[str, str]:
         """Return the main facts in words and numbers, by name."""
         raise NotImplementedError
 
     def __repr__(self) -> str:
-        facts = (f"{name} {value}" for name, value in self._said().items())
+        facts = (f"{name} {value}" for name, value in self._main_facts().items())
         return line(type(self).__name__, (_cut(fact, _MOST) for fact in facts))
 
     def _repr_html_(self) -> str:
         rows = "".join(
             f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>"
-            for name, value in self._said().items()
+            for name, value in self._main_facts().items()
         )
         return f"<table>{rows}</table>"
 

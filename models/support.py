@@ -39,7 +39,7 @@ class Support:
     walls: bool = False
 
     @property
-    def modelled(self) -> bool:
+    def has_model(self) -> bool:
         """Whether there is a reduced model of this support itself."""
         return not self.walls
 

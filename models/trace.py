@@ -16,7 +16,7 @@ from . import plain_json, trace_file
 from .bounds import CLOSED_TILT
 from .case import Case, Run
 from .cylinder import WobblingFrame
-from .diagnostic import Assumptions, Diagnostic, joined
+from .diagnostic import Assumptions, Diagnostic, cell_of
 from .shown import Shown, line
 from .trace_source import Array, Known, Source, friction_of, no_passes
 
@@ -361,7 +361,7 @@ class Trace(Shown):
     @classmethod
     def from_plain(cls, facts: Mapping[str, Any], samples: pd.DataFrame, case: Case) -> Trace:
         """Return the trace of what `to_plain` and `to_frame` gave, and its case."""
-        given, names = trace_file.restored(facts, samples), {field.name for field in fields(cls)}
+        given, names = trace_file.trace_arguments(facts, samples), {field.name for field in fields(cls)}
         return cls(case=case, **{name: value for name, value in given.items() if name in names})
 
     def save(self, path: str | Path) -> None:
@@ -371,7 +371,7 @@ class Trace(Shown):
         ----------
         path : str or Path
         """
-        Path(path).write_bytes(trace_file.packed(self.to_frame(), self.to_plain(), self.case))
+        Path(path).write_bytes(trace_file.to_parquet(self.to_frame(), self.to_plain(), self.case))
 
     @classmethod
     def load(cls, path: str | Path) -> Trace:
@@ -390,7 +390,7 @@ class Trace(Shown):
         ValueError
             If the file is not one of a trace.
         """
-        facts, samples, case = trace_file.unpacked(path)
+        facts, samples, case = trace_file.from_parquet(path)
         return cls.from_plain(facts, samples, case)
 
     def summary(self) -> dict[str, str]:
@@ -409,10 +409,10 @@ class Trace(Shown):
             if not math.isnan(self.followed_until):
                 found["outcome"] += f", followed to {self.followed_until:.4g} s"
         if self.facts:
-            found["diagnostics"] = joined(fact.code for fact in self.facts)
+            found["diagnostics"] = cell_of(fact.code for fact in self.facts)
         return found
 
-    _said = summary
+    _main_facts = summary
 
     def __repr__(self) -> str:
         facts = [f"{name} {value}" for name, value in self.summary().items() if name not in ("case", "run")]
@@ -421,7 +421,7 @@ class Trace(Shown):
     @cached_property
     def late(self) -> Mapping[str, Array]:
         """The sampled quantities that its source gave beyond the fields."""
-        return self.source.sampled()
+        return self.source.quantities()
 
 
 def lost_trace(case: Case, run: Run, why: str) -> Trace:

@@ -72,7 +72,7 @@ OF_TENDONS = ("elongation", "tendon_force")  # and of a body with a tendon
 FIELDS = ("time", "tilt", "tilt_rate", "rolling_angle", "twist", "contact_point", "centre_of_mass")
 
 
-def restored(facts: Mapping[str, Any], samples: pd.DataFrame) -> dict[str, Any]:
+def trace_arguments(facts: Mapping[str, Any], samples: pd.DataFrame) -> dict[str, Any]:
     """Return the arguments of a trace, but its case, of what `Trace.to_plain` and its samples hold."""
     import pandas as pd
 
@@ -126,12 +126,12 @@ def case_from_plain(given: Mapping[str, Any]) -> Case:
     return Case(**{**given, **fields})
 
 
-def packed(samples: pd.DataFrame, facts: Mapping[str, object], case: Case) -> bytes:
+def to_parquet(samples: pd.DataFrame, facts: Mapping[str, object], case: Case) -> bytes:
     """Return a trace as the bytes of a Parquet file."""
     return pack(samples, {"case": case, "trace": facts})
 
 
-def unpacked(path: str | Path) -> tuple[dict[str, Any], pd.DataFrame, Case]:
+def from_parquet(path: str | Path) -> tuple[dict[str, Any], pd.DataFrame, Case]:
     """Return facts, samples and case of a file that `packed` made.
 
     Raises

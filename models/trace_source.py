@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 class Source(Protocol):
     """The maker of a trace: gives what costs something, when it is first asked for."""
 
-    def sampled(self) -> Mapping[str, Array]:
+    def quantities(self) -> Mapping[str, Array]:
         """Return the sampled quantities that it knows beyond those that are fields, (n,) or (n, 3)."""
         ...
 
@@ -38,7 +38,7 @@ class Known(Brief):
     values: Mapping[str, Array]
     held: Assumptions | None = None
 
-    def sampled(self) -> Mapping[str, Array]:
+    def quantities(self) -> Mapping[str, Array]:
         """Return the quantities, each (n,) or (n, 3)."""
         return self.values
 

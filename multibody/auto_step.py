@@ -170,7 +170,7 @@ def find_step(
     if progress is not None:
         progress(1.0)
     assert best is not None
-    return replace(_reported(best, found, verdict, alpha), wall_time=spent)
+    return replace(_report(best, found, verdict, alpha), wall_time=spent)
 
 
 def _judge(found: list[Closeness], tolerance: float) -> tuple[str | None, bool]:
@@ -203,7 +203,7 @@ def _estimate(found: list[Closeness]) -> tuple[float, float]:
     return last.difference / (2.0**order - 1.0), order
 
 
-def _reported(run: Trace, found: list[Closeness], verdict: str, alpha: float) -> Trace:
+def _report(run: Trace, found: list[Closeness], verdict: str, alpha: float) -> Trace:
     """The run with what halving found; `verdict` says why it has not settled, and is empty if it has."""
     if not found:
         fact = Diagnostic(code="unsettled", detail=verdict)

@@ -94,7 +94,7 @@ def extrapolation(runs: Sequence[Trace], alpha: float) -> Trace:
     if finest.outcome == "failed":
         return finest
     if any(run.outcome == "failed" for run in runs):
-        return _noted(finest, Diagnostic(code="not_extrapolated", time=0.0, detail="fails"))
+        return _with_facts(finest, Diagnostic(code="not_extrapolated", time=0.0, detail="fails"))
     agree = min(closeness(coarse, fine, alpha).until for coarse, fine in pairwise(runs))
     unknown, code = unknown_from(finest)
     until = min(agree, unknown)
@@ -106,13 +106,13 @@ def extrapolation(runs: Sequence[Trace], alpha: float) -> Trace:
     whole = good == len(finest.time)
     why = "no_closer" if good < count else code if unknown < agree else "diverged"
     if good == 0:
-        return _noted(finest, Diagnostic(code="not_extrapolated", time=0.0, detail=why))
+        return _with_facts(finest, Diagnostic(code="not_extrapolated", time=0.0, detail=why))
     end, left = float(finest.time[good - 1]), float(moved[:good].max())
     facts = [Diagnostic(code="extrapolated", duration=end, size=left / alpha, bound=order)]
     if not whole:
         facts.append(Diagnostic(code="not_extrapolated", time=end, detail=why))
-    merged = _merged(runs[-2:], order, good)
-    return replace(_noted(merged, *facts), error_estimate=left, settled_until=end)
+    merged = _merge(runs[-2:], order, good)
+    return replace(_with_facts(merged, *facts), error_estimate=left, settled_until=end)
 
 
 def to_zero_step(values: Sequence[Array], order: int) -> Array:
@@ -132,11 +132,11 @@ def _meaningful(moved: Array, difference: Array) -> int:
     return int(np.flatnonzero(holds)[-1]) + 1 if holds.any() else 0
 
 
-def _noted(run: Trace, *facts: Diagnostic) -> Trace:
+def _with_facts(run: Trace, *facts: Diagnostic) -> Trace:
     return replace(run, facts=(*run.facts, *facts))
 
 
-def _merged(pair: Sequence[Trace], order: int, good: int) -> Trace:
+def _merge(pair: Sequence[Trace], order: int, good: int) -> Trace:
     """Return the finer run with all that can be extrapolated, in its first `good` samples."""
     fine = pair[-1]
     whole = good == len(fine.time)

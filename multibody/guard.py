@@ -173,7 +173,7 @@ class EnergyWatch:
             self._start = float(state.energy[0] - until[0])
         return np.asarray(state.energy - self._start - until)
 
-    def lost(self, power: Array) -> Array:
+    def loss(self, power: Array) -> Array:
         """Return what a power (n,) that is lost has taken until each pose, shape (n,) [m^2/s^2]."""
         work = power * self._step
         until: Array = self._lost + np.cumsum(work) - 0.5 * work

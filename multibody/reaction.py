@@ -241,7 +241,7 @@ class UpliftWatch:
         # the load jumped over the rim: no approach, and no doubt about the step
         inside = np.flatnonzero(share < _LEVELS[0])
         step = min(int(inside[-1]) + 1 if len(inside) else 0, len(time) - 1)
-        return self._opened(float(time[step]), still[step])
+        return self._open(float(time[step]), still[step])
 
     def _follow(
         self, time: Array, still: Array, expected: Array, share: Array, end: int
@@ -256,9 +256,9 @@ class UpliftWatch:
         if expected[step] >= 1.0 and expected[step] > before:
             part = min(max((1.0 - before) / (expected[step] - before), 0.0), 1.0)
         at = still[step - 1] + part * (still[step] - still[step - 1])
-        return self._opened(float(time[step - 1] + part * (time[step] - time[step - 1])), at)
+        return self._open(float(time[step - 1] + part * (time[step] - time[step - 1])), at)
 
-    def _opened(self, time: float, still: Array) -> tuple[float, float]:
+    def _open(self, time: float, still: Array) -> tuple[float, float]:
         """Return time and direction of an uplift under a load of eccentricity `still` (2,), and note it."""
         self.missing = 1.0 - float(np.hypot(*still)) / self._body.base_radius
         return time, _azimuth(still)

@@ -272,7 +272,7 @@ class Recorder:
         return _rows(joined, slice(0, -1)), _rows(joined, slice(1, None))
 
     @property
-    def _carried(self) -> tuple[float, float]:
+    def _carried_shares(self) -> tuple[float, float]:
         """What the base carries, a column and its share of the slab, and the top, the share [columns]."""
         slab = self._scene.body.slab_mass_ratio
         return 1.0 + slab, slab
@@ -287,7 +287,7 @@ class Recorder:
             # of what the base carries, and of the slab, the tendon takes hold as well as contact does
             place = base_centre(poses, scene.body)
             pulls = scene.tendon.pulls(place, scene.tendon.elongation(place)) / scene.gravity
-            for end, mass in zip(ends, self._carried, strict=False):
+            for end, mass in zip(ends, self._carried_shares, strict=False):
                 end -= pulls / mass
         return ends
 
@@ -296,11 +296,11 @@ class Recorder:
         scene, body = self._scene, self._scene.body
         if scene.rolling_resistance == 0.0:
             return np.zeros(len(poses.position))
-        masses = (mass * scene.gravity / body.driven_mass for mass in self._carried)
+        masses = (mass * scene.gravity / body.driven_mass for mass in self._carried_shares)
         ends = self._contact_forces(poses, after, ground, body.gains)
         forces = list(zip(masses, ends, strict=False))
         power = couple_power(poses, after, forces, scene.rolling_resistance)
-        return self.energy.lost(power)
+        return self.energy.loss(power)
 
     def _slip(self, time: Array, state: Kinematics) -> Array:
         """Distance that the contact has slipped until each pose [m]; note slip and flight."""

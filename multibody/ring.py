@@ -143,7 +143,7 @@ def clearance_needed(cylinder: Cylinder, tilt: float, inclination: float) -> flo
         raise ValueError(f"tilt must be from 0 to pi/2 [rad], got {tilt!r}")
     if not 0.0 <= inclination < 0.5 * math.pi:
         raise ValueError(f"inclination must be from 0 to below pi/2 [rad], got {inclination!r}")
-    return _needed(2.0 * cylinder.half_height / cylinder.base_radius, tilt, inclination)
+    return _need(2.0 * cylinder.half_height / cylinder.base_radius, tilt, inclination)
 
 
 def check_start(ring: RingSettings, scene: Scene) -> None:
@@ -156,7 +156,7 @@ def check_start(ring: RingSettings, scene: Scene) -> None:
     """
     axis = axis_of(scene.start.quaternion[None])[0]
     tilt = math.atan2(math.hypot(axis[0], axis[1]), axis[2])
-    needed = _needed(scene.body.height / scene.body.base_radius, tilt, ring.ring_inclination)
+    needed = _need(scene.body.height / scene.body.base_radius, tilt, ring.ring_inclination)
     if needed > ring.ring_clearance + _ROUNDING:
         raise ValueError(
             f"a release at a tilt of {tilt:.4g} rad needs walls that lean by as much or stand back by "
@@ -165,7 +165,7 @@ def check_start(ring: RingSettings, scene: Scene) -> None:
         )
 
 
-def _needed(eta: float, tilt: float, inclination: float) -> float:
+def _need(eta: float, tilt: float, inclination: float) -> float:
     if tilt <= inclination:
         return 0.0
     t = math.tan(0.5 * tilt)

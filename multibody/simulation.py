@@ -143,7 +143,7 @@ def _simulate(
     started = clock.perf_counter()
     assert run.engine is not None
     scale = froude_scale(case.cylinder.semidiagonal, case.gravity)
-    backend, scene, resolved = _stated(case, run.engine, run.support, settings, step)
+    backend, scene, resolved = _statement(case, run.engine, run.support, settings, step)
     samples = _sample_times(case.length, require_sample_step(sample_step, case.length)) / scale.time
     release = InitialState(0.0) if case.initial is None else case.initial
     recorder = Recorder(
@@ -312,7 +312,7 @@ def resolved_settings(
         If the engine is unknown, cannot run the case, the time step is out of range, or a setting is
         unknown or out of range.
     """
-    return _stated(case, engine, support, settings, time_step)[-1]
+    return _statement(case, engine, support, settings, time_step)[-1]
 
 
 @contextlib.contextmanager
@@ -329,12 +329,12 @@ def open_scene(case: Case, engine: str, support: str, settings: Settings) -> Ite
     ValueError
         As `simulate` does.
     """
-    backend, scene, resolved = _stated(case, engine, support, settings)
+    backend, scene, resolved = _statement(case, engine, support, settings)
     with backend.open(scene, resolved) as stepper:
         yield stepper
 
 
-def _stated(
+def _statement(
     case: Case, engine: str, support: str, settings: Settings, time_step: float | None = None
 ) -> tuple[Engine, Scene, Mapping[str, object]]:
     """Return the engine, the scene of a case at the reference size, and every setting."""

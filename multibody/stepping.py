@@ -62,10 +62,10 @@ def run_steps(
                 progress(done / total)
         if recorder.ended or recorder.resting or _has_turned(recorder, means.still_from):
             return recorder
-        return _followed(stepper, scene, recorder, means, total, sample_step, progress)
+        return _follow(stepper, scene, recorder, means, total, sample_step, progress)
 
 
-def _followed(
+def _follow(
     stepper: Stepper,
     scene: Scene,
     recorder: Recorder,

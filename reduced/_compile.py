@@ -80,7 +80,7 @@ def kernel(function: F) -> F:
     except RuntimeError:  # numba finds no folder to write to: neither beside the source nor in HOME
         _keep_in_temporary_folder()
         entry = compiled(function)
-    entry.compile = _uncollected()(entry.compile)
+    entry.compile = _without_collector()(entry.compile)
     _keep_by_content(entry._cache, _digest(Path(function.__code__.co_filename)))
     return cast("F", entry)
 
@@ -138,7 +138,7 @@ def _digest(source: Path) -> str:
 
 
 @contextmanager
-def _uncollected() -> Iterator[None]:
+def _without_collector() -> Iterator[None]:
     """Keep the garbage collector out of what a compiler makes and keeps: it takes a fifth of the time."""
     collects = gc.isenabled()
     gc.disable()
@@ -176,7 +176,7 @@ def _is_ours(folder: Path) -> bool:
     return stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o022
 
 
-def _borrowed(typing: Any, array: Any) -> Any:
+def _borrow(typing: Any, array: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         view = context.make_array(signature.return_type)(context, builder, arguments[0])
         view.meminfo, view.parent = view.meminfo.type(None), view.parent.type(None)
@@ -187,7 +187,7 @@ def _borrowed(typing: Any, array: Any) -> Any:
 
 # A view of an array that counts no references, for as long as the array itself is used later. Counting
 # takes a locked instruction each time the array is handed on: a tenth of a step.
-borrowed = cast("Callable[[A], A]", intrinsic(_borrowed))
+borrowed = cast("Callable[[A], A]", intrinsic(_borrow))
 
 
 def in_memory(entry: Callable[..., object]) -> bool:

@@ -18,12 +18,12 @@ from rockwobble.models.support import SUPPORTS as FACTS
 from . import kernels
 from .body import Body, body_of, restitution_from_momentum
 from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
-from .integration.balance import decided
+from .integration.balance import decide
 from .integration.result import Driver, IntegrationResult, Options, Task
-from .restoring import balance, tied
+from .restoring import balance, tied_body
 from .rolling import impact_ratio
 
-SUPPORTS = tuple(name for name, support in FACTS.items() if support.modelled)
+SUPPORTS = tuple(name for name, support in FACTS.items() if support.has_model)
 _OUT_OF_PLANE = 1e-9  # [rad] more than what rounding makes of an azimuth
 
 # Tilt (over alpha) below which the base is closed again. A rest forgets which way the cylinder leans, and
@@ -133,7 +133,7 @@ class Problem:
         plain, tendon = body_of(case.cylinder, case.gravity, case.rolling_resistance), case.tendon
         if tendon is None or tendon.prestress == tendon.stiffness == 0.0:  # to the bit
             return plain
-        return cast("Body", tied(plain, case.cylinder, tendon))
+        return cast("Body", tied_body(plain, case.cylinder, tendon))
 
     def solve(
         self,
@@ -146,7 +146,7 @@ class Problem:
         # a column of a table would have the time integration compiled for its stride
         task = task._replace(times=np.ascontiguousarray(times))
         result = integrate(self.body, self._options._replace(record_steps=record_steps), task)
-        return self._decided(result), azimuth
+        return self._decide(result), azimuth
 
     def shaking(self, factor: float) -> SetUp:
         """Return the integration of a run from rest under ``motion.scaled(factor)``, for its peak only."""
@@ -162,11 +162,11 @@ class Problem:
 
     def solve_under(self, shaking: SetUp) -> IntegrationResult:
         """Return the result for this body under a motion of another size, for the peak only."""
-        return self._decided(shaking.integrate(self.body, self._options, shaking.task))
+        return self._decide(shaking.integrate(self.body, self._options, shaking.task))
 
-    def _decided(self, result: IntegrationResult) -> IntegrationResult:
+    def _decide(self, result: IntegrationResult) -> IntegrationResult:
         # rolling resistance holds what stands on the balance
-        return result if self.case.rolling_resistance else decided(self.body, result)
+        return result if self.case.rolling_resistance else decide(self.body, result)
 
     @property
     def free_twist(self) -> bool:

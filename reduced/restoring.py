@@ -391,7 +391,7 @@ def balance_tilt(body: TiedBody) -> float:
     return low
 
 
-def tied(body: Body, cylinder: Cylinder, tendon: Tendon) -> TiedBody:
+def tied_body(body: Body, cylinder: Cylinder, tendon: Tendon) -> TiedBody:
     """Return the constants of a body that a tendon holds."""
     gaps, w = tendon.gaps(cylinder), 1.0 + 2.0 * cylinder.slab_mass_ratio
     stiffness = gaps**2 * tendon.stiffness * body.g / w

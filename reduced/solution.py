@@ -70,7 +70,7 @@ class Solution(Brief):
     extrema: Array
     rest_intervals: Array
 
-    def sampled(self) -> Mapping[str, Array]:
+    def quantities(self) -> Mapping[str, Array]:
         """Return rolling rate, energy, contact force and restraining moment at the samples."""
         found, top = self._derive(self.time, self.states)
         return {
@@ -216,7 +216,7 @@ def review(
     """
     edges = np.unique(np.concatenate([steps, jumps, np.nextafter(jumps, math.inf)]))
     parts = max(_LEAST_PARTS, min(_PARTS, _MOST_TIMES // len(edges)))
-    times = np.unique(_divided(edges, parts))
+    times = np.unique(_subdivision(edges, parts))
     found = demands_at(times)
     if not found.open_base.any():
         return Assumptions(friction=friction)
@@ -233,13 +233,13 @@ def review(
         largest(lambda found: found.load),
         largest(lambda found: np.abs(found.moment)),
     )
-    if (pull >= 0.0 and not _lost(found).any()) or (need > friction and not slips(found).any()):
+    if (pull >= 0.0 and not _contact_loss(found).any()) or (need > friction and not slips(found).any()):
         # a breach that is shorter than a part of a step
         times = np.union1d(times, [pulled, needed])
         found = demands_at(times)
     breaches = []
-    if _lost(found).any():
-        breaches.append(_breach("tension", _lost, demands_at, times, found, -pull, 0.0))
+    if _contact_loss(found).any():
+        breaches.append(_breach("tension", _contact_loss, demands_at, times, found, -pull, 0.0))
     if slips(found).any():
         breaches.append(_breach("friction_needed", slips, demands_at, times, found, need, friction))
     return Assumptions(
@@ -260,7 +260,7 @@ def _need(found: Demands) -> Array:
     return found.friction
 
 
-def _lost(found: Demands) -> NDArray[np.bool_]:
+def _contact_loss(found: Demands) -> NDArray[np.bool_]:
     return found.open_base & (found.normal <= 0.0)
 
 
@@ -277,7 +277,7 @@ def _breach(
     # where a breach begins or ends, ever closer: a step of a fall takes tenths of a second
     for _ in range(_ROUNDS - 1):
         changes = np.flatnonzero(broken[1:] != broken[:-1])
-        times = np.unique(np.concatenate([times, *(_divided(times[i : i + 2], _PARTS) for i in changes)]))
+        times = np.unique(np.concatenate([times, *(_subdivision(times[i : i + 2], _PARTS) for i in changes)]))
         broken = broken_at(demands_at(times))
     return Diagnostic(
         code=code,
@@ -304,12 +304,12 @@ def _largest(
         if math.isinf(best):
             break
         about = times[max(at - 1, 0) : at + 2]
-        times = np.unique(_divided(about, _PARTS))
+        times = np.unique(_subdivision(about, _PARTS))
         found = demands_at(times)
     return best, when
 
 
-def _divided(edges: Array, parts: int) -> Array:
+def _subdivision(edges: Array, parts: int) -> Array:
     """Return times (parts (k - 1) + 1,) that divide each interval between `edges` (k,)."""
     share = np.arange(parts) / parts
     inner = edges[:-1, None] + np.diff(edges)[:, None] * share

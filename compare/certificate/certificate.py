@@ -117,7 +117,7 @@ def short_cases(*, slab: bool = True, tendon: bool = True) -> tuple[ShortCase, .
         _shaken("turning-push", "a_t of (19)", [[0.0, 0.0], [2.2, 0.5], [1.0, 1.8]], 0.7),
         _shaken("vertical", "g + az", [[0.0, 0.0, 0.0], [2.2, 0.5, -1.0], [1.0, 1.8, 1.0]], 0.7),
         *([frame] if slab else []),
-        *([_tied()] if tendon else []),
+        *([_with_tendon()] if tendon else []),
         ShortCase(
             name="planar",
             claim="the planar model, with the loss of an impact",
@@ -157,7 +157,7 @@ def _shaken(
     return ShortCase(name=name, claim=claim, term=term, case=case, options=options)
 
 
-def _tied() -> ShortCase:
+def _with_tendon() -> ShortCase:
     pushes = [[0.0, 0.0, 0.0], [2.6, 1.4, -1.2], [1.2, 2.2, 1.2]]
     term = "prestress and stiffness of a tendon: uplift, couple, load and energy"
     short = _shaken("tendon", term, pushes, 1.0, 2.5)
@@ -187,7 +187,7 @@ def entry_of(short: ShortCase, subject: Subject) -> Entry:
     trace = _run(subject, short, short.case)
     found, values = entry(short, trace), _signals(trace)
     copies = [_signals(_run(subject, short, copy)) for copy in _copies(short.case, subject.tolerance)]
-    spread = _BEYOND * np.array([_apart(copy, values) for copy in copies]).max(axis=0)
+    spread = _BEYOND * np.array([_difference(copy, values) for copy in copies]).max(axis=0)
     lost = np.flatnonzero(spread[:, SIGNALS.index("tilt")] > AGREEMENT)
     allowed = _REPEATS * subject.tolerance * np.maximum(1.0, np.abs(np.nan_to_num(values))) + spread
     if len(lost):  # from there on copies are no measure
@@ -203,7 +203,7 @@ def entry_of(short: ShortCase, subject: Subject) -> Entry:
     return whole
 
 
-def repeated(
+def repeat(
     subject: Subject, old: Sequence[Entry], progress: ProgressCallback | None = None
 ) -> Iterator[Sample]:
     """Yield the parts of the entries needed to compare them with older ones: the copies are theirs."""
@@ -231,19 +231,19 @@ def entry(short: ShortCase, trace: Trace) -> Sample:
         "term": short.term,
         "support": short.support,
         "outcome": trace.outcome,
-        "uplift_time": _known(trace.uplift_time),
-        "uplift_direction": _known(trace.uplift_direction),
+        "uplift_time": _finite_or_none(trace.uplift_time),
+        "uplift_direction": _finite_or_none(trace.uplift_direction),
         # as the signals, of the run alone
-        "peak_tilt": _known(trace.peak_within_run / short.case.cylinder.alpha),
+        "peak_tilt": _finite_or_none(trace.peak_within_run / short.case.cylinder.alpha),
         "time": _rounded(trace.time),
-        "signals": {name: _listed(values[:, k]) for k, name in enumerate(SIGNALS)},
+        "signals": {name: _finite_list(values[:, k]) for k, name in enumerate(SIGNALS)},
     }
 
 
 def copied_tilts(short: ShortCase, subject: Subject) -> list[list[float | None]]:
     """Return the tilts of many copies, over alpha."""
     members = _members(short.case, _BEYOND * subject.tolerance)
-    return [_listed(_run(subject, short, member).tilt / member.cylinder.alpha) for member in members]
+    return [_finite_list(_run(subject, short, member).tilt / member.cylinder.alpha) for member in members]
 
 
 def _signals(trace: Trace) -> Array:
@@ -263,7 +263,7 @@ def _signals(trace: Trace) -> Array:
     )
 
 
-def _apart(copy: Array, values: Array) -> Array:
+def _difference(copy: Array, values: Array) -> Array:
     """Return the difference (n, 9), of a copy that ended earlier as far as it goes."""
     apart = np.zeros_like(values)
     count = min(len(copy), len(values))
@@ -282,11 +282,11 @@ def _members(case: Case, share: float) -> list[Case]:
     return [perturbed(case, *pair) for pair in factors]
 
 
-def _known(value: float) -> float | None:
+def _finite_or_none(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def _listed(values: Array) -> list[float | None]:
+def _finite_list(values: Array) -> list[float | None]:
     return [value if math.isfinite(value) else None for value in _rounded(values)]
 
 
@@ -336,7 +336,7 @@ def certify(
     return {
         "kind": KIND,
         "format": FORMAT,
-        "method": described(subject),
+        "method": description(subject),
         "versions": package_versions(),
         "commit": commit(),
         "claims": claims,
@@ -345,7 +345,7 @@ def certify(
     }
 
 
-def described(subject: Subject) -> Described:
+def description(subject: Subject) -> Described:
     """Return the method of a subject as a certificate has it."""
     run = subject.run or Run(None, "recess")
     return {"engine": run.engine, "time_step": run.time_step, "settings": dict(run.settings)}
@@ -399,7 +399,7 @@ def verify(
     if all(names != [short.name for short in shorts] for shorts in kinds):
         raise ValueError("the certificate has other cases than this version: make it anew")
     own = subject_of(certificate) if subject is None else subject
-    return compare(old, repeated(own, old, progress))
+    return compare(old, repeat(own, old, progress))
 
 
 def read_certificate(path: Path) -> Certificate:

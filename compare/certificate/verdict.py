@@ -142,13 +142,13 @@ def compare_entries(old: Entry, new: Sample) -> FingerprintVerdict:
     if old["name"] != new["name"]:
         return decided(CHANGED, quantity="the case itself")
     for name in ("uplift_time", "uplift_direction"):
-        apart = _apart(old[name], new[name])
+        apart = _difference(old[name], new[name])
         if apart > 10.0 * old["repeats"]:
             return decided(CHANGED, quantity=name, difference=apart, allowed=10.0 * old["repeats"])
     first = _first_difference(old, new)
     if first is not None and first[1] < end:
         return decided(CHANGED, quantity=first[0], time=first[1], difference=first[2], allowed=first[3])
-    apart = _apart(old["peak_tilt"], new["peak_tilt"])
+    apart = _difference(old["peak_tilt"], new["peak_tilt"])
     if end == math.inf:
         allowed = 10.0 * max(old["allowed"]["tilt"])
         if _outcome(old) != _outcome(new):
@@ -187,7 +187,7 @@ def _first_difference(old: Entry, new: Sample) -> tuple[str, float, float, float
         count = min(len(wanted), len(got))
         for k in range(max(len(wanted), len(got))):
             # a motion that ended is not there
-            apart = _apart(wanted[k], got[k]) if k < count else math.inf
+            apart = _difference(wanted[k], got[k]) if k < count else math.inf
             allowed = old["allowed"][name][min(k, len(wanted) - 1)]
             moved = k < count and abs(old["time"][k] - new["time"][k]) > 10.0 * old["repeats"]
             if apart > allowed or moved:
@@ -199,7 +199,7 @@ def _first_difference(old: Entry, new: Sample) -> tuple[str, float, float, float
     return name, time, apart, allowed
 
 
-def _apart(one: float | None, other: float | None) -> float:
+def _difference(one: float | None, other: float | None) -> float:
     """Return a difference: none where neither is known, infinite where only one is."""
     if one is None or other is None:
         return 0.0 if one is other else math.inf

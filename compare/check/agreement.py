@@ -42,7 +42,7 @@ from .measurement import (
     at_most,
     largest,
     lean,
-    released,
+    release_case,
     steady,
     why,
 )
@@ -82,42 +82,50 @@ def fields(subject: Subject, support: str) -> Iterator[Result]:
     found, model = _both(subject, SHAKEN, support, _SAMPLE)
     whole = len(found.time) == len(model.time)
 
-    def apart(name: str, cut: slice = slice(None)) -> float:
+    def difference(name: str, cut: slice = slice(None)) -> float:
         return largest(getattr(found, name)[cut] - getattr(model, name)[cut]) if whole else math.nan
 
     for name, (unit, size, times) in _FIELDS.items():
-        yield at_most(name, apart(name) / size, subject.within(times, "contact at its step", unit))
-    rate, force = (subject.within(times, "means over 60 steps") for times in _SWINGS[support])
-    yield at_most("rolling_rate", apart("rolling_rate"), rate)
+        yield at_most(
+            name, difference(name) / size, subject.tolerance_bound(times, "contact at its step", unit)
+        )
+    rate, force = (subject.tolerance_bound(times, "means over 60 steps") for times in _SWINGS[support])
+    yield at_most("rolling_rate", difference("rolling_rate"), rate)
     # without the half window at either end
-    yield at_most("contact force", apart("contact_force", slice(2, -2)), force)
+    yield at_most("contact force", difference("contact_force", slice(2, -2)), force)
     if "energy_error" in subject.knows:
         work = -(found.centre_of_mass - found.centre_of_mass[0]) @ GROUND
         left = largest(found.energy - found.energy[0] - work - found.energy_error)
-        bound = subject.within(1.0, "work step by step, and samples between steps", "g R")
+        bound = subject.tolerance_bound(1.0, "work step by step, and samples between steps", "g R")
         yield at_most("energy error against energy and work", left / _FIELDS["energy"][1], bound)
         outside = np.hypot(*model.contact_point.T) - BODY.base_radius
         off = largest(found.contact_offset - outside) if whole else math.nan
-        yield at_most("contact offset", off / BODY.base_radius, subject.within(1.0, "as the model", "b"))
+        yield at_most(
+            "contact offset", off / BODY.base_radius, subject.tolerance_bound(1.0, "as the model", "b")
+        )
 
 
 def release(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt, peak and passes of a release that passes the upright position."""
     found, model = _both(subject, RELEASE, support)
     apart = _difference(found, model, RELEASE.length)
-    yield at_most("tilt and azimuth of a release", apart, subject.within(1.0, "contact at its step", "alpha"))
+    yield at_most(
+        "tilt and azimuth of a release", apart, subject.tolerance_bound(1.0, "contact at its step", "alpha")
+    )
     if "passes" in subject.knows:
         columns = ["time", "minimum_tilt", "angle_of_turn"]
         own, other = (each.passes[columns].to_numpy(dtype=float) for each in (found, model))
         off = largest(own - other) if own.shape == other.shape else math.nan
-        yield at_most("passes of a release", off, subject.within(10.0, "as the model", "s, rad"))
+        yield at_most("passes of a release", off, subject.tolerance_bound(10.0, "as the model", "s, rad"))
 
 
 def frame(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt of a release of a frame: one column under a slab that can only translate."""
     found, model = _both(subject, FRAME_RELEASE, support)
     apart = _difference(found, model, FRAME_RELEASE.length)
-    yield at_most("tilt and azimuth of a frame", apart, subject.within(1.0, "contact at its step", "alpha"))
+    yield at_most(
+        "tilt and azimuth of a frame", apart, subject.tolerance_bound(1.0, "contact at its step", "alpha")
+    )
 
 
 def tendon(subject: Subject, support: str) -> Iterator[Result]:
@@ -126,14 +134,14 @@ def tendon(subject: Subject, support: str) -> Iterator[Result]:
     found, model = _both(subject, case, support)
     apart = _difference(found, model, case.length)
     yield at_most(
-        "tilt and azimuth with a tendon", apart, subject.within(1.0, "contact at its step", "alpha")
+        "tilt and azimuth with a tendon", apart, subject.tolerance_bound(1.0, "contact at its step", "alpha")
     )
 
 
 def ramp(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt after an uplift on a load that rises, as far as 1.5 times the load that lifts the pier."""
     found, model = _both(subject, _RAMP, support, 0.05)
-    bound = subject.within(5.0, "the base tips at the threshold", "alpha")
+    bound = subject.tolerance_bound(5.0, "the base tips at the threshold", "alpha")
     yield at_most("tilt and azimuth after an uplift", _difference(found, model, _RAMP.length), bound)
 
 
@@ -141,18 +149,18 @@ def record(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt and azimuth under El Centro, of a case that shows a size that is 0.1 % wrong."""
     found, model = _both(subject, RECORD, support)
     times = 1.0 if subject.run is None else 10.0  # an engine errs at uplift, and passes magnify that
-    bound = subject.within(times, "its accuracy, and what passes make of it", "alpha")
+    bound = subject.tolerance_bound(times, "its accuracy, and what passes make of it", "alpha")
     yield at_most("tilt and azimuth under El Centro", _difference(found, model, RECORD.length), bound)
 
 
 def ring(subject: Subject, support: str) -> Iterator[Result]:
     """A recess with clearance: flat ground until a wall is touched; the walls keep it in its place."""
-    case = released(0.5, 0.5, 4.0, SQUAT)
+    case = release_case(0.5, 0.5, 4.0, SQUAT)
     found, flat = (subject.simulate(case, each) for each in (support, "flat"))
     before = found.time < found.first("wall_contact")
     same = len(found.time) == len(flat.time)
     apart = largest(found.tilt[before] - flat.tilt[before]) if same else math.nan
-    yield at_most("tilt before a wall is touched", apart, subject.within(0.0, "the same run", "rad"))
+    yield at_most("tilt before a wall is touched", apart, subject.tolerance_bound(0.0, "the same run", "rad"))
     yield from walls("release, tan alpha = 1", case, found)
 
 
@@ -167,12 +175,12 @@ def trajectory(subject: Subject, support: str) -> Iterator[Result]:
         if case.initial is None:
             seen = [exceeds(each.time, each.tilt, _LEVEL * alpha, 3.0) for each in (found, model)]
             off = 0.0 if seen[0] == seen[1] else abs(seen[0] - seen[1])
-            yield at_most("time of uplift", off, subject.within(1.0, "as the model", "s"))
+            yield at_most("time of uplift", off, subject.tolerance_bound(1.0, "as the model", "s"))
         else:
             off = abs(float(found.tilt[0]) - case.initial.tilt) / alpha
-            yield at_most("tilt at release", off, subject.within(1.0, "as stated", "alpha"))
+            yield at_most("tilt at release", off, subject.tolerance_bound(1.0, "as stated", "alpha"))
         end = _agreement(subject, case, support, model)
-        apart, bound = _difference(found, model, end), subject.within(1.0, "as asked for", "alpha")
+        apart, bound = _difference(found, model, end), subject.tolerance_bound(1.0, "as asked for", "alpha")
         yield at_most(f"tilt and azimuth up to {end:.4g} s", apart, bound)
         peaks = [float(each.tilt[each.time <= end].max()) / alpha for each in (found, model)]
         yield at_most("peak tilt", abs(peaks[0] - peaks[1]), bound)
@@ -227,7 +235,7 @@ def _agreement(subject: Subject, case: Case, support: str, model: Trace) -> floa
     return agreement_time(make_pair(case.cylinder, model, copy)).end
 
 
-_SQUAT = released(0.5, 0.5, 2.0, SQUAT, "release, tan alpha = 1")
+_SQUAT = release_case(0.5, 0.5, 2.0, SQUAT, "release, tan alpha = 1")
 
 
 def order(subject: Subject, support: str) -> Iterator[Result]:
@@ -253,7 +261,7 @@ _VERTICAL = Case(PIER, el_centro_1940(vertical=True).scaled(2.0), duration=8.0, 
 # the error of the contact does
 _CASES: tuple[tuple[Case, bool, float], ...] = (
     (RELEASE, False, 0.1),
-    (released(0.5, 0.5, 4.0, SQUAT, "release, tan alpha = 1"), False, 1.0),
+    (release_case(0.5, 0.5, 4.0, SQUAT, "release, tan alpha = 1"), False, 1.0),
     (RECORD, False, 10.0),
     (_VERTICAL, True, 10.0),
 )

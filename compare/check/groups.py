@@ -370,7 +370,7 @@ def check(
     if suite is not None:
         runs = SuiteRuns(workers=workers, progress=progress)
         found = _of_suite(runs, read_suite(suite) if not isinstance(suite, Suite) else suite)
-        return _summed([*found])
+        return _checks_of([*found])
     if engine is not None:
         chosen = [subjects.engine(engine, time_step, **settings)]
     elif model is not None:
@@ -399,7 +399,7 @@ def check(
         results += run_checks(each, [group], checks=checks, stage=stage)
     if not results:
         raise ValueError(f"no check of {', '.join(only or GROUPS)} applies: name an engine, or another group")
-    return _summed(results)
+    return _checks_of(results)
 
 
 def baseline_subjects() -> list[Subject]:
@@ -423,6 +423,6 @@ def _of_suite(runs: SuiteRuns, suite: Suite) -> Iterator[Result]:
         yield dataclasses.replace(result, group="agreement")
 
 
-def _summed(results: list[Result]) -> Checks:
+def _checks_of(results: list[Result]) -> Checks:
     labels = dict.fromkeys(result.subject for result in results if result.subject)
     return Checks(results=results, facts={"subjects": list(labels), "versions": package_versions()})

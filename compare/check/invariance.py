@@ -82,8 +82,8 @@ def scale(subject: Subject, support: str) -> Iterator[Result]:
     """A hundredth of the size moves ten times as fast (Froude); 0.7 of the gravity slower by sqrt(0.7)."""
     small, slower = dataclasses.replace(PIER, semidiagonal=PIER.semidiagonal / 100.0), math.sqrt(1.0 / 0.7)
     for case in _cases(subject):
-        little = _paced(case, 0.1, cylinder=small)
-        lighter = _paced(case, slower, 0.7, gravity=0.7 * GRAVITY)
+        little = _slow_copy(case, 0.1, cylinder=small)
+        lighter = _slow_copy(case, slower, 0.7, gravity=0.7 * GRAVITY)
         yield _same(subject, support, case, "a hundredth of the size", little, slower=0.1)
         yield _same(subject, support, case, "0.7 of the gravity", lighter, slower=slower)
 
@@ -110,7 +110,7 @@ def _motion(case: Case) -> GroundMotion:
     return case.motion
 
 
-def _paced(
+def _slow_copy(
     case: Case, slower: float, force: float = 1.0, *, cylinder: Cylinder = PIER, gravity: float = GRAVITY
 ) -> Case:
     """Return a case whose time runs slower, under accelerations that are `force` times as large."""
@@ -174,7 +174,7 @@ rw.simulate(case, engine=sys.argv[1], support=sys.argv[2], **json.loads(sys.argv
 
 def description(subject: Subject, support: str) -> Iterator[Result]:
     """Version, supports and settings are plain values; an unknown one is a ValueError that names it."""
-    backend, scene, given = _opened(subject, support)
+    backend, scene, given = _open_stepper(subject, support)
     settings = backend.settings(given, scene)
     plain = json.loads(json.dumps(dict(settings))) == dict(settings)
     right = bool(backend.version()) and support in backend.supports and isinstance(backend.uplifts, bool)
@@ -197,7 +197,7 @@ def description(subject: Subject, support: str) -> Iterator[Result]:
 
 def stepping(subject: Subject, support: str) -> Iterator[Result]:
     """A step is a step, however many one call takes, and two open scenes do not disturb each other."""
-    backend, scene, given = _opened(subject, support)
+    backend, scene, given = _open_stepper(subject, support)
     settings, still = backend.settings(given, scene), np.zeros((60, 3))
     with backend.open(scene, settings) as whole, backend.open(scene, settings) as separated:
         together = whole.advance(still)
@@ -257,7 +257,7 @@ def _holds(name: str, right: bool, note: str) -> Result:
     return at_most(name, float(not right), _ALL, note="" if right else note)
 
 
-def _opened(subject: Subject, support: str) -> tuple[Engine, Scene, Settings]:
+def _open_stepper(subject: Subject, support: str) -> tuple[Engine, Scene, Settings]:
     """Return the engine, the release as its stepper meets it, and the settings that were given."""
     assert subject.run is not None
     unit = froude_scale(PIER.semidiagonal, REFERENCE_GRAVITY)

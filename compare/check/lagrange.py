@@ -50,7 +50,7 @@ from rockwobble.models.cylinder import PIER
 from rockwobble.models.support import SUPPORTS
 
 from ..metrics.pair import energy_loss
-from .measurement import GRAVITY, RELEASE, Result, at_most, largest, released, why, worst_of
+from .measurement import GRAVITY, RELEASE, Result, at_most, largest, release_case, why, worst_of
 from .subject import Subject
 
 Array = NDArray[Any]  # of float, or of complex within a complex step
@@ -288,7 +288,7 @@ def residual_with_tendon(subject: Subject, support: str) -> Iterator[Result]:
 
 def _worst(subject: Subject, support: str, tendon: Tendon | None) -> Iterator[Result]:
     errors = {place: _residuals(subject, support, body, tendon) for place, body in CYLINDERS.items()}
-    bound = subject.within(1.0, _REASON, "of g (b + h), p and weights")
+    bound = subject.tolerance_bound(1.0, _REASON, "of g (b + h), p and weights")
     for at, name in enumerate(NAMES):
         words = name if tendon is None else f"{name}, with a tendon"
         yield worst_of(words, {place: found[at] for place, found in errors.items()}, bound)
@@ -380,8 +380,8 @@ def free_motion(subject: Subject, support: str) -> Iterator[Result]:
     """
     cases = {"": RELEASE}
     if "rtol" in subject.options:
-        cases |= {f", spin {spin:g} rad/s": released(0.5, spin, 5.0) for spin in _SPINS}
-    bound = subject.within(10.0, "no loss; near passes magnify the error of a step")
+        cases |= {f", spin {spin:g} rad/s": release_case(0.5, spin, 5.0) for spin in _SPINS}
+    bound = subject.tolerance_bound(10.0, "no loss; near passes magnify the error of a step")
     for words, case in cases.items():
         found = subject.simulate(case, support, rest_tilt=0.0)
         yield at_most(f"energy of a release{words}", np.ptp(found.energy) / found.energy[0], bound)
@@ -406,7 +406,7 @@ def rolling_loss(subject: Subject, support: str) -> Iterator[Result]:
     w = np.hypot(found.tilt_rate, np.sin(found.tilt) * found.rolling_rate)
     power = ROLLING.rolling_resistance * GRAVITY * found.contact_force[:, 2] * w
     lost, start = cumulative_simpson(power, x=found.time, initial=0.0), found.energy[0]
-    bound = subject.within(10.0, "power from samples; near passes magnify the error of a step")
+    bound = subject.tolerance_bound(10.0, "power from samples; near passes magnify the error of a step")
     left = largest(start - found.energy - lost) / start
     yield at_most("energy of a release against the power of rolling resistance", left, bound)
     stated = largest(found.energy_lost - lost) / start
@@ -427,7 +427,7 @@ def work_of_the_ground(subject: Subject, support: str) -> Iterator[Result]:
     work = -(found.centre_of_mass[last] - found.centre_of_mass[0]) @ motion.acceleration[0]
     energy = found.energy[within]
     left = largest(energy - energy[0] - work) / energy.max()
-    bound = subject.within(10.0, "work of a constant force, from positions")
+    bound = subject.tolerance_bound(10.0, "work of a constant force, from positions")
     yield at_most("energy against the work of ground that accelerates, and stops", left, bound)
 
 
@@ -435,5 +435,5 @@ def work_of_a_record(subject: Subject, support: str) -> Iterator[Result]:
     """Under El Centro the energy changes by the work of the ground, sample by sample of the record."""
     found = subject.simulate(EL_CENTRO, support)
     loss = abs(energy_loss(found, EL_CENTRO.motion)) if found.peak_tilt > 0.0 else math.nan
-    bound = subject.within(2e5, "work from samples 0.01 s apart, corrected for their slope")
+    bound = subject.tolerance_bound(2e5, "work from samples 0.01 s apart, corrected for their slope")
     yield at_most("energy against the work of El Centro doubled", loss, bound)

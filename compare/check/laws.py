@@ -36,7 +36,7 @@ from .measurement import (
     at_most,
     largest,
     polyline,
-    released,
+    release_case,
     steady,
     turning_points,
 )
@@ -48,7 +48,7 @@ _QUADRATURE = "quadrature of the energies, good to 1e-9"
 VANISHING_SPIN = 1e-8  # [rad/s]
 _RELEASES = {
     "tan alpha = 0.2": RELEASE,
-    "tan alpha = 1": released(0.5, 0.5, RELEASE.length, SQUAT),
+    "tan alpha = 1": release_case(0.5, 0.5, RELEASE.length, SQUAT),
     "frame": FRAME_RELEASE,
 }
 
@@ -67,7 +67,7 @@ def free_response(subject: Subject, support: str) -> Iterator[Result]:
         found = subject.simulate(case, support)
         maxima = found.extrema[(found.extrema[:, 3] > 0.0) & (found.extrema[:, 0] > 0.5 * time)]
         first = maxima[0] if len(maxima) else np.full(4, math.nan)
-        bound = subject.within(3.0, _QUADRATURE)
+        bound = subject.tolerance_bound(3.0, _QUADRATURE)
         yield at_most(f"period of a release, {of}", abs(first[0] / time - 1.0), bound)
         yield at_most(f"tilt that a release returns to, {of}", abs(first[1] / start.tilt - 1.0), bound)
         if "rolling_angle" in subject.knows:
@@ -78,9 +78,9 @@ def free_response(subject: Subject, support: str) -> Iterator[Result]:
 def steady_wobble(subject: Subject, support: str) -> Iterator[Result]:
     """At the rate at which (18) balances, phi'^2 = 2 V'/B', the tilt stays, on any support."""
     tilt = 0.3 * PIER.alpha  # with less energy than that of the balance
-    case = released(0.3, steady_rate(shape_of(PIER), tilt), 1.0)
+    case = release_case(0.3, steady_rate(shape_of(PIER), tilt), 1.0)
     found = subject.simulate(case, support)
-    bound = subject.within(10.0, "an error of the balance makes the tilt oscillate by as much")
+    bound = subject.tolerance_bound(10.0, "an error of the balance makes the tilt oscillate by as much")
     yield at_most("tilt of a steady wobble", largest(found.tilt - tilt) / tilt, bound)
 
 
@@ -88,9 +88,11 @@ def vanishing_spin(subject: Subject, support: str) -> Iterator[Result]:
     """Angle of turn in the limit of vanishing spin: pi sqrt(A/J) (Srinivasan and Ruina)."""
     shape = shape_of(PIER)
     limit = math.pi * math.sqrt(tilt_inertia(shape) / cone_inertia(shape))
-    found = subject.simulate(released(0.5, VANISHING_SPIN, 4.0), support, rest_tilt=0.0)
+    found = subject.simulate(release_case(0.5, VANISHING_SPIN, 4.0), support, rest_tilt=0.0)
     first = np.asarray(found.passes["angle_of_turn"])[:1]
-    bound = subject.within(1e4, "the spin that is left is 1e-8 of p, and the turn off by some 10 times that")
+    bound = subject.tolerance_bound(
+        1e4, "the spin that is left is 1e-8 of p, and the turn off by some 10 times that"
+    )
     yield at_most("angle of turn in the limit of vanishing spin", largest(first - limit), bound)
 
 
@@ -101,7 +103,7 @@ def planar_rocking(subject: Subject, support: str) -> Iterator[Result]:
     found = subject.simulate(case, support)
     minima = found.extrema[found.extrema[:, 3] < 0.0]
     off = largest(minima[:1, 0] / quarter - 1.0)
-    yield at_most("planar rocking, time to upright", off, subject.within(30.0, _QUADRATURE))
+    yield at_most("planar rocking, time to upright", off, subject.tolerance_bound(30.0, _QUADRATURE))
 
 
 def tilt_inertia(shape: Shape) -> float:
@@ -188,7 +190,7 @@ def stands(subject: Subject, support: str) -> Iterator[Result]:
     """Below |a| = (g + az) tan(alpha), equation (25), the cylinder stands."""
     level = 0.99 * THRESHOLD * np.array([0.6, 0.8])
     found = subject.simulate(Case(PIER, GroundMotion(np.outer([0.0, 1.0, 0.0], level), 0.5)), support)
-    bound = subject.within(1.0, "it stands")
+    bound = subject.tolerance_bound(1.0, "it stands")
     yield at_most("tilt below the threshold of uplift", largest(found.tilt) / PIER.alpha, bound)
 
 
@@ -204,7 +206,7 @@ def uplift(subject: Subject, support: str) -> Iterator[Result]:
         ("at the first sample", steady(push, 0.3), 0.0, push),
     ):
         found = subject.simulate(Case(PIER, motion), support, sample_step=0.05)
-        bound = subject.within(50.0, "closed form, to some steps", "s, rad")
+        bound = subject.tolerance_bound(50.0, "closed form, to some steps", "s, rad")
         yield at_most(f"time of uplift {words}", abs(found.uplift_time - begin), bound)
         away = math.remainder(found.uplift_direction - math.atan2(-load[1], -load[0]), 2.0 * math.pi)
         yield at_most(f"direction of uplift {words}", abs(away), bound)
@@ -215,7 +217,7 @@ def force_at_rest(subject: Subject, support: str) -> Iterator[Result]:
     ground = np.array([0.5, 0.2, -0.3 * GRAVITY])
     found = subject.simulate(Case(PIER, steady(ground, 0.4)), support, sample_step=0.1)
     off = found.contact_force[1:4] - (ground + np.array([0.0, 0.0, GRAVITY])) / GRAVITY
-    bound = subject.within(1.0, "Newton's law", "weights")
+    bound = subject.tolerance_bound(1.0, "Newton's law", "weights")
     if math.isfinite(found.time_step):
         # of a contact point that is known to rounding and put right in a step, in the mean of a sample
         most = subject.rounding * PIER.base_radius * _MEAN / (GRAVITY * found.time_step**2)
@@ -229,7 +231,9 @@ def falls(subject: Subject, support: str) -> Iterator[Result]:
     found = subject.simulate(Case(PIER, initial=start, duration=4.0, friction=5.0), support)
     ends = found.outcome == "overturned" and found.tilt[-1] == found.peak_tilt == 0.5 * math.pi
     right = ends and bool((np.diff(found.time) > 0.0).all())
-    yield at_most("end of a fall", float(not right), subject.within(0.0, "at pi/2"), note=found.outcome)
+    yield at_most(
+        "end of a fall", float(not right), subject.tolerance_bound(0.0, "at pi/2"), note=found.outcome
+    )
 
 
 def static_loads(subject: Subject, support: str) -> Iterator[Result]:
@@ -249,9 +253,11 @@ def static_loads(subject: Subject, support: str) -> Iterator[Result]:
                 elif lifted:
                     angles = found.uplift_direction, found.rolling_angle[-1]
                     off = max(off, *(abs(math.remainder(a - azimuth - math.pi, math.tau)) for a in angles))
-    bound = dataclasses.replace(subject.within(0.0, "equation (25)"), unit="loads")
+    bound = dataclasses.replace(subject.tolerance_bound(0.0, "equation (25)"), unit="loads")
     yield at_most("static loads that do not lift it, or do", len(wrong), bound, note="; ".join(wrong[:3]))
-    yield at_most("direction of its lean", off, subject.within(2e3, "1 deg, however it stands", "rad"))
+    yield at_most(
+        "direction of its lean", off, subject.tolerance_bound(2e3, "1 deg, however it stands", "rad")
+    )
 
 
 def crossing(motion: GroundMotion) -> tuple[float, Array, Array]:
@@ -279,10 +285,12 @@ def place(subject: Subject, support: str) -> Iterator[Result]:
     """
     found = subject.simulate(RELEASE, support)
     b, h = PIER.base_radius, PIER.mass_centre_height
-    yield at_most("twist phi + psi", largest(found.twist), subject.within(10.0, "none in a recess", "rad"))
+    yield at_most(
+        "twist phi + psi", largest(found.twist), subject.tolerance_bound(10.0, "none in a recess", "rad")
+    )
     moving = np.isfinite(found.rolling_angle) & (found.tilt > 0.0)
     off = np.hypot(*found.contact_point[moving].T) / b - 1.0
-    bound = subject.within(10.0, "it stays in its place", "b")
+    bound = subject.tolerance_bound(10.0, "it stays in its place", "b")
     yield at_most("contact point on the original circle", largest(off), bound)
     s, c = np.sin(found.tilt)[:, None], np.cos(found.tilt)
     ahead = np.column_stack([np.cos(found.rolling_angle), np.sin(found.rolling_angle)])
@@ -293,7 +301,7 @@ def place(subject: Subject, support: str) -> Iterator[Result]:
 def slip(subject: Subject, support: str) -> Iterator[Result]:
     """The rim rolls without slip, in a recess and on flat ground; a rim that is held by contact creeps."""
     found = subject.simulate(RELEASE, support)
-    bound = subject.within(100.0, "creep of a rim that rolls for 3 s", "b")
+    bound = subject.tolerance_bound(100.0, "creep of a rim that rolls for 3 s", "b")
     yield at_most("slip", largest(found.slip) / PIER.base_radius, bound)
 
 
@@ -303,12 +311,12 @@ def turning(subject: Subject, support: str) -> Iterator[Result]:
     found = subject.simulate(case, support, sample_step=_SAMPLE, rest_tilt=0.0)
     moving = np.flatnonzero(np.isfinite(found.rolling_angle))
     turns = turning_points(*(values[moving] for values in (found.time, found.tilt, found.rolling_angle)))
-    rows, bound = found.extrema, subject.within(100.0, "vertex of samples 0.002 s apart", "s, rad")
+    rows, bound = found.extrema, subject.tolerance_bound(100.0, "vertex of samples 0.002 s apart", "s, rad")
     if case.initial is not None and len(rows) == len(turns) + 1:
         rows = rows[1:]  # a release from rest begins with a turning point
-    yield at_most("turning points", _apart(rows, turns), bound)
+    yield at_most("turning points", _difference(rows, turns), bound)
     tops = [*turns[turns[:, 3] > 0.0, 1], found.tilt[0], found.tilt[-1]]
-    peak = subject.within(1.0, "the highest turning point of the samples", "rad")
+    peak = subject.tolerance_bound(1.0, "the highest turning point of the samples", "rad")
     yield at_most("peak of the continuous motion", abs(found.peak_tilt - max(tops)), peak)
     starts = np.vstack([[found.time[0], found.tilt[0], found.rolling_angle[0], 1.0], turns])
     listed = starts if case.initial is not None else turns
@@ -318,8 +326,10 @@ def turning(subject: Subject, support: str) -> Iterator[Result]:
         if low[3] < 0.0
     ]
     stated = found.passes[["time", "minimum_tilt", "angle_of_turn"]].to_numpy(dtype=float)
-    yield at_most("passes", _apart(stated, np.array(passes).reshape(-1, 3)), bound, note=f"{len(passes)}")
+    yield at_most(
+        "passes", _difference(stated, np.array(passes).reshape(-1, 3)), bound, note=f"{len(passes)}"
+    )
 
 
-def _apart(stated: Array, sampled: Array) -> float:
+def _difference(stated: Array, sampled: Array) -> float:
     return largest(stated - sampled) if len(sampled) and stated.shape == sampled.shape else np.nan

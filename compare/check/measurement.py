@@ -117,7 +117,9 @@ FRAME = WobblingFrame(PIER, 1.0, columns=1)
 THRESHOLD = GRAVITY * PIER.tan_alpha  # ground acceleration of its uplift [m/s^2]
 
 
-def released(share: float, spin: float, duration: float, cylinder: Cylinder = PIER, name: str = "") -> Case:
+def release_case(
+    share: float, spin: float, duration: float, cylinder: Cylinder = PIER, name: str = ""
+) -> Case:
     """Return a release from rest at a share of alpha, with a rolling rate [rad/s]."""
     initial = InitialState(tilt=share * cylinder.alpha, rolling_angle=0.3, rolling_rate=spin)
     return Case(cylinder, initial=initial, duration=duration, name=name)
@@ -152,8 +154,8 @@ def steady(acceleration: ArrayLike, duration: float) -> GroundMotion:
 
 
 # one pass of the upright position, at 0.1 alpha
-RELEASE = released(0.5, 0.5, 3.0, name="release")
-FRAME_RELEASE = released(0.5, 0.5, 3.4, FRAME, "release of a frame")
+RELEASE = release_case(0.5, 0.5, 3.0, name="release")
+FRAME_RELEASE = release_case(0.5, 0.5, 3.4, FRAME, "release of a frame")
 # rocks in three dimensions from rest, through several passes that are not near; one for each component
 SHOCK_TIMES = (0.0, 0.5, 1.0, 1.5, 2.0)
 SHOCK = THRESHOLD * np.array(
@@ -207,13 +209,13 @@ def trace_of(result: object, case: Case, support: str) -> Trace:
         If time or tilt is missing, or an array has another length or no finite numbers.
     """
 
-    def taken(*names: str) -> Array | None:
+    def take(*names: str) -> Array | None:
         get = result.get if isinstance(result, Mapping) else partial(getattr, result)
         found = next((value for name in names if (value := get(name, None)) is not None), None)
         return None if found is None else np.asarray(found, dtype=np.float64)
 
     time, tilt, angle, energy = (
-        taken(*names) for names in (("time",), ("tilt",), ("azimuth", "rolling_angle"), ("energy",))
+        take(*names) for names in (("time",), ("tilt",), ("azimuth", "rolling_angle"), ("energy",))
     )
     if time is None or tilt is None:
         lacking = "time" if time is None else "tilt"

@@ -40,21 +40,21 @@ _SHAKEN = Case(PIER, polyline(SHOCK_TIMES, 2.0 * SHOCK, 0.5), duration=4.0)
 _NEAR, _TILT = 0.005, 0.5
 
 
-def _held(subject: Subject) -> dict[str, Case]:
+def _releases(subject: Subject) -> dict[str, Case]:
     """Return a release of a column, and of a frame where the subject knows one."""
     return {"column": _HELD} | ({"frame": _HELD_FRAME} if subject.carries_slab else {})
 
 
 def releases(subject: Subject, support: str) -> Iterator[Result]:
     """Period, regained tilt and angle of turn of a release are those of the quadrature with its energy."""
-    for of, case in _held(subject).items():
+    for of, case in _releases(subject).items():
         start = case.initial
         assert start is not None
         time, turn = period_and_turn(shape_of(case.cylinder, TENDON), start.tilt, start.rolling_rate)
         found = subject.simulate(case, support)
         maxima = found.extrema[(found.extrema[:, 3] > 0.0) & (found.extrema[:, 0] > 0.5 * time)]
         first = maxima[0] if len(maxima) else np.full(4, math.nan)
-        bound = subject.within(3.0, _QUADRATURE)
+        bound = subject.tolerance_bound(3.0, _QUADRATURE)
         yield at_most(f"period with a tendon, {of}", abs(first[0] / time - 1.0), bound)
         yield at_most(f"tilt regained with a tendon, {of}", abs(first[1] / start.tilt - 1.0), bound)
         if "rolling_angle" in subject.knows:
@@ -70,15 +70,15 @@ def rocking(subject: Subject, support: str) -> Iterator[Result]:
     found = subject.simulate(case, support)
     minima = found.extrema[found.extrema[:, 3] < 0.0]
     off = largest(minima[:1, 0] / quarter - 1.0)
-    bound = subject.within(30.0, _QUADRATURE)
+    bound = subject.tolerance_bound(30.0, _QUADRATURE)
     yield at_most("planar rocking with a tendon, time to upright", off, bound)
 
 
 def stored_energy(subject: Subject, support: str) -> Iterator[Result]:
     """Energy of a release is constant and counts what the tendon stores, P0 e + kt e^2/2."""
-    for of, case in _held(subject).items():
+    for of, case in _releases(subject).items():
         found = subject.simulate(case, support)
-        bound = subject.within(10.0, "no loss; near passes magnify the error of a step")
+        bound = subject.tolerance_bound(10.0, "no loss; near passes magnify the error of a step")
         yield at_most(
             f"energy of a release with a tendon, {of}", np.ptp(found.energy) / found.energy[0], bound
         )
@@ -99,7 +99,7 @@ def second_gap(subject: Subject, support: str) -> Iterator[Result]:
         whole = subject.simulate(tilted, support).energy[0]
         weight = height_energy(shape_of(body), np.array([start.tilt]))[0]
         stored.append((whole - weight) * (1.0 + 2.0 * body.slab_mass_ratio))
-    bound = subject.within(10.0, "in a frame it crosses a gap at either end of the column")
+    bound = subject.tolerance_bound(10.0, "in a frame it crosses a gap at either end of the column")
     yield at_most(
         "elongation under a slab over twice that without", abs(stored[1] / stored[0] / 2.0 - 1.0), bound
     )
@@ -110,19 +110,19 @@ def load_at_rest(subject: Subject, support: str) -> Iterator[Result]:
     case = Case(PIER, steady([0.0, 0.0], 0.4), tendon=TENDON)
     found = subject.simulate(case, support, sample_step=0.1)
     off = found.contact_force[1:4] - [0.0, 0.0, 1.0 + TENDON.prestress]
-    bound = subject.within(1.0, "Newton's law", "weights")
+    bound = subject.tolerance_bound(1.0, "Newton's law", "weights")
     yield at_most("contact force at rest with a tendon", largest(off), bound)
 
 
 def raised_uplift(subject: Subject, support: str) -> Iterator[Result]:
     """Uplift at g tan(alpha) (1 + n P0/(w m g)), w = 1 + 2 gamma: the rate of the static couple upright."""
     upright = 1e-9  # [rad]
-    for of, case in _held(subject).items():
+    for of, case in _releases(subject).items():
         shape = shape_of(case.cylinder, TENDON)
         threshold = _couple(shape, upright) / shape.h
         motion = GroundMotion(np.outer([0.0, 1.5], [threshold, 0.0]), 1.5)
         found = subject.simulate(Case(case.cylinder, motion, tendon=TENDON), support, sample_step=0.05)
-        bound = subject.within(50.0, "closed form, to some steps", "s")
+        bound = subject.tolerance_bound(50.0, "closed form, to some steps", "s")
         yield at_most(f"time of uplift with a tendon, {of}", abs(found.uplift_time - 1.0), bound)
 
 
@@ -175,9 +175,9 @@ def without_force(subject: Subject, support: str) -> Iterator[Result]:
     bound = Bound(
         subject.repeatability if "stepper" in subject.options else 0.0, "no force, no motion", "alpha"
     )
-    yield at_most("a tendon that does not pull", _apart(none, free), bound)
+    yield at_most("a tendon that does not pull", _difference(none, free), bound)
 
 
-def _apart(one: Trace, other: Trace) -> float:
+def _difference(one: Trace, other: Trace) -> float:
     same = len(one.time) == len(other.time)
     return largest(one.tilt - other.tilt) / PIER.alpha if same else math.nan

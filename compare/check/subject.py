@@ -110,7 +110,7 @@ class Subject(Brief):
         known = {name: value for name, value in options.items() if name in self.options}
         return self.source(case, support, sample_step=sample_step, **known)
 
-    def within(self, times: float, reason: str, unit: str = "") -> Bound:
+    def tolerance_bound(self, times: float, reason: str, unit: str = "") -> Bound:
         """Return so many times the tolerance as a bound."""
         return Bound(times * self.tolerance, f"{times:g} times its tolerance: {reason}", unit)
 
@@ -139,7 +139,7 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
 
     return Subject(
         label="reduced model",
-        source=_remembered(source),
+        source=_with_memory(source),
         supports=("recess", "flat", "planar"),
         knows=FIELDS,
         options=frozenset({"rtol", "rest_tilt", "restitution", "plane", "rolling_resistance"}),
@@ -178,7 +178,7 @@ def engine(name: str, time_step: TimeStep | None = None, **settings: object) -> 
 
     return Subject(
         label=name,
-        source=_remembered(source),
+        source=_with_memory(source),
         supports=found.supports,
         knows=FIELDS.union(_ENGINE_FIELDS),
         options=frozenset({"stepper", *(["rolling_resistance"] if facts.rolling_friction else [])}),
@@ -229,7 +229,7 @@ def external_model(
     def source(case: Case, support: str, *, sample_step: float) -> Trace:
         return trace_of(model(case, support), case, support)
 
-    remembered = _remembered(source)
+    remembered = _with_memory(source)
     try:
         first = remembered(RELEASE, support, sample_step=SAMPLE_STEP)
         known = {name for name in ("rolling_angle", "energy") if np.isfinite(getattr(first, name)).any()}
@@ -322,7 +322,7 @@ def _require(support: str, tolerance: float) -> None:
         raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")
 
 
-def _remembered(source: Simulate) -> Simulate:
+def _with_memory(source: Simulate) -> Simulate:
     """Return the source that runs each case once, since many checks look at one motion."""
     kept: dict[str, Trace] = {}
 

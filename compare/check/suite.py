@@ -114,12 +114,12 @@ def check_run(runs: SuiteRuns, job: Job, trace: Trace, bounds: Bounds | None) ->
         yield from walls(f"{job.case.name}, {job.label}", job.case, trace)
     model = runs.simulate(job.case, reference)
     if bounds is None:
-        yield from compared(runs, job, name, model, trace)
+        yield from results_without_bounds(runs, job, name, model, trace)
         return
     # no bound is on the prediction
     none = Prediction(length=job.case.length, reason="")
     row = summary_row(job.case, str(model.run), model, job.label, trace, prediction=none)
-    for column, most in bounds.given().items():
+    for column, most in bounds.as_dict().items():
         unit, meaning = SUMMARY_COLUMNS[column]
         value = abs(row[column])
         if column == "agreement_time":
@@ -132,9 +132,11 @@ def check_run(runs: SuiteRuns, job: Job, trace: Trace, bounds: Bounds | None) ->
             yield at_most(f"{name}: {column}", value, bound, note=str(row["diagnostics"]))
 
 
-def compared(runs: SuiteRuns, job: Job, name: str, model: Trace, trace: Trace) -> Iterator[Result]:
+def results_without_bounds(
+    runs: SuiteRuns, job: Job, name: str, model: Trace, trace: Trace
+) -> Iterator[Result]:
     """Yield the findings on a run of a suite that states no bounds."""
-    yield _compared(runs, job, name, model, trace, clean=False)
+    yield _result_by_step(runs, job, name, model, trace, clean=False)
     if (other := _in_motion(job)) is not None:
         (trace,) = runs.traces([other])
         words = "first seconds" if job.case.is_release else "met rocking"
@@ -143,7 +145,7 @@ def compared(runs: SuiteRuns, job: Job, name: str, model: Trace, trace: Trace) -
         if trace.outcome == "failed":
             yield at_most(name, math.nan, ENDS, f"contact of {job.run.engine}", why(trace))
         else:
-            yield _compared(runs, other, name, model, trace, clean=True)
+            yield _result_by_step(runs, other, name, model, trace, clean=True)
 
 
 def prepare(runs: SuiteRuns, jobs: Sequence[Job], traces: Sequence[Trace]) -> None:
@@ -192,18 +194,20 @@ def other_step(job: Job, trace: Trace) -> tuple[Job, float]:
 
 def _in_motion(job: Job) -> Job | None:
     # none has a model once its walls are touched
-    case = in_motion(job.case) if support_of(job.run).modelled else None
+    case = in_motion(job.case) if support_of(job.run).has_model else None
     return None if case is None else Job(case=case, run=job.run, label=job.label)
 
 
-def _compared(runs: SuiteRuns, job: Job, name: str, model: Trace, trace: Trace, *, clean: bool) -> Result:
+def _result_by_step(
+    runs: SuiteRuns, job: Job, name: str, model: Trace, trace: Trace, *, clean: bool
+) -> Result:
     if not any(math.isfinite(each.uplift_time) for each in (model, trace)):
         return not_run(name, "neither uplifts: there is nothing to compare")
     by_step = _by_step(runs, job, trace)
     if by_step is None:
         return not_run(name, "the run of another step failed: there is nothing to judge it by")
     parts = [by_step, *([] if clean else _copies(runs, job, model, trace, by_step))]
-    apart = _apart(model, trace)
+    apart = _tilt_difference(model, trace)
     count = min(len(each) for each in (apart, *parts))
     allowed = np.maximum.reduce([np.abs(each[:count]) for each in parts])
     if not clean:
@@ -234,10 +238,10 @@ def _by_step(runs: SuiteRuns, job: Job, trace: Trace) -> Array | None:
     """By how much a run changes with its step (n,) [alpha]; None where the other one fails."""
     other, factor = other_step(job, trace)
     (second,) = runs.traces([other])
-    return None if second.outcome == "failed" else factor * np.abs(_apart(trace, second))
+    return None if second.outcome == "failed" else factor * np.abs(_tilt_difference(trace, second))
 
 
-def _apart(one: Trace, other: Trace) -> Array:
+def _tilt_difference(one: Trace, other: Trace) -> Array:
     """Difference of the tilts at the samples that both have [alpha]; a fall ends at a time of its own."""
     count = max(min(len(one.time), len(other.time)) - 1, 0)
     return np.asarray(other.tilt[:count] - one.tilt[:count]) / one.case.cylinder.alpha
@@ -254,13 +258,13 @@ def _copies(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, by_step: Arra
     closing = []
     if threshold > REST_TILT:
         closed = runs.simulate(case, model.run, rest_tilt=min(threshold, LARGEST_REST_TILT))
-        closing.append(_apart(model, closed))
+        closing.append(_tilt_difference(model, closed))
 
     by_table = estimated_error(case, job.run.engine, trace.time_step)
     error = max(early_rms(case, trace.time[: len(by_step)], by_step, start), by_table)
     relative = disturbance(case, model, error, runs.simulate)
     moved = [disturbed(case, share) for share in ((relative, -relative) if relative else ())]
-    return [*closing, *(_apart(model, runs.simulate(each, model.run)) for each in moved)]
+    return [*closing, *(_tilt_difference(model, runs.simulate(each, model.run)) for each in moved)]
 
 
 def likely_cause(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, *, until: float) -> tuple[str, str]:
@@ -279,7 +283,7 @@ def likely_cause(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, *, until
         return "", f"{others[0]} fails on this case, and tells nothing"
 
     def differ(one: Trace, other: Trace) -> float:
-        value = rms(_apart(one, other)[one.time[: len(_apart(one, other))] <= until])
+        value = rms(_tilt_difference(one, other)[one.time[: len(_tilt_difference(one, other))] <= until])
         return value if math.isfinite(value) else math.inf
 
     apart, from_model, from_engine = differ(model, trace), differ(model, second), differ(trace, second)

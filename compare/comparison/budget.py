@@ -423,7 +423,7 @@ def case_budgets(
     extrapolations = limits(refined, simulate)
     impacts = _impacts(cases, runs, results, simulate)
 
-    def own(name: str, label: str) -> Trace:
+    def own_trace(name: str, label: str) -> Trace:
         key = name, str(own_model(runs[label]))
         return impacts.get(key, results[key])
 
@@ -432,7 +432,7 @@ def case_budgets(
             results[name, label].case.cylinder,
             results[name, label],
             results[name, model],
-            own(name, label),
+            own_trace(name, label),
             extrapolations[name, label],
             agreement,
         )

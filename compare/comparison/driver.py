@@ -196,7 +196,7 @@ def _row(
         estimated_error(case, run.engine, trial.time_step) if budget is None else measured_error(case, budget)
     )
 
-    def predicted(tolerance: float) -> Prediction:
+    def own_prediction(tolerance: float) -> Prediction:
         return predict(
             case,
             reference=reference,
@@ -207,7 +207,7 @@ def _row(
             tolerance=tolerance,
         )
 
-    prediction, tolerance = predicted(AGREEMENT), tolerance_of(reference, trial)
+    prediction, tolerance = own_prediction(AGREEMENT), tolerance_of(reference, trial)
     return summary_row(
         case,
         name,
@@ -215,7 +215,7 @@ def _row(
         label,
         trial,
         prediction=prediction,
-        within=predicted(tolerance) if tolerance < AGREEMENT else prediction,
+        within=own_prediction(tolerance) if tolerance < AGREEMENT else prediction,
         estimated_error=error,
         budget=budget,
         until=until,

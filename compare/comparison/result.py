@@ -18,7 +18,7 @@ from rockwobble.models.trace_file import case_from_plain
 
 from ..external.verdict import lists_in_words, lists_of_file
 from ..metrics.pair import first_unresolved_pass, start_of
-from ..metrics.statistics import stated
+from ..metrics.statistics import value_if_enough
 from ..runs.execution import case_inputs
 from ..storage.manifest import Number, Stored
 from ..storage.provenance import fingerprint
@@ -128,7 +128,7 @@ class Comparison(Results, kind="comparison"):
         """
         require_one_of("case", name, self.facts["cases"])
 
-        def kept(part: str) -> Mapping[str, object]:
+        def facts_of(part: str) -> Mapping[str, object]:
             facts: Mapping[str, object] = self.facts[part]
             return {key: fact for key, fact in facts.items() if key.split(_SEPARATOR)[0] == name}
 
@@ -137,7 +137,7 @@ class Comparison(Results, kind="comparison"):
                 table: rows[rows["case"] == name].reset_index(drop=True)
                 for table, rows in self.tables.items()
             },
-            facts={**self.facts, **{part: kept(part) for part in ("cases", "traces", "budgets")}},
+            facts={**self.facts, **{part: facts_of(part) for part in ("cases", "traces", "budgets")}},
         )
 
     def headline(self) -> Mapping[str, Number]:
@@ -145,9 +145,9 @@ class Comparison(Results, kind="comparison"):
         rows = self.summary
         relative, agreed = rows["tilt_rms_relative"], rows["agreement_time"]
         numbers = {
-            "median of the relative RMS": stated(relative.median(), int(relative.notna().sum())),
+            "median of the relative RMS": value_if_enough(relative.median(), int(relative.notna().sum())),
             "largest relative RMS": float(relative.max()),
-            "median agreement time [s]": stated(agreed.median(), len(agreed)),
+            "median agreement time [s]": value_if_enough(agreed.median(), len(agreed)),
         }
         return {
             "cases": len(self.facts["cases"]),
@@ -224,13 +224,13 @@ def comparison_of(
     known = {key: trace for key, trace in traces.items() if len(trace.time)}  # the process of others died
     tables = {
         "summary": summary,
-        "traces": _stacked({key: trace.to_frame() for key, trace in known.items()}, "case", "run"),
-        "passes": _stacked({key: trace.passes for key, trace in known.items()}, "case", "run"),
+        "traces": _stack({key: trace.to_frame() for key, trace in known.items()}, "case", "run"),
+        "passes": _stack({key: trace.passes for key, trace in known.items()}, "case", "run"),
         "excitation": _excitation(cases),
     }
     if budgets:
         parts = {key: budget.to_frame() for key, budget in budgets.items()}
-        tables["budget"] = _stacked(parts, "case", "run", "reference")
+        tables["budget"] = _stack(parts, "case", "run", "reference")
     facts = {
         "inputs": fingerprint([case_inputs(case) for case in cases.values()]),
         "versions": dict(versions),
@@ -277,7 +277,7 @@ def _excitation(cases: Mapping[str, Case]) -> pd.DataFrame:
     return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame({"case": [], "time": []})
 
 
-def _stacked(tables: Mapping[Any, pd.DataFrame], *names: str) -> pd.DataFrame:
+def _stack(tables: Mapping[Any, pd.DataFrame], *names: str) -> pd.DataFrame:
     """One table below the other, each with its key in the first columns."""
     if not tables:
         return pd.DataFrame(columns=list(names))

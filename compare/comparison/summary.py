@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import AGREEMENT, Case, Trace
-from rockwobble.models.diagnostic import joined
+from rockwobble.models.diagnostic import cell_of
 
 from ..external.verdict import NO_VERDICT, VERDICT_COLUMNS, Row, judge
 from ..metrics.pair import (
@@ -198,7 +198,7 @@ def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) 
         "reference_support": reference.run.support,
         "outcome": trial.outcome,
         "reference_outcome": reference.outcome,
-        "diagnostics": joined(fact.code for fact in trial.facts),
+        "diagnostics": cell_of(fact.code for fact in trial.facts),
         "run": label,
         "reference": name,
     }

@@ -121,15 +121,15 @@ class Change:
 Read = Callable[[Values], Motion | None]  # the motion that columns tell; None where they tell none
 
 
-def corrected(values: Values, read: Read, changes: Sequence[Change]) -> Motion | None:
+def correct(values: Values, read: Read, changes: Sequence[Change]) -> Motion | None:
     """Return the motion of columns after some changes."""
     for change in changes:
         values = change.values(values)
     motion = read(values)
-    return None if motion is None else changed(motion, changes)
+    return None if motion is None else with_changes(motion, changes)
 
 
-def changed(motion: Motion, changes: Sequence[Change]) -> Motion:
+def with_changes(motion: Motion, changes: Sequence[Change]) -> Motion:
     """Return a motion after some changes, as far as they are of the motion."""
     for change in changes:
         motion = change.motion(motion)
@@ -189,7 +189,7 @@ def of_path(reading: Change) -> Change:
 def in_time_scale(rate: float) -> Change:
     """Return what takes back that a motion is slower by a factor."""
     mistake = Mistake(code="time_scale", concerns="time", value=rate)
-    return Change(mistake=mistake, motion=partial(Motion.clocked, rate=1.0 / rate))
+    return Change(mistake=mistake, motion=partial(Motion.with_clock, rate=1.0 / rate))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -206,7 +206,7 @@ class Frame:
 
     def apply(self, motion: Motion) -> Motion:
         """Return the motion in the axes of the reference."""
-        return motion.turned(self.angle, mirrored=self.mirrored)
+        return motion.rotated(self.angle, mirrored=self.mirrored)
 
     def change(self, concerns: str) -> Change:
         """Return what takes the mistake back in "azimuth", "path", or "axes", which are both."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rockwobble.models import Case, Cylinder
 
 from .motion import Pose, pose_of, scatter
-from .table import POSITION, QUATERNION, Array, Mask, Table, listed
+from .table import POSITION, QUATERNION, Array, Mask, Table, name_list
 
 # tilt below which the cylinder stands, in units of alpha; a measured azimuth means nothing there
 _STANDS = 1e-4
@@ -80,7 +80,7 @@ class Poses:
     given: tuple[str, ...]
     notes: tuple[str, ...]
 
-    def taken(self, chosen: NDArray[np.intp]) -> Poses:
+    def subset(self, chosen: NDArray[np.intp]) -> Poses:
         """Return the chosen samples alone."""
         names = ("time", "tilt", "axis", "rolling_angle", "followed", "twist", "position")
         arrays = {name: getattr(self, name) for name in names}
@@ -135,7 +135,7 @@ def poses_of(table: Table, case: Case, *, noise: float | None = None, time_offse
     if table.lost:
         notes.append(f"{table.lost} lost sample{'s are' if table.lost > 1 else ' is'} left out")
     if table.ignored:
-        notes.append(f"columns not read: {listed(table.ignored)}")
+        notes.append(f"columns not read: {name_list(table.ignored)}")
     return Poses(
         time=time,
         tilt=tilt,

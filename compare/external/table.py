@@ -107,12 +107,12 @@ class Table:
         return self.values[column]
 
 
-def listed(names: Sequence[str]) -> str:
+def name_list(names: Sequence[str]) -> str:
     """Return names for a message, as many as fit and how many more there are.
 
     Examples
     --------
-    >>> listed(["strain", "force"]), listed(["strain"] * 20)[-26:]
+    >>> name_list(["strain", "force"]), name_list(["strain"] * 20)[-26:]
     ('strain, force', 'strain, strain and 10 more')
     """
     short = [name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 3]}..." for name in names]
@@ -225,7 +225,7 @@ def _known_columns(file: str, header: list[str], angle_unit: str | None) -> dict
     if "time" not in found or not {"tilt", "qw", "x"} & set(found):
         raise ValueError(
             f"{file} must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x, y and z, "
-            f"got {listed([title for title in header if title]) or 'none'}"
+            f"got {name_list([title for title in header if title]) or 'none'}"
         )
     return found
 

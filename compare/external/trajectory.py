@@ -20,7 +20,7 @@ from ..runs.execution import SAMPLE_STEP
 from .mistakes import readings
 from .motion import SAME_TIME, Motion, motion_at
 from .pose import Poses, poses_of
-from .table import Array, Table, listed, read_tables
+from .table import Array, Table, name_list, read_tables
 
 SUPPORT = "external"
 # the side lies on the ground, as far as a measurement says [rad]
@@ -100,7 +100,7 @@ class Measurement(Brief):
     given: External
     table: Table
 
-    def sampled(self) -> Mapping[str, Array]:
+    def quantities(self) -> Mapping[str, Array]:
         """Return nothing: a file tells neither energies nor forces."""
         return {}
 
@@ -154,7 +154,7 @@ def read_trajectory(external: External | str | Path, case: Case) -> Trace:
     given = external if isinstance(external, External) else External(path=Path(external))
     tables = read_tables(given.path, given.angle_unit)
     if len(tables) > 1:
-        raise ValueError(f"{given.path.name} must hold one run, got {listed(list(tables))}")
+        raise ValueError(f"{given.path.name} must hold one run, got {name_list(list(tables))}")
     (table,) = tables.values()
     try:
         return trajectory_of(table, given, case)
@@ -244,7 +244,7 @@ def _from_start_to_end(poses: Poses, start: int, length: float) -> Poses:
     last = min(int(np.searchsorted(poses.time[chosen], length - SAME_TIME)), len(chosen) - 1)
     # a fall that began before the end is followed to the ground
     falling = tilt[landed] >= _FALLEN and bool((np.diff(tilt[last : landed + 1]) > 0.0).all())
-    return poses.taken(chosen[: (landed if landed < last or falling else last) + 1])
+    return poses.subset(chosen[: (landed if landed < last or falling else last) + 1])
 
 
 def _facts(poses: Poses) -> Iterator[Diagnostic]:

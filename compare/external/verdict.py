@@ -186,10 +186,10 @@ def mistakes_of(row: Any) -> tuple[Mistake, ...]:
 
 def lists_in_words(summary: pd.DataFrame) -> pd.DataFrame:
     """Return a summary whose lists are texts, for a CSV file or a page: "azimuth; path"."""
-    return summary.assign(**{name: summary[name].map(_joined) for name in LISTS})
+    return summary.assign(**{name: summary[name].map(_join) for name in LISTS})
 
 
-def _joined(cell: Sequence[str | float]) -> str:
+def _join(cell: Sequence[str | float]) -> str:
     return "; ".join(
         each if isinstance(each, str) else f"{each:.6g}" if math.isfinite(each) else "" for each in cell
     )

@@ -106,11 +106,11 @@ def make_pair(cylinder: Cylinder, reference: Trace, trial: Trace, *, until: floa
         cylinder=cylinder,
         start=start_of(reference),
         time=time,
-        tilt=_sampled(trial.time, trial.tilt, time),
+        tilt=_resample(trial.time, trial.tilt, time),
         reference_tilt=reference.tilt[:keep],
-        rolling_angle=_sampled(trial.time, trial.rolling_angle, time),
+        rolling_angle=_resample(trial.time, trial.rolling_angle, time),
         reference_rolling_angle=reference.rolling_angle[:keep],
-        contact_point=_sampled(trial.time, trial.contact_point, time),
+        contact_point=_resample(trial.time, trial.contact_point, time),
         reference_contact_point=reference.contact_point[:keep],
     )
 
@@ -127,7 +127,7 @@ def _finite_end(trace: Trace) -> float:
     return float(trace.time[count - 1]) if count else -math.inf
 
 
-def _sampled(own: FloatArray, values: FloatArray, time: FloatArray) -> FloatArray:
+def _resample(own: FloatArray, values: FloatArray, time: FloatArray) -> FloatArray:
     """Return `values` given at the times `own`, at the times `time`; linear where they differ."""
     count = len(time)
     if len(own) >= count and bool(np.all(np.abs(own[:count] - time) < _SAME_TIME)):

@@ -58,7 +58,7 @@ class Interval:
         return {name: self.value, f"{name}_low": self.low, f"{name}_high": self.high}
 
 
-def stated(value: float, count: int, *, ratio: bool = False) -> float:
+def value_if_enough(value: float, count: int, *, ratio: bool = False) -> float:
     """Return a quantile, median or ratio of `count` members where it may be stated, else NaN.
 
     It is not of fewer than `FEWEST` members. Nor is a `ratio` of zero or infinity: it says only that most
@@ -66,7 +66,7 @@ def stated(value: float, count: int, *, ratio: bool = False) -> float:
 
     Examples
     --------
-    >>> stated(1.2, 6), stated(1.2, 5), stated(math.inf, 9), stated(math.inf, 9, ratio=True)
+    >>> value_if_enough(1.2, 6), value_if_enough(1.2, 5), value_if_enough(math.inf, 9), value_if_enough(math.inf, 9, ratio=True)
     (1.2, nan, inf, nan)
     """
     return math.nan if count < FEWEST or (ratio and not 0.0 < value < math.inf) else value

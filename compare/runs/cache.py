@@ -157,13 +157,13 @@ def open_table_cache(
 ) -> AbstractContextManager[Cache[T, pd.DataFrame]]:
     """Open the finished tasks whose results are tables; see `open_cache`."""
 
-    def packed(task: T, table: pd.DataFrame) -> bytes:
+    def to_bytes(task: T, table: pd.DataFrame) -> bytes:
         return pack(table, {"kind": f"task of {kind}", "task": str(getattr(task, "name", task))})
 
-    return open_cache(folder, kind, name=name, pack=packed, unpack=lambda _, content: read(content)[0])
+    return open_cache(folder, kind, name=name, pack=to_bytes, unpack=lambda _, content: read(content)[0])
 
 
-def unfinished(folder: str | Path) -> list[dict[str, Any]]:
+def unfinished_results(folder: str | Path) -> list[dict[str, Any]]:
     """Return kind, done and total tasks of the results in a folder that have not come to their end."""
     found = []
     for path in sorted(Path(folder).glob(f"{CACHE}/*/{_PLAN}")):

@@ -336,7 +336,7 @@ def _unable(name: str, cases: Sequence[Case]) -> str:
     )
 
 
-def unsupported(supports: Sequence[str]) -> tuple[str, ...]:
+def omissions(supports: Sequence[str]) -> tuple[str, ...]:
     """Return why a default run with these supports leaves out installed engines, one sentence for each."""
     reserved = reserved_engines()
     names = [name for name in available_engines() if name not in reserved]

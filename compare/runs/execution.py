@@ -214,16 +214,16 @@ def open_trace_cache(
         Whether all samples are kept, or only the last of them beside the numbers and passes of a run.
     """
 
-    def packed(job: Job, trace: Trace) -> bytes:
+    def to_bytes(job: Job, trace: Trace) -> bytes:
         about = {"kind": "run", "case": job.case.name, "label": job.label, "trace": trace.to_plain()}
         table = trace.to_frame()
         return pack(table if samples else table.iloc[-1:], about)
 
-    def unpacked(job: Job, content: bytes) -> Trace:
+    def from_bytes(job: Job, content: bytes) -> Trace:
         table, about = read(content)
         return dataclasses.replace(Trace.from_plain(about["trace"], table, job.case), run=job.run)
 
-    return open_cache(folder, kind, name=job_fingerprint, pack=packed, unpack=unpacked)
+    return open_cache(folder, kind, name=job_fingerprint, pack=to_bytes, unpack=from_bytes)
 
 
 def equal_step(case: Case, run: Run) -> float:

@@ -46,7 +46,7 @@ class Option:
     form: str = ""
     flag: str = ""
 
-    def allowed(self) -> str:
+    def range_words(self) -> str:
         """Return the range in words."""
         low = f"at least {self.least:g}" if self.least > -math.inf else ""
         low = f"above {self.above:g}" if self.above > -math.inf else low
@@ -92,7 +92,7 @@ class Plan:
             number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)
             if not (number and stated.least <= value <= stated.most and stated.above < value < stated.below):
                 what = "a whole number, " if whole else ""
-                raise ValueError(f"{name} must be {what}{stated.allowed()}, got {quoted(value)}")
+                raise ValueError(f"{name} must be {what}{stated.range_words()}, got {quoted(value)}")
 
 
 def options_of(plan: type) -> dict[str, Option]:

@@ -52,7 +52,7 @@ def claim_on(folder: str | Path) -> Claim | None:
 
 
 @contextmanager
-def claimed(folder: str | Path, *, plan: str, command: str, overwrite: bool = False) -> Iterator[None]:
+def claim_folder(folder: str | Path, *, plan: str, command: str, overwrite: bool = False) -> Iterator[None]:
     """Claim a folder for a plan, and for this process until the block ends.
 
     Where results of the plan are complete then, those of other plans go. Where nothing is finished, nothing

@@ -94,7 +94,7 @@ def replace_files(folder: str | Path, contents: Mapping[str, bytes]) -> None:
                 target = target.resolve()
             if target.is_dir():
                 raise ValueError(f"the output file must not be a folder, got {target}")
-            part = _beside(target)
+            part = _temporary_path(target)
             beside[part] = target
             part.write_bytes(content)
             _force_to_disk(part)
@@ -183,7 +183,7 @@ def _is_stream(target: Path) -> bool:
     return target.exists() and not (target.is_file() or target.is_dir())
 
 
-def _beside(target: Path) -> Path:
+def _temporary_path(target: Path) -> Path:
     """Path at which the content of a file waits until it is whole."""
     return target.with_name(f".{target.name}.{os.getpid()}{_PART}")
 

@@ -154,7 +154,7 @@ def write_results(
     written = {**data, **(pages or {})}
     # a result that lost a file to this one is not whole any more
     others = [each for each in before if each.kind != manifest.kind and not written.keys() & {*each.files}]
-    replace_files(place, {**written, MANIFEST: _packed([whole, *others])})
+    replace_files(place, {**written, MANIFEST: _pack([whole, *others])})
     kept = {name for each in (whole, *others) for name in (*each.files, *each.pages)}
     for each in before:
         for name in {*each.files, *each.pages} - kept if each.kind == manifest.kind else ():
@@ -175,7 +175,7 @@ def write_pages(folder: str | Path, kind: str, pages: Mapping[str, bytes]) -> No
         dataclasses.replace(each, pages=tuple(pages)) if each.kind == kind else each
         for each in manifests_in(place)
     ]
-    replace_files(place, {**pages, **({MANIFEST: _packed(drawn)} if drawn else {})})
+    replace_files(place, {**pages, **({MANIFEST: _pack(drawn)} if drawn else {})})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -267,7 +267,7 @@ def keep_results(folder: Path, kinds: Collection[str]) -> None:
     there = manifests_in(folder)
     kept, gone = ([each for each in there if (each.kind in kinds) is wanted] for wanted in (True, False))
     if kept and gone:
-        replace_files(folder, {MANIFEST: _packed(kept)})
+        replace_files(folder, {MANIFEST: _pack(kept)})
         names = {name for each in gone for name in (*each.files, *each.pages)}
         for name in names - {name for each in kept for name in (*each.files, *each.pages)}:
             (folder / name).unlink(missing_ok=True)
@@ -295,7 +295,7 @@ def manifests_in(folder: Path) -> list[Manifest]:
         raise ValueError(f"{path} cannot be read: {error}") from None
 
 
-def _packed(manifests: list[Manifest]) -> bytes:
+def _pack(manifests: list[Manifest]) -> bytes:
     top, *others = (dataclasses.asdict(each) for each in manifests)
     content = top | ({"others": others} if others else {})
     return (plain_json.dumps(content, indent=1) + "\n").encode()

@@ -62,22 +62,22 @@ def _feed(digest: _Hash, value: object) -> None:
     if isinstance(value, np.generic):
         value = value.item()
     if value is None or isinstance(value, bool | int | str):
-        _tagged(digest, type(value).__name__, str(value).encode())
+        _tag(digest, type(value).__name__, str(value).encode())
     elif isinstance(value, float):
-        _tagged(digest, "float", value.hex().encode())
+        _tag(digest, "float", value.hex().encode())
     elif isinstance(value, np.ndarray):
-        _tagged(digest, f"array {value.dtype.str} {value.shape}", np.ascontiguousarray(value).tobytes())
+        _tag(digest, f"array {value.dtype.str} {value.shape}", np.ascontiguousarray(value).tobytes())
     elif isinstance(value, Mapping):
-        _tagged(digest, "mapping", str(len(value)).encode())
+        _tag(digest, "mapping", str(len(value)).encode())
         for key in sorted(value):
             _feed(digest, key)
             _feed(digest, value[key])
     elif isinstance(value, list | tuple):
-        _tagged(digest, "sequence", str(len(value)).encode())
+        _tag(digest, "sequence", str(len(value)).encode())
         for item in value:
             _feed(digest, item)
     elif dataclasses.is_dataclass(value) and not isinstance(value, type):
-        _tagged(digest, "dataclass", type(value).__name__.encode())
+        _tag(digest, "dataclass", type(value).__name__.encode())
         _feed(digest, {field.name: getattr(value, field.name) for field in dataclasses.fields(value)})
     else:
         raise ValueError(
@@ -85,7 +85,7 @@ def _feed(digest: _Hash, value: object) -> None:
         )
 
 
-def _tagged(digest: _Hash, kind: str, content: bytes) -> None:
+def _tag(digest: _Hash, kind: str, content: bytes) -> None:
     digest.update(f"{kind} {len(content)}:".encode() + content)
 
 

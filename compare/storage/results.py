@@ -60,7 +60,7 @@ class Results(Shown):
         """Return the main numbers, by what they are."""
         return {}
 
-    def _said(self) -> Mapping[str, str]:
+    def _main_facts(self) -> Mapping[str, str]:
         return {name: brief(value) for name, value in self.headline().items()}
 
     def sheets(self) -> Mapping[str, bytes]:

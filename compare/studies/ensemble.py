@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Tendon, Trace, perturbed_copies
 from rockwobble.models.argument_kinds import with_argument_kinds
-from rockwobble.models.diagnostic import joined
+from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.number_checks import require_each
 from rockwobble.models.plain_json import fields_of
@@ -34,7 +34,7 @@ from ..metrics.statistics import (
     contrast,
     log_ratios,
     quantile_interval,
-    stated,
+    value_if_enough,
 )
 from ..runs.choice import default_runs, require_runnable, run_labels, support_of
 from ..runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
@@ -84,7 +84,7 @@ class Ensemble(Results, kind=KIND):
     def headline(self) -> dict[str, Number]:
         """Return the median ratio of each two methods."""
         return {
-            f"{row['method']} / {row['against']}, median ratio": stated(
+            f"{row['method']} / {row['against']}, median ratio": value_if_enough(
                 row["ratio"], row["compared"], ratio=True
             )
             for row in self.contrasts.to_dict("records")
@@ -94,7 +94,7 @@ class Ensemble(Results, kind=KIND):
         """Return the tables as CSV."""
         return {f"{name}.csv": table.to_csv(index=False).encode() for name, table in self.tables.items()}
 
-    def _said(self) -> dict[str, str]:
+    def _main_facts(self) -> dict[str, str]:
         runs = self.methods[["runs", "overturned", "failed"]].sum()
         return {
             "members": f"{self.members['member'].nunique()}, {self.facts.get('members', '')}",
@@ -234,7 +234,7 @@ def _members(jobs: Sequence[Job], results: Sequence[Trace]) -> pd.DataFrame:
             "method": job.label,
             "peak_tilt": result.peak_tilt / job.case.cylinder.alpha,
             "outcome": outcome_of(result),
-            "diagnostics": joined(fact.code for fact in result.facts),
+            "diagnostics": cell_of(fact.code for fact in result.facts),
             "wall_time": result.wall_time,
         }
         for job, result in zip(jobs, results, strict=True)

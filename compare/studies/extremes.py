@@ -35,7 +35,7 @@ import pandas as pd
 
 from rockwobble import reduced
 from rockwobble.models import AGREEMENT, Case, Cylinder, Diagnostic, GroundMotion, InitialState, Run, Trace
-from rockwobble.models.diagnostic import FAILURES, joined
+from rockwobble.models.diagnostic import FAILURES, cell_of
 from rockwobble.multibody.engines.registry import engine_facts, find_engine, own_engines
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP, froude_scale
 
@@ -285,7 +285,7 @@ def judge(condition: Condition, run: Run) -> Verdict:
     sets_contact = math.isfinite(condition.contact)
     if (run.engine is None and condition.only_engines) or (sets_contact and not _contact_time(run)):
         return Verdict(verdict="n/a")
-    case, run = _asked(condition, run)
+    case, run = _request(condition, run)
     try:
         require_runnable(case, run)
     except ValueError as refusal:
@@ -293,11 +293,11 @@ def judge(condition: Condition, run: Run) -> Verdict:
     trace = simulate_run(case, run, sample_step=condition.sample_step)
     if trace.outcome == "failed":
         codes = [fact.code for fact in trace.facts if fact.code in FAILURES]
-        return Verdict(verdict="caught" if codes else "silent", limit=joined(codes))
-    return (_reduced if run.engine is None else _engine)(condition, run, trace)
+        return Verdict(verdict="caught" if codes else "silent", limit=cell_of(codes))
+    return (_model_verdict if run.engine is None else _engine)(condition, run, trace)
 
 
-def _asked(condition: Condition, run: Run) -> tuple[Case, Run]:
+def _request(condition: Condition, run: Run) -> tuple[Case, Run]:
     """The case, as one vertical plane can hold it, and the run that a condition asks of a method."""
     case = condition.case
     if run.engine is None:
@@ -323,7 +323,7 @@ def _tighter(run: Run, rtol: float) -> Run:
     return Run(None, run.support, **{**run.settings, "rtol": rtol})
 
 
-def _reduced(condition: Condition, run: Run, trace: Trace) -> Verdict:
+def _model_verdict(condition: Condition, run: Run, trace: Trace) -> Verdict:
     case = trace.case
     tight = simulate_run(case, _tighter(run, _TIGHT), sample_step=condition.sample_step)
     error, begins = (math.inf, 0.0) if tight.outcome == "failed" else _tilt_error(tight, trace)
@@ -340,8 +340,8 @@ def _reduced(condition: Condition, run: Run, trace: Trace) -> Verdict:
         limit, reference, otherwise = _explanation(trace.facts, _EXPLAINS_REDUCED, begins), worst, "silent"
     else:
         assert trace.assumptions is not None
-        limit = joined(fact.code for fact in trace.assumptions.breaches)
-        begins, reference, otherwise = math.inf, joined(errors), "fine"
+        limit = cell_of(fact.code for fact in trace.assumptions.breaches)
+        begins, reference, otherwise = math.inf, cell_of(errors), "fine"
     return Verdict(
         verdict="flagged" if limit else otherwise,
         error=errors[worst],

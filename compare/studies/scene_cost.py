@@ -69,7 +69,7 @@ def variants(engine: str) -> list[Variant]:
     # what changes is the main support of an engine: the ideal recess, where it has one
     main = next((support for support in supports if support.guided), supports[0]).name
     return [
-        *(Variant(support=each.name, option="released") for each in supports if each.modelled),
+        *(Variant(support=each.name, option="released") for each in supports if each.has_model),
         Variant(support=main, option="ground motion x, y", components="xy"),
         Variant(support=main, option="ground motion x, y, z", components="xyz"),
         *(

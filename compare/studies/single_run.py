@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.plain_json import fields_of
-from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, packed
+from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, to_parquet
 
 from ..runs.choice import own_model
 from ..runs.execution import Job, job_fingerprint, simulate_all, simulate_run
@@ -56,7 +56,7 @@ class SingleRun(Results, kind="run"):
         """Return the trace as `Trace.load` reads it, its samples and its passes as CSV."""
         trace = self.trace
         return {
-            _FILE: packed(self.tables["run"], trace.to_plain(), trace.case),
+            _FILE: to_parquet(self.tables["run"], trace.to_plain(), trace.case),
             "run.csv": self.tables["run"].to_csv(index=False).encode(),
             "passes.csv": trace.passes.to_csv(index=False).encode(),
         }

@@ -13,13 +13,13 @@ import pandas as pd
 
 from rockwobble.models import Case, GroundMotion, Run, Suite, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
-from rockwobble.models.diagnostic import joined
+from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.plain_json import fields_of
 from rockwobble.models.records.units import sources_of
 
 from ..metrics.pair import outcome_of
-from ..metrics.statistics import stated
+from ..metrics.statistics import value_if_enough
 from ..runs.choice import REDUCED, require_runnable, run_labels
 from ..runs.execution import Job, all_makers, job_fingerprint, run_job, run_tables
 from ..runs.progress import ProgressCallback
@@ -95,7 +95,7 @@ def describe_suite(suite: Suite) -> dict[str, object]:
     return {
         "plan": "cases and runs",
         "runs": len(suite.cases) * len(suite.runs),
-        "cases": {case.name: _described(case) for case in suite.cases},
+        "cases": {case.name: _description(case) for case in suite.cases},
         "runs of each": [
             {"label": label, **fields_of(run)}
             for run, label in zip(suite.runs, run_labels(suite.runs), strict=True)
@@ -103,7 +103,7 @@ def describe_suite(suite: Suite) -> dict[str, object]:
     }
 
 
-def _described(case: Case) -> dict[str, object]:
+def _description(case: Case) -> dict[str, object]:
     """Return the numbers that state a case; SI units and radians."""
     motion = case.motion and described_motion(case.motion)
     return fields_of(case) | {"motion": motion, "duration": case.length}
@@ -123,7 +123,7 @@ def _row(job: Job, trace: Trace) -> dict[str, object]:
         "peak_tilt_over_alpha": float(trace.peak_tilt) / cylinder.alpha,
         **{name: float(getattr(trace, name)) for name in _RESULTS},
         "outcome": outcome_of(trace),
-        "diagnostics": joined(fact.code for fact in trace.facts),
+        "diagnostics": cell_of(fact.code for fact in trace.facts),
         "version": trace.version,
         "end": float(trace.time[-1]),
         "passes": len(passes),
@@ -186,7 +186,7 @@ class Sweep(Results, kind=KIND):
                     "runs": len(own),
                     **{name: int((own["outcome"] == name).sum()) for name in outcomes},
                     "no_uplift": int((peaks == 0.0).sum()),
-                    "median": stated(peaks.mask(fell, math.inf).median(), int(peaks.notna().sum())),
+                    "median": value_if_enough(peaks.mask(fell, math.inf).median(), int(peaks.notna().sum())),
                     "largest": peaks[~fell].max(),
                 }
             )

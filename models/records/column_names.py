@@ -210,7 +210,7 @@ def _unit_apart(text: str) -> tuple[str, str]:
     if len(text.strip()) > 1 and _quantity_of_unit(text) and text.strip().casefold() != _NORTH_SOUTH:
         return "", text.strip()
 
-    def kept(match: re.Match[str]) -> str:
+    def keep(match: re.Match[str]) -> str:
         nonlocal unit
         inner = match[1].strip()
         if not unit and _quantity_of_unit(inner):
@@ -218,7 +218,7 @@ def _unit_apart(text: str) -> tuple[str, str]:
             return " "
         return " " if inner in ("+", "-", "") else f" {inner} "
 
-    words = _BRACKETS.sub(kept, text)
+    words = _BRACKETS.sub(keep, text)
     if unit:
         return words.strip(), unit
     in_name = _UNIT_IN_NAME.search(words)
@@ -337,7 +337,7 @@ _TOTALS = ("at", "tgf", "gft", "gforcet")  # of phones: the size of a vector who
 _GERMAN = ("zeit", "beschl")  # words beside which "O" is Ost; in French, Spanish and Italian it is west
 
 
-def settled(names: Sequence[ColumnName]) -> list[ColumnName]:
+def settle(names: Sequence[ColumnName]) -> list[ColumnName]:
     """Return names of which some say something else beside others than alone.
 
     "T" beside "Time" is no time but a transverse component, "O" beside "N" and German words is east, and "aT"
@@ -421,7 +421,7 @@ def names_of(header: Sequence[str], width: int) -> tuple[list[ColumnName] | None
             column_name(f"{name.text} [{unit}]") if unit and not name.unit else name
             for name, unit in zip(best, units, strict=True)
         ]
-    return best and settled(best), [line for at, line in enumerate(lines) if at not in used | of_units]
+    return best and settle(best), [line for at, line in enumerate(lines) if at not in used | of_units]
 
 
 def names_that_hold(header: Sequence[str], width: int, words: Sequence[str]) -> list[ColumnName] | None:
@@ -430,15 +430,17 @@ def names_that_hold(header: Sequence[str], width: int, words: Sequence[str]) -> 
     For words that the user gives, which may be names that say nothing by themselves, such as HN1; numbers
     of columns are passed over.
     """
-    wanted = {compared(word) for word in words if not word.strip().isdecimal()}
+    wanted = {comparison_key(word) for word in words if not word.strip().isdecimal()}
     for line in reversed(header[:_MOST_LINES] if wanted else ()):
         for cells in _splittings(line[:_LONGEST_LINE], width):
-            if wanted <= {form for cell in cells for form in (compared(cell), compared(without_unit(cell)))}:
-                return settled([column_name(cell) for cell in cells])
+            if wanted <= {
+                form for cell in cells for form in (comparison_key(cell), comparison_key(without_unit(cell)))
+            }:
+                return settle([column_name(cell) for cell in cells])
     return None
 
 
-def compared(name: str) -> str:
+def comparison_key(name: str) -> str:
     """Return a name as names are compared: without case, accents, blanks and punctuation."""
     return re.sub(r"[\W_]+", "", plain(name))
 
@@ -519,7 +521,7 @@ def _splittings(line: str, width: int, *, strict: bool = False) -> list[list[str
     return ways
 
 
-def listed(names: Sequence[ColumnName] | None, width: int) -> str:
+def column_list(names: Sequence[ColumnName] | None, width: int) -> str:
     """Return the columns of a file for a message: their numbers, and their names where they have some."""
     if names is None:
         return f"{width} columns without names"

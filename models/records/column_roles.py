@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .column_names import ColumnName, compared, listed, plain, without_unit
+from .column_names import ColumnName, column_list, comparison_key, plain, without_unit
 from .component import STEP_OPTION, Direction, ReadingOptions, RecordFile
 from .table import Table
 from .times import is_counting, rises_evenly, since_epoch, stated_step
@@ -55,7 +55,7 @@ class Columns:
         """Return the refusal of columns that names do not settle."""
         return ValueError(
             f"{self.file.name}: {why}: name them by {OPTION}{example or ', such as time,x,y'}; "
-            f"it has {listed(self.names, self.width)}"
+            f"it has {column_list(self.names, self.width)}"
         )
 
     def by_names(self, options: ReadingOptions) -> Roles:
@@ -164,7 +164,7 @@ class Columns:
                 missing = given[places.index(None)]
                 raise ValueError(
                     f"{self.file.name} has no column {missing[:30]!r} of {OPTION}; it has "
-                    f"{listed(self.names, self.width)}"
+                    f"{column_list(self.names, self.width)}"
                 )
             return self._in_order(["time" if word == "t" else word for word in words])
         known = [place for place in places if place is not None]
@@ -212,13 +212,13 @@ class Columns:
             if not 0 <= place < self.width:
                 raise ValueError(
                     f"{self.file.name} has no column {text} of {OPTION}; it has "
-                    f"{listed(self.names, self.width)}"
+                    f"{column_list(self.names, self.width)}"
                 )
             return place
         for form in (
             lambda name: name.strip(),
-            compared,
-            lambda name: compared(without_unit(name)),
+            comparison_key,
+            lambda name: comparison_key(without_unit(name)),
         ):
             matches = [at for at, name in enumerate(self.names or ()) if form(name.text) == form(text)]
             if len(matches) == 1:

@@ -150,7 +150,7 @@ def read_record(
     motion = GroundMotion(samples, first.time_step, name, source)
     if rotate == NORTH:
         azimuths = [_azimuth(part, axis) for part, axis in zip(components, "xy", strict=False)]
-        return motion.changed(turned_to_north(samples, azimuths), "turned: x is east, y north")
+        return motion.with_samples(turned_to_north(samples, azimuths), "turned: x is east, y north")
     return motion if angle is None else motion.rotated(math.radians(math.fmod(angle, 360.0)))
 
 

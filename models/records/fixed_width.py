@@ -57,7 +57,7 @@ def fixed_width_block(
             f"{len(lines) * columns} of them"
         )
     text = "".join(line[: columns * width].ljust(columns * width) for line in lines)
-    values = _parsed(text, width, count)
+    values = _fields(text, width, count)
     longer = (index for index, line in enumerate(lines) if len(line.rstrip()) > columns * width)
     damaged = next(longer, None)
     if values is None:
@@ -65,7 +65,7 @@ def fixed_width_block(
         damaged = next(
             index
             for index, row in enumerate(cells)
-            if _parsed("".join(row), width, min(columns, count - index * columns)) is None
+            if _fields("".join(row), width, min(columns, count - index * columns)) is None
         )
     if damaged is not None:
         raise ValueError(
@@ -76,7 +76,7 @@ def fixed_width_block(
     return values
 
 
-def _parsed(text: str, width: int, count: int) -> NDArray[np.float64] | None:
+def _fields(text: str, width: int, count: int) -> NDArray[np.float64] | None:
     """Return the numbers of a text of equal fields, None if one is no finite number."""
     text = text[: count * width].upper().replace("D", "E")  # Fortran writes D for the exponent of a double
     if not text.isascii() or text.translate(_NO_NUMBER):

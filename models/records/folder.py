@@ -312,4 +312,4 @@ def _of_station(paths: Sequence[Path], name: str, ways: Mapping[str, Any], *, li
     # titles such as L and T: the table still tells horizontal from vertical
     motion = read_record(*paths, name=name, **ways)
     order = "x is horizontal 1 and y horizontal 2 of the table, their azimuths are not stated"
-    return motion.changed(motion.acceleration, order)
+    return motion.with_samples(motion.acceleration, order)

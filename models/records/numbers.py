@@ -87,16 +87,16 @@ def widths_of(text: str) -> NDArray[np.int64]:
     return np.asarray(np.diff(before), dtype=np.int64)
 
 
-def parted(text: str) -> str | None:
+def separate(text: str) -> str | None:
     """Return a text of numbers of which some touch with blanks between them; None if none or several ways do.
 
     Lines stay lines. The numbers of the answer are still to be read by `plain_numbers`.
 
     Examples
     --------
-    >>> parted("914.828 944.8281001.724")
+    >>> separate("914.828 944.8281001.724")
     ' 914.828   944.828  1001.724 '
-    >>> parted("0.5 0.250.125") is None
+    >>> separate("0.5 0.250.125") is None
     True
     """
     if re.search("[EeDd]", text):
@@ -177,7 +177,7 @@ def numbers_of_lines(file: RecordFile, lines: Sequence[str], begin: int) -> NDAr
     damaged = damaged_line(lines)
     if damaged is None:
         refuse_long_touching(file, lines)
-        answer = parted(text)
+        answer = separate(text)
         values = None if answer is None else plain_numbers(answer)
         if values is not None:
             return values

@@ -57,7 +57,7 @@ def p695_far_field(pair: int, *, normalised: bool = False) -> GroundMotion:
 
 @cache
 def _far_field_pair(pair: int, normalised: bool) -> GroundMotion:
-    with _opened(_file()) as data:
+    with _open_file(_file()) as data:
         group = data[f"_timeseries/{pair}"]
         kind = "NormalizedAcceleration" if normalised else "RecordedAcceleration"
         components = [np.asarray(group[side][kind], dtype=np.float64) for side in ("a", "b")]
@@ -119,7 +119,7 @@ def _file() -> Path:
     return path
 
 
-def _opened(path: Path) -> h5py.File:
+def _open_file(path: Path) -> h5py.File:
     try:
         import h5py
         import hdf5plugin  # noqa: F401 - teaches h5py the compression of the file

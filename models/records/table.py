@@ -18,9 +18,9 @@ from .numbers import (
     is_number,
     only_numbers,
     parse_number,
-    parted,
     plain_numbers,
     refuse_long_touching,
+    separate,
     touching,
     widths_of,
 )
@@ -53,7 +53,7 @@ class Table:
     lines: Sequence[int]
 
 
-def uncommented(line: str) -> str:
+def bare_header(line: str) -> str:
     """Return a line of a header without quotation marks, blanks and the mark of a comment."""
     return re.sub(r"^(?:[#%!;$*]+|//+)", "", line.replace('"', "").strip()).strip()
 
@@ -175,7 +175,7 @@ def table_of(file: RecordFile) -> Table:
     if first == len(lines):
         _refuse_damaged_row(file, first)
         raise ValueError(_without_rows(file))
-    header = tuple(text for line in lines[:first] if (text := uncommented(line)))
+    header = tuple(text for line in lines[:first] if (text := bare_header(line)))
     numbers, rows = rows_of(file, first)
     _refuse_damaged_row(file, first)
     if len(rows) < 2:
@@ -232,7 +232,7 @@ def _parted_rows(file: RecordFile, numbers: Sequence[int], rows: list[str], text
     if damaged_line(lines) is not None:
         return text
     refuse_long_touching(file, lines)
-    answer = parted(text)
+    answer = separate(text)
     if answer is None or plain_numbers(answer) is None:
         at = next((at for at, line in enumerate(lines) if plain_numbers(line) is None), 0)
         raise ValueError(touching(file, numbers[at], rows[at]))

@@ -86,10 +86,10 @@ def read_waveforms(file: RecordFile, name: str, obspy_format: str) -> list[Wavef
             channels.setdefault(part.channel, []).append(part)
     if not channels:
         raise ValueError(f"{file.name} ({name}) holds no samples")
-    return [_joined(file, name, parts) for parts in channels.values()]
+    return [_join(file, name, parts) for parts in channels.values()]
 
 
-def _joined(file: RecordFile, name: str, parts: Iterable[Waveform]) -> Waveform:
+def _join(file: RecordFile, name: str, parts: Iterable[Waveform]) -> Waveform:
     """Return the parts of a channel as one, if each begins a step after the one before."""
     first, *others = sorted(parts, key=lambda part: part.start)
     for part in others:

@@ -18,7 +18,7 @@ from ..records.files import ZERO, el_centro_1940, read_record
 from ..records.p695 import p695_far_field
 from ..synthetic import MOST_STILL, SAMPLES_PER_PERIOD, pulse
 from ..tendon import Tendon
-from .errors import KeyedError, located
+from .errors import KeyedError, path_prefix
 from .tables import WAYS_OF_READING, CaseTable, CylinderTable, MotionTable, ReleaseTable, RunTable, SuiteTable
 
 # a slip in three ranges must not fill the memory
@@ -56,7 +56,7 @@ def build_suite(table: SuiteTable, folder: Path) -> Suite:
 
 def _runs(table: RunTable, path: str) -> Iterator[Run]:
     for engine, support, step in itertools.product(table.engine, table.support, table.time_step or (None,)):
-        with located(path):
+        with path_prefix(path):
             yield Run(engine, support, step, **table.settings)
 
 
@@ -106,22 +106,22 @@ def _case(
     def of(part: str) -> dict[str, float]:
         return {key: value for (place, key), value in values.items() if place == part}
 
-    with located(f"{path}.cylinder"):
+    with path_prefix(f"{path}.cylinder"):
         cylinder = _cylinder(table.cylinder, of("cylinder"))
     own: dict[str, Any] = of("")
     motion = initial = None
     if table.motion is not None:
-        with located(f"{path}.motion"):
+        with path_prefix(f"{path}.motion"):
             uplift = own.get("gravity", 9.81) * cylinder.tan_alpha
             motion = build_motion(table.motion, of("motion"), folder, uplift, records)
     if table.release is not None:
-        with located(f"{path}.release"):
+        with path_prefix(f"{path}.release"):
             initial = _release(table.release, of("release"), cylinder)
     tendon = None
     if table.tendon is not None:
-        with located(f"{path}.tendon"):
+        with path_prefix(f"{path}.tendon"):
             tendon = Tendon(**of("tendon"))
-    with located(path):
+    with path_prefix(path):
         return Case(cylinder, motion, initial=initial, name=name, tendon=tendon, **own)
 
 
@@ -241,4 +241,4 @@ def _shifted(motion: GroundMotion, shift: float) -> GroundMotion:
         samples = samples[-count:]
     else:
         samples = np.concatenate([np.zeros((count, samples.shape[1])), samples])
-    return motion.changed(samples, f"shifted by {shift:g} s")
+    return motion.with_samples(samples, f"shifted by {shift:g} s")

@@ -40,7 +40,7 @@ class KeyedError(ValueError):
 
 
 @contextmanager
-def located(path: str) -> Iterator[None]:
+def path_prefix(path: str) -> Iterator[None]:
     """Put the path of a key before the message of any ValueError of the block."""
     try:
         yield
@@ -95,10 +95,10 @@ def _line(error: ErrorDetails, tables: Mapping[str, type[BaseModel]]) -> str:
     if isinstance(cause, ValueError):
         return f"{path}: {cause}"
     words = _WORDS.get(error["type"])
-    return f"{path}: {words.format(given=shown(error['input'])) if words else error['msg']}"
+    return f"{path}: {words.format(given=brief(error['input'])) if words else error['msg']}"
 
 
-def shown(value: object) -> str:
+def brief(value: object) -> str:
     """Return a value for a message, short."""
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."

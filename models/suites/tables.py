@@ -34,7 +34,7 @@ from ..case import WAYS_TO_A_STEP, TimeStep
 from ..records.clocks import LENGTHS
 from ..records.component import UNITS
 from ..synthetic import PULSES
-from .errors import KeyedError, nearest, shown
+from .errors import KeyedError, brief, nearest
 
 # more than a suite will ever hold: a slip such as step = 1e-9 must not fill the memory
 _MOST = 10_000
@@ -68,7 +68,7 @@ def whole(value: float) -> None:
         raise ValueError(f"must be a positive whole number, got {value:g}")
 
 
-def expanded(given: object, check: Check = any_number) -> tuple[float, ...]:
+def values_of(given: object, check: Check = any_number) -> tuple[float, ...]:
     """Return the values of a number, a list or a range.
 
     Raises
@@ -101,14 +101,14 @@ def _number(given: object, check: Check) -> float:
     if isinstance(given, bool) or not isinstance(given, int | float):
         raise ValueError(  # noqa: TRY004 - a wrong type in a file is bad input like any other
             "must be a number, a list, or a range such as { from = 1, to = 3, step = 0.5 }, "
-            f"got {shown(given)}"
+            f"got {brief(given)}"
         )
     try:
         value = float(given)
     except OverflowError:  # a whole number of hundreds of digits
         value = math.inf
     if not math.isfinite(value):
-        raise ValueError(f"must be a finite number, got {shown(given)}")
+        raise ValueError(f"must be a finite number, got {brief(given)}")
     check(value)
     return value
 
@@ -131,10 +131,10 @@ def _range(given: Mapping[str, object]) -> tuple[float, ...]:
     if not low < high:
         raise KeyedError("to", f"must be above from = {low:g}, got {high:g}")
     if ("step" in given) == ("count" in given):
-        raise ValueError(f"a range must have either step or count, got {shown(given)}")
+        raise ValueError(f"a range must have either step or count, got {brief(given)}")
     spacing = given.get("spacing", "linear")
     if spacing not in ("linear", "log"):
-        raise KeyedError("spacing", f"must be linear or log, got {shown(spacing)}")
+        raise KeyedError("spacing", f"must be linear or log, got {brief(spacing)}")
     if "step" in given:
         if spacing == "log":
             raise KeyedError("spacing", "log must go with count, got step")
@@ -162,7 +162,7 @@ def _steps_in(low: float, high: float, step: float) -> int:
 
 
 def _values(check: Check) -> BeforeValidator:
-    return BeforeValidator(lambda given: expanded(given, check))
+    return BeforeValidator(lambda given: values_of(given, check))
 
 
 Numbers = Annotated[tuple[float, ...], _values(any_number)]
@@ -177,10 +177,10 @@ WAYS_OF_READING = (
 RECORDS = ("el_centro_1940", "p695")
 
 
-def _known(*allowed: str) -> AfterValidator:
+def _one_of(*allowed: str) -> AfterValidator:
     def check(value: str) -> str:
         if value not in allowed:
-            raise ValueError(f"must be one of {', '.join(allowed)}, got {shown(value)}")
+            raise ValueError(f"must be one of {', '.join(allowed)}, got {brief(value)}")
         return value
 
     return AfterValidator(check)
@@ -189,13 +189,13 @@ def _known(*allowed: str) -> AfterValidator:
 class _Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
-    def given(self, *names: str) -> list[str]:
+    def present(self, *names: str) -> list[str]:
         """Return those of the keys that the file gives."""
         return [name for name in names if getattr(self, name) is not None]
 
     def require_one_of(self, *names: str) -> str:
         """Return the one key of these that is given."""
-        given = self.given(*names)
+        given = self.present(*names)
         if len(given) != 1:
             raise ValueError(
                 f"must have exactly one of {', '.join(names)}, got {' and '.join(given) or 'none of them'}"
@@ -204,7 +204,7 @@ class _Table(BaseModel):
 
     def refuse(self, reason: str, *names: str) -> None:
         """Refuse keys that mean nothing here."""
-        for name in self.given(*names):
+        for name in self.present(*names):
             raise KeyedError(name, f"must be left out: it {reason}")
 
 
@@ -223,14 +223,14 @@ class CylinderTable(_Table):
 
     @model_validator(mode="after")
     def _one_way_to_say_it(self) -> CylinderTable:
-        if self.given("base_radius"):
+        if self.present("base_radius"):
             self.refuse("does not go with base_radius and height", "semidiagonal", "tan_alpha")
             needed = ("base_radius", "height")
         else:
             needed = ("semidiagonal", "tan_alpha")
             self.refuse("belongs to base_radius and height", "mass_centre_height")
         for name in needed:
-            if not self.given(name):
+            if not self.present(name):
                 raise KeyedError(
                     name,
                     "must be given: either semidiagonal and tan_alpha, or base_radius and height",
@@ -240,28 +240,28 @@ class CylinderTable(_Table):
 
 def _one_positive(given: object) -> float:
     if isinstance(given, list | dict):
-        raise ValueError(f"must be one number, got {shown(given)}")  # noqa: TRY004 (bad input)
-    return expanded(given, positive)[0]
+        raise ValueError(f"must be one number, got {brief(given)}")  # noqa: TRY004 (bad input)
+    return values_of(given, positive)[0]
 
 
 class MotionTable(_Table):
     """The ground motion: a record that ships, files of a record, or a pulse."""
 
-    record: Annotated[str, _known(*RECORDS)] | None = None
+    record: Annotated[str, _one_of(*RECORDS)] | None = None
     vertical: bool | None = None
     pair: Wholes | None = None
     x: str | None = None
     y: str | None = None
     z: str | None = None
     files: str | None = None
-    units: Annotated[str, _known(*UNITS)] | None = None
+    units: Annotated[str, _one_of(*UNITS)] | None = None
     record_columns: str | None = None
     record_step: Annotated[float, BeforeValidator(_one_positive)] | None = None
-    lengths: Annotated[str, _known(*LENGTHS)] | None = None
+    lengths: Annotated[str, _one_of(*LENGTHS)] | None = None
     remove_mean: bool | None = None
     rotate: float | str | None = None
     resample: bool | None = None
-    pulse: Annotated[str, _known(*PULSES)] | None = None
+    pulse: Annotated[str, _one_of(*PULSES)] | None = None
     amplitude: Positives | None = None
     period: Positives | None = None
     azimuth_deg: Numbers | None = None
@@ -272,19 +272,19 @@ class MotionTable(_Table):
 
     @model_validator(mode="after")
     def _keys_go_together(self) -> MotionTable:
-        kind = "x" if self.given("x", "y") else self.require_one_of("record", "x", "files", "pulse")
+        kind = "x" if self.present("x", "y") else self.require_one_of("record", "x", "files", "pulse")
         self.refuse_others(kind)
-        if self.record == "p695" and not self.given("pair"):
+        if self.record == "p695" and not self.present("pair"):
             raise KeyedError("pair", "must be given: 1 to 22")
         if kind == "x":
             for name in ("x", "y"):
-                if not self.given(name):
+                if not self.present(name):
                     raise KeyedError(name, "must be given: a record has two horizontal components")
         if kind == "pulse":
-            if not self.given("period"):
+            if not self.present("period"):
                 raise KeyedError("period", "must be given with a pulse [s]")
             self.require_one_of("amplitude", "times_uplift")
-        if len(self.given("scale", "times_uplift")) > 1:
+        if len(self.present("scale", "times_uplift")) > 1:
             raise KeyedError("times_uplift", "must be left out: it replaces scale")
         return self
 
@@ -365,7 +365,7 @@ def _steps(given: object) -> tuple[object, ...]:
     """Values of a time step; the ways to one are left to the engine."""
     if given in WAYS_TO_A_STEP:
         return (given,)
-    return expanded(given, positive)
+    return values_of(given, positive)
 
 
 Texts = Annotated[list[str], BeforeValidator(_texts), Field(min_length=1)]

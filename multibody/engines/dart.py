@@ -132,7 +132,7 @@ class _DartStepper(Leapfrog):
         position = start.position - [0.0, 0.0, settings.depth]
         velocity, spin = start.velocity, start.angular_velocity
         self._slab_height, self._slab_velocity = 2.0 * float(position[2]), 2.0 * velocity
-        self._put(start.quaternion, position, velocity, spin)
+        self._set_pose(start.quaternion, position, velocity, spin)
         if not start.standing:
             # leapfrog starts half a step back: a trial step shows the acceleration
             axis = axis_of(start.quaternion[None])[0]
@@ -141,7 +141,9 @@ class _DartStepper(Leapfrog):
             after, spin_after = self._rates()
             self._slab_height = 2.0 * float(position[2])
             self._slab_velocity = 3.0 * velocity - 0.5 * self._slab_velocity
-            self._put(start.quaternion, position, 1.5 * velocity - 0.5 * after, 1.5 * spin - 0.5 * spin_after)
+            self._set_pose(
+                start.quaternion, position, 1.5 * velocity - 0.5 * after, 1.5 * spin - 0.5 * spin_after
+            )
 
     def _build(self, scene: Scene, settings: DartSettings) -> None:
         """Make ground, cylinder and slab: the mass centre at the origin, planes that may have a velocity."""
@@ -336,12 +338,12 @@ class _DartStepper(Leapfrog):
         quaternion = quaternions(row[None, :3], _SPIN)[0]
         vectors = np.stack([row[3:], *self._rates(), quaternion[1:], self._slab_velocity])
         position, velocity, spin, quaternion[1:], self._slab_velocity = about_vertical(vectors, angle)
-        self._put(quaternion, position, velocity, spin)
+        self._set_pose(quaternion, position, velocity, spin)
 
     def _rates(self) -> tuple[Array, Array]:
         return self._cylinder.getLinearVelocity(), self._cylinder.getAngularVelocity()
 
-    def _put(self, quaternion: Array, position: Array, velocity: Array, spin: Array) -> None:
+    def _set_pose(self, quaternion: Array, position: Array, velocity: Array, spin: Array) -> None:
         self._joint.setPositions(np.concatenate([rotation_vector(quaternion, _SPIN), position]))
         self._joint.setLinearVelocity(velocity)
         self._joint.setAngularVelocity(spin)

@@ -159,9 +159,9 @@ class _MujocoStepper:
         velocity, spin = moving[:, :3], to_world(quaternion, moving[:, 3:6])
         touch = None if self._ring is None else _wall(sensors)
         if self._staggered:
-            return Steps(rows[1:, 1:4], quaternion[1:], velocity[1:], spin[1:], touch, self._unsolved())
+            return Steps(rows[1:, 1:4], quaternion[1:], velocity[1:], spin[1:], touch, self._solver_failed())
         mean = 0.5 * (velocity[:-1] + velocity[1:]), 0.5 * (spin[:-1] + spin[1:])
-        return Steps(rows[1:, 1:4], quaternion[1:], *mean, touch, self._unsolved())
+        return Steps(rows[1:, 1:4], quaternion[1:], *mean, touch, self._solver_failed())
 
     def warnings(self) -> str:
         """Return the warnings of the engine."""
@@ -174,7 +174,7 @@ class _MujocoStepper:
             degrees_of_freedom=self._model.nv, contacts=int(data.ncon), constraint_rows=int(data.nefc)
         )
 
-    def _unsolved(self) -> bool:
+    def _solver_failed(self) -> bool:
         # the rollout keeps what the last step did; an empty island has used no iteration
         used = int(self._data.solver_niter.max())
         return used >= self._settings.iterations and self._settings.tolerance > 0.0

@@ -147,7 +147,7 @@ class _PybulletStepper(Leapfrog):
         start = scene.start
         quaternion = np.roll(start.quaternion, -1)
         velocity, spin = start.velocity, start.angular_velocity
-        self._put(start.position, quaternion, velocity, spin)
+        self._set_pose(start.position, quaternion, velocity, spin)
         if not start.standing:
             # leapfrog starts half a step back: a trial step shows the acceleration
             self._pull_tendon(start.position.tolist(), quaternion.tolist())
@@ -158,7 +158,7 @@ class _PybulletStepper(Leapfrog):
                 slab_after = np.array(pybullet.getBaseVelocity(self._slab, client)[0])
                 self._slab_velocity = 1.5 * self._slab_velocity - 0.5 * slab_after
                 self._put_slab(self._slab)
-            self._put(start.position, quaternion, velocity, spin)
+            self._set_pose(start.position, quaternion, velocity, spin)
 
     def _add_ground(self) -> int:
         """Set the parameters of the engine and make the ground; return its number."""
@@ -250,9 +250,9 @@ class _PybulletStepper(Leapfrog):
         while self._standing and len(headings) < len(acceleration):
             now = acceleration[len(headings)]
             if self._held and self._slides(now):
-                self._let_go()
+                self._release_rim()
                 still = np.zeros(3)
-                self._put(self._position, np.roll(self._quaternion, -1), still, still)
+                self._set_pose(self._position, np.roll(self._quaternion, -1), still, still)
                 break
             poses += self._stand(now)
             headings.append(self._heading)
@@ -288,9 +288,9 @@ class _PybulletStepper(Leapfrog):
         vectors = about_vertical(vectors, self._heading - towards)
         self._heading = towards
         if lean > _RISEN:
-            self._let_go()
+            self._release_rim()
         self._slab_velocity = vectors[4]
-        self._put(vectors[0], np.append(vectors[1], w), vectors[2], vectors[3])
+        self._set_pose(vectors[0], np.append(vectors[1], w), vectors[2], vectors[3])
         pull = about_vertical(-acceleration[None] - [0.0, 0.0, self._scene.gravity], -towards)[0]
         bullet.setGravity(*pull.tolist(), client)
         self._pull_tendon(vectors[0].tolist(), [*vectors[1].tolist(), w])
@@ -320,13 +320,13 @@ class _PybulletStepper(Leapfrog):
             body, at = self._slab, bullet.getBasePositionAndOrientation(self._slab, client)[0]
         bullet.applyExternalForce(body, -1, force, at, world, client)
 
-    def _let_go(self) -> None:
+    def _release_rim(self) -> None:
         """Go on with the cylinder in place of the point of its rim; its pose is still to be set."""
         self._bullet.removeBody(self._body, self._client)
         self._standing = False
         self._body = self._add_cylinder()
 
-    def _put(self, position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
+    def _set_pose(self, position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
         """Give the body a pose, with the scalar last as Bullet has it, and velocities."""
         pose = position.tolist(), quaternion.tolist()
         self._bullet.resetBasePositionAndOrientation(self._body, *pose, self._client)

@@ -97,7 +97,7 @@ class _RapierStepper(Leapfrog):
         start = scene.start
         position, velocity, spin = start.position.copy(), start.velocity, start.angular_velocity
         position[2] -= settings.depth
-        self._put(position, start.quaternion, velocity, spin)
+        self._set_pose(position, start.quaternion, velocity, spin)
         self._put_slab(2.0 * float(position[2]), 2.0 * velocity)
         if not start.standing:
             # leapfrog starts half a step back: a trial step shows the acceleration
@@ -107,7 +107,7 @@ class _RapierStepper(Leapfrog):
                 slab_after = np.array([reached.x, reached.y, reached.z])
                 self._put_slab(2.0 * float(position[2]), 3.0 * velocity - 0.5 * slab_after)
             velocity, spin = 1.5 * velocity - 0.5 * after[7:10], 1.5 * spin - 0.5 * after[10:]
-            self._put(position, start.quaternion, velocity, spin)
+            self._set_pose(position, start.quaternion, velocity, spin)
 
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
@@ -184,7 +184,7 @@ class _RapierStepper(Leapfrog):
         self._slab_height = above
         return rows
 
-    def _put(self, position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
+    def _set_pose(self, position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
         x, y, z = position.tolist()
         w, i, j, k = quaternion.tolist()
         self._pose = x, y, z, w, i, j, k

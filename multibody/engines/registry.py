@@ -104,7 +104,7 @@ def engine_names() -> tuple[str, ...]:
     >>> "mujoco" in engine_names()
     True
     """
-    return (*_ENGINES, *_declared())
+    return (*_ENGINES, *_declarations())
 
 
 def standard_engines() -> tuple[str, ...]:
@@ -136,7 +136,7 @@ def available_engines() -> tuple[str, ...]:
     >>> "mujoco" in available_engines()
     True
     """
-    return (*(name for name in _ENGINES if not engine_lack(name)), *_declared())
+    return (*(name for name in _ENGINES if not engine_lack(name)), *_declarations())
 
 
 def engine_lack(name: str) -> str:
@@ -189,7 +189,7 @@ def engine_named(name: str) -> Engine:
     if name in _ENGINES:
         module = importlib.import_module(f".{name}", __package__)
         return cast(Engine, getattr(module, _ENGINES[name].engine)())
-    declared = _declared()
+    declared = _declarations()
     if name not in declared:
         raise ValueError(f"engine must be one of {', '.join((*_ENGINES, *declared))}, got {name!r}")
     return _load(name, declared[name])
@@ -281,7 +281,7 @@ def _require_installed(name: str) -> None:
         raise EngineNotInstalledError(f"engine {name!r} {fault}")
 
 
-def _declared() -> dict[str, list[EntryPoint]]:
+def _declarations() -> dict[str, list[EntryPoint]]:
     """Entry points of other packages by name, in alphabetical order; our names are taken."""
     from importlib.metadata import entry_points
 

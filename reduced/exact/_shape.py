@@ -36,7 +36,7 @@ from rockwobble.models import Cylinder, Tendon
 from rockwobble.models.number_checks import require_positive
 
 from ..body import Body, body_of
-from ..restoring import sigma, sigma_slope, tied
+from ..restoring import sigma, sigma_slope, tied_body
 
 T = TypeVar("T", float, NDArray[np.float64])
 
@@ -69,7 +69,7 @@ def beta(body: Body, x: float, y: float) -> float:
     return c0 + x * (c1 + x * (c2 + x * c3))
 
 
-def deflated(body: Body, R: float, gap2: float, t1: float, t2: float, t: T, drop: T) -> tuple[T, T]:
+def deflate(body: Body, R: float, gap2: float, t1: float, t2: float, t: T, drop: T) -> tuple[T, T]:
     """Return q(t) [m^5], where drop = t2 - t, as two terms: the positive less the negative one.
 
     q is what remains of the radicand when both turning tilts are divided out. Its two terms are
@@ -97,4 +97,4 @@ def deflated(body: Body, R: float, gap2: float, t1: float, t2: float, t: T, drop
 def body_under(cylinder: Cylinder, gravity: float, tendon: Tendon | None = None) -> Body:
     """Return the constants of `cylinder`, or raise ValueError unless gravity is positive and finite."""
     body = body_of(cylinder, require_positive("gravity", gravity, "m/s^2"))
-    return body if tendon is None else cast("Body", tied(body, cylinder, tendon))
+    return body if tendon is None else cast("Body", tied_body(body, cylinder, tendon))

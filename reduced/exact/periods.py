@@ -58,7 +58,7 @@ def _of_tilts(function: Callable[..., Array]) -> _OfTilts:
     """Let a function of an array take one tilt as well, and refuse those that are not below the balance."""
 
     @wraps(function)
-    def checked(
+    def wrapper(
         cylinder: Cylinder, tilt: ArrayLike, *, gravity: float = 9.81, tendon: Tendon | None = None
     ) -> Any:
         theta, largest, name = np.asarray(tilt, dtype=float), cylinder.alpha, "alpha"
@@ -72,7 +72,7 @@ def _of_tilts(function: Callable[..., Array]) -> _OfTilts:
         values = function(cylinder, theta, gravity=gravity, tendon=tendon)
         return values if np.ndim(tilt) else float(values)
 
-    return checked
+    return wrapper
 
 
 @_of_tilts

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ..body import Body
 from ..restoring import sigma
-from ._shape import base_inertia, beta, deflated
+from ._shape import base_inertia, beta, deflate
 from ._turning import Turning
 
 _NODES = 64  # on each side; measured: 40 leave 1e-10 at the narrowest passes, 48 1e-12, 64 rounding
@@ -45,8 +45,8 @@ def half_cycle(body: Body, R: float, turning: Turning) -> HalfCycle | None:
     if behind is None:
         return None
     # a pole at distance d behind an end of the span lies at u = 2i sqrt(d/span) from it
-    u_min, du_min = _clustered(t1, span)
-    u_max, du_max = _clustered(behind, span)
+    u_min, du_min = _clustered_nodes(t1, span)
+    u_max, du_max = _clustered_nodes(behind, span)
     u = np.concatenate([u_min, u_max])  # from the nearer end
     near, far = span * np.sin(0.5 * u) ** 2, span * np.cos(0.5 * u) ** 2
     at_minimum = np.arange(u.size) < u_min.size
@@ -56,7 +56,7 @@ def half_cycle(body: Body, R: float, turning: Turning) -> HalfCycle | None:
 
     n, n1, n2 = 1.0 + t * t, 1.0 + t1 * t1, 1.0 + t2 * t2
     H, H1, H2 = base_inertia(body, t), base_inertia(body, t1), base_inertia(body, t2)
-    positive, negative = deflated(body, R, gap2, t1, t2, t, drop)
+    positive, negative = deflate(body, R, gap2, t1, t2, t, drop)
     q = positive - negative
     sigma12, beta12 = sigma(body, R, gap2, t2, span), beta(body, t1, t2)
     turn = t1 * t2 * np.sqrt(body.A * sigma12 * H1 * H2 * n * n * n / (H * q)) / t
@@ -76,17 +76,17 @@ def _behind_maximum(body: Body, R: float, gap2: float, t1: float, t2: float) -> 
     The zero is where the radicand turns positive again on the far side of the barrier. Only its
     order of magnitude matters, and only when it is close: q is then linear.
     """
-    positive, negative = deflated(body, R, gap2, t1, t2, t2, 0.0)
+    positive, negative = deflate(body, R, gap2, t1, t2, t2, 0.0)
     q2 = positive - negative
     if q2 <= _ROUNDING * positive:
         return None
     step = 0.125 * (t2 - t1)
-    inside, outside = deflated(body, R, gap2, t1, t2, t2 - step, step)
+    inside, outside = deflate(body, R, gap2, t1, t2, t2 - step, step)
     fall = inside - outside - q2
     return step * q2 / fall if fall > 0.0 else math.inf
 
 
-def _clustered(distance: float, span: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _clustered_nodes(distance: float, span: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return nodes and weights in u on (0, pi/2), clustered at 0 on the scale of a pole behind it."""
     eps = _WIDEST if span * _WIDEST**2 <= 4.0 * distance else 2.0 * math.sqrt(distance / span)
     nodes, weights = _gauss()

@@ -23,7 +23,7 @@ _NEARBY = 1e-6  # of a tilt, by which the derivative is taken
 _ABOVE = 1e-6  # of a maximum, more than rounding of the tilt there
 
 
-def decided(body: Body, result: IntegrationResult) -> IntegrationResult:
+def decide(body: Body, result: IntegrationResult) -> IntegrationResult:
     """Return a result, undecided where its largest tilt is the balance itself: a turn there is rounding.
 
     Here and not in the kernel, whose last bits hang on how much there is to compile.
@@ -106,7 +106,7 @@ def departs(body: Body, theta: float, L: float) -> bool:
 
 
 @jit
-def undecided(
+def is_undecided(
     body: Body, theta: float, L: float, rows: Log, since: float, last: float, falls: bool, grows: bool
 ) -> bool:
     """Return whether rounding, or the error of the solution, decided what became of a motion.

@@ -28,7 +28,7 @@ import numpy as np
 
 from .._compile import borrowed, once
 from ..body import Body
-from .balance import departs, longest_stay, may_rise_above, turn_since, turns_back, undecided
+from .balance import departs, is_undecided, longest_stay, may_rise_above, turn_since, turns_back
 from .events import NO_TURN
 from .progress import Stage, make_progress, time_in
 from .record import piece_of_record, still_from
@@ -147,7 +147,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         moves = not run.resting and not stuck
         if moves and now >= still and status in (OVERTURNED, COMPLETED, TURNED):
             L = momenta(run.y)[0]
-            if undecided(body, run.y[0], L, log, still, now, falls, grows):
+            if is_undecided(body, run.y[0], L, log, still, now, falls, grows):
                 status = UNDECIDED
         if following and status in (COMPLETED, TURNED, UNDECIDED):
             y, now, status = mark.y, options.duration, UNDECIDED if status == UNDECIDED else COMPLETED

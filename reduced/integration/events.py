@@ -190,7 +190,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
         return Turn(MAXIMUM if y[1] > 0.0 else MINIMUM, at, tilt, angle)
 
     @inlined
-    def tried(
+    def attempt(
         body: Body,
         rtol: float,
         y: State,
@@ -246,4 +246,4 @@ def make_events(system: System, stepper: Stepper) -> Events:
         h, y_new = crossing(body, work, trial.path, y, first, last, HALF_PI if overturns else 0.0)
         return Ending(h, y_new, lands, overturns, hops)
 
-    return Events(tried, ending_of)
+    return Events(attempt, ending_of)

@@ -37,7 +37,7 @@ from .result import (
 )
 from .stepping import Stepper
 from .systems import System, make_is_flat
-from .uplift import excess, nearest_branch, start_length, started, uplift_in
+from .uplift import excess, nearest_branch, start, start_length, uplift_in
 
 
 @inlined
@@ -207,9 +207,11 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     ready, rebound, grows = system.ready, system.rebound, system.grows
 
     @jit
-    def lifted(body: Body, time_step: float, piece: Piece, at: float, time: float, last: State) -> State:
+    def uplift_state(
+        body: Body, time_step: float, piece: Piece, at: float, time: float, last: State
+    ) -> State:
         """Return the state `time` after an uplift; `last` is the state in which it stood."""
-        theta, omega, angle, rate = started(body, time_step, piece.a, piece.slope, at, time)
+        theta, omega, angle, rate = start(body, time_step, piece.a, piece.slope, at, time)
         angle = nearest_branch(angle, last[2])
         return placed(body, last, theta, omega, angle, spin_momentum(body, theta, rate))
 
@@ -225,15 +227,15 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         if wait < 0.0 or (at > 0.0 and piece.length - at < _HAIR / body.p):
             return Lift(True, at, 0.0, y)
         length = min(start_length(body, rtol, piece.a, piece.slope, at), piece.length - at)
-        return Lift(False, at, length, lifted(body, time_step, piece, at, length, y))
+        return Lift(False, at, length, uplift_state(body, time_step, piece, at, length, y))
 
     @inlined
-    def rebounded(body: Body, y: State, restitution: float) -> State:
+    def bounce(body: Body, y: State, restitution: float) -> State:
         """Return the state after the base met the ground in planar motion: contact changes sides."""
         turn, ratio = rebound(body, y, restitution)
         return placed(body, y, 0.0, ratio * abs(y[1]), y[2] + turn, 0.0)
 
-    sample_rest, sample_uplift, sample_step = make_sampling(lifted, partial)
+    sample_rest, sample_uplift, sample_step = make_sampling(uplift_state, partial)
 
     @inlined
     def at_beginning(run: Stage, jumps: bool) -> Stage:
@@ -255,7 +257,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         return Stage(elapsed, y, k, h_next, restart, True, peak, sample, step_count, status)
 
     @inlined
-    def stood(body: Body, time_step: float, piece: Piece, lift: Lift, wanted: Wanted, run: Stage) -> Stage:
+    def stand(body: Body, time_step: float, piece: Piece, lift: Lift, wanted: Wanted, run: Stage) -> Stage:
         """Carry a cylinder at rest to the end of a piece, or as far as the series of its uplift reaches."""
         _, y, k, h_next, restart, _, peak, sample, step_count, status = run
         begin = piece.finish if lift.stays else piece.begin + lift.at
@@ -274,7 +276,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         return bool(y[1] == 0.0 and is_flat(y))
 
     @inlined
-    def held(piece: Piece, wait: float, wanted: Wanted, run: Stage) -> Stage:
+    def stay(piece: Piece, wait: float, wanted: Wanted, run: Stage) -> Stage:
         """Carry a body that rolling resistance holds to the end of that time, or of the piece."""
         elapsed, y, k, h_next, _, resting, peak, sample, step_count, status = run
         elapsed = min(elapsed + wait, piece.length)
@@ -284,7 +286,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         return Stage(elapsed, y, k, h_next, True, resting, peak, later, step_count, status)
 
     @inlined
-    def moved(
+    def move(
         body: Body,
         options: Options,
         piece: Piece,
@@ -308,7 +310,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         if resists and (is_still(y) or y[-1] == PIVOTS):
             wait = hold(body, options.rtol, y, a, piece.slope) if is_still(y) else 0.0
             if wait > 0.0:
-                return Step(held(piece, wait, wanted, run), NONE, NONE)
+                return Step(stay(piece, wait, wanted, run), NONE, NONE)
             y, longest = set_off(body, options.rtol, y, a, piece.slope)
             h_next, restart = min(h_next, longest), True
         if restart:
@@ -340,7 +342,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
                 status = OVERTURNED
             elif ending.lands:
                 landing = Turn(MINIMUM, ending.h, 0.0, y[2])
-                y, restart = rebounded(body, y, options.restitution), True
+                y, restart = bounce(body, y, options.restitution), True
                 resting = y[1] == 0.0  # no speed is left: it stands, or lifts off again by (25) and (26)
             if not ending.overturns:
                 a = ground(piece.a, piece.slope, elapsed)
@@ -353,4 +355,4 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         after = Stage(elapsed, y, k, h_next, restart, resting, peak, sample, step_count, status)
         return Step(after, turn, landing)
 
-    return Progress(lifted, lift_in, at_beginning, at_rest, stood, moved)
+    return Progress(uplift_state, lift_in, at_beginning, at_rest, stand, move)

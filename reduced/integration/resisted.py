@@ -291,24 +291,24 @@ def _make_system(
         return with_side(place(body, y, omega, across), side)
 
     @inlined
-    def pushed(body: Body, y: State, a: Vector, slope: Vector) -> tuple[float, float, float, float]:
+    def drive(body: Body, y: State, a: Vector, slope: Vector) -> tuple[float, float, float, float]:
         s, c = sin_cos(y[0])
         pivoting = pivoting_rate(body, s, c, *momenta(y)) if pivots else 0.0
         return push(body, y[0], y[2], pivoting, a, slope, pivots)
 
     @jit
     def let_go(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> bool:
-        excess, growth, _, _ = pushed(body, y, a, slope)
+        excess, growth, _, _ = drive(body, y, a, slope)
         return bool(y[-1] == PIVOTS and excess > _series_time(body, rtol) * abs(growth))
 
     @jit
     def hold(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> float:
         if y[1] != 0.0 or not is_flat(y):
             # over still ground nothing changes the rate at which it pivots
-            return inf if y[-1] == PIVOTS and pushed(body, y, a, slope)[0] <= 0.0 else 0.0
+            return inf if y[-1] == PIVOTS and drive(body, y, a, slope)[0] <= 0.0 else 0.0
         time = hold_time(body, y[0], y[2], a, slope, pivots)
         if spins and not pivots and time < inf:
-            excess, growth, _, turning = pushed(body, y, a, slope)
+            excess, growth, _, turning = drive(body, y, a, slope)
             if turning != 0.0 and growth > 0.0:
                 longer = time - excess / growth if time == 0.0 else time
                 longer += _series_time(body, rtol)
@@ -317,7 +317,7 @@ def _make_system(
 
     @jit
     def set_off(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> tuple[State, float]:
-        excess, growth, tilting, turning = pushed(body, y, a, slope)
+        excess, growth, tilting, turning = drive(body, y, a, slope)
         late = _series_time(body, rtol) * abs(growth)
         if pivots and excess <= late:
             return with_side(y, PIVOTS), inf
@@ -344,7 +344,7 @@ def _make_system(
                 across = across_rate(body, s, c, *momenta(y))
                 inertia = across_inertia(body, s, c, pivots)
                 kinetic = body.A * y[1] * y[1] + inertia * across * across
-                excess, growth, _, _ = pushed(body, y, a, slope)
+                excess, growth, _, _ = drive(body, y, a, slope)
                 # what is left of the couple stops it on a way of kinetic/2 over that, if it stays for so long
                 stop = _FIRST_STEP / body.p
                 if kinetic >= limit:

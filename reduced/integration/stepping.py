@@ -149,7 +149,7 @@ def runge_kutta(system: System, combine: Callable[..., State], error_ratio: Call
     derivative, is_flat = system.derivative, make_is_flat(system.momenta)
 
     @jit
-    def restarted(body: Body, y: State, a: Vector, work: NDArray[np.float64]) -> State:
+    def restart(body: Body, y: State, a: Vector, work: NDArray[np.float64]) -> State:
         return derivative(body, y, a)
 
     @jit
@@ -200,9 +200,9 @@ def runge_kutta(system: System, combine: Callable[..., State], error_ratio: Call
     def acceleration(work: NDArray[np.float64], path: _Path) -> float:
         return float(path[1][1])
 
-    return Stepper(_no_workspace, restarted, advance, partial, acceleration)
+    return Stepper(_no_workspace, restart, advance, partial, acceleration)
 
 
 def taylor_series() -> Stepper:
     """Return the steps of `taylor` for the recess model."""
-    return Stepper(taylor.workspace, taylor.restarted, taylor.advance, taylor.partial, taylor.acceleration)
+    return Stepper(taylor.workspace, taylor.restart, taylor.advance, taylor.partial, taylor.acceleration)

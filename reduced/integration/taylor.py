@@ -340,7 +340,7 @@ _SHRINK = 1.0 / 32.0  # of a step not taken; the next trial is _GROWTH times as 
 
 
 @jit
-def restarted(body: Body, y: State, a: Vector, work: NDArray[np.float64]) -> State:
+def restart(body: Body, y: State, a: Vector, work: NDArray[np.float64]) -> State:
     """Forget the sine and cosine of the last step: the state has jumped."""
     work[STEPS_LEFT] = 0.0
     return y

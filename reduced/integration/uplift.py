@@ -85,7 +85,7 @@ def nearest_branch(angle: float, last: float) -> float:
 
 
 @jit
-def started(
+def start(
     body: Body,
     time_step: float,
     a: Vector,

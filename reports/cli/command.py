@@ -42,7 +42,7 @@ def takes_options(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def with_options(**given: Any) -> None:
         with user_input():
-            made = {name: _made(kind, given) for name, kind in stated.items()}
+            made = {name: _make(kind, given) for name, kind in stated.items()}
         others = {name: value for name, value in given.items() if name in own and name not in stated}
         command(**made, **others)
 
@@ -51,7 +51,7 @@ def takes_options(command: Callable[..., None]) -> Callable[..., None]:
     return with_options
 
 
-def _made(kind: Any, given: Mapping[str, object]) -> object:
+def _make(kind: Any, given: Mapping[str, object]) -> object:
     """Return the dataclass with the given options; a refusal names an option as it is typed."""
     try:
         return kind(**{each.name: given[each.name] for each in fields(kind)})

@@ -245,11 +245,11 @@ def _members(
     context: typer.Context, problem: Problem, copies: Copies, motions: ManyMotions, peak: float | None
 ) -> tuple[rw.Case | list[rw.Case], str]:
     """Return the case whose copies are the members, or the members, and what they are."""
-    if not motions.given:
+    if not motions.option:
         refuse(context, {"peak"}, "scales many motions, give --synthetic, --p695 or --records as well")
         return problem.case(), f"perturbed copies, {100.0 * copies.perturbation:g} %"
     ignored = {"record", "record_x", "record_y", "record_z", "scale", *_COPIES}
-    refuse(context, ignored, f"does not go with {motions.given}: its motions are the members")
+    refuse(context, ignored, f"does not go with {motions.option}: its motions are the members")
     case = unread(problem).case()
     level = 3.0 if peak is None else peak
     found, source = motions.read(copies.seed)

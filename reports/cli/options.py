@@ -164,7 +164,7 @@ def _standing_alone(names: list[str] | None) -> list[str] | None:
     return names
 
 
-def named(names: list[str] | None) -> list[str] | None:
+def engine_names(names: list[str] | None) -> list[str] | None:
     """Return names of engines, or none alone.
 
     Raises
@@ -180,7 +180,9 @@ def named(names: list[str] | None) -> list[str] | None:
 ENGINES = "mujoco, pybullet, dart, drake, exudyn, rapier or another that is installed"
 _SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (recess with clearance, by engines)"
 _DEFAULT = "Default: those that serve any case and are no extra"
-Engines = Annotated[list[str] | None, method(f"{ENGINES}; may be repeated. {_DEFAULT}.", callback=named)]
+Engines = Annotated[
+    list[str] | None, method(f"{ENGINES}; may be repeated. {_DEFAULT}.", callback=engine_names)
+]
 EnginesOrAll = Annotated[
     list[str] | None,
     method(

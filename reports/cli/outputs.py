@@ -34,7 +34,7 @@ def claim_folder(context: typer.Context) -> None:
     """
     stated = context.params
     context.with_resource(
-        rs.claimed(
+        rs.claim_folder(
             stated["out"],
             plan=plan_of(context),
             command=command_line(),

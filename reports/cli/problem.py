@@ -333,7 +333,7 @@ def stated_options(context: typer.Context, *, also: Collection[str] = ()) -> dic
     }
 
 
-def restated(context: typer.Context, command: str, *, also: Collection[str] = ()) -> str:
+def next_command(context: typer.Context, command: str, *, also: Collection[str] = ()) -> str:
     """Return the line of another command on the problem that the user gave; `also`: more of its options."""
     return command_line(command, stated_options(context, also=also))
 

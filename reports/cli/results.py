@@ -43,10 +43,10 @@ def show(store: Store, as_json: Json = False) -> None:
     from rockwobble.models import plain_json
 
     with user_input():
-        from rockwobble.compare.runs.cache import unfinished
+        from rockwobble.compare.runs.cache import unfinished_results
         from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests
 
-        going = unfinished(store)
+        going = unfinished_results(store)
         found = read_manifests(store) if not going or (store / MANIFEST).exists() else []
     states = [{name: file_state(store, made, name) for name in made.files} for made in found]
     if as_json:

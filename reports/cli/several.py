@@ -35,7 +35,7 @@ class ManyMotions(Reading):
     synthetic: int | None = _motions(None, "Number of synthetic motions.", least=2)
 
     @property
-    def given(self) -> str:
+    def option(self) -> str:
         """The option that names them; empty without one."""
         return first_given(self, "p695", "records", "synthetic")
 
@@ -113,7 +113,7 @@ class ManyMethods:
     ] = None
     engine: Annotated[
         list[str] | None,
-        options.method(f"{options.ENGINES}; may be repeated. Default: none.", callback=options.named),
+        options.method(f"{options.ENGINES}; may be repeated. Default: none.", callback=options.engine_names),
     ] = None
     support: options.Supports = None
     setting: options.Settings = None

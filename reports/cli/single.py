@@ -23,7 +23,7 @@ from . import options
 from .command import takes_options
 from .options import settings
 from .outputs import claim_folder
-from .problem import Problem, given_options, refuse_options_of_engines, restated, stated_options
+from .problem import Problem, given_options, next_command, refuse_options_of_engines, stated_options
 from .suite_choice import (
     chosen_runs,
     describe_suite,
@@ -236,7 +236,7 @@ def simulate(
             found = single_run(
                 case,
                 run,
-                answer=restated(context, "advise", also=("support",)),
+                answer=next_command(context, "advise", also=("support",)),
                 progress=progress,
             )
         if not len(found.trace.time):

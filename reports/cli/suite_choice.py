@@ -78,11 +78,11 @@ def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list
 
 def say_what_is_left_out(supports: Sequence[str] = ()) -> None:
     """Say which engines a default run leaves out, and why: those that do not run here or lack a support."""
-    from rockwobble.compare.runs.choice import left_out, unsupported
+    from rockwobble.compare.runs.choice import left_out, omissions
 
     for name in rr.missing_engines():
         complain(left_out(name))
-    for reason in unsupported(supports):
+    for reason in omissions(supports):
         complain(reason)
 
 

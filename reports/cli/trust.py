@@ -240,7 +240,7 @@ def update(reason: str | None) -> None:
         new = agreement.baseline_numbers(baseline_subjects())
     old = agreement.read_baseline()
     changed = agreement.baseline_changes(old, new)
-    print(*_shown(changed), sep="\n")
+    print(*_largest_changes(changed), sep="\n")
     if not changed:
         return
     if not (reason or "").strip():
@@ -252,7 +252,7 @@ def update(reason: str | None) -> None:
     print(f"Written: {agreement.baseline_folder() / agreement.BASELINES}")
 
 
-def _shown(changed: Sequence[tuple[str, str, float | None, float | None]]) -> list[str]:
+def _largest_changes(changed: Sequence[tuple[str, str, float | None, float | None]]) -> list[str]:
     """Return the largest changes, and how many values are new or gone, a line each."""
     known = [
         (abs(after - before), f"{group}, {what}: {before:.12g} -> {after:.12g} ({after - before:+.1e})")

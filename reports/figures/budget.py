@@ -46,7 +46,7 @@ def budget_picture(view: CaseView, name: str) -> Picture | None:
     bars = [
         (f"{run} − {model}", each, True) for (run, model), each in view.budgets.items() if not each.not_split
     ]
-    return _stacked(bars, name)
+    return _stack(bars, name)
 
 
 def all_budgets_picture(comparison: Comparison) -> Picture | None:
@@ -69,10 +69,10 @@ def all_budgets_picture(comparison: Comparison) -> Picture | None:
         )
         for row in rows_of(ordered.head(_MOST))
     ]
-    return _stacked(bars, "budget")
+    return _stack(bars, "budget")
 
 
-def _stacked(bars: Sequence[Bar], name: str) -> Picture | None:
+def _stack(bars: Sequence[Bar], name: str) -> Picture | None:
     if not bars:
         return None
     places, ends = np.arange(len(bars), dtype=np.float64), np.zeros(len(bars))

@@ -141,7 +141,7 @@ def _panel(found: Fragility, cylinder: str, labels: Sequence[str], title: str) -
                     width=1.8,
                 )
             )
-        part = _grouped(counts[counts["method"] == label])
+        part = _groups(counts[counts["method"] == label])
         mark = Style(colour=colour, dash="none", symbol=style.symbol)
         fronts.append(
             Line(
@@ -171,7 +171,7 @@ def _panel(found: Fragility, cylinder: str, labels: Sequence[str], title: str) -
     )
 
 
-def _grouped(counts: pd.DataFrame) -> pd.DataFrame:
+def _groups(counts: pd.DataFrame) -> pd.DataFrame:
     """Counts of a cloud by tenths of its runs, each at the mean of its logarithms; of stripes as they are."""
     if len(counts) <= 40:
         return counts

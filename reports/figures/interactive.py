@@ -67,7 +67,7 @@ def chart(panel: Panel, picture: Picture) -> dict[str, object]:
     }
 
 
-def packed(values: ArrayLike) -> str:
+def base64_of(values: ArrayLike) -> str:
     """Return numbers as base64 of little-endian float32: seven digits are more than a screen shows."""
     return base64.b64encode(np.asarray(values, dtype="<f4").tobytes()).decode()
 
@@ -88,7 +88,7 @@ def _layer(layer: Layer, panel: Panel, picture: Picture) -> dict[str, object]:
     if isinstance(layer, Line):
         return _line(layer, picture.points)
     if isinstance(layer, Band):
-        sides = {"x": packed(layer.x), "low": packed(layer.low), "high": packed(layer.high)}
+        sides = {"x": base64_of(layer.x), "low": base64_of(layer.low), "high": base64_of(layer.high)}
         return {"kind": "band", "name": layer.name, "colour": layer.colour, **sides}
     if isinstance(layer, Bars):
         return {
@@ -97,7 +97,7 @@ def _layer(layer: Layer, panel: Panel, picture: Picture) -> dict[str, object]:
             "colours": list(layer.colours),
             "hatch": layer.hatch,
             "texts": list(layer.texts),
-            **{key: packed(getattr(layer, key)) for key in ("places", "start", "end")},
+            **{key: base64_of(getattr(layer, key)) for key in ("places", "start", "end")},
         }
     if isinstance(layer, Rule):
         return {"kind": "rule", **dataclasses.asdict(layer)}
@@ -117,8 +117,8 @@ def _line(line: Line, points: int) -> dict[str, object]:
     return {
         "kind": "line",
         "name": line.name,
-        "x": packed(line.x[keep]),
-        "y": packed(line.y[keep]),
+        "x": base64_of(line.x[keep]),
+        "y": base64_of(line.y[keep]),
         "style": _style(line.style),
         "width": line.width,
         "size": line.size,
@@ -164,10 +164,10 @@ def _heat(heat: Heat, panel: Panel, shades: Shades) -> dict[str, object]:
     written = bool(heat.written) and heat.values.size <= _MOST_WRITTEN
     return {
         "kind": "heat",
-        "x": packed(x),
-        "y": packed(y),
-        "centres": [packed(heat.x), packed(heat.y)],
-        "values": packed(heat.values),
+        "x": base64_of(x),
+        "y": base64_of(y),
+        "centres": [base64_of(heat.x), base64_of(heat.y)],
+        "values": base64_of(heat.values),
         "cells": base64.b64encode(cells.tobytes()).decode(),
         "palette": [*palette, *(gap.colour for gap in heat.gaps)],
         "gaps": gaps,

@@ -291,7 +291,7 @@ def group_lines(
     ]
 
 
-def separated(first: Array, second: Array) -> Array:
+def bar_ends(first: Array, second: Array) -> Array:
     """Return the ends of bars one after the other, separated by NaN."""
     return np.column_stack([first, second, np.full(len(first), np.nan)]).ravel()
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rockwobble.models import Trace
 
 from .case_view import CaseView
-from .interactive import packed
+from .interactive import base64_of
 
 # in a second: between them the page interpolates
 _PICTURES = 25.0
@@ -74,7 +74,7 @@ def _body(label: str, trace: Trace, colour: str, opacity: float) -> dict[str, ob
         "colour": colour,
         "opacity": opacity,
         "moves": bool(np.any(pose["tilt"] > 0.0)),
-        **{name: packed(values[keep]) for name, values in {"time": trace.time, **pose}.items()},
+        **{name: base64_of(values[keep]) for name, values in {"time": trace.time, **pose}.items()},
     }
 
 

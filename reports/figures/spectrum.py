@@ -11,7 +11,7 @@ from rockwobble.models import Run
 
 from .heat import PEAKS, Heat, peak_map
 from .palette import Style, model_style, run_styles
-from .picture import Axis, Line, Panel, Picture, separated
+from .picture import Axis, Line, Panel, Picture, bar_ends
 
 NAMES = TITLES | {SPATIAL: "3D"}
 _HEIGHT = 3.4
@@ -91,7 +91,7 @@ def _curves(spectrum: TiltMaps) -> list[Line]:
         ends = closed["lower"].to_numpy(float) - half, closed["upper"].to_numpy(float) + half
         thin = Style(colour=styles[series].colour)
         found += [
-            Line(x=separated(place, place), y=separated(*ends), style=thin, width=0.7, opacity=0.45),
+            Line(x=bar_ends(place, place), y=bar_ends(*ends), style=thin, width=0.7, opacity=0.45),
             Line(
                 x=spectrum.semidiagonals,
                 y=spectrum.lowest[series],

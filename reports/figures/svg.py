@@ -193,15 +193,15 @@ def _line(axes: Axes, line: Line) -> None:
         "clip_on": line.clip,
     }
     if style.dash != "none":
-        axes.plot(line.x[keep], line.y[keep], linestyle=DASHES[style.dash], **drawn, **_marked(line, True))
+        axes.plot(line.x[keep], line.y[keep], linestyle=DASHES[style.dash], **drawn, **_marker(line, True))
         return
     for inside in (True, False):
         chosen = keep[filled[keep] == inside]
         if len(chosen):
-            axes.plot(line.x[chosen], line.y[chosen], linestyle="none", **drawn, **_marked(line, inside))
+            axes.plot(line.x[chosen], line.y[chosen], linestyle="none", **drawn, **_marker(line, inside))
 
 
-def _marked(line: Line, filled: bool) -> Keywords:
+def _marker(line: Line, filled: bool) -> Keywords:
     symbol = SYMBOLS[line.style.symbol] if line.style.symbol else None
     inside = line.style.colour if filled and line.filled is not False else "white"
     return {"marker": symbol, "markersize": line.size, "markerfacecolor": inside, "label": line.name}

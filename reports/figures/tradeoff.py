@@ -8,7 +8,7 @@ import pandas as pd
 from rockwobble.compare.studies.tradeoff.study import Tradeoff
 
 from .palette import DARK, GREY, Style, mark_styles
-from .picture import Axis, Line, Panel, Picture, Rule, separated
+from .picture import Axis, Line, Panel, Picture, Rule, bar_ends
 
 TITLES = {
     "turn": "Angle of turn in free response",
@@ -91,7 +91,7 @@ def _lines(points: pd.DataFrame) -> list[Line]:
         layers.append(
             Line(x=x, y=y, name=str(name), style=Style(colour=colour, symbol=style.symbol), notes=notes)
         )
-        bars = separated(*(ordered[f"ratio_{end}"].to_numpy(float) for end in ("low", "high")))
+        bars = bar_ends(*(ordered[f"ratio_{end}"].to_numpy(float) for end in ("low", "high")))
         layers.append(Line(x=bars, y=np.repeat(y, 3), style=Style(colour=colour), width=0.8))
     return layers
 

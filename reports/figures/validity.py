@@ -22,7 +22,7 @@ from rockwobble.models.support import SUPPORTS
 
 from .heat import Gap, Heat, Shades, contour, names
 from .palette import DARK, GREY, ORDER, PALE, Style, mark_styles
-from .picture import Array, Axis, Layer, Line, Panel, Picture, Rule, group_lines, list_axis, separated
+from .picture import Array, Axis, Layer, Line, Panel, Picture, Rule, bar_ends, group_lines, list_axis
 
 _FREE_PANELS = 4
 _FAR = 1e3  # what infinite is drawn as: beyond every scale
@@ -326,7 +326,7 @@ def _slip(table: pd.DataFrame) -> Picture:
 
 def _rings(table: pd.DataFrame) -> Picture:
     # walls of another inclination or friction are in the table, and would be too many lines here
-    plain = table[walled(table) & (table["inclination"] == 0.0)]
+    plain = table[has_walls(table) & (table["inclination"] == 0.0)]
     default = plain["friction"].mode().iloc[0] if len(plain) else 0.0
     plain = plain[plain["friction"] == default]
     plain = plain.assign(ratio=plain["peak"] / plain["recess_peak"])
@@ -339,7 +339,7 @@ def _rings(table: pd.DataFrame) -> Picture:
             low, high = (np.maximum(end.to_numpy(float), least) for end in (over.min(), over.max()))
             x, bars = over.min().index.to_numpy(float), Style(colour=styles[name].colour)
             yield Line(x=x, y=np.sqrt(low * high), name=name, style=styles[name])
-            yield Line(x=np.repeat(x, 3), y=separated(low, high), style=bars, width=0.8)
+            yield Line(x=np.repeat(x, 3), y=bar_ends(low, high), style=bars, width=0.8)
 
     clearance = Axis(label="clearance / b", unit="-", log=True)
     shaken, touched = plain[plain["motion"] != FREE], plain[plain["contact_time"] > 0.0]
@@ -372,7 +372,7 @@ def _rings(table: pd.DataFrame) -> Picture:
     )
 
 
-def walled(table: pd.DataFrame) -> pd.Series[bool]:
+def has_walls(table: pd.DataFrame) -> pd.Series[bool]:
     """Return which runs are of a support with walls."""
     return table["support"].map(lambda name: SUPPORTS[name].walls)
 

@@ -18,7 +18,7 @@ from rockwobble.compare.studies.advice.trust import Verification
 from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.compare.studies.spectrum.study import CHECK_RTOL, NUDGE
 from rockwobble.models import AGREEMENT, CLOSED_TILT
-from rockwobble.models.diagnostic import CODES, parted
+from rockwobble.models.diagnostic import CODES, codes_in
 from rockwobble.models.records import p695
 from rockwobble.models.support import support_named
 from rockwobble.models.trace import NO_PEAK
@@ -92,11 +92,11 @@ def page_of(found: Advice) -> Page:
             {"topic": topic, "grade": grade, "reason": reasons[topic], **CRITERIA[topic].by_grade()}
             for topic, grade in grades.items()
         ],
-        "demanded": list(_demanded(found)),
+        "demanded": list(_demand_rows(found)),
         "together": _together(found),
         "wall": _wall(found),
         "tendon_words": _tendon_words(found),
-        "compared": _compared(found),
+        "compared": _comparison_words(found),
         "vertical_words": _vertical_words(found),
         "steps": _steps(found),
         "groups": _groups(found),
@@ -221,7 +221,7 @@ def _reason_of_trace(found: Advice) -> str:
 
 
 def _reason_of_intensity(found: Advice) -> str:
-    low, high = found.beside
+    low, high = found.range_as_strong
     if math.isnan(low):
         return "no other scales of this shaking were run"
     which = f"at {len(found.as_strong)} scales, {_STRONG}"
@@ -277,7 +277,7 @@ def _others(found: Advice) -> str:
     )
 
 
-def _compared(found: Advice) -> str:
+def _comparison_words(found: Advice) -> str:
     """What the case is compared with, beside copies of itself."""
     rows = [row for row in _groups(found) if row["group"] in (ACCELERATION, VELOCITY)]
     if not rows:
@@ -332,7 +332,7 @@ def _numbers(found: Advice) -> Iterator[Row]:
         yield row(group["name"], share, covered, peak)
 
 
-def _demanded(found: Advice) -> Iterator[Row]:
+def _demand_rows(found: Advice) -> Iterator[Row]:
     """Rows of the design demands, as a designer enters them; each names the group that it is of."""
     rows = found.demands.to_dict("records")
     values = {str(row["demand"]): {str(key): each for key, each in row.items()} for row in rows}
@@ -511,11 +511,11 @@ def _agreed_until(engine: Verification) -> str:
 
 
 def _failure(engine: Verification) -> str:
-    return "; ".join(CODES[code][1] for code in parted(engine.diagnostics))
+    return "; ".join(CODES[code][1] for code in codes_in(engine.diagnostics))
 
 
 def _scales(found: Advice) -> Iterator[Row]:
-    low, high = found.beside
+    low, high = found.range_as_strong
     if not math.isnan(low) and not found.overturned:
         span = f"{number(low)} to {number(high)} α"
         yield _check(

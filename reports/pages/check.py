@@ -137,7 +137,7 @@ def in_words(result: Result) -> str:
 
 def _failure(result: Result) -> str:
     cause = f"; likely cause: {result.cause}" if result.cause else ""
-    return f"{result.name}: {_measured(result)}, at most {_bound(result)}{cause}"
+    return f"{result.name}: {_measurement(result)}, at most {_bound(result)}{cause}"
 
 
 def _by_group(results: Sequence[Result]) -> dict[str, list[Result]]:
@@ -147,10 +147,10 @@ def _by_group(results: Sequence[Result]) -> dict[str, list[Result]]:
 
 def _row(result: Result) -> Row:
     said = {name: getattr(result, name) for name in ("subject", "name", "outcome", "reason", "cause", "note")}
-    return {**said, "measured": _measured(result), "bound": _bound(result)}
+    return {**said, "measured": _measurement(result), "bound": _bound(result)}
 
 
-def _measured(result: Result) -> str:
+def _measurement(result: Result) -> str:
     known = math.isfinite(result.value)
     return f"{number(result.value, '.2g')} {result.unit}".strip() if known else "none"
 

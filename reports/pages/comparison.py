@@ -66,7 +66,7 @@ def page_of(found: Comparison) -> Page:
     many = len(views) > SINGLY
     summary, lengths = found.summary, {view.case.name: view.case.length for view in views}
     pictures = {place: list(_pictures(view, place, many)) for place, view in enumerate(views)}
-    whole = _thinned([picture for of_case in pictures.values() for picture in of_case])
+    whole = _thin([picture for of_case in pictures.values() for picture in of_case])
     bars = all_budgets_picture(found) if found.budgets else None
     if bars is not None:
         whole.append(bars)
@@ -143,7 +143,7 @@ def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
         yield from filter(None, [excitation_picture(view, f"excitation-{place}")])
 
 
-def _thinned(pictures: Sequence[Picture]) -> list[Picture]:
+def _thin(pictures: Sequence[Picture]) -> list[Picture]:
     """Return the pictures with as many points as the page can hold, the same for every curve."""
     layers = [layer for picture in pictures for panel in picture.panels for layer in panel.layers]
     curves = sum(isinstance(layer, Line) and layer.style.dash != "none" for layer in layers)

@@ -178,7 +178,7 @@ def failure(facts: Iterable[Diagnostic]) -> str:
     return remarks(fact for fact in facts if fact.code in FAILURES) or "it failed"
 
 
-def counted(codes: Iterable[Iterable[str]]) -> list[str]:
+def code_counts(codes: Iterable[Iterable[str]]) -> list[str]:
     """Return how many runs have which diagnostic, from the codes of each run; failures left out."""
     found = Counter(code for of_run in codes for code in set(of_run))
     return [f"{found[code]} {words}" for code, words in _MANY.items() if found[code]]

@@ -10,9 +10,9 @@ from rockwobble.compare.metrics.statistics import (
     SIGNIFICANCE,
     largest_share_unseen,
     least_significant_count,
-    stated,
+    value_if_enough,
 )
-from rockwobble.models.diagnostic import parted
+from rockwobble.models.diagnostic import codes_in
 
 from ..figures.ensemble import main_pairs, pictures
 from .page import Page
@@ -28,7 +28,7 @@ def ensemble_values(found: Ensemble) -> dict[str, object]:
     """Return the values of the template of an ensemble."""
     contrasts, methods = found.contrasts, found.methods.to_dict("records")
     rows, main = (
-        [{**row, "ratio": stated(row["ratio"], row["compared"], ratio=True)} for row in each]
+        [{**row, "ratio": value_if_enough(row["ratio"], row["compared"], ratio=True)} for row in each]
         for each in (contrasts.to_dict("records"), main_pairs(found))
     )
     # those that matter first, then the others by their probability
@@ -44,7 +44,7 @@ def ensemble_values(found: Ensemble) -> dict[str, object]:
         "methods": methods,
         "contrasts": rows,
         "main": main,
-        "one_column": any("one_column" in parted(cell) for cell in found.members["diagnostics"]),
+        "one_column": any("one_column" in codes_in(cell) for cell in found.members["diagnostics"]),
         "verdicts": {
             verdict: [row for row in main if row["verdict"] == verdict]
             for verdict in ("within", "beyond", "undecided")

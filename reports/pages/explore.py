@@ -133,7 +133,7 @@ def explore_page(
         raise ValueError(f"a page holds 1 to {MOST_RECORDS} ground motions, got {len(shakings)}")
     values = {name: getattr(state, name) for name in State.__slots__}
     given = {
-        "records": [_stated(each) for each in shakings],
+        "records": [_shaking_values(each) for each in shakings],
         "state": values,
         "gravity": gravity,
         "duration": duration,
@@ -155,7 +155,7 @@ def plan_in_page(content: bytes) -> str | None:
     return found[1].decode() if found else None
 
 
-def _stated(shaking: Shaking) -> dict[str, object]:
+def _shaking_values(shaking: Shaking) -> dict[str, object]:
     motion = shaking.motion
     columns = dict(zip("xyz", np.asarray(motion.acceleration, dtype=np.float64).T, strict=False))
     return {

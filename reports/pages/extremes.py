@@ -7,7 +7,7 @@ import math
 import pandas as pd
 
 from rockwobble.compare.studies.extremes import FINE, Extremes
-from rockwobble.models.diagnostic import CODES, parted
+from rockwobble.models.diagnostic import CODES, codes_in
 
 from .page import Page
 
@@ -46,7 +46,7 @@ def page_of(found: Extremes) -> Page:
                 "method": row["method"],
                 "verdict": WORDS[row["verdict"]],
                 "error": row["error"],
-                "reference": ", ".join(_REFERENCES[each] for each in parted(row["reference"])),
+                "reference": ", ".join(_REFERENCES[each] for each in codes_in(row["reference"])),
             }
             for row in runs.to_dict("records")
         ],
@@ -79,7 +79,7 @@ def _not_fine(runs: pd.DataFrame) -> list[dict[str, object]]:
                 "error": alike["error"].max(),
                 # never is a dash
                 **{name: alike[name].replace(math.inf, math.nan).min() for name in ("begins", "until")},
-                "limit": refusal or "; ".join(CODES[code][1] for code in parted(str(limit))),
+                "limit": refusal or "; ".join(CODES[code][1] for code in codes_in(str(limit))),
             }
         )
     return rows

@@ -18,11 +18,11 @@ from rockwobble.compare.external.verdict import mistakes_of
 from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.compare.runs.choice import REDUCED
 from rockwobble.models import AGREEMENT, Run
-from rockwobble.models.diagnostic import parted
+from rockwobble.models.diagnostic import codes_in
 from rockwobble.models.support import FLAT, RECESS, SUPPORTS
 
 from ..figures.case_view import CaseView, SummaryRow, own_rows, rows_of
-from .diagnostics import counted, failure, remarks
+from .diagnostics import code_counts, failure, remarks
 from .sentences import lines, sentence, the
 
 WORDS = "comparison/findings.md.j2"
@@ -101,7 +101,7 @@ def _models_differ(view: CaseView, row: SummaryRow) -> bool:
     return bool((abs(pair.tilt_difference) > 0.5 * row.tolerance).any())
 
 
-def within(row: SummaryRow) -> str:
+def agreement_words(row: SummaryRow) -> str:
     """Return what agreement of the tilts means for a run."""
     noise = row.tilt_bound - AGREEMENT if row.support == EXTERNAL else 0.0
     return sentence(WORDS, "within", row.tolerance, noise, AGREEMENT)
@@ -161,7 +161,7 @@ def counted_remarks(summary: pd.DataFrame) -> list[str]:
     """Return one sentence on how many runs of many cases have which diagnostic; none if no run has any."""
     runs = summary[(summary["outcome"] != "failed") & (summary["reference_outcome"] != "failed")]
     runs = runs.drop_duplicates(["case", "run"])
-    counts = counted(map(parted, runs["diagnostics"]))
+    counts = code_counts(map(codes_in, runs["diagnostics"]))
     return [sentence(WORDS, "counts", counts)] if counts else []
 
 
@@ -191,7 +191,7 @@ def _group(rows: pd.DataFrame, length: float) -> dict[str, object]:
         "support": support.words if support else "external trajectory" if external else str(first.support),
         "names": list(names),
         "references": list({the(row.reference, row.reference_engine): None for row in rows_of(rows)}),
-        "bound": within(first),
+        "bound": agreement_words(first),
         "diverged": bool(rows["left_tolerance"].any()),
         "first": float(ends.min()),
         "last": last,

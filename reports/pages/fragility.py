@@ -50,7 +50,7 @@ def fragility_values(found: Fragility) -> dict[str, object]:
     answers = main_contrasts(found)
     fits = found.fits.to_dict("records")
     fallen = [
-        {**row, "median": found.stated(row["cylinder"], row["median"])}
+        {**row, "median": found.median_or_bound(row["cylinder"], row["median"])}
         for row in fits
         if row["limit"] == OVERTURNED
     ]
@@ -145,7 +145,7 @@ def _gaps(found: Fragility) -> list[Row]:
     return [
         {
             **row,
-            **{name: found.stated(row["cylinder"], row[name]) for name in medians},
+            **{name: found.median_or_bound(row["cylinder"], row[name]) for name in medians},
             "bias": known_ratio(row["bias"]),
         }
         for row in rows
@@ -158,5 +158,5 @@ def _states(found: Fragility) -> list[Row]:
     for row in found.fits.to_dict("records"):
         key = str(row["cylinder"]), str(row["method"])
         made = rows.setdefault(key, {"cylinder": key[0], "method": key[1]})
-        made[str(row["limit"])] = found.stated(key[0], float(row["median"]))
+        made[str(row["limit"])] = found.median_or_bound(key[0], float(row["median"]))
     return list(rows.values())

@@ -102,7 +102,7 @@ class Page:
     def markdown(self) -> str:
         """Return the document."""
 
-        def shown(thing: Part) -> str:
+        def as_text(thing: Part) -> str:
             if isinstance(thing, Fold):
                 return thing.title and f"## {thing.title}"
             if isinstance(thing, Picture):
@@ -110,7 +110,7 @@ class Page:
                 return f"![{thing.title}]({thing.name}.svg)\n\n{caption}"
             return thing.markdown() if isinstance(thing, Table) else ""
 
-        parts = (part if isinstance(part, str) else shown(part) for part in self._parts("markdown"))
+        parts = (part if isinstance(part, str) else as_text(part) for part in self._parts("markdown"))
         return "\n\n".join(filter(None, parts)) + "\n"
 
     def html(self) -> str:
@@ -134,7 +134,7 @@ class Page:
         console = console or Console()
         if not console.is_terminal:
             console.width = max(console.width, _LEAST_WIDTH)
-        parts = list(_unfolded(self._parts("terminal", console.width), details))
+        parts = list(_unfold(self._parts("terminal", console.width), details))
         for place, part in enumerate(parts):
             if isinstance(part, Table):
                 if place and isinstance(parts[place - 1], Table):
@@ -161,7 +161,7 @@ class Page:
             made = Table(columns=columns_of(columns), rows=list(rows), group=group, **look)
             if not made.rows:
                 return Safe("")
-            keys.update(column.key for column in (made.shown(width) if width else made.columns))
+            keys.update(column.key for column in (made.fitting_columns(width) if width else made.columns))
             return place(made)
 
         text = (
@@ -188,7 +188,7 @@ class Page:
         ]
 
 
-def _unfolded(parts: Iterable[Part], details: bool) -> Iterator[str | Table]:
+def _unfold(parts: Iterable[Part], details: bool) -> Iterator[str | Table]:
     """Yield the words and tables of a terminal, those of a fold only with `details`."""
     folded = False
     for part in parts:
@@ -229,12 +229,12 @@ def to_html(text: str) -> str:
 
 @cache
 def _environment() -> Environment:
-    found = environment(autoescape=lambda name: str(name).endswith(".html.j2"), finalize=_escaped)
+    found = environment(autoescape=lambda name: str(name).endswith(".html.j2"), finalize=_escape)
     found.filters |= {"number": number, "code": lambda text: Safe(f"`{text}`"), "md": Safe}
     return found
 
 
-def _escaped(value: object) -> object:
+def _escape(value: object) -> object:
     """Return a text without what Markdown would take for markup; what is Markdown already stays."""
     if isinstance(value, str) and not isinstance(value, Safe) and not hasattr(value, "__html__"):
         return _MARKUP.sub(lambda found: f"\\{found[0]}", value)

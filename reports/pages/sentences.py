@@ -50,7 +50,7 @@ def small(value: float) -> str:
     return f"{digit}\u00a0×\u00a010{str(int(exponent)).translate(_SUPERSCRIPTS)}"
 
 
-def listed(words: Sequence[str]) -> str:
+def enumeration(words: Sequence[str]) -> str:
     """Return words with commas and, before the last, "and"."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
@@ -62,7 +62,7 @@ def the(label: str, engine: str) -> str:
 
 # what templates know besides what jinja2 does
 _FILTERS = {
-    **{"seconds": seconds, "small": small, "listed": listed, "the": the, "degrees": math.degrees},
+    **{"seconds": seconds, "small": small, "listed": enumeration, "the": the, "degrees": math.degrees},
     "warnings": warnings,
     "conditions": conditions,
     "lookup": lambda name, table: table[name],

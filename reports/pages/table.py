@@ -138,15 +138,14 @@ class Table:
         for name, rows in self.groups():
             body = "".join(self._html_row(cells) for cells in rows)
             if self.folded:
-                parts.append(
-                    f"<details><summary>{html.escape(name)}</summary>{self._scrolled(heads, body)}</details>"
-                )
+                box = self._scroll_box(heads, body)
+                parts.append(f"<details><summary>{html.escape(name)}</summary>{box}</details>")
             else:
                 span = f'<tr class="group"><th colspan="{len(self.columns)}">{html.escape(name)}</th></tr>'
                 parts.append(f"<tbody>{span if name else ''}{body}</tbody>")
-        return "\n".join(parts) if self.folded else self._scrolled(heads, "".join(parts))
+        return "\n".join(parts) if self.folded else self._scroll_box(heads, "".join(parts))
 
-    def _scrolled(self, heads: str, body: str) -> str:
+    def _scroll_box(self, heads: str, body: str) -> str:
         # words alone break where a phone has no room
         words = ' class="words"' if all(column.text for column in self.columns) else ""
         table = f"<table{words}><thead><tr>{heads}</tr></thead>{body}</table>"
@@ -160,7 +159,7 @@ class Table:
             found.append(f"<{kind}{scope}{mark}>{html.escape(cell)}</{kind}>")
         return f"<tr>{''.join(found)}</tr>"
 
-    def shown(self, width: int) -> Sequence[Column]:
+    def fitting_columns(self, width: int) -> Sequence[Column]:
         """Return the columns for which a terminal of this width has room.
 
         The last wide ones go first, where a cell would take two lines; then the last, where a word would be
@@ -178,7 +177,7 @@ class Table:
         from rich.console import Group
         from rich.text import Text
 
-        columns = self.shown(width)
+        columns = self.fitting_columns(width)
         stacked = self._width(columns, stacked=False) > width
         widths = self._widths(columns, width, stacked=stacked)
         parts: list[RichTable | Text] = [self._rich(columns, widths, stacked=stacked)]

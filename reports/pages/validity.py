@@ -15,7 +15,7 @@ from rockwobble.compare.studies.validity.shaken import FREE
 from rockwobble.compare.studies.validity.study import Validity
 from rockwobble.models.support import SUPPORTS
 
-from ..figures.validity import METHODS, pictures, walled
+from ..figures.validity import METHODS, has_walls, pictures
 from .page import Page
 from .table import number
 
@@ -39,7 +39,7 @@ def page_of(found: Validity) -> Page:
     values: dict[str, object] = {
         "limits": limits_of(tables),
         "margin": MARGIN,
-        "strayed": _strayed(limits_of(tables)["records"]),
+        "strayed": _strays(limits_of(tables)["records"]),
         "contrasts": _contrasts(contrasts(tables)),
         "summary": _summary(cells(tables)),
         **_needs(needs(tables)),
@@ -65,7 +65,7 @@ def page_of(found: Validity) -> Page:
     return Page(name="validity", template="validity", values=values, pictures=drawn)
 
 
-def _strayed(records: Mapping[str, float]) -> list[str]:
+def _strays(records: Mapping[str, float]) -> list[str]:
     """What one record in twenty exceeds at the points, in words, of what enough records know it."""
     found = []
     for name, place in _PLACES.items():
@@ -150,7 +150,7 @@ def _rings(table: pd.DataFrame) -> list[dict[str, object]]:
 
 def _worst(table: pd.DataFrame) -> dict[str, object]:
     """The recess with clearance whose peak is farthest from that of the recess model."""
-    shaken = table[walled(table) & (table["motion"] != FREE) & (table["outcome"] != "failed")]
+    shaken = table[has_walls(table) & (table["motion"] != FREE) & (table["outcome"] != "failed")]
     ratio = (shaken["peak"] / shaken["recess_peak"]).to_numpy(dtype=float)
     with np.errstate(divide="ignore"):
         worst = shaken.iloc[int(np.argmax(np.maximum(ratio, 1.0 / ratio)))]

@@ -42,11 +42,11 @@ def page_of(found: EngineVersions) -> Page:
         {"title": engine_facts(name).title, **origin}
         for name, origin in found.facts.get("earlier", {}).items()
     ]
-    values = {"rows": rows, "about": found.manifest, "moved": _moved(found.versions), "earlier": earlier}
+    values = {"rows": rows, "about": found.manifest, "moved": _changes(found.versions), "earlier": earlier}
     return Page(name="versions", template="versions", values=values)
 
 
-def _moved(table: pd.DataFrame) -> list[Row]:
+def _changes(table: pd.DataFrame) -> list[Row]:
     """Say between which releases the error of El Centro has changed by more than a tenth."""
     found: list[Row] = []
     for engine, own in table.groupby("engine", sort=False):

@@ -149,11 +149,11 @@ def half_turn_times(trace: Trace) -> Array:
             begin -= 1
         while end < len(way) and way[end] < 0.25 * abs(turn):
             end += 1
-        times.append(_reached(way, time, end, abs(turn)) - _reached(way, time, begin, -abs(turn)))
+        times.append(_time_to_turn(way, time, end, abs(turn)) - _time_to_turn(way, time, begin, -abs(turn)))
     return np.array(times)
 
 
-def _reached(way: Array, time: Array, index: int, turn: float) -> float:
+def _time_to_turn(way: Array, time: Array, index: int, turn: float) -> float:
     """Time between samples index - 1 and index at which a quarter of `turn` is made [s]."""
     if not 0 < index < len(way):
         return math.nan

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockwobble.compare.certificate.certificate import read_certificate, repeated, subject_of
+from rockwobble.compare.certificate.certificate import read_certificate, repeat, subject_of
 from rockwobble.compare.certificate.verdict import Entry, Sample, compare_entries
 from rockwobble.compare.storage.provenance import package_versions
 from rockwobble.multibody.engines.registry import engine_packages, find_engine
@@ -78,7 +78,7 @@ def rows(path: Path) -> pd.DataFrame:
     }
     found = [
         about | _differences(one, other) | {"case": one["name"], "word": compare_entries(one, other).word}
-        for one, other in zip(old, repeated(subject, old), strict=True)
+        for one, other in zip(old, repeat(subject, old), strict=True)
     ]
     return pd.DataFrame(found, columns=list(COLUMNS))
 

@@ -54,7 +54,7 @@ from rockwobble.compare.studies.advice.scales import (
     scan_as_strong,
     scan_scales,
 )
-from rockwobble.compare.studies.advice.trust import trust_of, verified
+from rockwobble.compare.studies.advice.trust import trust_of, verify_run
 from rockwobble.compare.studies.plans import AdvicePlan, SpectrumPlan
 from rockwobble.compare.studies.single_run import single_run
 from rockwobble.compare.studies.spectrum.maps import intensity_unit, tilt_maps, uplift_factor
@@ -427,7 +427,11 @@ def test_advice_is_loaded_as_it_was_saved(advice, tmp_path):
     assert set(again.tables) == set(advice.tables)
     for name, table in advice.tables.items():
         pd.testing.assert_frame_equal(again.tables[name], table, check_dtype=bool(len(table)))
-    assert (again.grades, again.trust, again.beside) == (advice.grades, advice.trust, advice.beside)
+    assert (again.grades, again.trust, again.range_as_strong) == (
+        advice.grades,
+        advice.trust,
+        advice.range_as_strong,
+    )
     assert again.headline() == advice.headline()
 
 
@@ -439,11 +443,11 @@ def test_shaking_as_strong_is_scanned_finely_and_holds_single_runs(advice):
     assert scan["peak_tilt"][scan["factor"] == 1.0].item() == pytest.approx(
         advice.peak * PIER.alpha, rel=1e-4
     )
-    low, high = advice.beside
+    low, high = advice.range_as_strong
     assert low <= advice.peak <= high
     falls = scan.assign(peak_tilt=np.where(factors > 1.1, 0.5 * math.pi, scan["peak_tilt"]))
     found = with_table(advice, as_strong=falls)
-    assert found.beside[1] == math.inf
+    assert found.range_as_strong[1] == math.inf
     assert found.grades["intensity"] == "caution"
     assert grade_overturning(False, found.lowest_factor, [0.0], tested=True) == "caution"
     assert found.lowest_factor == factors[factors > 1.1].min()
@@ -585,7 +589,7 @@ def test_a_prediction_of_an_engine_is_the_same_after_a_second_of_rest() -> None:
         still = np.zeros((round(rest / shaking.time_step), shaking.acceleration.shape[1]))
         motion = GroundMotion(np.vstack([still, shaking.acceleration]), shaking.time_step)
         case = Case(Cylinder(semidiagonal=3.0, tan_alpha=0.15), motion, duration=9.0 + rest)
-        predictions.append(verified(case, Run("mujoco", "recess"), Run(None, "recess"))[1])
+        predictions.append(verify_run(case, Run("mujoco", "recess"), Run(None, "recess"))[1])
     first, later = predictions
     assert first.reason == later.reason != ""
     assert later.length == pytest.approx(first.length, rel=COUNTED)

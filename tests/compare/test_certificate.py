@@ -28,7 +28,7 @@ from rockwobble.compare.certificate import (
     verify,
     write_certificate,
 )
-from rockwobble.compare.certificate.certificate import fingerprint, repeated, short_cases
+from rockwobble.compare.certificate.certificate import fingerprint, repeat, short_cases
 from rockwobble.compare.certificate.verdict import (
     CHANGED,
     CHAOTIC,
@@ -114,7 +114,7 @@ def test_a_slab_of_one_percent_more_is_a_change_of_the_frame(certificate: dict[s
 def test_a_tendon_of_one_percent_more_is_a_change_of_its_case(
     certificate: dict[str, Any], field: str
 ) -> None:
-    wrong = scaled_argument("tied", "TiedBody", field, 1.01)
+    wrong = scaled_argument("tied_body", "TiedBody", field, 1.01)
     with mutated(Fault(file="restoring.py", change=wrong)) as copy:
         answer = verify(certificate, models(copy))
     assert (answer.word, answer.case) == (CHANGED, "tendon")
@@ -152,7 +152,7 @@ def test_a_certificate_follows_its_schema(certificate: dict[str, Any]) -> None:
 def test_the_interpreter_without_a_compiler_gives_the_same(certificate: dict[str, Any]) -> None:
     old = certificate["fingerprint"][:-1]  # the last needs minutes there
     with mutated() as copy:
-        for one, new in zip(old, repeated(models(copy), old), strict=False):
+        for one, new in zip(old, repeat(models(copy), old), strict=False):
             assert compare_entries(one, new).word == SAME, one["name"]
             # rounding leaves four digits of what is allowed
             for name, wanted in one["signals"].items():

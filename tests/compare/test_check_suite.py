@@ -13,7 +13,7 @@ from benchmarks.false_alarms import case_of, larger, records
 
 from rockwobble import reduced
 from rockwobble.compare.check import Result, check, external_model, suite
-from rockwobble.compare.check.measurement import released
+from rockwobble.compare.check.measurement import release_case
 from rockwobble.compare.check.suite import SuiteRuns, check_suite
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Case, Cylinder, Run, Suite, Trace, el_centro_1940
@@ -34,7 +34,7 @@ def found(case: Case, *runs: Run, reference: Any = reduced.simulate) -> list[Res
 def made(time: np.ndarray, tilt: np.ndarray, **changes: Any) -> Trace:
     """A trace of these tilts."""
     of_model = external_model(lambda case, support: {"time": time, "tilt": tilt})
-    trace = of_model.source(released(0.5, 0.5, 1.0), "recess", sample_step=0.01)
+    trace = of_model.source(release_case(0.5, 0.5, 1.0), "recess", sample_step=0.01)
     return dataclasses.replace(trace, **changes)
 
 
@@ -128,7 +128,7 @@ def test_sizes_meet_the_same_motion() -> None:
 
 
 def test_of_a_release_the_first_seconds_are_taken_and_of_what_stands_nothing() -> None:
-    release = released(0.5, 0.5, 8.0)
+    release = release_case(0.5, 0.5, 8.0)
     first = suite.in_motion(release)
     assert first is not None
     assert (first.length, first.initial, first.motion) == (2.0, release.initial, None)
@@ -138,7 +138,7 @@ def test_of_a_release_the_first_seconds_are_taken_and_of_what_stands_nothing() -
 @pytest.mark.slow
 @pytest.mark.parametrize("spin", [0.5, 0.05, 0.0])
 def test_a_release_that_passes_upright_gives_no_alarm_and_finds_a_wrong_model(spin: float) -> None:
-    case = dataclasses.replace(released(0.5, spin, 2.5), name=f"release, {spin:g} rad/s")
+    case = dataclasses.replace(release_case(0.5, spin, 2.5), name=f"release, {spin:g} rad/s")
     runs = [Run("mujoco", support) for support in ("recess", "flat")]
     assert not [f for f in found(case, *runs) if f.failed]
     wrong = [f for f in found(case, *runs, reference=larger) if f.failed]
@@ -194,7 +194,7 @@ def test_a_second_engine_decides(
 
 
 def test_the_runs_of_a_suite_are_asked_before_one_starts() -> None:
-    release = released(0.5, 0.5, 0.5)
+    release = release_case(0.5, 0.5, 0.5)
     done = check(suite=Suite([release], [Run("mujoco", "recess")]), workers=1)
     assert done.passed
     assert {result.group for result in done.results} == {"agreement"}

@@ -10,7 +10,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from rockwobble.compare.storage.claim import CACHE, claim_on, claimed
+from rockwobble.compare.storage.claim import CACHE, claim_folder, claim_on
 from rockwobble.compare.storage.manifest import Manifest, read_manifests, write_results
 
 
@@ -33,43 +33,43 @@ def names(folder: Path) -> set[str]:
 
 
 def test_the_same_plan_goes_on_and_another_is_refused_by_what_is_there(tmp_path):
-    with claimed(tmp_path, plan="a", command="sweep --a"):
+    with claim_folder(tmp_path, plan="a", command="sweep --a"):
         write(tmp_path, "sweep", "one")
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     words = r"holds sweep of `sweep --a`: choose another by --out, or replace that by --overwrite"
-    with pytest.raises(ValueError, match=words), claimed(tmp_path, plan="b", command="sweep --b"):
+    with pytest.raises(ValueError, match=words), claim_folder(tmp_path, plan="b", command="sweep --b"):
         pass
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
-    with claimed(tmp_path, plan="a", command="sweep  --a"):
+    with claim_folder(tmp_path, plan="a", command="sweep  --a"):
         pass
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
 def test_finished_tasks_belong_to_the_plan_that_was_ended(tmp_path):
-    with suppress(KeyboardInterrupt), claimed(tmp_path, plan="a", command="sweep --a"):
+    with suppress(KeyboardInterrupt), claim_folder(tmp_path, plan="a", command="sweep --a"):
         path = finish(tmp_path, "sweep", "x")
         raise KeyboardInterrupt
     with (
         pytest.raises(ValueError, match="1 finished tasks of `sweep --a`"),
-        claimed(tmp_path, plan="b", command="sweep --b"),
+        claim_folder(tmp_path, plan="b", command="sweep --b"),
     ):
         pass
-    with claimed(tmp_path, plan="a", command="sweep --a"):
+    with claim_folder(tmp_path, plan="a", command="sweep --a"):
         assert path.exists()
 
 
 def test_an_overwritten_plan_goes_when_the_new_one_is_complete_and_not_before(tmp_path):
-    with claimed(tmp_path, plan="a", command="sweep --a"):
+    with claim_folder(tmp_path, plan="a", command="sweep --a"):
         write(tmp_path, "sweep", "one")
     (tmp_path / "notes.txt").write_text("mine")
     finish(tmp_path, "sweep", "x")
     with (
         pytest.raises(KeyboardInterrupt),
-        claimed(tmp_path, plan="b", command="other --b", overwrite=True),
+        claim_folder(tmp_path, plan="b", command="other --b", overwrite=True),
     ):
         raise KeyboardInterrupt
     assert "one.parquet" in names(tmp_path)
-    with claimed(tmp_path, plan="b", command="other --b", overwrite=True):
+    with claim_folder(tmp_path, plan="b", command="other --b", overwrite=True):
         write(tmp_path, "other", "two")
     assert [each.kind for each in read_manifests(tmp_path)] == ["other"]
     assert names(tmp_path) == {"two.parquet", "manifest.json", "notes.txt", CACHE}
@@ -78,7 +78,7 @@ def test_an_overwritten_plan_goes_when_the_new_one_is_complete_and_not_before(tm
 
 def test_nothing_finished_leaves_nothing(tmp_path):
     place = tmp_path / "x" / "y"
-    with suppress(KeyboardInterrupt), claimed(place, plan="a", command="sweep"):
+    with suppress(KeyboardInterrupt), claim_folder(place, plan="a", command="sweep"):
         assert claim_on(place)
         raise KeyboardInterrupt
     assert names(tmp_path) == set()
@@ -87,19 +87,23 @@ def test_nothing_finished_leaves_nothing(tmp_path):
 
 def test_results_of_a_program_and_of_an_older_version_are_not_taken_for_ours(tmp_path):
     write(tmp_path, "sweep", "one")
-    with pytest.raises(ValueError, match="another program"), claimed(tmp_path, plan="a", command="sweep"):
+    with (
+        pytest.raises(ValueError, match="another program"),
+        claim_folder(tmp_path, plan="a", command="sweep"),
+    ):
         pass
     write_results(tmp_path, Manifest(kind="sweep", command="sweep --a"), {})
-    with claimed(tmp_path, plan="a", command="sweep --a"):  # word for word the same
+    with claim_folder(tmp_path, plan="a", command="sweep --a"):  # word for word the same
         pass
-    with pytest.raises(ValueError, match="`sweep --a`"), claimed(tmp_path, plan="a", command="sweep"):
+    with pytest.raises(ValueError, match="`sweep --a`"), claim_folder(tmp_path, plan="a", command="sweep"):
         pass
 
 
 def test_a_second_process_is_refused_and_a_killed_one_leaves_no_lock(tmp_path):
     script = (
-        "import sys, time\nfrom rockwobble.compare.storage.claim import claimed\n"
-        "with claimed(sys.argv[1], plan='a', command='sweep'):\n print('ready', flush=True)\n time.sleep(60)"
+        "import sys, time\nfrom rockwobble.compare.storage.claim import claim_folder\n"
+        "with claim_folder(sys.argv[1], plan='a', command='sweep'):\n"
+        " print('ready', flush=True)\n time.sleep(60)"
     )
     with subprocess.Popen(
         [sys.executable, "-c", script, str(tmp_path)], stdout=subprocess.PIPE, text=True
@@ -108,10 +112,10 @@ def test_a_second_process_is_refused_and_a_killed_one_leaves_no_lock(tmp_path):
         assert other.stdout.readline() == "ready\n"
         with (
             pytest.raises(ValueError, match="another process is writing to"),
-            claimed(tmp_path, plan="a", command="sweep", overwrite=True),
+            claim_folder(tmp_path, plan="a", command="sweep", overwrite=True),
         ):
             pass
         other.kill()
-    with claimed(tmp_path, plan="b", command="simulate"):  # it had finished nothing
+    with claim_folder(tmp_path, plan="b", command="simulate"):  # it had finished nothing
         pass
     assert names(tmp_path) == set()

@@ -31,7 +31,7 @@ from rockwobble.compare.metrics.statistics import (
     ratio_within_reach,
     share_interval,
     signed_rank_p,
-    stated,
+    value_if_enough,
 )
 
 ROUNDING = 1e-12
@@ -335,5 +335,5 @@ def test_a_median_is_stated_of_as_many_as_can_bound_it() -> None:
     # the median is outside of all n values where all lie on one side of it: 2 of 2^n
     for count in range(1, 12):
         enough = 1.0 - 2.0 * 0.5**count >= CONFIDENCE
-        assert math.isnan(stated(1.2, count)) is not enough
+        assert math.isnan(value_if_enough(1.2, count)) is not enough
         assert math.isnan(quantile_interval(np.arange(1.0, count + 1.0), 0.5).value) is not enough

@@ -15,7 +15,7 @@ from rockwobble.compare import Fragility, IncompleteError, fragility
 from rockwobble.compare.runs import execution
 from rockwobble.compare.studies.fragility import runs as running
 from rockwobble.compare.studies.fragility.study import fragility_of
-from rockwobble.compare.studies.fragility.tables import below_gaps, exceeded, incremental
+from rockwobble.compare.studies.fragility.tables import below_gaps, exceedance, incremental
 from rockwobble.models import Case, Cylinder, Run, WobblingFrame, synthetic_motions
 
 COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
@@ -122,7 +122,7 @@ def test_what_a_run_exceeds():
         "contact_lost": [0, 0, NAN, 1, 1, NAN],
     }
     for limit, values in expected.items():
-        np.testing.assert_array_equal(exceeded(table, limit), np.array(values, dtype=float))
+        np.testing.assert_array_equal(exceedance(table, limit), np.array(values, dtype=float))
 
 
 def test_gaps_and_what_stopping_early_makes_of_them():

@@ -12,12 +12,12 @@ from rockwobble.compare import default_runs, own_model, simulate
 from rockwobble.compare.runs.choice import (
     labels_beside_references,
     missing_engines,
+    omissions,
     references_of,
     require_runnable,
     reserved_engines,
     run_labels,
     runs_here,
-    unsupported,
 )
 from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.multibody import available_engines
@@ -189,7 +189,7 @@ def test_a_ring_runs_with_the_engines_that_have_it_unless_others_are_named(case)
     both = default_runs(supports=["ring", "flat"])
     assert ("pybullet", "ring") not in [(run.engine, run.support) for run in both]
     if "pybullet" in available_engines():
-        assert unsupported(["ring", "flat"]) == ("pybullet has no ring support and is left out there",)
+        assert omissions(["ring", "flat"]) == ("pybullet has no ring support and is left out there",)
         assert ("pybullet", "flat") in [(run.engine, run.support) for run in both]
         with pytest.raises(ValueError, match=r"one of recess, flat in pybullet, got 'ring'"):
             require_runnable(case, *default_runs(["pybullet"], ["ring"]))

@@ -19,11 +19,11 @@ import scheduled
 from scheduled import die_once, killed, multiples, never_the_same, refuse, signalled
 
 from rockwobble.compare.runs import dask_backend, scheduler
-from rockwobble.compare.runs.cache import open_table_cache, unfinished
+from rockwobble.compare.runs.cache import open_table_cache, unfinished_results
 from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.progress import Lost, Progress
 from rockwobble.compare.runs.scheduler import run_tasks
-from rockwobble.compare.storage.claim import CACHE, claimed
+from rockwobble.compare.storage.claim import CACHE, claim_folder
 from rockwobble.models import cpus
 from rockwobble.models.cpus import usable_cpus
 
@@ -115,7 +115,7 @@ def test_a_finished_task_does_not_run_again(tmp_path):
     assert [(event.found, event.done, event.total) for event in told] == [(2, 2, 3), (2, 3, 3)]
     # the first may be of another study
     assert len(list((tmp_path / CACHE / "study").glob("*.parquet"))) == 4
-    with claimed(tmp_path, plan="this", command="study", overwrite=True), table_cache(tmp_path) as cache:
+    with claim_folder(tmp_path, plan="this", command="study", overwrite=True), table_cache(tmp_path) as cache:
         run_tasks(counted, [3, 4, 2], workers=1, cache=cache)
     assert len(list((tmp_path / CACHE / "study").glob("*.parquet"))) == 3
 
@@ -127,13 +127,13 @@ def test_what_was_finished_before_an_interruption_is_kept_and_counted(tmp_path):
 
     with pytest.raises(KeyboardInterrupt), table_cache(tmp_path) as cache:
         run_tasks(multiples, [1, 2, 3, 4], workers=1, cache=cache, progress=interrupt)
-    (going,) = unfinished(tmp_path)
+    (going,) = unfinished_results(tmp_path)
     assert going == {"kind": "study", "done": 2, "total": 4}
     RAN.clear()
     with table_cache(tmp_path) as cache:
         run_tasks(counted, [1, 2, 3, 4], workers=1, cache=cache)
     assert RAN == [3, 4]
-    assert unfinished(tmp_path) == []
+    assert unfinished_results(tmp_path) == []
 
 
 def test_a_damaged_file_is_named_and_its_task_runs_again(tmp_path):

@@ -11,7 +11,7 @@ from rockwobble.compare import Grid, IncompleteError, Progress, Sweep, sweep
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.progress import Lost
-from rockwobble.compare.storage.claim import CACHE, claimed
+from rockwobble.compare.storage.claim import CACHE, claim_folder
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.compare.studies.sweep import KIND
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
@@ -90,7 +90,7 @@ def test_chunks_of_another_sweep_go_only_when_a_folder_is_claimed_and_this_one_i
     assert len(files(tmp_path)) == len(other) + 1
     sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5)
     assert other < set(files(tmp_path))
-    with claimed(tmp_path, plan="this", command="sweep", overwrite=True):
+    with claim_folder(tmp_path, plan="this", command="sweep", overwrite=True):
         table = sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5).table
     assert not other & set(files(tmp_path))
     pd.testing.assert_frame_equal(table, Sweep.load(tmp_path).table, check_exact=True)

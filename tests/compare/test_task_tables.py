@@ -13,7 +13,7 @@ from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import run_tables
 from rockwobble.compare.runs.progress import Lost
 from rockwobble.compare.runs.scheduler import run_tasks
-from rockwobble.compare.storage.claim import CACHE, claimed
+from rockwobble.compare.storage.claim import CACHE, claim_folder
 
 TASKS = [1, 2, 3]
 
@@ -74,6 +74,6 @@ def test_tasks_of_other_results_go_only_when_the_block_ends_well(tmp_path):
     assert kept(tmp_path) == {"1", "2", "3", "7"}
     ran(folder=tmp_path)
     assert kept(tmp_path) == {"1", "2", "3", "7"}
-    with claimed(tmp_path, plan="this", command="study", overwrite=True):
+    with claim_folder(tmp_path, plan="this", command="study", overwrite=True):
         ran(folder=tmp_path)
     assert kept(tmp_path) == {"1", "2", "3"}

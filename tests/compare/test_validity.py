@@ -28,7 +28,7 @@ from rockwobble.compare.studies.validity.limits import (
     limit_of,
     limits_of,
     needs,
-    reached,
+    quantile_reached,
     vertical,
 )
 from rockwobble.compare.studies.validity.plan import (
@@ -284,8 +284,8 @@ def test_measures_of_limits() -> None:
     np.testing.assert_equal(limit_of(points, np.ones(5, bool)), (0.3, math.nan))
     np.testing.assert_equal(limit_of(points[:0], holds[:0]), (math.nan, math.nan))
     # what is infinite counts, what is not known does not
-    assert reached(np.array([1.0, 2.0, math.inf, math.nan]), 0.6) == 2.0
-    assert reached(np.array([1.0, 2.0, math.inf]), 0.9) == math.inf
+    assert quantile_reached(np.array([1.0, 2.0, math.inf, math.nan]), 0.6) == 2.0
+    assert quantile_reached(np.array([1.0, 2.0, math.inf]), 0.9) == math.inf
 
 
 def test_a_report_shows_itself_by_figure(tmp_path_factory: pytest.TempPathFactory) -> None:

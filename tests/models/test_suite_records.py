@@ -72,7 +72,7 @@ def test_a_pair_is_cut_to_its_shorter_component_and_in_metres(monkeypatch, tmp_p
         "records/table": Table(),
     }
     monkeypatch.setattr(p695, "_file", lambda: tmp_path / "farfield.hdf5")
-    monkeypatch.setattr(p695, "_opened", lambda path: contextlib.nullcontext(data))
+    monkeypatch.setattr(p695, "_open_file", lambda path: contextlib.nullcontext(data))
     p695._far_field_pair.cache_clear()
     try:
         motion = p695_far_field(2)

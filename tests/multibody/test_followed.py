@@ -118,7 +118,7 @@ def test_what_follows_leaves_only_its_peak(engine: str, monkeypatch: pytest.Monk
     case = Case(PIER, initial=start, duration=0.51303)
     followed = multibody.simulate(case, engine=engine, time_step=STEP)
     later = multibody.simulate(dataclasses.replace(case, duration=3.0), engine=engine, time_step=STEP)
-    monkeypatch.setattr(stepping, "_followed", lambda _, scene, recorder, *rest: recorder)
+    monkeypatch.setattr(stepping, "_follow", lambda _, scene, recorder, *rest: recorder)
     alone = multibody.simulate(case, engine=engine, time_step=STEP)
     assert followed.energy[-1] > 9.81 * (PIER.semidiagonal - PIER.mass_centre_height)
     for field in dataclasses.fields(followed):
@@ -126,7 +126,7 @@ def test_what_follows_leaves_only_its_peak(engine: str, monkeypatch: pytest.Monk
         if field.name == "passes":
             assert one.equals(other)
         elif field.name == "source":
-            np.testing.assert_equal(dict(one.sampled()), dict(other.sampled()))
+            np.testing.assert_equal(dict(one.quantities()), dict(other.quantities()))
         elif field.name not in ("wall_time", "peak_tilt", "followed_until"):
             np.testing.assert_equal(one, other)
     assert followed.outcome == later.outcome == "stands"

@@ -15,7 +15,7 @@ def test_free_rocking_of_a_squat_cylinder_loses_contact_and_says_so():
     initial = InitialState(0.8 * SQUAT.alpha, rolling_rate=1e-3)
     response = reduced.simulate(Case(SQUAT, initial=initial, duration=3.0), sample_step=0.001)
     review = response.assumptions
-    assert not review.held
+    assert not review.all_hold
     contact = review.breaches[0]
     assert contact.code == "tension"
     assert contact.size == review.least_normal_force < 0.0
@@ -38,13 +38,13 @@ def test_steady_wobble_needs_the_friction_of_its_centripetal_force():
     # the mass centre goes round on a circle at constant height: N is the weight
     assert review.least_normal_force == pytest.approx(1.0, abs=1e-9)
     assert review.largest_friction_needed == pytest.approx(rate**2 * radius / 9.81, rel=1e-8)
-    assert review.held
+    assert review.all_hold
     assert review.breaches == ()
 
 
 def test_a_cylinder_that_stands_demands_nothing_of_the_model():
     still = reduced.simulate(Case(SQUAT, GroundMotion(np.zeros((10, 2)), 0.1)))
-    assert still.assumptions.held
+    assert still.assumptions.all_hold
     assert still.assumptions.largest_friction_needed == 0.0
 
 

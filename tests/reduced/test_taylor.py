@@ -26,7 +26,7 @@ derivative = RECESS.derivative
 def first_step(body, y, h, a, slope):
     """One step from `y`, with states and derivatives at its start, within and at its end."""
     work = taylor.workspace(y)
-    y = taylor.restarted(body, y, a, work)
+    y = taylor.restart(body, y, a, work)
     taken, _, _, _, _, path = taylor.advance(body, RTOL, y, y, work, h, h, a, slope)
     return taken, [taylor.partial(body, work, path, share * taken) for share in (0.0, 0.4, 1.0)]
 

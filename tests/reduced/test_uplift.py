@@ -50,7 +50,7 @@ def test_the_solution_does_not_depend_on_where_the_series_is_left(turning, jump)
     slope = (-20.0, turning, 1.0)
     end = uplift.start_length(BODY, 1e-9, a, slope, 0.0)
     begin = 0.1 * end
-    theta, omega, phi, rate = uplift.started(BODY, 0.01, a, slope, 0.0, begin)
+    theta, omega, phi, rate = uplift.start(BODY, 0.01, a, slope, 0.0, begin)
     L = spin_momentum(theta, rate)
     run = solve_ivp(
         lambda t, y: recess_rhs(BODY, *y, *ground(a, slope, t)),
@@ -60,7 +60,7 @@ def test_the_solution_does_not_depend_on_where_the_series_is_left(turning, jump)
         rtol=1e-10,  # leaves less than 1e-12 of the tilt
         atol=1e-40,
     )
-    theta, omega, phi, rate = uplift.started(BODY, 0.01, a, slope, 0.0, end)
+    theta, omega, phi, rate = uplift.start(BODY, 0.01, a, slope, 0.0, end)
     # the terms left out are x^3 and less of those kept, x = 1e-3 of the shortest time scale at the end
     assert run.y[0, -1] == pytest.approx(theta, rel=3e-9, abs=0.0)
     # each power of t weighs by its exponent: that of the first term left out is twice that of the leading one

@@ -178,7 +178,7 @@ def test_a_reason_states_the_numbers_of_its_grade(found):
     reasons = reasons_of(found)
     needed = found.demands.set_index("demand")["value"]["friction"]
     assert numbers_in(reasons["friction"]) == [pytest.approx(needed, rel=PRINTED)]
-    low, high = found.beside
+    low, high = found.range_as_strong
     times = max(high / found.peak, found.peak / low)
     assert numbers_in(reasons["intensity"]) == [
         pytest.approx(times, rel=PRINTED),

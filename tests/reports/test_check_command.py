@@ -33,7 +33,7 @@ GOOD, BAD, NONE, LEFT = (
 
 
 def checks(*results: Result) -> Checks:
-    return groups._summed(results)
+    return groups._checks_of(results)
 
 
 def check_of(measure: Any) -> tuple[groups.Check, ...]:

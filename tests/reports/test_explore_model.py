@@ -28,8 +28,6 @@ from rockwobble.models import (
 from rockwobble.models.synthetic import synthetic_motions
 from rockwobble.reduced import simulate
 
-pytestmark = pytest.mark.slow
-
 SCRIPTS = Path(__file__).parents[2] / "reports" / "pages" / "templates" / "explore"
 COUNT, SEED = 40, 11
 STEP = 0.05  # of the samples [s]

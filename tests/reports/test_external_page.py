@@ -12,7 +12,7 @@ import pytest
 from rockwobble.compare.external.mistakes import AXES_WORDS, WORDS, Mistake
 from rockwobble.compare.external.verdict import NO_VERDICT
 from rockwobble.reports.pages.comparison import external_rows
-from rockwobble.reports.pages.findings import cause, explains_divergence, headline, notes, within
+from rockwobble.reports.pages.findings import agreement_words, cause, explains_divergence, headline, notes
 
 if TYPE_CHECKING:
     from rockwobble.reports.figures.case_view import CaseView
@@ -88,7 +88,7 @@ def test_numbers_of_a_row_stand_on_its_page() -> None:
     assert "azimuth" in headline(table(row(**WRONG)), 8.0)
     assert "azimuth" in headline(table(row(not_compared=("azimuth",), azimuth_rms=math.nan)), 8.0)
     assert "9.7 s" in page(row(**WRONG))  # the uplift at 1.7 s and 8 s without the mistake
-    assert "3.4 %" in within(row(tilt_bound=0.034))
+    assert "3.4 %" in agreement_words(row(tilt_bound=0.034))
 
 
 CODES = {

@@ -23,7 +23,7 @@ from rockwobble.models.diagnostic import CODES, REASONS
 from rockwobble.reports.figures.case_view import case_views, rows_of
 from rockwobble.reports.pages import findings as budget_of_run
 from rockwobble.reports.pages.comparison import main_rows
-from rockwobble.reports.pages.diagnostics import counted, failure, remarks, sentence
+from rockwobble.reports.pages.diagnostics import code_counts, failure, remarks, sentence
 from rockwobble.reports.pages.findings import (
     CAUSES,
     budget_sentences,
@@ -290,7 +290,7 @@ def test_words_are_joined_counted_and_told_from_failures():
     slipped, gained = Diagnostic(code="slip", time=1.0), Diagnostic(code="energy_gain", time=2.0)
     assert remarks([slipped, slipped]) == "contact slipped from 1 s on; contact slipped from 1 s on"
     assert failure([slipped, gained]) == "the engine gained energy that nothing supplied at 2 s"
-    assert counted([["slip", "slip"], ["slip", "lift_off"], ["energy_gain"], [""]]) == [
+    assert code_counts([["slip", "slip"], ["slip", "lift_off"], ["energy_gain"], [""]]) == [
         "2 slipped",
         "1 left the ground",
     ]

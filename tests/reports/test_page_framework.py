@@ -131,7 +131,7 @@ def test_no_word_of_a_table_is_broken_in_a_terminal(seed: int) -> None:
     console.print(table.rich(width))
     assert isinstance(console.file, io.StringIO)
     printed = console.file.getvalue()
-    shown = table.shown(width)
+    shown = table.fitting_columns(width)
     cells = [number(row[column.key], column.form) for row in table.rows for column in shown]
     words = Counter(" ".join([*cells, *(column.heading for column in shown)]).split())
     assert words - Counter(printed.replace("─", " ").split()) == Counter()

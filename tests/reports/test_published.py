@@ -14,7 +14,7 @@ import pytest
 from rockwobble.compare.certificate.verdict import CHANGED
 from rockwobble.compare.studies.validity.limits import needs
 from rockwobble.compare.studies.validity.study import Validity
-from rockwobble.models.diagnostic import CODES, parted
+from rockwobble.models.diagnostic import CODES, codes_in
 from rockwobble.reports.cli.main import main
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
@@ -78,7 +78,7 @@ def test_results_of_code_that_was_not_committed_are_found(remake: dict[str, Any]
 def test_its_diagnostics_are_codes(path: Path) -> None:
     table = pd.read_parquet(path)
     for cell in table.get("diagnostics", []):
-        assert set(parted(cell)) <= set(CODES)
+        assert set(codes_in(cell)) <= set(CODES)
 
 
 def test_the_guide_states_the_needs_of_the_published_limits() -> None:

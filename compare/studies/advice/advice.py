@@ -69,10 +69,10 @@ from .trust import (
     Trust,
     Verification,
     band_of,
-    predicted,
+    model_prediction,
     spread_from,
     trust_of,
-    verified,
+    verify_run,
     with_time_to_fall,
 )
 
@@ -235,7 +235,7 @@ class Advice(Results, kind=KIND):
         return float(np.fmin(searched, beside["factor"][overturned(beside["peak_tilt"])].min()))
 
     @property
-    def beside(self) -> tuple[float, float]:
+    def range_as_strong(self) -> tuple[float, float]:
         """Least and largest peak tilt [alpha] under shaking as strong as that given; infinite: overturned."""
         if not len(self.as_strong):
             return math.nan, math.nan
@@ -300,7 +300,7 @@ class Advice(Results, kind=KIND):
                 self.largest_tension, tendon["yield_force"], tested=self.copies_differ
             )
         if shaken and not self.overturned:
-            low, high = self.beside
+            low, high = self.range_as_strong
             found["intensity"] = grade_intensity(low, self.peak, high)
         found["engine"] = "not tested"
         if engine is not None:
@@ -471,11 +471,11 @@ def advise(
     with stage("other scales of the ground motion"):
         scales, lowest = scan_scales(case, model.support)
         as_strong = scan_as_strong(case, model.support, trace.peak_tilt)
-    prediction, verification, engine = predicted(case, trace, run), None, None
+    prediction, verification, engine = model_prediction(case, trace, run), None, None
     if run is not None:
         with stage(str(run)):
             if moves:
-                verification, prediction, engine = verified(case, run, model)
+                verification, prediction, engine = verify_run(case, run, model)
     alpha, band = case.cylinder.alpha, band_of(case, perturbed)
     trust = Trust(kind="trace", until=case.length, because="")
     if moves:

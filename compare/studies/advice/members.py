@@ -33,7 +33,7 @@ from ...metrics.statistics import (
     covering,
     quantile_interval,
     share_interval,
-    stated,
+    value_if_enough,
 )
 from ...runs.execution import simulate_run
 from ..fragility import intensity
@@ -157,14 +157,14 @@ def with_vertical(motion: GroundMotion) -> GroundMotion | None:
         motion.acceleration[:, :2], factor * samples[:, :2], rtol=0.0, atol=1e-9 * factor * largest
     ):
         return None
-    return motion.changed(factor * samples, "with the vertical component of the record")
+    return motion.with_samples(factor * samples, "with the vertical component of the record")
 
 
 def without_vertical(motion: GroundMotion) -> GroundMotion:
     """Return the two horizontal components of a ground motion."""
     if not motion.has_vertical:
         return motion
-    return motion.changed(motion.acceleration[:, :2], "without the vertical component")
+    return motion.with_samples(motion.acceleration[:, :2], "without the vertical component")
 
 
 def ratios_of(found: Contrast) -> dict[str, float]:
@@ -185,7 +185,7 @@ def ratios_of(found: Contrast) -> dict[str, float]:
         "count": found.compared,
         "higher": found.higher,
         "lower": found.lower,
-        **{name: stated(each.value, found.compared, ratio=True) for name, each in names.items()},
+        **{name: value_if_enough(each.value, found.compared, ratio=True) for name, each in names.items()},
         "low": found.ratio.low,
         "high": found.ratio.high,
     }

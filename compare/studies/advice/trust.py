@@ -135,12 +135,12 @@ def with_time_to_fall(case: Case, trace: Trace) -> Case:
     motion = case.motion
     if motion is not None and case.length < motion.duration:
         kept = math.floor(case.length / motion.time_step * (1.0 + 1e-12)) + 1
-        motion = motion.changed(motion.acceleration[: max(kept, 2)], f"cut to {case.length:g} s")
+        motion = motion.with_samples(motion.acceleration[: max(kept, 2)], f"cut to {case.length:g} s")
     duration = math.ceil(end / SAMPLE_STEP) * SAMPLE_STEP
     return dataclasses.replace(case, motion=motion, duration=duration)
 
 
-def predicted(case: Case, trace: Trace, run: Run | None) -> Prediction:
+def model_prediction(case: Case, trace: Trace, run: Run | None) -> Prediction:
     """Predicted divergence of an engine at its default step, from the reduced models alone."""
     if trace.outcome == "failed" or not math.isfinite(trace.uplift_time):
         return Prediction(length=case.length, reason="")
@@ -159,7 +159,7 @@ def predicted(case: Case, trace: Trace, run: Run | None) -> Prediction:
     )
 
 
-def verified(case: Case, run: Run, model: Run) -> tuple[Verification, Prediction, Trace]:
+def verify_run(case: Case, run: Run, model: Run) -> tuple[Verification, Prediction, Trace]:
     """Run the engine; what it resolved makes the prediction sharper."""
     found = comparison(case, runs=[run], reference=model)
     (row,) = found.summary.to_dict("records")

@@ -278,7 +278,7 @@ class Sample:
         Where the median of the motions as they are is only bounded, so is that of every resample.
         """
         whole = fit_curves(*self.counts())
-        kind, side = self._bounded(whole)
+        kind, side = self._bound(whole)
         size = max(1, _MOST_NUMBERS // self.y.size)
         parts = (
             [whole]
@@ -297,7 +297,7 @@ class Sample:
         bounds = {name: np.full(1, value) for name, value in zip(_BOUNDS, (beyond, low, high), strict=True)}
         return replace(found, **shape, **bounds, kinds=np.full(1, KINDS.index(kind)))
 
-    def _bounded(self, whole: Curves) -> tuple[str, float]:
+    def _bound(self, whole: Curves) -> tuple[str, float]:
         """Return why the median of a fitted curve is only bounded, and on which side it lies; 0 if on none.
 
         A curve is not determined where all that exceed the limit, or all that do not, are of one motion:

@@ -173,13 +173,13 @@ def measures_of(
 ) -> dict[str, list[float]]:
     """Return every intensity of every motion, NaN where it has none."""
 
-    def known(name: str, motion: GroundMotion) -> float:
+    def value_or_nan(name: str, motion: GroundMotion) -> float:
         try:
             return intensity(name, motion, cylinder, gravity=gravity, period=period)
         except ValueError:
             return math.nan
 
-    return {name: [known(name, motion) for motion in motions] for name in MEASURES}
+    return {name: [value_or_nan(name, motion) for motion in motions] for name in MEASURES}
 
 
 def largest_resultant(components: Array) -> float:

@@ -139,7 +139,7 @@ def frequencies_of(hazard: HazardCurve, x: Array, y: Array, uplift: Array, far: 
     """
     known = y.copy()
     for row in np.flatnonzero(np.isnan(y).any(axis=1)):
-        known[row] = _filled(x[row], y[row])
+        known[row] = _fill(x[row], y[row])
     # from 0 at uplift, unless that lies above the lowest level
     first = np.minimum(uplift, x[:, 0])
     x = np.column_stack([first, x])
@@ -149,23 +149,23 @@ def frequencies_of(hazard: HazardCurve, x: Array, y: Array, uplift: Array, far: 
     share = y[:, -1].copy()
     for row in np.flatnonzero(x[:, -1] > end):
         share[row] = np.interp(end, x[row], y[row])
-    tail, inside = share * _rate(hazard, last), _within(hazard, x, y, np.full(len(x), begin))
+    tail, inside = share * _rate(hazard, last), _integral(hazard, x, y, np.full(len(x), begin))
     far_tail = np.where(far < end, share * _rate(hazard, np.maximum(last, far)), 0.0)
     return Frequencies(
         total=inside + tail,
         tail=tail,
         missing=(1.0 - share) * _rate(hazard, last),
-        far=_within(hazard, x, y, np.clip(far, begin, end)) + far_tail,
+        far=_integral(hazard, x, y, np.clip(far, begin, end)) + far_tail,
     )
 
 
-def _filled(x: Array, y: Array) -> Array:
+def _fill(x: Array, y: Array) -> Array:
     """Return an indicator with what is not known as between its neighbours; all NaN where nothing is."""
     known = ~np.isnan(y)
     return y if known.all() or not known.any() else np.interp(x, x[known], y[known])
 
 
-def _within(hazard: HazardCurve, x: Array, y: Array, low: Array) -> Array:
+def _integral(hazard: HazardCurve, x: Array, y: Array, low: Array) -> Array:
     """Return the integral of each row (R,) over the intervals of its nodes, from `low` to the last point."""
     end = math.log(hazard.intensity[-1])
     a = np.clip(x[:, :-1], low[:, None], max(end, low.max()))
@@ -335,7 +335,7 @@ def risk_tables(
                 continue
             single = exposure.frequencies(hazard)
             drawn = resampled(exposure, hazard, single.total, weights)
-            stated = _stated(hazard, exposure, single, drawn, blocks.fewest)
+            stated = _frequency_row(hazard, exposure, single, drawn, blocks.fewest)
             value = float(stated["annual_frequency"])
             reference = drawn if reference is None else reference
             curve = curves[cylinder, method]
@@ -355,7 +355,7 @@ def risk_tables(
     return pd.DataFrame(rows), pd.concat(parts, ignore_index=True)
 
 
-def _stated(
+def _frequency_row(
     hazard: HazardCurve, exposure: Exposure, single: Frequencies, drawn: Resampled, motions: int
 ) -> dict[str, float | int]:
     """Return the annual frequency with its interval and with what it rests on."""
@@ -487,7 +487,7 @@ def exposures_of(
         synthetic = "synthetic" in points and np.nanmax(of_points("synthetic"), axis=1) > 0.0
         far = np.where(synthetic, np.inf, as_recorded + math.log(FAR))
         for method in blocks.methods:
-            y = blocks.exceeded(cylinder, method, OVERTURNED)
+            y = blocks.exceedance(cylinder, method, OVERTURNED)
             if np.isnan(y).all():
                 continue
             key = cylinder, method

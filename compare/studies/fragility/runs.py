@@ -201,7 +201,7 @@ class Task:
         """Return a row for each motion and factor, in their order."""
         if self._of_peaks:
             return [row for shaking in self.shakings for row in self._peaks(shaking)]
-        return [self._simulated(each.case, scale) for each in self.shakings for scale in each.scales]
+        return [self._simulate(each.case, scale) for each in self.shakings for scale in each.scales]
 
     def _peaks(self, shaking: Shaking) -> list[Row]:
         from rockwobble import reduced
@@ -223,13 +223,13 @@ class Task:
         )[0]
         return [
             # of one without a peak its run says why
-            self._simulated(case, scale)
+            self._simulate(case, scale)
             if math.isnan(peak)
             else _row(peak / cylinder.alpha, outcome_of_peak(peak))
             for peak, scale in zip(peaks.tolist(), shaking.scales, strict=True)
         ]
 
-    def _simulated(self, case: Case, scale: float) -> Row:
+    def _simulate(self, case: Case, scale: float) -> Row:
         assert case.motion is not None
         run = self.run
         if run.engine is None:
@@ -304,7 +304,7 @@ class RunPlan:
             shakings = [self._shaking(cylinder, motion) for motion in self.motions]
             for method in self.methods:
                 if method.run is not None:
-                    require_runnable(shakings[0].case, self._stepped(method.run, cylinder))
+                    require_runnable(shakings[0].case, self._with_step(method.run, cylinder))
 
     def motions_of_levels(self) -> list[int]:
         """Return the number of motions at each level."""
@@ -371,14 +371,14 @@ class RunPlan:
             for method in self.methods:
                 if method.run is None:
                     continue
-                run = self._stepped(method.run, cylinder)
+                run = self._with_step(method.run, cylinder)
                 tasks = [
                     Task(name=name, label=method.label, run=run, shakings=(shaking,), contact=contact)
                     for shaking in (shakings if run.engine is None else single)
                 ]
                 yield from tasks if run.engine else _together(tasks)
 
-    def _stepped(self, run: Run, cylinder: Cylinder) -> Run:
+    def _with_step(self, run: Run, cylinder: Cylinder) -> Run:
         if run.engine is None or run.time_step is not None or self.options.step_factor == 1.0:
             return run
         step = self.options.step_factor * default_step(cylinder.semidiagonal, self.options.gravity)
@@ -505,13 +505,13 @@ def run_plan(
         scheduler=scheduler,
         progress=progress,
     ) as found:
-        tables = [_labelled(task, each) for task, each in zip(tasks, found, strict=True)]
+        tables = [_with_labels(task, each) for task, each in zip(tasks, found, strict=True)]
     table = pd.concat(tables, ignore_index=True)
     worse = [worse_plane(table)] if any(method.run is None for method in plan.methods) else []
     return pd.concat([table, *worse], ignore_index=True)
 
 
-def _labelled(task: Task, table: pd.DataFrame) -> pd.DataFrame:
+def _with_labels(task: Task, table: pd.DataFrame) -> pd.DataFrame:
     motions, steps = zip(*task.points, strict=True)
     whole = table.assign(cylinder=task.name, motion=motions, step=steps, method=task.label)
     return whole[[*KEYS, "method", "peak_tilt", "outcome", "contact_lost"]]

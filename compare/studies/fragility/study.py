@@ -116,14 +116,14 @@ class Fragility(Results, kind=KIND):
         return {
             f"{row['cylinder']}, {row['method']}, overturned of {row['runs']}": row["exceeded"]
             if row["kind"] == TOO_FEW
-            else self.stated(row["cylinder"], row["median"])
+            else self.median_or_bound(row["cylinder"], row["median"])
             for row in fits
         } | {
             f"{row['cylinder']}, {row['method']} / {row['against']}": known_ratio(row["ratio"])
             for row in contrasts
         }
 
-    def stated(self, cylinder: str, median: float) -> float | str:
+    def median_or_bound(self, cylinder: str, median: float) -> float | str:
         """Return a median; of one that lies beyond the intensities that were run the bound, as "> 12"."""
         if math.isnan(median) or 0.0 < median < math.inf:
             return float(median)
@@ -204,7 +204,7 @@ class Fragility(Results, kind=KIND):
             "counts.json": (json.dumps(rows, indent=0, ensure_ascii=False) + "\n").encode(),
         }
 
-    def _said(self) -> dict[str, str]:
+    def _main_facts(self) -> dict[str, str]:
         runs = self.runs
         return {
             "cylinders": str(runs["cylinder"].nunique()),
@@ -271,7 +271,7 @@ def main_contrasts(found: Fragility) -> dict[str, list[Row]]:
         question, turned = _question(methods, str(row["method"]), str(row["against"]))
         if question:
             named = {str(name): value for name, value in row.items()}
-            answers[question].append(_inverted(named) if turned else named)
+            answers[question].append(_inverse(named) if turned else named)
     return answers
 
 
@@ -290,7 +290,7 @@ def _question(methods: Mapping[str, Mapping[str, Any]], method: str, against: st
     return ("engine", False) if supports[0] == supports[1] else ("", False)
 
 
-def _inverted(row: Row) -> Row:
+def _inverse(row: Row) -> Row:
     """Return a contrast with its methods exchanged."""
 
     def inverse(value: float) -> float:
@@ -416,7 +416,7 @@ def fragility(
             raise ValueError("motions by level state the levels themselves: got levels or scales besides")
         levels, motions, stripes = motions_by_level(motions)
     require_each("motions", motions, GroundMotion)
-    bodies = _named(cylinders)
+    bodies = _by_name(cylinders)
     asked = FragilityPlan(
         measure=measure,
         levels=levels,
@@ -460,7 +460,7 @@ def _facts(plan: RunPlan) -> dict[str, object]:
             for name, body in plan.cylinders.items()
         },
         "motions": len(plan.motions),
-        "methods": {method.label: _described(method, plan.methods) for method in plan.methods},
+        "methods": {method.label: _description(method, plan.methods) for method in plan.methods},
         "levels": None if asked.levels is None else list(map(float, asked.levels)),
         "scales": list(plan.scales) if asked.levels is None else None,
         # by level, where each has motions of its own
@@ -473,7 +473,7 @@ def _facts(plan: RunPlan) -> dict[str, object]:
     }
 
 
-def _described(method: Method, methods: Sequence[Method]) -> dict[str, object]:
+def _description(method: Method, methods: Sequence[Method]) -> dict[str, object]:
     return {
         "support": method.support,
         "engine": method.run.engine if method.run is not None else None,
@@ -482,7 +482,7 @@ def _described(method: Method, methods: Sequence[Method]) -> dict[str, object]:
     }
 
 
-def _named(cylinders: Cylinder | Mapping[str, Cylinder] | Sequence[Cylinder]) -> dict[str, Cylinder]:
+def _by_name(cylinders: Cylinder | Mapping[str, Cylinder] | Sequence[Cylinder]) -> dict[str, Cylinder]:
     if isinstance(cylinders, Mapping):
         require_each("cylinders", list(cylinders.values()), Cylinder)
         return dict(cylinders)

@@ -50,7 +50,7 @@ LIMITS: Mapping[str, float] = {
 DEFAULT_LIMITS = tuple(name for name in LIMITS if name != CONTACT_LOST)
 
 
-def exceeded(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
+def exceedance(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
     """Return 1 where a run exceeds a limit, 0 where it does not, NaN where that is not known.
 
     Overturned is what the run itself says: the side reaches the ground, or no later ground motion can stop
@@ -124,24 +124,24 @@ class Blocks:
     def known_keys(self) -> Iterator[Key]:
         """Yield cylinder, method and limit where anything is known."""
         for key in itertools.product(self.cylinders, self.methods, self.limits):
-            if not np.isnan(self.exceeded(*key)).all():
+            if not np.isnan(self.exceedance(*key)).all():
                 yield key
 
     def sample(self, cylinder: str, method: str, limit: str, measure: str | None = None) -> Sample:
         """Return the sample of a method and a limit, by one intensity; default: that of the levels."""
         x = self.intensities[cylinder, measure or self.measure]
-        return Sample(x=x, y=self.exceeded(cylinder, method, limit))
+        return Sample(x=x, y=self.exceedance(cylinder, method, limit))
 
-    def exceeded(self, cylinder: str, method: str, limit: str) -> Array:
+    def exceedance(self, cylinder: str, method: str, limit: str) -> Array:
         """Return 1, 0 or NaN for each motion and level (R, S)."""
-        return exceeded(self.runs[cylinder, method], limit).reshape(len(self.motions), -1)
+        return exceedance(self.runs[cylinder, method], limit).reshape(len(self.motions), -1)
 
     def of_points(self, points: pd.DataFrame, cylinder: str, column: str) -> Array:
         """Return a column of the points of a cylinder for each motion and level (R, S)."""
         own = points[points["cylinder"] == cylinder]
         return _grid(own, self.motions, self.made.shape[1])[column].to_numpy(float).reshape(self.made.shape)
 
-    def known(self, cylinder: str, measure: str) -> bool:
+    def has_measure(self, cylinder: str, measure: str) -> bool:
         """Whether every motion has an intensity of this measure."""
         return bool(np.isfinite(self.intensities[cylinder, measure]).all())
 
@@ -477,9 +477,9 @@ def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFram
     for cylinder in blocks.cylinders:
         if (cylinder, method) not in blocks.runs:
             continue
-        if np.isnan(blocks.exceeded(cylinder, method, OVERTURNED)).all():  # every run failed
+        if np.isnan(blocks.exceedance(cylinder, method, OVERTURNED)).all():  # every run failed
             continue
-        measures = [measure for measure in MEASURES if blocks.known(cylinder, measure)]
+        measures = [measure for measure in MEASURES if blocks.has_measure(cylinder, measure)]
         samples = {m: blocks.sample(cylinder, method, OVERTURNED, m) for m in measures}
         found = {m: sample.curves() for m, sample in samples.items()}
         fitted = [m for m in measures if KINDS[found[m].kinds[0]] == FITTED]

@@ -22,7 +22,7 @@ from scipy.integrate import solve_ivp
 
 from rockwobble import reduced
 from rockwobble.models import Case, GroundMotion, Run, Trace
-from rockwobble.models.diagnostic import joined
+from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.support import SUPPORTS
 from rockwobble.multibody.engines.registry import engine_facts, find_engine, own_engines
 from rockwobble.reduced.solution import Solution
@@ -99,7 +99,7 @@ class Method:
 
 def methods_for(problem: Problem, *, quick: bool = False) -> list[Method]:
     """Return all methods that can answer a problem with what is installed here."""
-    return [*_reduced(problem, quick), *_scipy(problem, quick), *_engines(problem, quick)]
+    return [*_model_methods(problem, quick), *_scipy(problem, quick), *_engines(problem, quick)]
 
 
 def _line(
@@ -118,7 +118,7 @@ def _line(
         )
 
 
-def _reduced(problem: Problem, quick: bool) -> Iterator[Method]:
+def _model_methods(problem: Problem, quick: bool) -> Iterator[Method]:
     tolerances = sorted({*(_TOLERANCES[1::2] if quick else _TOLERANCES), BASE_TOLERANCE}, reverse=True)
     for run in (BASE, Run(None, "flat")):
         solve = partial(_by_model, problem, run.support, reduced.REST_TILT)
@@ -208,7 +208,7 @@ def _by_engine(problem: Problem, run: Run, case: Case) -> MethodResult:
 
 def _result(problem: Problem, trace: Trace) -> MethodResult:
     quantity = np.empty(0) if trace.outcome == "failed" else problem.quantity(trace)
-    return MethodResult(quantity=quantity, said=joined(fact.code for fact in trace.facts))
+    return MethodResult(quantity=quantity, said=cell_of(fact.code for fact in trace.facts))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

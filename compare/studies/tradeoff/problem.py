@@ -144,7 +144,7 @@ def _single(
     quick: bool,
 ) -> Problem:
     """Return the problem of one case, with what is known of its answers."""
-    return _answered(
+    return _with_answers(
         Problem(
             name=name,
             cases=[case],
@@ -163,7 +163,7 @@ def peaks(*, quick: bool = False) -> Problem:
     standing = Case(PIER, synthetic_motions(2, peak=1.0, seed=0)[0], name="synthetic")
     motions = synthetic_motions(4 if quick else 12, peak=_MEMBER_PEAK, seed=1940, duration=_MEMBER_LENGTH)
     steps = _STEPS[:2] if quick else _STEPS[:4]
-    return _answered(
+    return _with_answers(
         Problem(
             name="peaks",
             cases=with_motions(standing, motions),
@@ -188,21 +188,21 @@ def sampling_distance(problem: Problem, support: str) -> float:
     return float(np.median(np.abs(samples[0] - samples[1]).mean(axis=1)))
 
 
-def _answered(problem: Problem) -> Problem:
+def _with_answers(problem: Problem) -> Problem:
     """Fill in the answers that have to be computed, and how far they have converged."""
     found = dict(problem.references)
     for name, support in SUPPORTS.items():
         runs = _reference_runs(support, min(problem.few_steps))
         if name not in found and runs:
             best, other = ([_answer(problem, case, run) for case in problem.cases] for run in runs)
-            source = "tight" if support.modelled else "half_step"
+            source = "tight" if support.has_model else "half_step"
             found[name] = Reference(quantities=best, doubt=problem.distance(other, best), source=source)
     return replace(problem, references=found)
 
 
 def _reference_runs(support: Support, finest: float) -> list[Run]:
     """The run whose answer is the reference of a support, and one less tight; none where none can be made."""
-    if support.modelled:
+    if support.has_model:
         tolerances = (TIGHT, 10.0 * TIGHT)
         return [Run(None, support.name, rtol=rtol, rest_tilt=FINE_REST_TILT) for rtol in tolerances]
     engines = [engine for engine in own_engines() if support.name in find_engine(engine).supports]

@@ -80,12 +80,12 @@ def measure_tradeoff(plan: QuickPlan, *, progress: ProgressCallback | None = Non
     tables = {
         "points": pd.concat(points, ignore_index=True),
         "scenes": scenes,
-        "problems": pd.concat([_described(each) for each in asked], ignore_index=True),
+        "problems": pd.concat([_description(each) for each in asked], ignore_index=True),
     }
     return Tradeoff(tables=tables, facts={"load": [before, _load()]})
 
 
-def _described(problem: Problem) -> pd.DataFrame:
+def _description(problem: Problem) -> pd.DataFrame:
     many = len(problem.cases) > 1
     return pd.DataFrame(
         {
@@ -114,7 +114,7 @@ def _points(problem: Problem, methods: list[Method], stage: Stage) -> pd.DataFra
             if not number:
                 _warm_up(methods, case)
             for place, method in enumerate(methods):
-                seconds[number, place], result = _timed(method, case)
+                seconds[number, place], result = _time_run(method, case)
                 if len(results[place]) < len(problem.cases):
                     results[place].append(result)
     base = next(place for place, method in enumerate(methods) if method.base)
@@ -142,7 +142,7 @@ def _warm_up(methods: list[Method], case: Case) -> None:
             method.solve(case)
 
 
-def _timed(method: Method, case: Case) -> tuple[float, MethodResult]:
+def _time_run(method: Method, case: Case) -> tuple[float, MethodResult]:
     """Processor time of this process in one run [s], and its result."""
     begin = time.process_time()
     result = method.solve(case)

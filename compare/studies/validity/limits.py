@@ -70,7 +70,7 @@ def least(values: Array) -> float:
     return -largest(-values)
 
 
-def reached(values: Array, share: float) -> float:
+def quantile_reached(values: Array, share: float) -> float:
     """Return a value that a share of all does not exceed, infinite ones included; NaN of nothing."""
     known = values[~np.isnan(values)]
     return float(np.quantile(known, share, method="inverted_cdf")) if len(known) else math.nan
@@ -167,7 +167,7 @@ def cells(tables: Tables) -> pd.DataFrame:
                 f"{name}_ratio": median.value,
                 f"{name}_low": median.low,
                 f"{name}_high": median.high,
-                f"{name}_90": math.exp(reached(np.abs(logarithms), _SHARE)),
+                f"{name}_90": math.exp(quantile_reached(np.abs(logarithms), _SHARE)),
                 f"{name}_overturned": float(_fell(members, name).mean()),
             }
         normal = column(members, "least_normal")
@@ -186,7 +186,7 @@ def cells(tables: Tables) -> pd.DataFrame:
 def _nine_in_ten(values: Array) -> float:
     """Return what nine in ten of the known values do not exceed; NaN of too few."""
     enough = np.count_nonzero(~np.isnan(values)) >= FEWEST
-    return reached(values, _SHARE) if enough else math.nan
+    return quantile_reached(values, _SHARE) if enough else math.nan
 
 
 def _fell(table: pd.DataFrame, name: str) -> Flags:
@@ -314,11 +314,11 @@ def free_response(tables: Tables) -> Numbers:
         **{f"worst_{name}": float(worst[name]) for name in RELEASE},
         "period_largest": largest(periods),
         "peak_gain": max(largest(column(table, "flat_peak")) - 1.0, 0.0),
-        **_decided(tables["verification"]),
+        **_confirmations(tables["verification"]),
     }
 
 
-def _decided(table: pd.DataFrame) -> Numbers:
+def _confirmations(table: pd.DataFrame) -> Numbers:
     """Count the runs that confirm their model, those that contradict it, and all whose pass is resolved.
 
     One that failed decides nothing: it has said so itself.

@@ -31,7 +31,7 @@ RELEASE = ("tan_alpha", "release", "spin")
 POINT = ("tan_alpha", "semidiagonal", "intensity")
 
 
-def named(names: Sequence[str], points: Iterable[tuple[float, ...]], **more: object) -> list[Inputs]:
+def inputs_at(names: Sequence[str], points: Iterable[tuple[float, ...]], **more: object) -> list[Inputs]:
     """Return the inputs of tasks at points whose numbers have these names; `more` is the same in all."""
     return [dict(zip(names, point, strict=True)) | more for point in points]
 

@@ -13,7 +13,7 @@ from rockwobble.multibody import DEFAULT_ENGINE
 from ...metrics.pair import make_pair, tilt_rms
 from ...runs.choice import SUPPORTS, own_model
 from ...runs.execution import simulate_run
-from .plan import RELEASE, Part, Row, grid, named, needs_of, release_case
+from .plan import RELEASE, Part, Row, grid, inputs_at, needs_of, release_case
 
 _RTOL = 1e-10
 _CYCLES = 10.0  # over which the flat-ground model may gather tilt
@@ -108,7 +108,7 @@ def measure_verification(
 
 VERIFICATION = Part(
     name="verification",
-    tasks=lambda extent: named(RELEASE, extent.engine_points),
+    tasks=lambda extent: inputs_at(RELEASE, extent.engine_points),
     measure=measure_verification,
     keys=RELEASE,
     cost=lambda **_: 1.5,
@@ -151,7 +151,7 @@ def measure_slip(
 
 SLIP = Part(
     name="slip",
-    tasks=lambda extent: named(RELEASE, extent.slip_points, shares=extent.slip_shares),
+    tasks=lambda extent: inputs_at(RELEASE, extent.slip_points, shares=extent.slip_shares),
     measure=measure_slip,
     keys=RELEASE,
     cost=lambda shares, **_: 0.5 * len(shares),

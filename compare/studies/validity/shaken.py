@@ -33,9 +33,9 @@ from .plan import (
     Part,
     Row,
     grid,
+    inputs_at,
     loss_of,
     motion_named,
-    named,
     needs_of,
     record_names,
     release_case,
@@ -161,7 +161,7 @@ RECORDS = Part(
     name="records",
     tasks=lambda extent: [
         {"motion": motion, **point}
-        for point in named(POINT, extent.record_points, time_step=extent.record_step)
+        for point in inputs_at(POINT, extent.record_points, time_step=extent.record_step)
         for motion in record_names(extent.members)
     ],
     measure=measure_records,
@@ -200,7 +200,7 @@ FOLLOWING = Part(
     name="following",
     tasks=lambda extent: [
         {**point, "support": support}
-        for point in named(POINT, extent.trace_points, duration=extent.trace_length)
+        for point in inputs_at(POINT, extent.trace_points, duration=extent.trace_length)
         for support in SUPPORTS
     ],
     measure=measure_following,

@@ -71,7 +71,7 @@ class Validity(Results, kind=KIND):
             if f"{name}_{end}" in numbers  # no recess with clearance takes a slab
         }
 
-    def _said(self) -> dict[str, str]:
+    def _main_facts(self) -> dict[str, str]:
         return {"motions": self.facts["records"]} | {
             name: f"{len(table)} rows" for name, table in self.tables.items()
         }

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ..column_names import column_name, quantities_of
 from ..component import Component, ReadingOptions, RecordFile
-from ..table import first_row, is_comment, uncommented
+from ..table import bare_header, first_row, is_comment
 from . import columns, values
 
 NAME = "blocks of numbers"
@@ -85,7 +85,7 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
     parts: list[tuple[int, int, str]] = []
     others: list[str] = []
     for title, begin, end in _blocks(file):
-        words = " ".join(uncommented(line) for line in file.text[title:begin])
+        words = " ".join(bare_header(line) for line in file.text[title:begin])
         kinds = quantities_of(words)
         if kinds & {"velocity", "displacement"} and "acceleration" not in kinds:
             others.append(words[:20].strip())

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from ..column_names import names_of, refuse_other_quantity, refuse_scale, unit_of_time
 from ..component import UNITS, Component, ReadingOptions, RecordFile
 from ..fill import without_fill
-from ..numbers import is_number, numbers_of_lines, parted, widths_of
-from ..table import cells_of, first_row, is_comment, uncommented
+from ..numbers import is_number, numbers_of_lines, separate, widths_of
+from ..table import bare_header, cells_of, first_row, is_comment
 from ..times import even_step, is_counting, rises_evenly, stated_step
 from ..units import stated_unit, unit_of
 
@@ -40,7 +40,7 @@ def recognizes(file: RecordFile) -> bool:
         return False
     widths = [len(row) for row in cells]
     width = widths[0]
-    header = [uncommented(line) for line in file.lines[:first]]
+    header = [bare_header(line) for line in file.lines[:first]]
     if max(widths) == 1:
         return True
     if width == 2 and len(widths) > 1 and set(widths[1:]) == {1}:  # "4096 0.025" above one number a line
@@ -67,7 +67,7 @@ def _cells(rows: Sequence[str]) -> list[list[str]] | None:
     """Return the numbers of rows as texts, parted where they touch; None where a row holds something else."""
     cells = [cells_of(row) for row in rows]
     if not all(is_number(cell) for row in cells for cell in row):
-        answer = parted("\n".join(rows))
+        answer = separate("\n".join(rows))
         cells = [line.split() for line in (answer or "").split("\n")]
         if not answer or not all(is_number(cell) for row in cells for cell in row):
             # numbers that touch in a way that cannot be settled are refused by the reader of values
@@ -85,7 +85,7 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
         stated or given.
     """
     first = first_row(file.text)
-    header = [text for line in file.text[:first] if (text := uncommented(line))]
+    header = [text for line in file.text[:first] if (text := bare_header(line))]
     lines = _rows(file, first)
     samples = numbers_of_lines(file, lines, first + 1)
     samples, of_lines = _without_line_numbers(samples, lines)
@@ -143,7 +143,7 @@ def _without_line_numbers(
         return samples, ()
     text = "\n".join(filled)
     if widths_of(text).sum() != len(samples):  # some touch
-        text = parted(text) or text
+        text = separate(text) or text
     ends = np.cumsum(widths_of(text)) - 1
     if ends[-1] != len(samples) - 1 or ends[0] < 1 or not is_counting(samples[ends]):
         return samples, ()

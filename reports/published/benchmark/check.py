@@ -22,9 +22,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from trajectory.explanation import Explanation, explanations
-from trajectory.mistakes import Change, Mistake, corrected, in_time_scale, readings
+from trajectory.mistakes import Change, Mistake, correct, in_time_scale, readings
 from trajectory.motion import Motion, Reference, exceeds, motion_at, pose_of
-from trajectory.table import Array, Table, Values, listed, read_tables
+from trajectory.table import Array, Table, Values, name_list, read_tables
 
 LEVELS = ("exact", "good", "pass")
 FEWEST_IN_WINDOW = 30
@@ -278,7 +278,7 @@ class Case:
         worst = sorted(motions, key=lambda name: -self.score({name: motions[name]}))[:EXPLAINED_RUNS]
         for changes in self.candidates(tables, worst):
             runs = {
-                name: corrected(table.values, partial(read_motion, self.runs[name]), changes)
+                name: correct(table.values, partial(read_motion, self.runs[name]), changes)
                 for name, table in tables.items()
             }
             found = {name: motion for name, motion in runs.items() if motion is not None}
@@ -299,7 +299,7 @@ def judged(case: Case, path: Path) -> Judgement:
     if set(tables) == {""} and len(case.runs) == 1:
         tables = {next(iter(case.runs)): tables[""]}
     if set(tables) - set(case.runs) or (case.accept["runs"] == "all" and len(tables) < len(case.runs)):
-        raise ValueError(f"the column run must name {', '.join(case.runs)}; got {listed(list(tables))}")
+        raise ValueError(f"the column run must name {', '.join(case.runs)}; got {name_list(list(tables))}")
     motions = {}
     for name, table in tables.items():
         steps = np.diff(table.values["time"], prepend=-math.inf)
@@ -312,7 +312,7 @@ def judged(case: Case, path: Path) -> Judgement:
     ignored = next(iter(tables.values())).ignored
     outcomes = case.judge(motions)
     if missing := set(case.accept["needed"]) - {one.name for one in outcomes if one.run}:
-        unknown = f"; columns not read: {listed(ignored)}" if ignored else ""
+        unknown = f"; columns not read: {name_list(ignored)}" if ignored else ""
         raise ValueError(
             f"the file does not give {', '.join(sorted(missing))}, which this case needs{unknown}"
         )
@@ -340,7 +340,7 @@ def main() -> int:
         found, reason = Judgement((), (), ()), str(error)
     asked = len(case.accept["criteria"])
     print(f"{given.case}: {found.verdict} ({found.grade}), judged {found.judged} of {asked} criteria")
-    notes = [reason, f"columns not read: {listed(found.columns_not_read)}" * bool(found.columns_not_read)]
+    notes = [reason, f"columns not read: {name_list(found.columns_not_read)}" * bool(found.columns_not_read)]
     for one in found.outcomes:
         limits = "exact {:.2g}, good {:.2g}, pass {:.2g}".format(*one.bounds)
         value = f" {one.error:.3g} {one.unit} (run {one.run}; {limits})" if one.run else ""

@@ -24,11 +24,11 @@ from .mistakes import (
     Frame,
     Mistake,
     Read,
-    changed,
-    corrected,
+    correct,
     in_time_scale,
     of_path,
     readings,
+    with_changes,
 )
 from .motion import SAME_TIME, Complex, Difference, Motion, Reference, explains, on_samples_of
 from .table import POSITION, Array, Values
@@ -89,7 +89,7 @@ def explanations(values: Values, read: Read, reference: Reference) -> Iterator[E
             of_axes = _path_explained(reference, turned, frame)
             if frame != Frame() and frame not in (change.frame for change in of_axes):
                 of_axes = (frame.change("azimuth"), *of_axes)
-            left = reference.difference(changed(turned, of_axes))
+            left = reference.difference(with_changes(turned, of_axes))
             yield Explanation(changes=(*changes, *more, *of_axes), left=left)
 
 
@@ -159,7 +159,7 @@ class _Search:
                 own = [
                     one for one in readings(self.values) if one.mistake.concerns in ("quaternion", "azimuth")
                 ]
-                tried = [((one,), Frame(), corrected(self.values, self.read, (*changes, one))) for one in own]
+                tried = [((one,), Frame(), correct(self.values, self.read, (*changes, one))) for one in own]
             fits = fitted_frames(self.reference, motion, start=found.start, end=found.covered)
             tried += [((), fit, motion) for fit in fits]
             for more, frame, other in tried:
@@ -199,8 +199,8 @@ def _path_explained(reference: Reference, motion: Motion, axes: Frame) -> tuple[
             turn = [frame.change("axes" if frame == axes else "path")] if frame != Frame() else []
             # y up is no horizontal axis
             changes = tuple(sorted((*turn, *changes), key=lambda one: one.mistake.code != "y_up"))
-            changes += (_origin(reference, changed(motion, changes), before.covered),) if moved else ()
-            left = reference.difference(changed(motion, changes)).path
+            changes += (_origin(reference, with_changes(motion, changes), before.covered),) if moved else ()
+            left = reference.difference(with_changes(motion, changes)).path
             if left is not None and not left.differs and (explains(part, left) or not part.differs):
                 passing.append((left.size, changes))
         if passing:
@@ -240,7 +240,7 @@ def _clocks(reference: Reference, motion: Motion) -> Iterator[Change]:
         # a clock that is off by less than a sample cannot be told from what a model and noise make of samples
         if abs(offset) > max(motion.step, SHORTEST_DELAY * reference.time_scale):
             mistake = Mistake(code="time_offset", concerns="time", value=offset)
-            yield Change(mistake=mistake, motion=partial(Motion.clocked, offset=offset))
+            yield Change(mistake=mistake, motion=partial(Motion.with_clock, offset=offset))
     if reference.is_free:
         rate = fitted_rate(reference, motion)
         if abs(rate - 1.0) > SMALLEST_RATE:
@@ -262,7 +262,7 @@ def fitted_offsets(reference: Reference, motion: Motion) -> list[float]:
             continue
         highest = float(model.tilt.max())
         near = inner[misfits[inner] <= 3.0 * misfits[inner].min() + 0.02 * highest]
-        best = [_refined(partial(_misfit, model, motion), float(tried[at]), step) for at in near]
+        best = [_refine(partial(_misfit, model, motion), float(tried[at]), step) for at in near]
         enough = ALIKE * min(best)[0] + 1e-3 * highest
         offset = min((offset for value, offset in best if value <= enough), key=abs)
         # the windows are there because one of them may be misled
@@ -278,7 +278,7 @@ def fitted_rate(reference: Reference, motion: Motion) -> float:
         misfit = partial(_misfit, _beginning(reference, window), motion, 0.0)
         rate = float(min(rate + width * np.linspace(-1.0, 1.0, 41), key=misfit))
         width *= 0.3
-    return _refined(misfit, rate, width)[1]
+    return _refine(misfit, rate, width)[1]
 
 
 def _beginning(reference: Reference, window: float) -> Motion:
@@ -298,7 +298,7 @@ def _misfit(model: Motion, motion: Motion, offset: float, slower: float = 1.0) -
     return math.sqrt(float(apart @ apart) / len(apart))
 
 
-def _refined(misfit: Callable[[float], float], centre: float, width: float) -> tuple[float, float]:
+def _refine(misfit: Callable[[float], float], centre: float, width: float) -> tuple[float, float]:
     """Least misfit near a minimum, and where it is, by finer and finer steps."""
     least = math.inf
     for _ in range(5):

@@ -58,7 +58,7 @@ class Motion:
         """Usual time between two samples [s]."""
         return float(np.median(np.diff(self.time))) if len(self.time) > 1 else 0.0
 
-    def turned(self, angle: float, *, mirrored: bool = False) -> Motion:
+    def rotated(self, angle: float, *, mirrored: bool = False) -> Motion:
         """Return the motion turned by `angle` [rad] counter-clockwise, with y reversed first if mirrored."""
         turn, lean, path = np.exp(1j * angle), self.lean, self.path
         if lean is not None:
@@ -77,7 +77,7 @@ class Motion:
             path = np.column_stack([np.interp(time, self.time, part) for part in path.T])
         return replace(self, time=time, tilt=tilt, lean=lean, path=path)
 
-    def clocked(self, *, offset: float = 0.0, rate: float = 1.0) -> Motion:
+    def with_clock(self, *, offset: float = 0.0, rate: float = 1.0) -> Motion:
         """Return the motion with its times multiplied by `rate`, then moved by `offset` [s]."""
         return replace(self, time=rate * self.time + offset)
 
