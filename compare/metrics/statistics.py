@@ -66,8 +66,10 @@ def value_if_enough(value: float, count: int, *, ratio: bool = False) -> float:
 
     Examples
     --------
-    >>> value_if_enough(1.2, 6), value_if_enough(1.2, 5), value_if_enough(math.inf, 9), value_if_enough(math.inf, 9, ratio=True)
-    (1.2, nan, inf, nan)
+    >>> [value_if_enough(1.2, count) for count in (6, 5)]
+    [1.2, nan]
+    >>> [value_if_enough(math.inf, 9, ratio=ratio) for ratio in (False, True)]
+    [inf, nan]
     """
     return math.nan if count < FEWEST or (ratio and not 0.0 < value < math.inf) else value
 
