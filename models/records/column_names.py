@@ -345,7 +345,7 @@ def settle(names: Sequence[ColumnName]) -> list[ColumnName]:
 
     Examples
     --------
-    >>> [name.kind for name in settled([column_name(word) for word in ("Time", "L", "T")])]
+    >>> [name.kind for name in settle([column_name(word) for word in ("Time", "L", "T")])]
     ['time', 'unknown', 'unknown']
     """
     letters = [re.sub(r"[\W\d_]+", "", plain(name.label)) for name in names]
