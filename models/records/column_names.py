@@ -128,7 +128,9 @@ _OTHER_UNITS = frozenset(
     ]
 )
 # "acc_e_cm_s2", "ax_m_per_s2", "az_mps2", of names that allow no slash
-_UNIT_IN_NAME = re.compile(r"[\s_]([cmk]?m)(?:_per_|_p_|p|_)?s(?:ec)?(?:_?\^?-?[2²]|_s)$", re.IGNORECASE)
+_UNIT_IN_NAME = re.compile(
+    r"[\s_]([cmkµμ]?m|ft|in)(?:_per_|_p_|p|_)?s(?:ec)?(?:_?\^?-?[2²]|_s)$", re.IGNORECASE
+)
 _BRACKETS = re.compile(r"[\[({<]([^\[\](){}<>]*)[\])}>]")
 
 
@@ -181,6 +183,8 @@ def column_name(text: str) -> ColumnName:
     (0.001, 'velocity', 'z')
     """
     words, unit = _unit_apart(text[:80])
+    if unit.casefold() in ("deg", "°") and _azimuth(text[:80]) is not None:  # "CHAN 1: 90 DEG"
+        words, unit = text[:80], ""
     quantity = _quantity_of_unit(unit)
     named = _by_words(words)
     found = replace(named, text=text.strip(), unit=unit)
@@ -224,7 +228,7 @@ def _unit_apart(text: str) -> tuple[str, str]:
     in_name = _UNIT_IN_NAME.search(words)
     if in_name:
         return words[: in_name.start()].strip(), f"{in_name[1]}/s2"
-    behind = re.search(r"(?:[\s_,:]+in\s+|[\s_,:/]+)(\S+)$", words.strip())
+    behind = re.search(r"(?:[\s_,:]+in\s+|[\s_,:/]+)([^\s_]+)$", words.strip())
     if behind and _quantity_of_unit(behind[1]):
         rest = words.strip()[: behind.start()]
         # a_g is a symbol; "acc g", "time_ms" and "acc_E cm/s2" state units; V E N S W D are directions
@@ -493,7 +497,8 @@ def refuse_scale(file: RecordFile, lines: Sequence[str]) -> None:
 
 
 _SCALE = re.compile(
-    r"scal(?:e|ing)[ _]?factor|conversion[ _]?factor|\bcounts?\b(?!\s?[:=]?\s?\d)|\blsb\b|factor de escala",
+    r"scal(?:e|ing)[ _]?factor|conversion[ _]?factor|\bcounts?\b(?!\s?[:=]?\s?\d)|\blsb\b|factor de escala"
+    r"|\bg\s?(?:[*x×]\s?|/\s?)10|10\s?(?:\^|\*\*)?\s?-\s?\d\s?\*?\s?(?:g|m|cm)\b",  # "g*100", "10^-3 g"
     re.IGNORECASE,
 )
 
@@ -512,7 +517,7 @@ def _splittings(line: str, width: int, *, strict: bool = False) -> list[list[str
     # "time (sec)" is one cell
     joined = re.sub(r"\s{0,3}[\[(][^\[\]()]*[\])]", lambda match: re.sub(r"\s", _BLANK, match[0]), line)
     behind = joined.partition(":")[2]
-    patterns = (r"[,;|]", r"\t") if strict else (r"[,;|]", r"\t", r"\s{2,}", r"[\s,;|]+")
+    patterns = (";", "[,;|]", r"\t") if strict else (";", "[,;|]", r"\t", r"\s{2,}", r"[\s,;|]+")
     for text in (joined.strip(" "), behind.strip(" ")):
         for pattern in patterns if text else ():
             cells = [cell.replace(_BLANK, " ").strip() for cell in re.split(pattern, text.rstrip(",;| \t"))]

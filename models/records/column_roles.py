@@ -45,6 +45,7 @@ class Columns:
     file: RecordFile
     table: Table
     names: list[ColumnName] | None
+    texts: list[ColumnName] | None = None  # for messages: names that may be words of a sentence
 
     @property
     def width(self) -> int:
@@ -55,7 +56,7 @@ class Columns:
         """Return the refusal of columns that names do not settle."""
         return ValueError(
             f"{self.file.name}: {why}: name them by {OPTION}{example or ', such as time,x,y'}; "
-            f"it has {column_list(self.names, self.width)}"
+            f"it has {column_list(self.names or self.texts, self.width)}"
         )
 
     def by_names(self, options: ReadingOptions) -> Roles:
@@ -164,7 +165,7 @@ class Columns:
                 missing = given[places.index(None)]
                 raise ValueError(
                     f"{self.file.name} has no column {missing[:30]!r} of {OPTION}; it has "
-                    f"{column_list(self.names, self.width)}"
+                    f"{column_list(self.names or self.texts, self.width)}"
                 )
             return self._in_order(["time" if word == "t" else word for word in words])
         known = [place for place in places if place is not None]
@@ -212,7 +213,7 @@ class Columns:
             if not 0 <= place < self.width:
                 raise ValueError(
                     f"{self.file.name} has no column {text} of {OPTION}; it has "
-                    f"{column_list(self.names, self.width)}"
+                    f"{column_list(self.names or self.texts, self.width)}"
                 )
             return place
         for form in (

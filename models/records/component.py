@@ -17,13 +17,25 @@ Direction = Literal["x", "y", "z"]
 
 # what spreadsheets call "Unicode text"
 _UTF16 = {"utf-16-le": codecs.BOM_UTF16_LE, "utf-16-be": codecs.BOM_UTF16_BE}
+# words of strong motion by which a text of another encoding than UTF-8 is known
+_OLDER_ENCODINGS = {
+    "cp932": "時間 時刻 加速度 東西 南北 上下 成分 方向 鉛直",
+    "gb18030": "时间 时刻 加速度 东西 南北 竖 垂直 方向",
+    "cp949": "시간 가속도 동서 남북 상하",
+    "cp1251": "время ускорени восток север",
+    "cp1253": "χρόνος επιτάχυνση επιταχ",
+}
 # blanks that do not break, and the minus sign of typesetters
 _TYPESET = str.maketrans({"\u00a0": " ", "\u2007": " ", "\u2009": " ", "\u202f": " ", "\u2212": "-"})
 # the largest of the networks are below 50 MB; what is larger is another file by mistake
 LARGEST_FILE = 200_000_000  # [bytes]
 # 1 g is 9.81 m/s^2, the default gravity of every model here, so that a/g stays what the file says
-METRES_PER_SECOND_SQUARED = {"g": 9.81, "m/s2": 1.0, "cm/s2": 0.01}
-UNITS = tuple(METRES_PER_SECOND_SQUARED)
+_G = 9.81
+_USUAL = {"g": _G, "m/s2": 1.0, "cm/s2": 0.01}
+_PARTS = {"mm/s2": 1e-3, "µm/s2": 1e-6, "mgal": 1e-5, "%g": 1e-2 * _G, "mg": 1e-3 * _G}
+METRES_PER_SECOND_SQUARED = _USUAL | _PARTS | {"µg": 1e-6 * _G, "ft/s2": 0.3048, "in/s2": 0.0254}
+UNITS = tuple(_USUAL)  # that the user can give for a silent file; a file may state the others, too
+ALLOWED_UNITS = ", ".join(METRES_PER_SECOND_SQUARED)
 STEP_OPTION = "--record-step (time_step=)"
 _SAME_STEP = 3e-3  # relative: 0.0167 for 1/60
 _END_OF_FILE = b"\x1a"  # Ctrl-Z of DOS
@@ -103,8 +115,8 @@ class RecordFile:
         content = self.content.rstrip(b" \t\r\n" + _END_OF_FILE)
         try:  # utf-8-sig drops the byte-order mark that spreadsheets write
             text = content.decode("utf-8-sig")
-        except UnicodeDecodeError:  # an older file, whose m/s² is one byte shorter
-            text = content.decode("cp1252", errors="replace")
+        except UnicodeDecodeError:
+            text = _older_text(content)
         return tuple((text if text.isascii() else text.translate(_TYPESET)).splitlines())
 
     @property
@@ -159,6 +171,21 @@ def open_record(path: Path) -> RecordFile:
     return file
 
 
+def _older_text(content: bytes) -> str:
+    """Return a text in the encoding in which words of its begin are known, else in that of western Europe.
+
+    That of Turkey is the same but for six letters, which in the west only Icelandic has.
+    """
+    for encoding, words in _OLDER_ENCODINGS.items():
+        begin = content[:_SEEN_OF_TEXT].decode(encoding, errors="replace").lower()
+        if any(word in begin for word in words.split()):
+            return content.decode(encoding, errors="replace")
+    return content.decode("cp1254", errors="replace")
+
+
+_SEEN_OF_TEXT = 4000  # bytes
+
+
 def _utf16(content: bytes) -> str | None:
     """Return the encoding of a text in UTF-16, by its mark or by every second byte of its begin."""
     for encoding, (zeros, others) in {"utf-16-le": (1, 0), "utf-16-be": (0, 1)}.items():
@@ -197,7 +224,7 @@ class Component:
     time_step : float
         [s]
     unit : str or None
-        One of `UNITS`; None where the file is silent.
+        One of `METRES_PER_SECOND_SQUARED`; None where the file is silent.
     start : float or None
         Time of the first sample [s]; None where the file gives no times.
     format : str

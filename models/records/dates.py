@@ -5,6 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 _MONTH_OR_NUMBER = r"(?:\d{1,4}|[A-Za-z]{3,9})"
 _DATE = rf"{_MONTH_OR_NUMBER}[-/.]{_MONTH_OR_NUMBER}[-/.]\d{{1,4}}\.?(?:T|[ ]{{1,3}})"
 # a comma is a decimal point where semicolons or tabs part the cells
@@ -17,7 +20,68 @@ _LONGEST_LINE = 400  # [characters]
 
 def has_clock_time(line: str) -> bool:
     """Return whether a line holds one clock time, such as 2024-11-26T10:20:30.005Z or 10:20:30.005."""
-    return ":" in line and len(line) <= _LONGEST_LINE and len(_TIME.findall(line)) == 1
+    return _clock_in(line) is not None
+
+
+def _clock_in(line: str) -> re.Match[str] | None:
+    """Return the clock time of a line that holds one; None of any other line."""
+    match = _TIME.search(line) if ":" in line and len(line) <= _LONGEST_LINE else None
+    return match if match is not None and _TIME.search(line, match.end()) is None else None
+
+
+_BEHIND = (" ", "\t", ",", ";", "")  # a clock time
+_MOST_OTHERS = 1000  # lines without a clock time among rows that have one
+
+
+def _with_even_clocks(lines: Sequence[str], is_row: Callable[[str], bool]) -> list[str] | None:
+    """Return what `with_seconds` does where all clock times stand at one place; None where they do not.
+
+    All at once: line by line, a million rows take seconds.
+    """
+    last = lines[-1]
+    match = _clock_in(last)
+    if match is None or match[5] or not last.isascii():
+        return None
+    a, b = match.span()
+    begin = last[:a]
+    places = [
+        at
+        for at, line in enumerate(lines)
+        if len(line) >= b and line[:a] == begin and line[b : b + 1] in _BEHIND
+    ]
+    cells = "".join([lines[at][a:b] for at in places])
+    if not cells.isascii():
+        return None
+    codes = np.frombuffer(cells.encode(), dtype=np.uint8).reshape(len(places), b - a)
+    form = np.frombuffer(last[a:b].encode(), dtype=np.uint8)
+    digits = (form >= ord("0")) & (form <= ord("9"))
+    numbers = codes.astype(np.int64) - ord("0")
+    alike = np.where(digits, (numbers >= 0) & (numbers <= 9), codes == form).all(axis=1)
+    places, numbers = np.asarray(places)[alike].tolist(), numbers[alike]
+    others = sorted(set(range(len(lines))).difference(places)) if len(places) < len(lines) else []
+    if len(others) > _MOST_OTHERS or not _is_clock_row(lines[places[0]], is_row):
+        return None
+    for at in others:
+        if has_clock_time(lines[at]) and (at > places[0] or _is_clock_row(lines[at], is_row)):
+            return None
+
+    def of_group(group: int) -> NDArray[np.int64]:
+        start, end = match.start(group) - a, match.end(group) - a
+        return numbers[:, start:end] @ 10 ** np.arange(end - start - 1, -1, -1)
+
+    clock = ((of_group(1) * 60 + of_group(2)) * 60 + of_group(3)) * 1_000_000_000
+    if match[4]:
+        clock += of_group(4) * 10 ** (9 - len(match[4]))
+    clock += np.cumsum(np.diff(clock, prepend=clock[0]) < -_DAY // 2) * _DAY  # past midnight
+    seconds = ((clock - clock[0]) / 1e9).tolist()
+    answer = list(lines)
+    for at, each in zip(places, seconds, strict=True):
+        answer[at] = f"{begin}{each!r}{lines[at][b:]}"
+    return answer
+
+
+def _is_clock_row(line: str, is_row: Callable[[str], bool]) -> bool:
+    return has_clock_time(line) and is_row(_TIME.sub("0", line, count=1))
 
 
 def with_seconds(lines: Sequence[str], is_row: Callable[[str], bool]) -> list[str]:
@@ -34,18 +98,17 @@ def with_seconds(lines: Sequence[str], is_row: Callable[[str], bool]) -> list[st
     >>> with_seconds(["from 9:00:00 on", "9:00:01.5, 3", "9:00:01.75, 4"], lambda line: line[:1].isdecimal())
     ['from 9:00:00 on', '0.0, 3', '0.25, 4']
     """
+    answer = _with_even_clocks(lines, is_row)
+    if answer is not None:
+        return answer
     begin = next(
-        (
-            at
-            for at, line in enumerate(lines)
-            if has_clock_time(line) and is_row(_TIME.sub("0", line, count=1))
-        ),
+        (at for at, line in enumerate(lines) if _is_clock_row(line, is_row)),
         len(lines),
     )
     first, before, days = None, 0, 0
     answer = list(lines[:begin])
     for line in lines[begin:]:
-        match = _TIME.search(line) if has_clock_time(line) else None
+        match = _clock_in(line)
         if match is None:
             answer.append(line)
             continue

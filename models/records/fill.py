@@ -1,8 +1,9 @@
-"""Numbers that stand where a sample is missing, such as -999."""
+"""What stands where a sample is missing: numbers such as -999 and 1e10, the word NaN, empty cells."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,38 @@ from .component import Component
 
 _FILL = re.compile(r"-?9{3,}(?:\.(?:9+|0))?|-12345\.0")
 _FAR = 5.0  # times the largest of all other samples
+_BEYOND = 1e6  # times the largest of all other samples: no record has such a spike, whatever its digits
+_LEAST = 999.0  # of a number that fills a place
+_NO_SAMPLE = re.compile(r"[-+]?nan|na|n/a|null|none|-|", re.IGNORECASE)  # a word for it, or an empty cell
+
+
+def without_missing_end(rows: Sequence[str]) -> tuple[Sequence[str], tuple[str, ...]]:
+    """Return rows without those at the end whose cells, but for a time in front, are NaN or empty.
+
+    Examples
+    --------
+    >>> without_missing_end(["0.0,1", "0.1,2", "0.2,NaN", "0.3,", ","])
+    (['0.0,1', '0.1,2'], ('3 rows without samples at the end are left out',))
+    """
+    count = len(rows)
+    while count and _is_missing(rows[count - 1]):
+        count -= 1
+    left = len(rows) - count
+    if not left:
+        return rows, ()
+    return rows[:count], (f"{left} row{'s' * (left > 1)} without samples at the end are left out",)
+
+
+def _is_missing(row: str) -> bool:
+    separator = next((mark for mark in ";,\t" if mark in row), None)
+    first, *others = (
+        (cell.strip(' "') for cell in row[:_LONGEST_ROW].split(separator)) if row.strip() else [""]
+    )
+    whole = others or [first]
+    return bool(row.strip()) and all(_NO_SAMPLE.fullmatch(cell) for cell in whole)
+
+
+_LONGEST_ROW = 400  # characters
 
 
 def without_fill(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], tuple[str, ...]]:
@@ -23,9 +56,9 @@ def without_fill(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], tupl
     (array([0.1, 0.2]), ('2 fill values of -999 after the last sample are left out',))
     """
     last = float(values[-1]) if len(values) else 0.0
-    if not _FILL.fullmatch(repr(last)):
-        return values, ()
     others = np.flatnonzero(values != last)
+    if not _FILL.fullmatch(repr(last)) and not _is_beyond(last, values[others]):
+        return values, ()
     count = len(values) - (int(others[-1]) + 1 if len(others) else 0)
     note = f"{count} fill value{'s' * (count > 1)} of {last:g} after the last sample are left out"
     return values[: len(values) - count], (note,)
@@ -43,14 +76,21 @@ def without_filled_end(component: Component) -> Component:
     if notes:
         component = replace(component, values=values, notes=(*component.notes, *notes))
     largest = float(np.abs(values).max())
-    if not largest >= 999.0:
+    if not largest >= _LEAST:
         return component
     at = int(np.abs(values).argmax())
     fill = float(values[at])
-    rest = np.abs(values[values != fill])
-    if _FILL.fullmatch(repr(fill)) and len(rest) and largest > _FAR * float(rest.max()):
+    rest = values[values != fill]
+    known = _FILL.fullmatch(repr(fill)) and len(rest) and largest > _FAR * float(np.abs(rest).max())
+    if known or _is_beyond(fill, rest):
         raise ValueError(
             f"{component.path.name}: sample {at + 1}{f' of {component.label}' * bool(component.label)} is "
             f"{fill:g}, which stands for a missing one: give a whole record"
         )
     return component
+
+
+def _is_beyond(value: float, others: NDArray[np.float64]) -> bool:
+    """Return whether a number is too large to be a sample beside all others, some of which are not zero."""
+    largest = float(np.abs(others).max(initial=0.0))
+    return abs(value) >= _LEAST and 0.0 < largest < abs(value) / _BEYOND

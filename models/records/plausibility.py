@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..diagnostic import Diagnostic
 from ..record_source import LARGEST_MEAN
-from .component import METRES_PER_SECOND_SQUARED, Component
+from .component import METRES_PER_SECOND_SQUARED, UNITS, Component
 
 LARGEST_PEAK = 2.0  # [g]; few records of any earthquake have more, numbers in m/s^2 taken for g mostly do
 LARGEST_SCALED_PEAK = (
@@ -34,7 +34,8 @@ def likely_unit(peak: float, used: str | None = None) -> tuple[str, float]:
     peak : float
         As it was read [g].
     used : str, optional
-        Unit in which it was read, which is not the answer; without it g, or m/s^2 for what is in cm/s^2.
+        Unit in which it was read, which is not the answer; without it g, or m/s^2 for what is in cm/s^2. One
+        that no option gives, such as ft/s2, the file has stated in full: then no other is likely.
 
     Examples
     --------
@@ -46,7 +47,8 @@ def likely_unit(peak: float, used: str | None = None) -> tuple[str, float]:
     others = [
         (unit, peak * metre[unit] / metre[read])
         for read in reads
-        for unit in metre
+        if read in UNITS
+        for unit in UNITS
         if unit != read and metre[unit] < metre[read]
     ]
     return min(others, key=lambda other: abs(math.log(other[1] / _USUAL)), default=("", peak))

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .component import RecordFile
 from .dates import has_clock_time, with_seconds
+from .fill import without_missing_end
 from .numbers import (
     CHUNK,
     damaged_line,
@@ -25,6 +26,8 @@ from .numbers import (
     widths_of,
 )
 
+_QUOTED = re.compile(r'"([^"]*)"')
+_NO_SEPARATORS = str.maketrans(",;", "  ")
 _COMMENTS = ("#", "%", "!", "//")
 _WORD = re.compile(r"[^\W\d_]{2}")
 _COMMA_NUMBER = re.compile(r"[-+]?\d*,\d+(?:[EeDd][-+]?\d+)?")
@@ -46,15 +49,28 @@ class Table:
     values : ndarray, shape (n, columns)
     lines : sequence of int
         Number of the line of each row, from 1.
+    notes : tuple of str
+        What was left out.
     """
 
     header: tuple[str, ...]
     values: NDArray[np.float64]
     lines: Sequence[int]
+    notes: tuple[str, ...] = ()
 
 
 def bare_header(line: str) -> str:
-    """Return a line of a header without quotation marks, blanks and the mark of a comment."""
+    """Return a line of a header without quotation marks, blanks and the mark of a comment.
+
+    Within quotation marks, commas and semicolons are blanks: they part no cells.
+
+    Examples
+    --------
+    >>> bare_header('# "Acc., east";"Acc., north"')
+    'Acc.  east;Acc.  north'
+    """
+    if '"' in line:
+        line = _QUOTED.sub(lambda match: match[1].translate(_NO_SEPARATORS), line)
     return re.sub(r"^(?:[#%!;$*]+|//+)", "", line.replace('"', "").strip()).strip()
 
 
@@ -135,8 +151,8 @@ def rows_of(file: RecordFile, first: int) -> tuple[Sequence[int], list[str]]:
         if "\n\n" not in close and close[:1] != "\n" != close[-1:] and close.isascii():
             return range(first + 1, first + 1 + len(lines)), list(lines)
     numbers, rows = [], []
-    for number, line in enumerate(file.text[first:], start=first + 1):
-        text = line.replace('"', "").strip() if '"' in line else line.strip()
+    for number, line in enumerate(whole.replace('"', "").split("\n"), start=first + 1):
+        text = line.strip()
         if text and not is_comment(text):
             numbers.append(number)
             rows.append(text)
@@ -176,7 +192,9 @@ def table_of(file: RecordFile) -> Table:
         _refuse_damaged_row(file, first)
         raise ValueError(_without_rows(file))
     header = tuple(text for line in lines[:first] if (text := bare_header(line)))
-    numbers, rows = rows_of(file, first)
+    numbers, filled = rows_of(file, first)
+    rows, notes = without_missing_end(filled)
+    numbers = numbers[: len(rows)]
     _refuse_damaged_row(file, first)
     if len(rows) < 2:
         raise ValueError(f"{file.name} must hold at least two samples, got {len(rows)}")
@@ -190,14 +208,15 @@ def table_of(file: RecordFile) -> Table:
         raise ValueError(_damage(file, numbers, rows, text.split("\n"), width))
     values = values.reshape(len(rows), width)
     if width == 2 and values[0, 0] == len(values) - 1 > _FEWEST_COUNTED and 0.0 < values[0, 1] < 1.0:
-        return Table((*header, rows[0].strip()), values[1:], numbers[1:])  # "4096 0.025" above two columns
-    return Table(header, values, numbers)
+        header = (*header, rows[0].strip())  # "4096 0.025" above two columns
+        return Table(header, values[1:], numbers[1:], notes)
+    return Table(header, values, numbers, notes)
 
 
 _FEWEST_COUNTED = 10  # rows; a number of fewer may be a sample by chance
 
 
-def _blank_separated(file: RecordFile, numbers: Sequence[int], rows: list[str]) -> tuple[str, int]:
+def _blank_separated(file: RecordFile, numbers: Sequence[int], rows: Sequence[str]) -> tuple[str, int]:
     """Return the rows with blanks between the cells, and how many cells the first has."""
     first = rows[0].replace('"', "").strip().rstrip(",;\t ")
     separator, comma = _form(first)
@@ -208,6 +227,8 @@ def _blank_separated(file: RecordFile, numbers: Sequence[int], rows: list[str]) 
         text = text.replace('"', "")
     if separator is not None:
         close = text.replace(" ", "").replace("\t", "")  # as patterns, these take longer than to read
+        text = text.replace(separator + "\n", "\n")  # of each row, which is quicker than row by row
+        close = text.replace(" ", "").replace("\t", "") if separator + "\n" in close else close
         if any(mark + "\n" in close or close.endswith(mark) for mark in ",;"):
             text = "\n".join(row.rstrip(",;\t ") for row in text.split("\n"))
             close = text.replace(" ", "").replace("\t", "")
@@ -226,7 +247,7 @@ def _blank_separated(file: RecordFile, numbers: Sequence[int], rows: list[str]) 
     return text, len(text.split("\n", 1)[0].split())
 
 
-def _parted_rows(file: RecordFile, numbers: Sequence[int], rows: list[str], text: str) -> str:
+def _parted_rows(file: RecordFile, numbers: Sequence[int], rows: Sequence[str], text: str) -> str:
     """Return rows of which some hold numbers that touch with blanks between them."""
     lines = text.split("\n")
     if damaged_line(lines) is not None:

@@ -46,6 +46,10 @@ _POINTS_AT = re.compile(
     rf"(?P<number>{NUMBER})\s?(?P<unit>ms|s|sec|seconds?)\b",
     re.IGNORECASE,
 )
+# "MUESTREO (muestras/seg) : 100"
+_UNIT_IN_GAP = re.compile(
+    r"(?<![a-z])(hz|ms|msec|us|µs|sps|(?:samples?|muestras?|campioni)\s?/\s?s(?:e[cg])?)(?![a-z])"
+)
 _COUNT_AND_STEP = re.compile(rf"\s*(\d{{2,9}})[\s,;]+({NUMBER})\s*")
 
 
@@ -94,9 +98,9 @@ def _step_of(line: str, count: int | None) -> float | None:
     if step is None or not (number := _number(step)):
         return None
     unit = (step["unit"] or "").lower()
-    in_gap = re.search(r"(?<![a-z])(hz|ms|msec|us|µs)(?![a-z])", (step.groupdict().get("gap") or "").lower())
+    in_gap = _UNIT_IN_GAP.search((step.groupdict().get("gap") or "").lower())
     word = unit or (in_gap[1] if in_gap else "")
-    if word in ("hz", "sps"):
+    if word in ("hz", "sps") or "/" in word:
         return 1.0 / number
     return number * {"m": 1e-3, "u": 1e-6, "µ": 1e-6, "μ": 1e-6}.get(word[:1], 1.0)
 

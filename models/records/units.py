@@ -8,19 +8,25 @@ from pathlib import Path
 
 from ..diagnostic import Diagnostic
 from ..ground_motion import GroundMotion
-from .component import METRES_PER_SECOND_SQUARED, UNITS
+from .component import ALLOWED_UNITS, METRES_PER_SECOND_SQUARED, UNITS
 from .plausibility import LARGEST_SCALED_PEAK, peak_doubts
 
 _SPELLINGS = {  # without blanks, signs of powers and of products, "sec" as "s"
     "g": "g g's gs",
     "m/s2": "m/s2 m/s/s ms-2 m/ss",
     "cm/s2": "cm/s2 cm/s/s cms-2 cm/ss gal gals",
+    "mm/s2": "mm/s2 mm/s/s mms-2 mm/ss",
+    "µm/s2": "µm/s2 μm/s2 µm/s/s μm/s/s",
+    "mgal": "mgal mgals milligal",
+    "%g": "%g g%",
+    "mg": "mg millig milli-g mg's mgs",
+    "µg": "µg μg microg micro-g",
+    "ft/s2": "ft/s2 ft/s/s fts-2 ft/ss feet/s2 feet/s/s",
+    "in/s2": "in/s2 in/s/s ins-2 in/ss inch/s2 inches/s2 inch/s/s inches/s/s",
 }
 _UNIT_OF = {spelling: unit for unit, spellings in _SPELLINGS.items() for spelling in spellings.split()}
 # a word that can only be a unit, so that one which is not allowed is refused instead of overlooked
 _RATE = re.compile(r"[a-z]{1,3}/s(?:ec)?\S*", re.IGNORECASE)
-# parts of g, which no spelling above allows
-_PART = re.compile(r"%\s?g|m(?:illi-?)?g(?:al)?|[µμ]g", re.IGNORECASE)
 _POWER = r"[a-z]{1,3}\s?[.·⋅*]?\s?s(?:ec)?\s?(?:\^|\*\*)?\s?\(?[-−⁻]\s?[2²]\)?"  # "m s-2", "m·s⁻²"
 _WORD = rf"(%\s?g|{_POWER}|[^\s,;()\[\]]+)"
 _SAME = str.maketrans({"²": "2", "⁻": "-", "−": "-", **dict.fromkeys(" \t·⋅.*^()")})
@@ -28,7 +34,7 @@ _PLACES = tuple(
     re.compile(place, re.IGNORECASE)
     for place in (
         rf"[\[(]\s*{_WORD}\s*[\])]",
-        rf"(?:units?|unidad(?:es)?|unité|unità|einheit|birim)\b(?:\s*[:=]|\s+(?:of|in|are|is)\b)*\s*{_WORD}",
+        rf"(?:units?|unidad(?:es)?|unité|unità|einheit|birim)\b(?:\s*[:=,]|\s+(?:of|in|are|is)\b)*\s*{_WORD}",
         rf"\b(?:acc|acel|beschl|ivme|przysp)\w*\.?[\s,:]+(?:(?:in|en|em)\s+)?{_WORD}",
     )
 )
@@ -39,8 +45,8 @@ def unit_of(word: str) -> str | None:
 
     Examples
     --------
-    >>> unit_of("cm/sec/sec"), unit_of("Gal"), unit_of("m·s⁻²"), unit_of("mm")
-    ('cm/s2', 'cm/s2', 'm/s2', None)
+    >>> unit_of("cm/sec/sec"), unit_of("Gal"), unit_of("m·s⁻²"), unit_of("milli-g"), unit_of("mm")
+    ('cm/s2', 'cm/s2', 'm/s2', 'mg', None)
     """
     return _UNIT_OF.get(re.sub("s(?:ec|eg|n|q)", "s", word.lower().translate(_SAME)))
 
@@ -63,8 +69,8 @@ def stated_unit(path: Path, header: list[str]) -> str | None:
             unit = unit_of(word)
             if unit is not None:
                 found[unit] = word
-            elif _RATE.fullmatch(word) or _PART.fullmatch(word) or re.fullmatch(_POWER, word, re.IGNORECASE):
-                raise ValueError(f"{path.name} is in {word[:20]}, allowed are {', '.join(UNITS)}")
+            elif _RATE.fullmatch(word) or re.fullmatch(_POWER, word, re.IGNORECASE):
+                raise ValueError(f"{path.name} is in {word[:20]}, allowed are {ALLOWED_UNITS}")
     if len(found) > 1:
         raise ValueError(f"{path.name} states two units: {' and '.join(found.values())}")
     return next(iter(found), None)

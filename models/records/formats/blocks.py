@@ -13,7 +13,8 @@ from . import columns, values
 NAME = "blocks of numbers"
 _NO_WORD = bytes(code for code in range(128) if not chr(code).isalpha() or chr(code) in "eEdD")
 _LETTERS = re.compile(rb"[A-Za-z]{2}")
-_TITLE = re.compile(r"\b(?!nan\b|inf\b)[^\W\d_]{3}", re.IGNORECASE)
+_TITLE = re.compile(r"[^\W\d_]{3}")
+_NUMBERS_IN_LETTERS = ("nan", "inf")
 _COMPONENT = re.compile(
     r"\b(?:comp\w*|chan\w*|dir\w*|richtung|komponente)\b[\s.:=]{1,4}([^\s,;]{1,20})", re.IGNORECASE
 )
@@ -31,6 +32,8 @@ def _blocks(file: RecordFile) -> list[tuple[int, int, int]]:
     titles: list[int] = []
     at, position = first, 0
     for match in _TITLE.finditer(whole):
+        if match[0].lower() in _NUMBERS_IN_LETTERS:
+            continue
         at, position = at + whole.count("\n", position, match.start()), match.start()
         text = lines[at].strip()
         if titles[-1:] != [at] and (not is_comment(text) or _names_block(text)):

@@ -13,7 +13,7 @@ from ..column_names import (
     unit_of_time,
 )
 from ..column_roles import Columns, Roles
-from ..component import UNITS, Component, ReadingOptions, RecordFile
+from ..component import ALLOWED_UNITS, Component, ReadingOptions, RecordFile
 from ..table import Table, table_of, with_clock, without_bars
 from ..times import even_step, is_counting, rises_evenly, since_epoch, stated_seconds, stated_step
 from ..units import stated_unit, unit_of
@@ -43,13 +43,14 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
     table = table_of(with_clock(without_bars(file)))
     width = table.values.shape[1]
     names, others = names_of(table.header, width)
+    texts = names
     if names and not any(name.kind == "time" for name in names) and names[0].kind not in _NO_TIME:
         time = table.values[:, 0]
         if rises_evenly(time) and not is_counting(time):
-            names, others = None, list(table.header)  # a sentence that looks like names
+            texts, names, others = names, None, list(table.header)  # a sentence that looks like names
     if options.columns:
         names = names_that_hold(table.header, width, options.columns) or names
-    columns = Columns(file, table, names)
+    columns = Columns(file, table, names, texts)
     roles = columns.by_option(options) if options.columns else columns.by_names(options)
     step, start, notes = _clock(file, table, names, others, roles.time, options)
     refuse_scale(file, others)
@@ -65,7 +66,7 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
             label=(names[each.place].label if names else "") or f"column {each.place + 1}",
             direction=each.direction,
             azimuth=each.azimuth,
-            notes=notes if each.sign > 0.0 else (*notes, "its sense is turned"),
+            notes=(*notes, *table.notes, *(("its sense is turned",) if each.sign < 0.0 else ())),
         )
         for each, unit in zip(roles.values, units, strict=True)
     ]
@@ -106,7 +107,7 @@ def _units(
     own = [unit_of(word) if word else None for word in words]
     for word, unit in zip(words, own, strict=True):
         if word and unit is None:
-            raise ValueError(f"{file.name} is in {word[:20]}, allowed are {', '.join(UNITS)}")
+            raise ValueError(f"{file.name} is in {word[:20]}, allowed are {ALLOWED_UNITS}")
     accelerates = any(own) or any(names[each.place].kind == "acceleration" for each in roles.values if names)
     if not accelerates:
         refuse_other_quantity(file, others)

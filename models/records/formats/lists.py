@@ -8,6 +8,11 @@ from ..component import Component, ReadingOptions, RecordFile
 from . import columns, values
 
 NAME = "list of values"
+_FACTOR = re.compile(r"-factor\s{1,9}([^\s;}]{1,20})")
+# 1 g in some unit, by which numbers in g are multiplied in OpenSees; another factor makes another motion
+_GRAVITIES = re.compile(
+    r"\$g|1\.?0*|9\.8(?:0|1|07|0?665|066|0665)?|98[01](?:\.\d*)?|386(?:\.\d*)?|32\.(?:2|17\d*)"
+)
 _CLOSING = {"{": "}", "[": "]", "(": ")", '"': '"'}
 _BEGIN = re.compile(
     r"(?:\bset\s{1,9}\w{1,40}(?:\(\w{1,40}\))?\s{1,9}|-values\s{1,9}|=\s{0,9}(?:\w{1,20}\.)?(?:array\()?\s{0,9}|^\s{0,9})"
@@ -27,7 +32,7 @@ def _begin(file: RecordFile) -> re.Match[str] | None:
 def recognizes(file: RecordFile) -> bool:
     """Return whether a bracket opens before the first number and closes behind the last."""
     match = _begin(file)
-    if match is None:
+    if match is None or (match["open"] == '"' and file.content.count(b'"') > 2):  # cells in quotation marks
         return False
     tail = "".join(line.strip() for line in file.text[-3:]).rstrip(" ;)")
     return tail.endswith(_CLOSING[match["open"]]) or (match["open"] == "{" and "} -factor" in tail[-100:])
@@ -39,7 +44,7 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
     Raises
     ------
     ValueError
-        If the file holds several lists, or as the readers of values and columns do.
+        If the file holds several lists, scales its numbers, or as the readers of values and columns do.
     """
     match = _begin(file)
     assert match is not None
@@ -49,6 +54,11 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
         match.end() if text[: match.end()] == match.string[: match.end()] else text.index(match["open"]) + 1
     )
     # options of OpenSees may stand behind the list: -factor 9.81
+    factor = _FACTOR.search(text[-200:])
+    if factor is not None and not _GRAVITIES.fullmatch(factor[1]):
+        raise ValueError(
+            f"{file.name} scales its numbers, it says {factor[0]!r}: write the accelerations themselves"
+        )
     body = re.sub(r"\}[^{}\n]{0,200}$", "}", text[begin:].rstrip()) if match["open"] == "{" else text[begin:]
     body = body.rstrip(" ;)\n").removesuffix(_CLOSING[match["open"]])
     other = re.search(r"[A-DF-Za-df-z={}]{2,}|\bset\b|=", body)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..column_names import names_of, refuse_other_quantity, refuse_scale, unit_of_time
-from ..component import UNITS, Component, ReadingOptions, RecordFile
-from ..fill import without_fill
+from ..component import ALLOWED_UNITS, Component, ReadingOptions, RecordFile
+from ..fill import without_fill, without_missing_end
 from ..numbers import is_number, numbers_of_lines, separate, widths_of
 from ..table import bare_header, cells_of, first_row, is_comment
 from ..times import even_step, is_counting, rises_evenly, stated_step
@@ -86,19 +86,19 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
     """
     first = first_row(file.text)
     header = [text for line in file.text[:first] if (text := bare_header(line))]
-    lines = _rows(file, first)
+    lines, of_end = without_missing_end(_rows(file, first))
     samples = numbers_of_lines(file, lines, first + 1)
     samples, of_lines = _without_line_numbers(samples, lines)
     samples, of_pairs, step = _without_times(file, samples)
     values, count_step = _without_counts(samples)
     values, of_fill = without_fill(values)
-    notes = (*of_lines, *of_pairs, *of_fill)
+    notes = (*of_lines, *of_pairs, *of_fill, *of_end)
     step = step or count_step
     stated = stated_step(file, header, len(values)) or step
     names, _ = names_of(header, 1)
     word = names[0].unit if names else ""
     if names and names[0].kind in _QUANTITIES and word and unit_of(word) is None and not unit_of_time(word):
-        raise ValueError(f"{file.name} is in {word[:20]}, allowed are {', '.join(UNITS)}")
+        raise ValueError(f"{file.name} is in {word[:20]}, allowed are {ALLOWED_UNITS}")
     refuse_other_quantity(file, header)
     refuse_scale(file, header)
     unit = stated_unit(file.path, header)
