@@ -148,10 +148,12 @@ def open_record(path: Path) -> RecordFile:
         that is longer than any record in one line.
     """
     try:
-        content = _bytes(path)
+        content = bytes_of(path)
     except (OSError, ValueError) as error:  # ValueError: also for a null byte in the name
         reason = getattr(error, "strerror", None) or error
-        raise ValueError(f"cannot read the record {path}: {reason}") from None
+        name = str(path)
+        shown = name if name.isprintable() and len(name) <= _LONGEST_NAME else repr(name[-_LONGEST_NAME:])
+        raise ValueError(f"cannot read the record {shown}: {reason}") from None
     encoding = _utf16(content)
     if encoding is not None:
         try:
@@ -200,7 +202,19 @@ def _utf16(content: bytes) -> str | None:
     return None
 
 
-def _bytes(path: Path) -> bytes:
+_LONGEST_NAME = 150  # characters of a path in a message
+
+
+def bytes_of(path: Path) -> bytes:
+    """Return what a file holds.
+
+    Raises
+    ------
+    OSError
+        If it cannot be read.
+    ValueError
+        If it is a device, a pipe or a socket, larger than any record, or its name holds a null byte.
+    """
     if path.is_char_device():
         raise ValueError("it is a device, which may never end")
     if path.exists() and not (path.is_file() or path.is_dir()):

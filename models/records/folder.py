@@ -11,6 +11,7 @@ from typing import Any
 
 from ..argument_kinds import with_argument_kinds
 from ..ground_motion import GroundMotion
+from .component import bytes_of
 from .directions import DirectionError
 from .files import ZERO, read_record
 
@@ -153,14 +154,14 @@ def _read(path: Path, ways: Mapping[str, Any]) -> list[tuple[GroundMotion, float
 def _table(path: Path) -> tuple[list[str], list[tuple[int, dict[str | None, str | list[str]]]]]:
     """Return the columns of records.csv, and number and cells of each row."""
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = bytes_of(path).decode("utf-8-sig")
         first = text.partition("\n")[0]
         separator = ";" if ";" in first and "," not in first else ","
         reader = csv.DictReader(io.StringIO(text, newline=""), delimiter=separator)
         columns = [column.strip().lower() for column in reader.fieldnames or ()]
         reader.fieldnames = columns
         return columns, [(reader.line_num, dict(row)) for row in reader]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+    except (OSError, ValueError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or error
         raise ValueError(f"the table of records {path} cannot be read: {reason}") from None
 
@@ -242,10 +243,10 @@ def _stations(folder: Path) -> tuple[list[tuple[str, list[Path]]], bool]:
 
 def _listed_stations(table: Path) -> list[tuple[str, list[Path]]]:
     try:
-        text = table.read_text(encoding="utf-8-sig", errors="replace")
+        text = bytes_of(table).decode("utf-8-sig", errors="replace")
         # a blank before a quoted name is none of it
         rows = list(csv.reader(io.StringIO(text, newline=""), skipinitialspace=True))
-    except (OSError, csv.Error) as error:
+    except (OSError, ValueError, csv.Error) as error:
         raise ValueError(f"the table of records {table} cannot be read: {error}") from None
     heads = [place for place, row in enumerate(rows) if any("filename" in cell.lower() for cell in row)]
     if not heads:
