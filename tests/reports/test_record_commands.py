@@ -1,0 +1,100 @@
+"""Every command that takes a record: the same statement of what was read, and the same refusals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from rockwobble.models import read_record
+from rockwobble.reports.cli.main import main
+from rockwobble.reports.pages.page import Page
+
+GOOD = "Zeit [ms];Nord [mg];Ost [mg]\n" + "".join(
+    f"{10 * at};{30 * (at % 7)},5;{-40 * (at % 5)},25\n" for at in range(60)
+)
+BAD = {
+    "missing.csv": (None, "No such file"),
+    "empty.csv": ("", "is empty"),
+    "lengths.csv": (GOOD.replace("[mg]", "[mm]"), "'Ost [mm]'"),
+    "columns.csv": (GOOD.replace("Ost", "H1"), "--record-columns"),
+    "damaged.csv": (GOOD.replace("300;", "300;x"), "line 32"),
+    "silent.csv": (GOOD.replace("[mg]", ""), "does not say its unit"),
+    "array.npy": ("\x93NUMPY", "is a NumPy array"),
+}
+# quick ones; a study reads its record before anything else
+COMMANDS = {
+    "compare": ["compare", "--engine", "mujoco", "--duration", "0.3"],
+    "advise": ["advise", "--engine", "mujoco"],
+    "simulate": ["simulate", "--duration", "0.3"],
+    "explore": ["explore"],
+    "spectrum": ["spectrum", "--semidiagonal", "5:6:2", "--intensity", "2:3:2"],
+    "sweep": ["sweep", "--semidiagonal", "5,6"],
+    "ensemble": ["ensemble", "--engine", "none"],
+    "view": ["view", "--engine", "mujoco"],
+}
+
+
+def exit_code(*arguments: str) -> int:
+    with pytest.raises(SystemExit) as ended:
+        main(list(arguments))
+    assert isinstance(ended.value.code, int)
+    return ended.value.code
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    for name, text in {"good.csv": GOOD, **{name: text for name, (text, _) in BAD.items()}}.items():
+        if text is not None:
+            Path(name).write_bytes(text.encode("latin-1" if name.endswith("npy") else "utf-8"))
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", BAD)
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_bad_file_is_one_line_and_leaves_nothing(
+    folder: Path, capsys: pytest.CaptureFixture[str], command: str, name: str
+) -> None:
+    before = sorted(folder.iterdir())
+    assert (
+        exit_code(*COMMANDS[command], "--record", name, *(["--out", "out"] if command != "view" else [])) == 2
+    )
+    written = capsys.readouterr()
+    assert written.out == ""
+    (line,) = written.err.splitlines()
+    assert line.startswith("rockwobble: ")
+    assert name in line
+    assert BAD[name][1] in line
+    assert sorted(folder.iterdir()) == before
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_a_bad_file_of_a_folder_of_records_is_one_line(
+    folder: Path, capsys: pytest.CaptureFixture[str], name: str
+) -> None:
+    Path("records.csv").write_text(f"name,record\nfirst,good.csv\nsecond,{name}\n")
+    for command in (["fragility", "--engine", "none"], ["ensemble", "--engine", "none"], ["explore"]):
+        assert exit_code(*command, "--records", ".", "--out", "out") == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert "records.csv, line 3: " in line
+        assert BAD[name][1] in line
+        assert not (folder / "out").exists()
+
+
+@pytest.mark.parametrize("command", ["compare", "simulate", "explore", "sweep"])
+@pytest.mark.usefixtures("folder", "in_this_process")
+def test_a_good_file_is_stated_in_the_same_words(
+    capsys: pytest.CaptureFixture[str],
+    no_engines: Callable[..., None],
+    monkeypatch: pytest.MonkeyPatch,
+    command: str,
+) -> None:
+    no_engines()
+    monkeypatch.setattr(Page, "files", lambda _: {})  # the pages have their own test
+    assert exit_code(*COMMANDS[command], "--record", "good.csv", "--out", "out") == 0
+    written = capsys.readouterr()
+    # a terminal breaks lines where they are full
+    text = "".join((written.out + written.err).replace("│", "").split())
+    assert "".join(str(read_record("good.csv").source).split()) in text
