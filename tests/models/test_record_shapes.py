@@ -135,6 +135,12 @@ READ: Mapping[str, tuple[str | bytes, Mapping[str, Values], dict[str, Any]]] = {
         ALL,
         {},
     ),
+    "korean_cp949.csv": (table("시간(s),동서(gal),남북(gal)", EAST, NORTH).encode("cp949"), TWO, {}),
+    "greek_cp1253.csv": (
+        table("Χρόνος (s),Ανατολή (gal),Βορράς (gal)", EAST, NORTH).encode("cp1253"),
+        TWO,
+        {},
+    ),
     "russian_cp1251.csv": (
         table("Время (с),Ускорение восток (см/с2) [gal],Ускорение север [gal]", EAST, NORTH).encode("cp1251"),
         TWO,
