@@ -26,7 +26,7 @@ from ..runs.choice import default_runs, require_runnable, run_labels, runs_here
 from ..runs.execution import Job
 from ..runs.progress import ProgressCallback, Stage, stages
 from ..storage.provenance import package_versions
-from . import agreement, invariance, lagrange, laws, restraint
+from . import agreement, baseline, invariance, lagrange, laws, restraint
 from . import subject as subjects
 from .measurement import Bound, Result, at_most, not_run
 from .subject import TOLERANCE, Subject
@@ -177,8 +177,8 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
         )
     ),
     "baseline": (
-        Check(measure=agreement.kept_numbers, supports=MODELS, options=("rtol",)),
-        Check(measure=agreement.kept_numbers, supports=(*BOTH, "ring"), options=("stepper",)),
+        Check(measure=baseline.same_as_baseline, options=("rtol",)),
+        Check(measure=baseline.same_as_baseline, supports=(*BOTH, "ring"), options=("stepper",)),
     ),
 }
 # of an engine that nobody has named: what a version of it may change, in a few seconds

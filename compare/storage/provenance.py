@@ -99,6 +99,18 @@ def package_versions(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
     return versions | {package: _version(package) for package in packages}
 
 
+def other_versions(then: Mapping[str, str]) -> dict[str, tuple[str, str]]:
+    """Return the versions that are others than `then`: then and now, by name."""
+    now = package_versions()
+    return {name: (old, now[name]) for name, old in then.items() if now.get(name, old) != old}
+
+
+def version_words(others: Mapping[str, tuple[str, str]]) -> str:
+    """Return what `other_versions` found in words."""
+    apart = ", ".join(f"{name} {then} -> {now}" for name, (then, now) in others.items())
+    return f"versions: {apart}" if apart else "versions: the same"
+
+
 @cache
 def _version(package: str) -> str:
     try:

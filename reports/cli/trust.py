@@ -22,8 +22,6 @@ from .command import takes_options
 from .outputs import plan_in_json, plan_of, require_own_file
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rockwobble.compare.check import Checks
 
 _subject = options_in("Subject (default: the reduced models, and the engines that are installed)")
@@ -171,7 +169,7 @@ def check(
 
     One list of checks, tightest first: residuals in the equations of motion, exact solutions, conserved
     quantities, rest and uplift, invariance, a tendon, order of convergence, consistency of a trace, agreement
-    with the independent model, the protocol of an engine, stored numbers. Printed are failures, with value
+    with the independent model, the protocol of an engine, baseline: short motions that are kept. Printed are failures, with value
     and bound, and one line for each group.
 
     A suite is compared with the bounds that it states; one that states none, with what the time step of each
@@ -221,46 +219,36 @@ def _run(subject: Subject, only: list[str] | None) -> Checks:
     return found
 
 
-_SHOWN = 20
-
-
 def update(reason: str | None) -> None:
-    """Measure, print the changes, and write the file.
+    """Measure, print the changes, and write the files of the subjects that changed.
 
     Raises
     ------
     ValueError
-        If there is no reason, or the file cannot be written.
+        If there is no reason, or a file cannot be written.
     """
-    from rockwobble.compare.check import agreement
+    from rockwobble.compare.check import baseline
     from rockwobble.compare.check.groups import baseline_subjects
-    from rockwobble.compare.storage.provenance import package_versions
 
-    with shown_progress("engine runs"):
-        new = agreement.baseline_numbers(baseline_subjects())
-    old = agreement.read_baseline()
-    changed = agreement.baseline_changes(old, new)
-    print(*_largest_changes(changed), sep="\n")
-    if not changed:
-        return
-    if not (reason or "").strip():
-        raise ValueError("nothing was changed: a new baseline needs a --reason, got none")
     date = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
-    new = {group: new[group] for group, *_ in changed}
-    text = agreement.updated_baseline(old, new, reason=reason or "", date=date, versions=package_versions())
-    rs.replace_files(agreement.baseline_folder(), {agreement.BASELINES: text.encode()})
-    print(f"Written: {agreement.baseline_folder() / agreement.BASELINES}")
-
-
-def _largest_changes(changed: Sequence[tuple[str, str, float | None, float | None]]) -> list[str]:
-    """Return the largest changes, and how many values are new or gone, a line each."""
-    known = [
-        (abs(after - before), f"{group}, {what}: {before:.12g} -> {after:.12g} ({after - before:+.1e})")
-        for group, what, before, after in changed
-        if before is not None and after is not None
-    ]
-    lines = [line for _, line in sorted(known, reverse=True)[:_SHOWN]]
-    return [*lines, f"{len(changed)} values change, of which {len(changed) - len(known)} are new or gone"]
+    texts = dict[Path, bytes]()
+    for subject in baseline_subjects():
+        with shown_progress(f"cases of {subject.label}", each=False) as progress:
+            new = baseline.new_fingerprint(subject, progress)
+        old = baseline.read_baseline(subject)
+        changes = baseline.baseline_changes(old, new)
+        for each in changes:
+            print(f"{subject.label}: {each}")
+        if not changes:
+            print(f"{subject.label}: same")
+        elif (reason or "").strip():
+            text = baseline.updated_baseline(old, new, subject, reason=reason or "", date=date)
+            texts[baseline.baseline_path(subject)] = text.encode()
+        else:
+            raise ValueError("nothing was changed: a new baseline needs a --reason, got none")
+    for path, content in texts.items():
+        rs.replace_files(path.parent, {path.name: content})
+        print(f"Written: {path}")
 
 
 def certify(
@@ -336,6 +324,8 @@ def verify(
     same: every number repeats. chaotic: what differs does so after agreement must end, and distributions
     agree. changed: something differs before that; the claim and the first term concerned are named.
 
+    Versions that are others than those of the certificate are named.
+
     Exit code 0 for same and chaotic, 1 for changed, 2 for bad input.
 
     Example: rockwobble verify mujoco.json
@@ -343,10 +333,16 @@ def verify(
     with interruptible(), user_input():
         from rockwobble.compare.certificate import read_certificate
         from rockwobble.compare.certificate import verify as verdict_on
+        from rockwobble.compare.storage.provenance import other_versions, version_words
 
         stated = read_certificate(certificate)
         with shown_progress("cases", each=False) as progress:
             verdict = verdict_on(stated, progress=progress)
-    print(json.dumps(asdict(verdict), indent=1) if as_json else verdict.words())
+        others = other_versions(stated["versions"])
+    if as_json:
+        known = {name: None if value != value else value for name, value in asdict(verdict).items()}
+        print(json.dumps({**known, "other_versions": others}, indent=1, allow_nan=False))
+    else:
+        print(f"{verdict.words()}; {version_words(others)}")
     if verdict.exit_code:
         raise typer.Exit(verdict.exit_code)

@@ -18,8 +18,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockwobble.compare.certificate.certificate import read_certificate, repeat, subject_of
-from rockwobble.compare.certificate.verdict import Entry, Sample, compare_entries
+from rockwobble.compare.certificate.certificate import read_certificate, subject_of
+from rockwobble.compare.check.fingerprint import repeat
+from rockwobble.compare.check.verdict import Entry, Sample, compare_entries
 from rockwobble.compare.storage.provenance import package_versions
 from rockwobble.multibody.engines.registry import engine_packages, find_engine
 

@@ -8,7 +8,6 @@ import json
 import math
 import subprocess
 import sys
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +27,10 @@ from rockwobble.compare.certificate import (
     verify,
     write_certificate,
 )
-from rockwobble.compare.certificate.certificate import fingerprint, repeat, short_cases
-from rockwobble.compare.certificate.verdict import (
+from rockwobble.compare.check import Result, Subject
+from rockwobble.compare.check.fingerprint import cases_of, fingerprint, repeat, short_cases
+from rockwobble.compare.check.measurement import Bound, at_most, not_run
+from rockwobble.compare.check.verdict import (
     CHANGED,
     CHAOTIC,
     SAME,
@@ -37,8 +38,6 @@ from rockwobble.compare.certificate.verdict import (
     compare_entries,
     late_peaks,
 )
-from rockwobble.compare.check import Result, Subject
-from rockwobble.compare.check.measurement import Bound, at_most, not_run
 from rockwobble.models import Case, GroundMotion, Trace
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -75,20 +74,29 @@ def without(certificate: dict[str, Any], *names: str) -> dict[str, Any]:
 
 def test_cases_have_names_claims_and_terms_of_their_own() -> None:
     cases = short_cases()
-    assert len(cases) == len({short.name for short in cases}) == len({short.term for short in cases}) == 14
-    names = [short.name for short in cases]
-    assert [name for name in names if name not in [short.name for short in short_cases(slab=False)]] == [
-        "frame"
-    ]
-    tied = [short.name for short in short_cases(tendon=False)]
-    assert [name for name in names if name not in tied] == ["tendon"]
+    assert len(cases) == len({short.name for short in cases}) == len({short.term for short in cases}) == 15
 
 
-def test_what_carries_no_slab_has_no_case_of_a_frame() -> None:
-    place = [short.name for short in short_cases()].index("frame")
-    others = [short.name for short in short_cases(slab=False)][: place + 1]
-    entries = islice(fingerprint(dataclasses.replace(models(), carries_slab=False)), place + 1)
-    assert [one["name"] for one in entries] == others
+@pytest.mark.parametrize(
+    ("lacking", "gone"),
+    [
+        ({}, {"ring"}),
+        ({"supports": ("recess", "flat", "ring")}, set()),
+        ({"carries_slab": False}, {"ring", "frame"}),
+        ({"has_tendon": False}, {"ring", "tendon"}),
+        ({"supports": ("recess",)}, {"ring", "flat-ground"}),
+        (
+            {"uplifts": False, "supports": ("flat", "ring")},
+            {short.name for short in short_cases()} - {"flat-ground", "ring"},
+        ),
+    ],
+    ids=["models", "ring", "no slab", "no tendon", "recess", "no uplift"],
+)
+def test_a_subject_has_the_cases_that_it_can_run(lacking: dict[str, Any], gone: set[str]) -> None:
+    subject = dataclasses.replace(models(), **lacking)
+    names = [short.name for short in cases_of(subject)]
+    assert names == [short.name for short in short_cases() if short.name not in gone]
+    assert next(fingerprint(subject))["name"] == names[0]
 
 
 @pytest.mark.parametrize("names", [("frame",), ("tendon",), ("frame", "tendon")], ids="+".join)
@@ -97,8 +105,9 @@ def test_a_certificate_without_a_case_is_verified_for_what_it_holds(
 ) -> None:
     older = without(certificate, *names)
     assert verify(older).word == SAME
-    with pytest.raises(ValueError, match="other cases"):
-        verify(older | {"fingerprint": older["fingerprint"][1:]})
+    unknown = older["fingerprint"][0] | {"name": "sliding"}
+    with pytest.raises(ValueError, match="has a case sliding, this version has none: make it anew"):
+        verify(older | {"fingerprint": [unknown]})
 
 
 @pytest.mark.parametrize("name", ["gamma", "w", "mu"])
@@ -121,7 +130,7 @@ def test_a_tendon_of_one_percent_more_is_a_change_of_its_case(
 
 
 def test_the_signals_of_a_release_begin_where_it_leans(certificate: dict[str, Any]) -> None:
-    for short, one in zip(short_cases(), certificate["fingerprint"], strict=True):
+    for short, one in zip(cases_of(models()), certificate["fingerprint"], strict=True):
         start = short.case.initial
         if start is not None:
             lean = math.sin(start.tilt) / math.sin(short.case.cylinder.alpha)
@@ -275,7 +284,7 @@ def test_the_copy_in_the_published_folder_reads_certificates_with_numpy_alone(
     certificate: dict[str, Any], tmp_path: Path
 ) -> None:
     published = ROOT / "reports" / "published" / "benchmark" / "verify.py"
-    assert published.read_text() == (ROOT / "compare" / "certificate" / "verdict.py").read_text()
+    assert published.read_text() == (ROOT / "compare" / "check" / "verdict.py").read_text()
     off = json.loads(json.dumps(certificate))
     off["fingerprint"][2]["signals"]["tilt"][5] += 1e-3
     write_certificate(certificate, tmp_path / "one.json")

@@ -23,7 +23,7 @@ from rockwobble.compare.check import (
     PASSED,
     Result,
     Subject,
-    agreement,
+    baseline,
     external_model,
     invariance,
     lagrange,
@@ -229,7 +229,8 @@ def test_the_reduced_models_hold(right: Subject, group: str) -> None:
         (laws.place, "recess", field("centre_of_mass", lambda place: 1.0001 * place)),
         (laws.turning, "recess", field("peak_tilt", lambda peak: 0.999 * peak)),
         (laws.turning, "flat", field("extrema", lambda rows: rows * [1.0001, 1.0, 1.0, 1.0])),
-        (agreement.kept_numbers, "recess", field("tilt", lambda tilt: tilt + 1e-6)),
+        (baseline.same_as_baseline, "recess", field("tilt", lambda tilt: tilt + 1e-6)),
+        (baseline.same_as_baseline, "flat", field("twist", lambda twist: twist + 1e-6)),
         (lagrange.residual_with_tendon, "recess", asked(other_tendon(1.0, 1.0 + 1e-7))),
         (restraint.releases, "recess", asked(other_tendon(1.0 + 1e-7, 1.0))),
         (restraint.rocking, "planar", asked(other_tendon(1.0, 1.0 + 1e-6))),
@@ -452,30 +453,58 @@ def test_a_trajectory_without_tilt_is_refused(tmp_path: Path) -> None:
         checked(tmp_path, table(ours(RELEASE, "recess"), "time [s], x, y, z"))
 
 
-def test_a_version_without_a_baseline_is_no_failure_but_said(right: Subject) -> None:
-    kept = agreement.read_baseline()
-    known = next(name for name in kept.values if name.startswith("mujoco "))
-    engine = dataclasses.replace(right, label="mujoco", run=rw.Run("mujoco", "recess"))
-    found = list(agreement.kept_numbers(engine, "recess"))
-    assert {each.outcome for each in found} == {NO_BASELINE}
-    assert all(
-        each.note.startswith(f"no baseline for mujoco {rw.__version__}; compared with {known}")
-        for each in found
+def baseline_of(version: str, kept: baseline.Baseline) -> baseline.Baseline:
+    last = {**kept.reasons[-1], "version": version}
+    return dataclasses.replace(kept, reasons=(*kept.reasons[:-1], last))
+
+
+def test_another_version_that_changed_something_is_no_failure_but_said(
+    right: Subject, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    older = baseline_of("0.0.1", baseline.read_baseline(right))
+    monkeypatch.setattr(baseline, "read_baseline", lambda _: older)
+    wrong = field("tilt", lambda tilt: tilt + 1e-6)(right)
+    for model, outcome in ((right, PASSED), (wrong, NO_BASELINE)):
+        found = list(baseline.same_as_baseline(model, "recess"))
+        assert {each.outcome for each in found} == {outcome}
+        assert all(each.note.startswith("the baseline is of reduced model 0.0.1, this is ") for each in found)
+
+
+def test_a_subject_without_a_baseline_is_said(right: Subject) -> None:
+    (found,) = baseline.same_as_baseline(dataclasses.replace(right, label="another"), "recess")
+    assert (found.outcome, found.note) == (NO_BASELINE, "no baseline for another")
+
+
+def test_what_differs_names_the_versions_that_do(right: Subject, monkeypatch: pytest.MonkeyPatch) -> None:
+    kept = baseline.read_baseline(right)
+    older = dataclasses.replace(
+        kept, reasons=({**kept.reasons[-1], "versions": {**kept.versions, "numpy": "1.0"}},)
     )
+    monkeypatch.setattr(baseline, "read_baseline", lambda _: older)
+    wrong = field("tilt", lambda tilt: tilt + 1e-6)(right)
+    for model, said in ((right, False), (wrong, True)):
+        found = list(baseline.same_as_baseline(model, "recess"))
+        assert [f"numpy 1.0 -> {np.__version__}" in each.note for each in found] == [said] * len(found)
 
 
-def test_an_update_keeps_the_reason_and_the_other_groups() -> None:
+def test_an_update_keeps_the_reason_and_names_what_changes(right: Subject) -> None:
     import json
 
-    old = agreement.Baseline(values={"a 1": {"x": 1.0}, "b 1": {"y": 2.0}}, reasons=({"reason": "first"},))
-    new = {"a 1": {"x": 1.5, "z": 3.0}}
-    assert agreement.baseline_changes(old, new) == [("a 1", "x", 1.0, 1.5), ("a 1", "z", None, 3.0)]
-    made_with = {"date": "2026-11-21", "versions": {"numpy": "2"}}
-    found = json.loads(agreement.updated_baseline(old, new, reason=" a  new kernel ", **made_with))
-    assert found["values"] == {"a 1": {"x": 1.5, "z": 3.0}, "b 1": {"y": 2.0}}
-    assert [entry["reason"] for entry in found["reasons"]] == ["first", "a new kernel"]
+    kept = baseline.read_baseline(right)
+    first, second, *others = kept.fingerprint
+    signals = {**first["signals"], "tilt": [2.0 * float(tilt or 0.0) for tilt in first["signals"]["tilt"]]}
+    new = ({**first, "signals": signals}, second, *others[:-1])
+    changed, gone = baseline.baseline_changes(kept, new)
+    assert changed.startswith("changed: tilt of tilting from 0 s by 0.5, allowed ")
+    assert gone == f"gone: {others[-1]['name']}"
+    assert baseline.baseline_changes(kept, kept.fingerprint) == []
+    text = baseline.updated_baseline(kept, new, right, reason=" a  new kernel ", date="2026-11-21")
+    found = json.loads(text)
+    assert found["fingerprint"] == list(new)
+    assert [each["reason"] for each in found["reasons"]][-1] == "a new kernel"
+    assert len(found["reasons"]) == len(kept.reasons) + 1
     with pytest.raises(ValueError, match="a reason must be given"):
-        agreement.updated_baseline(old, new, reason="  ", **made_with)
+        baseline.updated_baseline(kept, new, right, reason="  ", date="2026-11-21")
 
 
 def one(*values: float) -> list[np.ndarray]:

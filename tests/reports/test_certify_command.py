@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
@@ -58,13 +59,29 @@ def test_verify_answers_with_one_word_and_its_exit_code(
     run: Run, certificate: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run("verify", str(certificate)) == 0
-    assert capsys.readouterr().out.strip() == "same"
+    assert capsys.readouterr().out.strip() == "same; versions: the same"
     assert run("verify", str(changed(certificate, tmp_path)), "--json") == 1
     answer = json.loads(capsys.readouterr().out)
     assert answer["word"] == "changed"
     assert answer["quantity"] == "tilt"
     assert answer["term"]
+    assert answer["other_versions"] == {}
     assert run("verify", "nowhere.json") == 2
+
+
+def test_verify_names_the_versions_that_are_others(
+    run: Run, certificate: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    older = json.loads(certificate.read_text())
+    older["versions"] |= {"numpy": "1.0", "mujoco": "not installed"}
+    (tmp_path / "older.json").write_text(json.dumps(older))
+    assert run("verify", str(tmp_path / "older.json")) == 0
+    said = capsys.readouterr().out
+    assert re.fullmatch(r"same; versions: numpy 1\.0 -> [^,]+, mujoco not installed -> [^,]+\n", said)
+    assert run("verify", str(tmp_path / "older.json"), "--json") == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["difference"] is None
+    assert answer["other_versions"]["numpy"][0] == "1.0"
 
 
 def test_nothing_is_certified_where_a_check_fails(

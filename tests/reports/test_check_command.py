@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from rockwobble.compare.check import FAILED, NOT_RUN, PASSED, Checks, Result, Subject, agreement, groups
+from rockwobble.compare.check import FAILED, NOT_RUN, PASSED, Checks, Result, Subject, baseline, groups
 from rockwobble.compare.check.measurement import Bound, at_most, not_run
 from rockwobble.compare.storage.files import replace_files
 from rockwobble.reports.cli.main import main
@@ -181,21 +181,26 @@ def test_outcomes() -> None:
 def test_an_update_needs_a_reason_and_keeps_it(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    kept = {agreement.BASELINES: (agreement.baseline_folder() / agreement.BASELINES).read_bytes()}
-    replace_files(tmp_path, kept)
-    monkeypatch.setattr(agreement, "baseline_folder", lambda: tmp_path)
-    before = agreement.read_baseline().values["reduced model"]
-    name, value = next(iter(before.items()))
-    new = {"reduced model": {name: value + 0.25}, "engine 1": {"x": 0.5}}
-    monkeypatch.setattr(agreement, "baseline_numbers", lambda _: new)
+    right = groups.subjects.reduced_model()
+    place = tmp_path / "reduced_model.json"
+    replace_files(tmp_path, {place.name: baseline.baseline_path(right).read_bytes()})
+    kept = place.read_bytes()
+    monkeypatch.setattr(baseline, "baseline_path", lambda _: place)
+    monkeypatch.setattr(groups, "baseline_subjects", lambda: [right])
+    assert run("--update-baseline") == 0
+    assert capsys.readouterr().out == "reduced model: same\n"
+
+    other = dataclasses.replace(right, supports=("flat",))
+    monkeypatch.setattr(groups, "baseline_subjects", lambda: [other])
     assert run("--update-baseline") == 2
     out, err = capsys.readouterr()
-    assert f"reduced model, {name}: {value:.12g} -> {value + 0.25:.12g} (+2.5e-01)" in out
-    assert f"{len(before) + 1} values change, of which {len(before)} are new or gone" in out
+    assert out.startswith("reduced model: gone: tilting, rolling, ")
     last = err.splitlines()[-1]
     assert last == "rockwobble: nothing was changed: a new baseline needs a --reason, got none"
-    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == kept
+    assert place.read_bytes() == kept
+    assert [path.name for path in tmp_path.iterdir()] == [place.name]
+
     assert run("--update-baseline", "--reason", "a better kernel") == 0
-    written = json.loads((tmp_path / agreement.BASELINES).read_text())
-    assert written["values"]["engine 1"] == {"x": 0.5}
+    written = json.loads(place.read_text())
+    assert [one["name"] for one in written["fingerprint"]] == ["flat-ground"]
     assert written["reasons"][-1]["reason"] == "a better kernel"

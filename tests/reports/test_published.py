@@ -11,7 +11,7 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from rockwobble.compare.certificate.verdict import CHANGED
+from rockwobble.compare.check.verdict import CHANGED
 from rockwobble.compare.studies.validity.limits import needs
 from rockwobble.compare.studies.validity.study import Validity
 from rockwobble.models.diagnostic import CODES, codes_in

@@ -1,0 +1,309 @@
+"""Fingerprint of a subject: short motions, how exactly they repeat, and how long they can agree.
+
+Two installations of one subject differ by rounding, and two versions of an engine by a little more. What that
+becomes in time is told by copies of a case whose start or record is off by the tolerance of the subject: a
+difference counts where it is larger than ten times theirs. Where the copies differ by 1 % of alpha themselves
+the agreement ends, and the tilts of many copies are kept instead, for their largest from then on. Those
+copies are ten times further off: so much may two versions differ.
+
+A baseline is a fingerprint that this package keeps, a certificate one that somebody takes along.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from random import Random
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import (
+    AGREEMENT,
+    Case,
+    Cylinder,
+    GroundMotion,
+    InitialState,
+    Tendon,
+    Trace,
+    WobblingFrame,
+    el_centro_1940,
+)
+from rockwobble.models.cylinder import PIER
+from rockwobble.models.members import perturbed
+from rockwobble.models.support import SUPPORTS
+
+from ..runs.progress import ProgressCallback, stages
+from .measurement import FRAME, SQUAT, release_case
+from .subject import Subject
+from .verdict import SAME, Entry, Sample, compare_entries
+
+Array = NDArray[np.float64]
+_SAMPLES = 40  # of each motion
+_BEYOND = 10.0  # what counts is so many times larger than the difference of the copies
+_MEMBERS = 16
+_REPEATS = 10.0  # times the tolerance of a subject: how closely a number repeats
+G = 9.81
+_SLENDER = Cylinder(semidiagonal=1.0, tan_alpha=0.2)
+_LOW = Cylinder(semidiagonal=1.0, tan_alpha=1.0)
+_HOLLOW = Cylinder(semidiagonal=4.0, tan_alpha=0.35, transverse_inertia=7.0, axial_inertia=3.0)
+SIGNALS = ("tilt", "lean_x", "lean_y", "twist", "energy", "force_x", "force_y", "force_z", "moment")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShortCase:
+    """One case of a fingerprint.
+
+    Parameters
+    ----------
+    name : str
+    claim : str
+        What holds while it is the same.
+    term : str
+        What it adds to the cases before it.
+    case : Case
+    support : {"recess", "flat"}
+    options : mapping
+        Of the reduced models alone.
+    """
+
+    name: str
+    claim: str
+    term: str
+    case: Case
+    support: str = "recess"
+    options: Mapping[str, object] = field(default_factory=dict)
+
+
+def short_cases() -> tuple[ShortCase, ...]:
+    """Return the cases, the simplest first."""
+    # so strong and long that an engine with a slab 1 % heavier is off by more than it repeats
+    pushes = [[0.0, 0.0, 0.0], [2.6, 0.6, -1.2], [1.2, 2.2, 1.2]]
+    frame = _shaken("frame", "mass of the slab, in (18) and in the forces", pushes, 1.0, 3.5, body=FRAME)
+    return (
+        _release("tilting", "restoring moment p^2 sin(alpha - theta)", PIER, 0.0, 1.0),
+        _release("rolling", "B and B'/2A of (18) and (19)", PIER, 0.8, 2.0),
+        _release("near-pass", "J, the limit of B near upright", PIER, 1e-2, 2.0),
+        _release("inertias", "I1 and I2 of (16)", _HOLLOW, 0.7, 2.0),
+        _release(
+            "flat-ground",
+            "twist of the flat-ground model, N1, and terms in the radius b",
+            _LOW,
+            1.5,
+            1.0,
+            support="flat",
+        ),
+        _shaken("uplift", "uplift (25), (26) and a_r of (18)", [[0.0, 0.0], [1.6, 1.9]], 1.4),
+        _shaken("turning-push", "a_t of (19)", [[0.0, 0.0], [2.2, 0.5], [1.0, 1.8]], 0.7),
+        _shaken("vertical", "g + az", [[0.0, 0.0, 0.0], [2.2, 0.5, -1.0], [1.0, 1.8, 1.0]], 0.7),
+        frame,
+        _with_tendon(),
+        ShortCase(
+            name="planar",
+            claim="the planar model, with the loss of an impact",
+            term="impact, by the momentum about the new pivot",
+            # small and long, so that in an engine its impacts turn rounding into another motion
+            case=Case(_SLENDER, initial=InitialState(0.5 * _SLENDER.alpha, 0.0, 0.3), duration=12.0),
+            options={"plane": 0.3, "restitution": "momentum"},
+        ),
+        _record("el-centro", "all terms together", 1.4, 12.0),
+        _shaken("resting", "rest threshold", [[0.0, 0.0], [1.3, 1.6], [0.0, 0.0]], 1.0, 3.0, rest_tilt=0.02),
+        _record("close-passes", "a hundred passes near upright", 1.05, 9.0),
+        ShortCase(
+            name="ring",
+            claim="walls that are touched keep the cylinder in its place",
+            term="walls of a recess with clearance",
+            case=release_case(0.5, 0.5, 4.0, SQUAT),
+            support="ring",
+        ),
+    )
+
+
+def cases_of(subject: Subject, longest: float = math.inf) -> list[ShortCase]:
+    """Return the cases that a subject can run, up to a length [s]."""
+    return [
+        short
+        for short in short_cases()
+        if short.support in subject.supports
+        and short.case.length <= longest
+        and (subject.uplifts or short.case.is_release)
+        and (subject.carries_slab or not isinstance(short.case.cylinder, WobblingFrame))
+        and (subject.has_tendon or short.case.tendon is None)
+    ]
+
+
+def _release(
+    name: str, term: str, body: Cylinder, spin: float, length: float, *, support: str = "recess"
+) -> ShortCase:
+    start = InitialState(0.5 * body.alpha, 0.0, 0.3, spin)
+    claim = f"free response {'by (18) and (19)' if SUPPORTS[support].guided else 'on flat ground'}"
+    case = Case(body, initial=start, duration=length)
+    return ShortCase(name=name, claim=claim, term=term, case=case, support=support)
+
+
+def _shaken(
+    name: str,
+    term: str,
+    samples: list[list[float]],
+    step: float,
+    length: float | None = None,
+    *,
+    body: Cylinder = PIER,
+    **options: float,
+) -> ShortCase:
+    motion = GroundMotion(np.array(samples), step)
+    case = Case(body, motion, duration=motion.duration if length is None else length)
+    claim = "uplift and motion under a ramp of the ground"
+    return ShortCase(name=name, claim=claim, term=term, case=case, options=options)
+
+
+def _with_tendon() -> ShortCase:
+    pushes = [[0.0, 0.0, 0.0], [2.6, 1.4, -1.2], [1.2, 2.2, 1.2]]
+    term = "prestress and stiffness of a tendon: uplift, couple, load and energy"
+    short = _shaken("tendon", term, pushes, 1.0, 2.5)
+    return replace(short, case=replace(short.case, tendon=Tendon(prestress=0.3, stiffness=2.0)))
+
+
+def _record(name: str, term: str, strength: float, length: float) -> ShortCase:
+    """Return a case under El Centro, so many times as strong as what lifts the pier."""
+    record = el_centro_1940()
+    motion = record.scaled(strength * G * PIER.tan_alpha / record.peak)
+    case = Case(PIER, motion, duration=length)
+    return ShortCase(name=name, claim="response to shaking", term=term, case=case)
+
+
+def fingerprint(
+    subject: Subject, progress: ProgressCallback | None = None, *, longest: float = math.inf
+) -> Iterator[Entry]:
+    """Yield the entries of the cases that a subject can run, each when it is computed."""
+    shorts = cases_of(subject, longest)
+    stage = stages(progress, [short.case.length for short in shorts])
+    for short in shorts:
+        with stage(short.name):
+            whole = entry_of(short, subject)
+        yield whole
+
+
+def entry_of(short: ShortCase, subject: Subject) -> Entry:
+    """Return the entry of a case."""
+    trace = _run(subject, short, short.case)
+    found, values = entry(short, trace), _signals(trace)
+    copies = [_signals(_run(subject, short, copy)) for copy in _copies(short.case, subject.tolerance)]
+    spread = _BEYOND * np.array([_difference(copy, values) for copy in copies]).max(axis=0)
+    lost = np.flatnonzero(spread[:, SIGNALS.index("tilt")] > AGREEMENT)
+    allowed = _REPEATS * subject.tolerance * np.maximum(1.0, np.abs(np.nan_to_num(values))) + spread
+    if len(lost):  # from there on copies are no measure
+        allowed[lost[0] :] = allowed[max(lost[0] - 1, 0)]
+    whole: Entry = {
+        **found,
+        "agreement_time": found["time"][lost[0]] if len(lost) else None,
+        "repeats": _REPEATS * subject.tolerance,
+        "allowed": {name: _rounded(allowed[:, k], 3) for k, name in enumerate(SIGNALS)},
+    }
+    if len(lost):
+        whole["copies"] = copied_tilts(short, subject)
+    return whole
+
+
+def repeat(
+    subject: Subject, old: Sequence[Entry], progress: ProgressCallback | None = None
+) -> Iterator[Sample]:
+    """Yield the parts of the entries needed to compare them with older ones: the copies are theirs."""
+    cases = {short.name: short for short in short_cases()}
+    shorts = [cases[one["name"]] for one in old]
+    stage = stages(progress, [short.case.length for short in shorts])
+    for one, short in zip(old, shorts, strict=True):
+        with stage(short.name):
+            found = entry(short, _run(subject, short, short.case))
+            if one["agreement_time"] is not None and compare_entries(one, found).word != SAME:
+                found["copies"] = copied_tilts(short, subject)
+        yield found
+
+
+def _run(subject: Subject, short: ShortCase, case: Case) -> Trace:
+    return subject.simulate(case, short.support, sample_step=case.length / _SAMPLES, **short.options)
+
+
+def entry(short: ShortCase, trace: Trace) -> Sample:
+    """Return the samples and the events of one case."""
+    values = _signals(trace)
+    return {
+        "name": short.name,
+        "claim": short.claim,
+        "term": short.term,
+        "support": short.support,
+        "outcome": trace.outcome,
+        "uplift_time": _finite_or_none(trace.uplift_time),
+        "uplift_direction": _finite_or_none(trace.uplift_direction),
+        # as the signals, of the run alone
+        "peak_tilt": _finite_or_none(trace.peak_within_run / short.case.cylinder.alpha),
+        "time": _rounded(trace.time),
+        "signals": {name: _finite_list(values[:, k]) for k, name in enumerate(SIGNALS)},
+    }
+
+
+def copied_tilts(short: ShortCase, subject: Subject) -> list[list[float | None]]:
+    """Return the tilts of many copies, over alpha."""
+    members = _members(short.case, _BEYOND * subject.tolerance)
+    return [_finite_list(_run(subject, short, member).tilt / member.cylinder.alpha) for member in members]
+
+
+def _signals(trace: Trace) -> Array:
+    """Return the signals (n, 9): over alpha, sin(alpha), g R, weights and b."""
+    body = trace.case.cylinder
+    lean = np.sin(trace.tilt) * np.exp(1j * np.nan_to_num(trace.rolling_angle)) / math.sin(body.alpha)
+    return np.column_stack(
+        [
+            trace.tilt / body.alpha,
+            lean.real,
+            lean.imag,
+            trace.twist,
+            trace.energy / (G * body.semidiagonal),
+            trace.contact_force,
+            trace.restraining_moment / body.base_radius,
+        ]
+    )
+
+
+def _difference(copy: Array, values: Array) -> Array:
+    """Return the difference (n, 9), of a copy that ended earlier as far as it goes."""
+    apart = np.zeros_like(values)
+    count = min(len(copy), len(values))
+    apart[:count] = np.nan_to_num(np.abs(copy[:count] - values[:count]))
+    running = np.maximum.accumulate(apart, axis=0)  # a difference that is zero by chance says nothing
+    return np.asarray(running, dtype=np.float64)
+
+
+def _copies(case: Case, share: float) -> list[Case]:
+    return [perturbed(case, 1.0 + share, 1.0 + share), perturbed(case, 1.0 - share, 1.0 + 0.5 * share)]
+
+
+def _members(case: Case, share: float) -> list[Case]:
+    random = Random(1940)
+    factors = [(1.0 + share * random.gauss(0, 1), 1.0 + share * random.gauss(0, 1)) for _ in range(_MEMBERS)]
+    return [perturbed(case, *pair) for pair in factors]
+
+
+def _finite_or_none(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def _finite_list(values: Array) -> list[float | None]:
+    return [value if math.isfinite(value) else None for value in _rounded(values)]
+
+
+def _rounded(values: Array, digits: int = 12) -> list[float]:
+    return [float(f"{value:.{digits}g}") for value in values]
+
+
+def as_json(content: Mapping[str, object]) -> str:
+    """Return a certificate or a baseline as the text of its file: a claim or a case is a line."""
+    parts = []
+    for name, part in content.items():
+        text = json.dumps(part)
+        if isinstance(part, list):
+            text = "[\n  " + ",\n  ".join(json.dumps(each, separators=(",", ":")) for each in part) + "\n ]"
+        parts.append(f" {json.dumps(name)}: {text}")
+    return "{\n" + ",\n".join(parts) + "\n}\n"
