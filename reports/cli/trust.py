@@ -169,8 +169,8 @@ def check(
 
     One list of checks, tightest first: residuals in the equations of motion, exact solutions, conserved
     quantities, rest and uplift, invariance, a tendon, order of convergence, consistency of a trace, agreement
-    with the independent model, the protocol of an engine, baseline: short motions that are kept. Printed are failures, with value
-    and bound, and one line for each group.
+    with the independent model, the protocol of an engine, baseline (short motions that are kept). Printed are
+    failures, with value and bound, and one line for each group.
 
     A suite is compared with the bounds that it states; one that states none, with what the time step of each
     run leaves, measured by a second run of twice that step.
