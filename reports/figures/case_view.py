@@ -49,10 +49,14 @@ class SummaryRow(Protocol):
     uplift_direction_difference: float
     uplift_direction_uncertainty: float
     unexplained_share: float
+    whole_rms: float
+    limit_error: float
     differs_in: Sequence[str]
     not_compared: Sequence[str]
     likely_mistake: Sequence[str]
     likely_mistake_in: Sequence[str]
+    agreement_without_mistake: float
+    differs_without_mistake: Sequence[str]
     finding: bool
     worth: bool
 

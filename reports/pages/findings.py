@@ -23,9 +23,8 @@ from rockwobble.models.support import FLAT, RECESS, SUPPORTS
 
 from ..figures.case_view import CaseView, SummaryRow, own_rows, rows_of
 from .diagnostics import code_counts, failure, remarks
-from .sentences import lines, sentence, the
+from .sentences import enumeration, seconds, small, the
 
-WORDS = "comparison/findings.md.j2"
 _LISTED = 10
 # why a run diverges from its reference, as a table says it
 CAUSES: Mapping[str, str] = {
@@ -37,6 +36,17 @@ CAUSES: Mapping[str, str] = {
     "near passes": "near passes",
     "method": "method",
     "failed": "failure",
+}
+_DIFFERENCES: Mapping[str, str] = {
+    "azimuth": "azimuth",
+    "path": "path of the mass centre",
+    "uplift_time": "time of uplift",
+    "uplift_direction": "direction of uplift",
+}
+_NOT_SPLIT: Mapping[str, str] = {
+    "unresolved_pass": "a pass closer to upright than contact resolves leaves it to chance",
+    "order": "runs at smaller time steps do not tend to a limit",
+    "error": "what they tend to is known too badly",
 }
 
 
@@ -104,7 +114,10 @@ def _models_differ(view: CaseView, row: SummaryRow) -> bool:
 def agreement_words(row: SummaryRow) -> str:
     """Return what agreement of the tilts means for a run."""
     noise = row.tilt_bound - AGREEMENT if row.support == EXTERNAL else 0.0
-    return sentence(WORDS, "within", row.tolerance, noise, AGREEMENT)
+    share = "1 %" if row.tolerance >= AGREEMENT else "a tenth of the peak"
+    if noise > 0:
+        return f"{100 * (row.tolerance + noise):.2g} % of alpha ({share} and the noise)"
+    return f"{share} of alpha" if row.tolerance >= AGREEMENT else f"{share} ({small(row.tolerance)} alpha)"
 
 
 def notes(view: CaseView) -> str:
@@ -122,25 +135,74 @@ def notes(view: CaseView) -> str:
         for label, outcome in ((row.run, row.outcome), (row.reference, row.reference_outcome))
         if outcome == "failed"
     )
-    values = {
-        "failed": {label: failure(view.facts.get(label, ())) for label in lost},
-        "still": bool(runs) and not any(math.isfinite(each.uplift_time) for each in view.traces.values()),
-        "swings": [label for label, trace in view.traces.items() if trace.peak_time > trace.time[-1]],
-        "causes": causes,
-        "external": [_mistakes(row) for row in sound if row.support == EXTERNAL],
-        "remarks": _together({run: remarks(view.facts[run]) for run in runs}),
+    said = [f"{label} failed: {failure(view.facts.get(label, ()))}." for label in lost]
+    if runs and not any(math.isfinite(each.uplift_time) for each in view.traces.values()):
+        said.append("All stay at rest: this excitation does not uplift the cylinder.")
+    if swings := [label for label, trace in view.traces.items() if trace.peak_time > trace.time[-1]]:
+        said.append(
+            f"The peak of {enumeration(swings)} is that of the swing that goes on when the run ends, which "
+            "the curves do not show."
+        )
+    said += [*_causes_in_words(causes), *(_mistakes(row) for row in sound if row.support == EXTERNAL)]
+    said += [*early_sentences(view.rows), *budget_sentences(view.rows)]
+    if told := _together({run: remarks(view.facts[run]) for run in runs}):
+        said.append(f"Diagnostics: {'; '.join(f'{enumeration(names)}: {text}' for names, text in told)}.")
+    return " ".join(filter(None, said))
+
+
+def _causes_in_words(causes: Mapping[str, list[SummaryRow]]) -> list[str]:
+    """Return a sentence on each cause of divergence, and what they mean together."""
+    runs = {cause: _parted_runs(rows) for cause, rows in causes.items()}
+    meanings = {
+        "support": "Support parts {}: on flat ground the cylinder may roll out of its place, which a recess "
+        "forbids.",
+        "walls": "Walls part {}: they stop the cylinder only where it has rolled out as far as their "
+        "clearance, and each touch takes energy, which no model knows.",
+        "of support": "That is a difference of support, not of accuracy.",
+        "pass": "Passes closer to upright than contact resolves, which leave the side to chance, part {}.",
+        "near passes": "Near passes, which amplify small differences, part {}.",
+        "method": "No pass parts {}, but an error: of the method, or of what it was given.",
     }
-    parts = [sentence(WORDS, macro, values) for macro in ("failures", "swings", "parted", "mistakes")]
-    parts += [*early_sentences(view.rows), *budget_sentences(view.rows), sentence(WORDS, "remarks", values)]
-    return " ".join(filter(None, parts))
+    runs |= {"of support": ""} if {"support", "walls"} & {*causes} else {}
+    said = [words.format(runs[cause]) for cause, words in meanings.items() if cause in runs]
+    if {*causes} - {"mistake", "loss"}:
+        said.append("Once traces have diverged, compare distributions.")
+    return said
 
 
-def _mistakes(row: SummaryRow) -> dict[str, object]:
-    """Return the likely mistakes of an external trajectory in words, and whether they explain it."""
+def _parted_runs(rows: list[SummaryRow]) -> str:
+    """Return which runs diverge from which references."""
+    references = {
+        the(row.reference, row.reference_engine): None for row in sorted(rows, key=lambda row: row.reference)
+    }
+    runs = {
+        name: [row.run for row in rows if the(row.reference, row.reference_engine) == name]
+        for name in references
+    }
+    return ", ".join(f"{enumeration(names)} from {reference}" for reference, names in runs.items())
+
+
+def _mistakes(row: SummaryRow) -> str:
+    """Return the likely mistakes of an external trajectory, and whether they explain it."""
     words = [mistake.words for mistake in mistakes_of(row)]
     loses = _loses(row)
+    if not words:
+        unexplained_turn = {"azimuth", "path"} & {*row.differs_in}
+        said = "no mistake of axes, units, clock or origin explains the difference"
+        return f"{row.run}: {said}." if unexplained_turn else ""
+    said = f"likely cause: {', '.join(words)}" if loses else f"likely mistake: {'; '.join(words)}"
     explained = explains_divergence(row) and (not loses or len(words) > 1)
-    return {"row": row, "mistakes": words, "explained": explained, "loses": loses}
+    if loses and not explained:
+        rest = "No rolling resistance explains it alone: impacts, slip or the air may take it"
+    elif "tilt" in row.differs_in and not explained:
+        rest = "It is no reason for the tilts to diverge"
+    else:
+        until = row.reference_uplift_time + row.agreement_without_mistake
+        left = [_DIFFERENCES[name] for name in row.differs_without_mistake if name != "tilt"]
+        cured = "With that resistance" if loses else "Without it"
+        rest = f"{cured} the tilt follows the model until {until:.1f} s"
+        rest += f", but it differs in {enumeration(left)}" if left else ""
+    return f"{row.run}: {said}. {rest}."
 
 
 def _loses(row: SummaryRow) -> bool:
@@ -162,7 +224,8 @@ def counted_remarks(summary: pd.DataFrame) -> list[str]:
     runs = summary[(summary["outcome"] != "failed") & (summary["reference_outcome"] != "failed")]
     runs = runs.drop_duplicates(["case", "run"])
     counts = code_counts(map(codes_in, runs["diagnostics"]))
-    return [sentence(WORDS, "counts", counts)] if counts else []
+    said = f"Diagnostics: of the runs {', '.join(counts)}; see the column diagnostics of summary.csv."
+    return [said] if counts else []
 
 
 def headline(rows: pd.DataFrame, length: float) -> str:
@@ -177,30 +240,43 @@ def headline(rows: pd.DataFrame, length: float) -> str:
         )
     if not groups:
         return "No run could be compared."
-    return " ".join(sentence(WORDS, "followed", _group(group, length)) for group in groups)
+    return " ".join(_followed(group, length) for group in groups)
 
 
-def _group(rows: pd.DataFrame, length: float) -> dict[str, object]:
-    """Headline on the runs of one support, compared with their own model."""
+def _followed(rows: pd.DataFrame, length: float) -> str:
+    """Return the headline on the runs of one support, compared with their own model."""
     first = next(iter(rows_of(rows)))
     external, support = first.support == EXTERNAL, SUPPORTS.get(first.support)
     names = {the(row.run, REDUCED) if row.engine == REDUCED else row.engine: None for row in rows_of(rows)}
     ends = rows["within_tolerance_until"]
-    last = float(ends.max())
-    return {
-        "support": support.words if support else "external trajectory" if external else str(first.support),
-        "names": list(names),
-        "references": list({the(row.reference, row.reference_engine): None for row in rows_of(rows)}),
-        "bound": agreement_words(first),
-        "diverged": bool(rows["left_tolerance"].any()),
-        "first": float(ends.min()),
-        "last": last,
+    begun, last = (seconds(float(end)) for end in (ends.min(), ends.max()))
+    if not rows["left_tolerance"].any():
         # the file of an external trajectory may end before the run does
-        "short": external and last < length * (1.0 - 1e-9),
-        "differs": [part for part in first.differs_in if part != "tilt"] if external else [],
-        "not_compared": list(first.not_compared) if external else [],
-        "mistakes": [mistake.words for mistake in mistakes_of(first)] if external else [],
-    }
+        short = external and float(ends.max()) < length * (1.0 - 1e-9)
+        until = f"to {'its' if short else 'the'} end at {last}"
+    else:
+        until = f"until {last}" if begun == last else f"until {begun} to {last}"
+    words = support.words if support else "external trajectory" if external else str(first.support)
+    references = {the(row.reference, row.reference_engine): None for row in rows_of(rows)}
+    said = (
+        f"{words[0].upper()}{words[1:]}: {enumeration(list(names))} within {agreement_words(first)} of "
+        f"{enumeration(list(references))} {until}"
+    )
+    return f"{said}{_of_external(first) if external else ''}."
+
+
+def _of_external(row: SummaryRow) -> str:
+    """Return in what else an external trajectory differs, in what it is not compared, and likely mistakes."""
+    differs = [_DIFFERENCES[part] for part in row.differs_in if part != "tilt"]
+    left_out = [_DIFFERENCES[part] for part in row.not_compared]
+    mistakes = [mistake.words for mistake in mistakes_of(row)]
+    return "".join(
+        [
+            f", but not in {enumeration(differs)}" if differs else "",
+            f" (not compared: {enumeration(left_out)})" if left_out else "",
+            f". Likely mistake: {'; '.join(mistakes)}" if mistakes else "",
+        ]
+    )
 
 
 def budget_sentences(summary: pd.DataFrame) -> list[str]:
@@ -210,18 +286,34 @@ def budget_sentences(summary: pd.DataFrame) -> list[str]:
         return []
     large = known[known["whole_rms"] > WORTH_EXPLAINING]
     worth, found = large[large["not_split"] == ""], unexplained(known)
-    lines = [sentence(WORDS, "unexplained", row) for row in rows_of(found.head(_LISTED))]
-    counts = {
-        "more": len(found) - _LISTED,
-        "worth": len(worth),
-        "explained": len(worth) - len(found),
-        "small": len(known) - len(large),
-        "not_split": large.loc[large["not_split"] != "", "not_split"].value_counts().to_dict(),
-        "missing": len(summary) - len(known),
-        "largest": LARGEST_SHARE,
-        "bound": WORTH_EXPLAINING,
-    }
-    return [*lines, *filter(None, [sentence(WORDS, "budgets", counts)])]
+    said = [
+        f"{_compared(row)}: {100 * row.unexplained_share:.0f} % of the difference of {small(row.whole_rms)} "
+        f"alpha stay unexplained (the extrapolation itself is known to {small(row.limit_error)} alpha)."
+        for row in rows_of(found.head(_LISTED))
+    ]
+    if (more := len(found) - _LISTED) > 0:
+        said.append(f"So they do in {more} more row{'s' if more > 1 else ''} of the summary.")
+    not_split = large.loc[large["not_split"] != "", "not_split"].value_counts().to_dict()
+    bound = small(WORTH_EXPLAINING)
+    if len(worth):
+        said.append(
+            f"Model form and numerics explain all but {100 * LARGEST_SHARE:.0f} % of the difference in "
+            f"{len(worth) - len(found)} of the {len(worth)} rows that differ by more than {bound} alpha; "
+            f"{len(known) - len(large)} rows differ by less."
+        )
+    elif not not_split:
+        said.append(f"No row differs by more than {bound} alpha.")
+    for reason, count in not_split.items():
+        rows = f"{count} row{'s' if count > 1 else ''}"
+        why = _NOT_SPLIT[str(reason)]
+        said.append(f"The difference of {rows} is not split into numerics and unexplained: {why}.")
+    if missing := len(summary) - len(known):
+        said.append(f"{missing} rows have no budget: their runs failed, never moved, or have no finer step.")
+    return said
+
+
+def _compared(row: SummaryRow) -> str:
+    return f"{row.case}, {row.run} compared with {the(row.reference, row.reference_engine)}"
 
 
 def early_sentences(summary: pd.DataFrame) -> list[str]:
@@ -230,17 +322,31 @@ def early_sentences(summary: pd.DataFrame) -> list[str]:
     Of external trajectories nobody can predict that: the prediction rests on the errors of an engine.
     """
     early = (summary["divergence"] == "earlier") & (summary["support"] != EXTERNAL)
-    return [sentence(WORDS, "early", row) for row in rows_of(summary[early])]
+    return [
+        f"{_compared(row)}: they diverge earlier than predicted, a finding."
+        for row in rows_of(summary[early])
+    ]
 
 
 def divergence_counts(summary: pd.DataFrame) -> list[str]:
     """Return one sentence on how many rows diverged as predicted; none if of none it is known."""
     counts = summary.loc[summary["support"] != EXTERNAL, "divergence"].value_counts()
     said = [f"{count} {verdict}" for verdict, count in counts.items() if verdict]
-    return [sentence(WORDS, "in_time", said)] if said else []
+    in_time = f"Divergence and its prediction, in time within a factor of 2: {', '.join(said)}."
+    return [in_time] if said else []
 
 
 _PARTS = ("model_form", "numerics", "unexplained")
+# by the largest part, or why there is none
+_ADVICE: Mapping[str, str] = {
+    "model_form": "Most of it is model form: the support moves by another model, which no step changes.",
+    "numerics": "Most of it is numerics: a smaller time step removes it.",
+    "unexplained": "Most of it is unexplained: contact, settings or support of the engine, or the model.",
+    "unresolved_pass": "It is not split: a pass comes closer to upright than contact resolves, which leaves it "
+    "to chance at any time step.",
+    "order": "It is not split: runs at smaller time steps do not tend to a limit.",
+    "error": "It is not split: what runs at smaller time steps tend to is known too badly.",
+}
 
 
 def budget_of_run(case: rw.Case, run: rw.Run, reference: rw.Run) -> list[str]:
@@ -249,10 +355,28 @@ def budget_of_run(case: rw.Case, run: rw.Run, reference: rw.Run) -> list[str]:
     label = next((label for (_, label), trace in comparison.traces.items() if trace.run == reference), None)
     rows = comparison.summary[comparison.summary["reference"] == label]
     budget = next((found for key, found in comparison.budgets.items() if key[2] == label), None)
-    return lines(
-        "comparison/budget_of_run.txt.j2",
-        budget=budget,
-        row=next(rows.itertuples(), None),  # a reference that is not its own has none
-        share=100.0 * COVERED,
-        verdict=budget and (budget.not_split or max(_PARTS, key=budget.rms)),
-    )
+    row = next(rows_of(rows), None)
+    if budget is None or row is None:  # a reference that is not its own has none
+        return ["There is no budget of the difference: traces diverge at once, or there is no finer step."]
+    parts = {
+        "whole": ("whole", f"engine minus the {row.reference}"),
+        "model_form": ("model form", "the model of the support minus the one asked about"),
+        "numerics": ("numerics", "the engine minus the engine at a time step of zero"),
+        "unexplained": ("unexplained", "the engine at a time step of zero minus the model of its support"),
+    }
+    if budget.not_split:
+        del parts["numerics"], parts["unexplained"]
+    steps = ", ".join(f"{step:g}" for step in budget.steps)
+    order = f"; measured order {budget.order:.1f}" if math.isfinite(budget.order) else ""
+    said = [
+        f"What the difference is made of (RMS in alpha until {budget.covered:.3g} s, {100.0 * COVERED:.0f} % of "
+        "the agreement):",
+        *(f"  {name:<12} {budget.rms(part):8.1e}  {meaning}" for part, (name, meaning) in parts.items()),
+        f"  known to {budget.rms('limit_error'):.1e}, from time steps of {steps} s{order}",
+    ]
+    if row.left_tolerance:
+        said.append(
+            f"  traces diverge at {row.within_tolerance_until:.3g} s, {row.predicted_until:.3g} s were "
+            f"predicted: {row.divergence}"
+        )
+    return [*said, _ADVICE[budget.not_split or max(_PARTS, key=budget.rms)]]

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from rockwobble.compare.runs.choice import REDUCED
@@ -19,21 +17,9 @@ if TYPE_CHECKING:
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def sentence(template: str, macro: str, *values: object) -> str:
-    """Return the words of a macro of a template, on one line, as plain text."""
-    said = str(getattr(_environment(html=False).get_template(template).module, macro)(*values))
-    # spaces that do not break stay
-    return re.sub(r"[ \n]+", " ", said).strip()
-
-
-def lines(template: str, **values: object) -> list[str]:
-    """Return what a template says in a terminal, as plain text."""
-    return _environment(html=False).get_template(template).render(**values).splitlines()
-
-
 def fragment(template: str, **values: object) -> str:
     """Return a piece of a page, in which values are text and no markup."""
-    return _environment(html=True).get_template(template).render(**values)
+    return environment(autoescape=True).get_template(template).render(**values)
 
 
 def seconds(value: float) -> str:
@@ -62,10 +48,9 @@ def the(label: str, engine: str) -> str:
 
 # what templates know besides what jinja2 does
 _FILTERS = {
-    **{"seconds": seconds, "small": small, "listed": enumeration, "the": the, "degrees": math.degrees},
+    "degrees": math.degrees,
     "warnings": warnings,
     "conditions": conditions,
-    "lookup": lambda name, table: table[name],
 }
 
 
@@ -83,8 +68,3 @@ def environment(**options: Any) -> jinja2.Environment:
     found.filters |= _FILTERS
     found.tests["known"] = math.isfinite
     return found
-
-
-@cache
-def _environment(*, html: bool) -> jinja2.Environment:
-    return environment(autoescape=html)  # of sentences, what shows them escapes them
