@@ -342,8 +342,8 @@ _ADVICE: Mapping[str, str] = {
     "model_form": "Most of it is model form: the support moves by another model, which no step changes.",
     "numerics": "Most of it is numerics: a smaller time step removes it.",
     "unexplained": "Most of it is unexplained: contact, settings or support of the engine, or the model.",
-    "unresolved_pass": "It is not split: a pass comes closer to upright than contact resolves, which leaves it "
-    "to chance at any time step.",
+    "unresolved_pass": "It is not split: a pass comes closer to upright than contact resolves, which leaves "
+    "it to chance at any time step.",
     "order": "It is not split: runs at smaller time steps do not tend to a limit.",
     "error": "It is not split: what runs at smaller time steps tend to is known too badly.",
 }
@@ -369,8 +369,8 @@ def budget_of_run(case: rw.Case, run: rw.Run, reference: rw.Run) -> list[str]:
     steps = ", ".join(f"{step:g}" for step in budget.steps)
     order = f"; measured order {budget.order:.1f}" if math.isfinite(budget.order) else ""
     said = [
-        f"What the difference is made of (RMS in alpha until {budget.covered:.3g} s, {100.0 * COVERED:.0f} % of "
-        "the agreement):",
+        f"What the difference is made of (RMS in alpha until {budget.covered:.3g} s, {100.0 * COVERED:.0f} % "
+        "of the agreement):",
         *(f"  {name:<12} {budget.rms(part):8.1e}  {meaning}" for part, (name, meaning) in parts.items()),
         f"  known to {budget.rms('limit_error'):.1e}, from time steps of {steps} s{order}",
     ]
