@@ -34,8 +34,9 @@ _G = 9.81
 _USUAL = {"g": _G, "m/s2": 1.0, "cm/s2": 0.01}
 _PARTS = {"mm/s2": 1e-3, "µm/s2": 1e-6, "mgal": 1e-5, "%g": 1e-2 * _G, "mg": 1e-3 * _G}
 METRES_PER_SECOND_SQUARED = _USUAL | _PARTS | {"µg": 1e-6 * _G, "ft/s2": 0.3048, "in/s2": 0.0254}
-UNITS = tuple(_USUAL)  # that the user can give for a silent file; a file may state the others, too
-ALLOWED_UNITS = ", ".join(METRES_PER_SECOND_SQUARED)
+UNITS = tuple(METRES_PER_SECOND_SQUARED)
+USUAL_UNITS = tuple(_USUAL)
+ALLOWED_UNITS = ", ".join(UNITS)
 STEP_OPTION = "--record-step (time_step=)"
 _SAME_STEP = 3e-3  # relative: 0.0167 for 1/60
 _END_OF_FILE = b"\x1a"  # Ctrl-Z of DOS

@@ -16,11 +16,11 @@ from ..ground_motion import GroundMotion
 from ..number_checks import require_finite, require_one_of, require_positive
 from ..record_source import ComponentSource, RecordSource
 from .clocks import LENGTHS, equally_long, require_same_clock, resampled
-from .component import METRES_PER_SECOND_SQUARED, UNITS, Component, Direction, ReadingOptions, open_record
+from .component import METRES_PER_SECOND_SQUARED, Component, Direction, ReadingOptions, open_record
 from .directions import NORTH, at_the_surface, for_place, in_order, turned_to_north
 from .formats import read_components
 from .plausibility import doubts_as_read
-from .units import factor
+from .units import factor, given_unit
 
 ZERO = "zero"  # in the place of a file: planar motion
 _G = METRES_PER_SECOND_SQUARED["g"]
@@ -56,8 +56,9 @@ def read_record(
         planar motion along the other.
     z_path : str or Path, optional
         Vertical component.
-    units : {"g", "m/s2", "cm/s2"}, optional
-        Required where a file does not say its unit; where it does, both must agree.
+    units : str, optional
+        "g", "m/s2", "cm/s2" or another unit of acceleration in any usual spelling. Required where a file
+        does not say its unit; where it does, both must agree.
     columns : str or sequence of str or int, optional
         Columns of time, x, y and z in this order, by name or number from 1, such as "Zeit,Ost,Nord" or
         [1, 4, 3, 2]; the words "time,x,y,z" (and "-" for a column to leave out) name those of a file without
@@ -103,7 +104,7 @@ def read_record(
     pulse.csv: columns, 4 samples of 0.01 s, 0.03 s; x: EW [g] 0.2 g; y: NS [g] 0.1 g
     """
     if units is not None:
-        require_one_of("units", units, UNITS)
+        units = given_unit(units)
     if lengths is not None:
         require_one_of("lengths", lengths, LENGTHS)
     if time_step is not None:

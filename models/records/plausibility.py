@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..diagnostic import Diagnostic
 from ..record_source import LARGEST_MEAN
-from .component import METRES_PER_SECOND_SQUARED, UNITS, Component
+from .component import METRES_PER_SECOND_SQUARED, USUAL_UNITS, Component
 
 LARGEST_PEAK = 2.0  # [g]; few records of any earthquake have more, numbers in m/s^2 taken for g mostly do
 LARGEST_SCALED_PEAK = (
@@ -47,8 +47,8 @@ def likely_unit(peak: float, used: str | None = None) -> tuple[str, float]:
     others = [
         (unit, peak * metre[unit] / metre[read])
         for read in reads
-        if read in UNITS
-        for unit in UNITS
+        if read in USUAL_UNITS
+        for unit in USUAL_UNITS
         if unit != read and metre[unit] < metre[read]
     ]
     return min(others, key=lambda other: abs(math.log(other[1] / _USUAL)), default=("", peak))

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from ..diagnostic import Diagnostic
 from ..ground_motion import GroundMotion
-from .component import ALLOWED_UNITS, METRES_PER_SECOND_SQUARED, UNITS
+from ..number_checks import quoted
+from .component import ALLOWED_UNITS, METRES_PER_SECOND_SQUARED, USUAL_UNITS
 from .plausibility import LARGEST_SCALED_PEAK, peak_doubts
 
 _SPELLINGS = {  # without blanks, signs of powers and of products, "sec" as "s"
@@ -51,6 +52,20 @@ def unit_of(word: str) -> str | None:
     return _UNIT_OF.get(re.sub("s(?:ec|eg|n|q)", "s", word.lower().translate(_SAME)))
 
 
+def given_unit(word: str) -> str:
+    """Return the unit of acceleration that a word of the user spells.
+
+    Raises
+    ------
+    ValueError
+        If it spells none.
+    """
+    unit = unit_of(word) if isinstance(word, str) else None
+    if unit is None:
+        raise ValueError(f"units must be one of {ALLOWED_UNITS}, got {quoted(word)}")
+    return unit
+
+
 def stated_unit(path: Path, header: list[str]) -> str | None:
     """Return the unit of acceleration that the header lines state, None where they are silent.
 
@@ -86,7 +101,7 @@ def factor(path: Path, stated: str | None, given: str | None) -> float:
     """
     unit = stated or given
     if unit is None:
-        raise ValueError(f"{path.name} does not say its unit: give units, one of {', '.join(UNITS)}")
+        raise ValueError(f"{path.name} does not say its unit: give units, such as {', '.join(USUAL_UNITS)}")
     if given is not None and given != unit:
         raise ValueError(f"{path.name} says that it is in {unit}, but units is {given!r}")
     return METRES_PER_SECOND_SQUARED[unit]

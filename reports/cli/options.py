@@ -138,7 +138,7 @@ def whole(least: int, most: float = math.inf) -> Callable[[int | None], int | No
 body, method, work, output = map(panel, ("Cylinder", "Method", "Work", "Output"))
 
 SLENDERNESS = "Slenderness b/h, radius over half the height."
-UNITS = "g, m/s2 or cm/s2; required where the files do not say."
+UNITS = "Unit of the numbers in the files, such as g, m/s2 or cm/s2; required where the files do not say."
 RECORD_COLUMNS = (
     "Columns of time, x, y and z in this order, by name or number, as Zeit,Ost,Nord or 1,4,3; time,x,y,z for "
     "those of a file without names; values: all numbers are one component."

@@ -80,11 +80,24 @@ def test_refuses_different_starts(write: Write) -> None:
     assert np.isfinite(read_record(write(at2(0.01, 9), "z"), y).acceleration).all()
 
 
-@pytest.mark.parametrize("units", ["G", "ft/s2", "", "cm/s"])
+@pytest.mark.parametrize("units", ["furlong", "", "cm/s", "m"])
 def test_refuses_units_that_are_unknown(write: Write, units: str) -> None:
     x = write(columns(0.01, 4))
-    with pytest.raises(ValueError, match=f"^units must be one of g, m/s2, cm/s2, got '{units}'$"):
+    with pytest.raises(
+        ValueError,
+        match=f"^units must be one of g, m/s2, cm/s2, .*in/s2, got '{units}'$",
+    ):
         read_record(x, x, units=units)
+
+
+@pytest.mark.parametrize(
+    ("units", "unit"),
+    [("G", 9.81), ("Gal", 0.01), ("m/s^2", 1.0), ("mm/s2", 1e-3), ("mg", 9.81e-3), ("%g", 0.0981)],
+)
+def test_a_silent_file_is_in_any_unit_that_is_given(write: Write, units: str, unit: float) -> None:
+    x = write("0 0\n.01 1\n.02 2\n.03 1\n")
+    found, metre = (read_record(x, x, units=each).acceleration for each in (units, "m/s2"))
+    np.testing.assert_allclose(found, unit * metre, rtol=1e-14)
 
 
 def test_names_the_one_file_that_is_silent(write: Write) -> None:

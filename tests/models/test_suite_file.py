@@ -244,7 +244,7 @@ WRONG = {
     replaced(STILL, 'motion = { x = "x.csv" }'): "cases[0].motion.y: must be given: a record has two",
     replaced(STILL, 'motion = { x = "x.csv", y = "y.csv" }'): "cases[0].motion: cannot read the record ",
     replaced(STILL, 'motion = { x = "x.csv", y = "y.csv", units = "ft" }'): (
-        "motion.units: must be one of g, m/s2, cm/s2, got 'ft'"
+        "motion.units: must be one of g, m/s2, cm/s2, mm/s2, µm/s2, mgal, %g, mg, µg, ft/s2, in/s2, got 'ft'"
     ),
     replaced(STILL, 'motion = { pulse = "sine", period = 1, amplitude = 1 }'): (
         "motion.pulse: must be one of one-sine, one-cosine, half-sine, got 'sine'"

@@ -69,11 +69,11 @@ BAD = {
     "different time steps": (record("slow.csv"), "must have one time step, got 0.02 s in slow.csv"),
     "no units": (
         record("silent.csv", "silent.csv"),
-        "does not say its unit: give units, one of g, m/s2, cm/s2",
+        "does not say its unit: give units, such as g, m/s2, cm/s2",
     ),
     "unknown units": (
-        [*record("good.csv"), "--units", "ft/s2"],
-        "units must be one of g, m/s2, cm/s2, got 'ft/s2'",
+        [*record("good.csv"), "--units", "feet"],
+        "units must be one of g, m/s2, cm/s2, mm/s2, µm/s2, mgal, %g, mg, µg, ft/s2, in/s2, got 'feet'",
     ),
     "missing file": (record("none.csv"), "cannot read the record none.csv: No such file or directory"),
     "empty file": (record("empty.csv"), "the record empty.csv is empty"),
