@@ -55,19 +55,18 @@ def _with_even_clocks(lines: Sequence[str], is_row: Callable[[str], bool]) -> li
     codes = np.frombuffer(cells.encode(), dtype=np.uint8).reshape(len(places), b - a)
     form = np.frombuffer(last[a:b].encode(), dtype=np.uint8)
     digits = (form >= ord("0")) & (form <= ord("9"))
-    numbers = codes.astype(np.int64) - ord("0")
-    alike = np.where(digits, (numbers >= 0) & (numbers <= 9), codes == form).all(axis=1)
+    numbers = codes - np.uint8(ord("0"))  # what is below wraps to above 9
+    alike = (numbers[:, digits] <= 9).all(axis=1) & (codes[:, ~digits] == form[~digits]).all(axis=1)
     places, numbers = np.asarray(places)[alike].tolist(), numbers[alike]
     others = sorted(set(range(len(lines))).difference(places)) if len(places) < len(lines) else []
     if len(others) > _MOST_OTHERS or not _is_clock_row(lines[places[0]], is_row):
         return None
-    for at in others:
-        if has_clock_time(lines[at]) and (at > places[0] or _is_clock_row(lines[at], is_row)):
-            return None
+    if any(_is_clock_row(lines[at], is_row) for at in others):
+        return None
 
     def of_group(group: int) -> NDArray[np.int64]:
         start, end = match.start(group) - a, match.end(group) - a
-        return numbers[:, start:end] @ 10 ** np.arange(end - start - 1, -1, -1)
+        return numbers[:, start:end].astype(np.int64) @ 10 ** np.arange(end - start - 1, -1, -1)
 
     clock = ((of_group(1) * 60 + of_group(2)) * 60 + of_group(3)) * 1_000_000_000
     if match[4]:
@@ -75,6 +74,10 @@ def _with_even_clocks(lines: Sequence[str], is_row: Callable[[str], bool]) -> li
     clock += np.cumsum(np.diff(clock, prepend=clock[0]) < -_DAY // 2) * _DAY  # past midnight
     seconds = ((clock - clock[0]) / 1e9).tolist()
     answer = list(lines)
+    if len(others) == places[0]:  # the header alone
+        rows = zip(seconds, lines[places[0] :], strict=True)
+        answer[places[0] :] = [f"{begin}{each!r}{line[b:]}" for each, line in rows]
+        return answer
     for at, each in zip(places, seconds, strict=True):
         answer[at] = f"{begin}{each!r}{lines[at][b:]}"
     return answer

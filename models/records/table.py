@@ -107,7 +107,9 @@ def _form(text: str) -> tuple[str | None, bool]:
 
 def _is_row(text: str) -> bool:
     """Return whether a line holds nothing but numbers, which may touch."""
-    if text[:1] not in _BEGIN_OF_NUMBER:
+    if (
+        text[:1] not in _BEGIN_OF_NUMBER or ":" in text
+    ):  # a clock time, which takes long to refuse cell by cell
         return False
     cells = cells_of(text)
     return all(map(is_number, cells)) or (not re.search("[,;]", text) and only_numbers(text))
@@ -153,7 +155,7 @@ def rows_of(file: RecordFile, first: int) -> tuple[Sequence[int], list[str]]:
     numbers, rows = [], []
     for number, line in enumerate(whole.replace('"', "").split("\n"), start=first + 1):
         text = line.strip()
-        if text and not is_comment(text):
+        if text and (text[0] in _BEGIN_OF_NUMBER or not is_comment(text)):
             numbers.append(number)
             rows.append(text)
     return numbers, rows

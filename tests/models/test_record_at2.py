@@ -97,9 +97,7 @@ def test_letters_outside_of_ascii_in_the_title_do_no_harm(tmp_path: Path) -> Non
 def test_a_silent_title_takes_the_unit_that_is_given(write: Write) -> None:
     path = write(f"{TITLE}TIME SERIES\nNPTS= 6, DT= .01 SEC\n{SIX}")
     assert read_record(path, path, units="cm/s2").acceleration[5, 0] == pytest.approx(-0.0006, rel=1e-15)
-    with pytest.raises(
-        ValueError, match=r"^x.txt does not say its unit: give units, such as g, m/s2, cm"
-    ):
+    with pytest.raises(ValueError, match=r"^x.txt does not say its unit: give units, such as g, m/s2, cm"):
         read_record(path, path)
 
 

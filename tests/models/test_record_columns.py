@@ -88,9 +88,7 @@ def test_a_superscript_of_an_older_encoding(tmp_path: Path) -> None:
 )
 def test_a_silent_header_needs_units(write: Write, header: str) -> None:
     path = write(f"{header}\n{TEXT}")
-    with pytest.raises(
-        ValueError, match=r"^x.txt does not say its unit: give units, such as g, m/s2, cm"
-    ):
+    with pytest.raises(ValueError, match=r"^x.txt does not say its unit: give units, such as g, m/s2, cm"):
         read_record(path, path)
     assert read_record(path, path, units="cm/s2").acceleration[2, 0] == pytest.approx(-0.025, rel=1e-15)
 
