@@ -66,7 +66,8 @@ def _with_even_clocks(lines: Sequence[str], is_row: Callable[[str], bool]) -> li
 
     def of_group(group: int) -> NDArray[np.int64]:
         start, end = match.start(group) - a, match.end(group) - a
-        return numbers[:, start:end].astype(np.int64) @ 10 ** np.arange(end - start - 1, -1, -1)
+        powers = 10 ** np.arange(end - start - 1, -1, -1)
+        return np.asarray(numbers[:, start:end].astype(np.int64) @ powers, dtype=np.int64)
 
     clock = ((of_group(1) * 60 + of_group(2)) * 60 + of_group(3)) * 1_000_000_000
     if match[4]:
@@ -84,7 +85,7 @@ def _with_even_clocks(lines: Sequence[str], is_row: Callable[[str], bool]) -> li
 
 
 def _is_clock_row(line: str, is_row: Callable[[str], bool]) -> bool:
-    return has_clock_time(line) and is_row(_TIME.sub("0", line, count=1))
+    return has_clock_time(line) and is_row(_TIME.sub("0", line, count=1).strip())
 
 
 def with_seconds(lines: Sequence[str], is_row: Callable[[str], bool]) -> list[str]:
