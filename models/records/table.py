@@ -107,9 +107,8 @@ def _form(text: str) -> tuple[str | None, bool]:
 
 def _is_row(text: str) -> bool:
     """Return whether a line holds nothing but numbers, which may touch."""
-    if (
-        text[:1] not in _BEGIN_OF_NUMBER or ":" in text
-    ):  # a clock time, which takes long to refuse cell by cell
+    # a clock time takes long to refuse cell by cell
+    if text[:1] not in _BEGIN_OF_NUMBER or ":" in text:
         return False
     cells = cells_of(text)
     return all(map(is_number, cells)) or (not re.search("[,;]", text) and only_numbers(text))
