@@ -91,7 +91,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
             if now >= end:
                 if following and not run.resting and departs(body, run.y[0], momenta(run.y)[0]):
                     longest, since, _ = turn_since(log, still, now)
-                    if longest <= longest_stay(body):
+                    if longest <= longest_stay(body) and not (grows and has_turned(log, still)):
                         end = since + 1.01 * longest_stay(body)
                         continue
                 if following or run.resting:

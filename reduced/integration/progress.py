@@ -17,7 +17,7 @@ from .._compile import inlined, jit
 from ..body import Body
 from ..equations import base_inertia, energy
 from ..restoring import balance, surely_overturns, with_prestress_share
-from ..rolling import PIVOTS, rolling_momentum
+from ..rolling import PIVOTS, across_inertia, across_rate, rolling_momentum
 from ..trigonometry import sin_cos
 from .balance import may_rise_above
 from .events import NONE, REPEATED, Turn, make_events
@@ -50,17 +50,25 @@ def may_sit_down(
     acceleration takes off the restoring moment, to which the couple of rolling resistance adds: it wears the
     motion down where the ground overcomes the weight but not both. With it a twist rate may be left over,
     which near upright stays what it is, as B phi' does: then the bound is the energy with both at that tilt,
-    beyond which the motion cannot rise. The twist is left to the friction of the base that closes.
+    beyond which the motion cannot rise. The twist is left to the friction of the base that closes: also where
+    the ground would lift what stands, of a motion that sinks there with less than the couple takes on the way
+    up to `rest_tilt` alpha.
     """
     limit = rest_tilt * body.alpha
     if theta > 10.0 * limit:  # above the bound, unless az exceeds 9 g
         return False
+    standing = energy(body, limit, 0.0, 0.0, 0.0)
+    if body.delta > 0.0 and S != 0.0 and theta < limit and omega <= 0.0:
+        s, c = sin_cos(theta)
+        across = across_rate(body, s, c, L, S)
+        moving = body.A * omega * omega + across_inertia(body, s, c, True) * across * across
+        if moving < 2.0 * body.delta / body.b * standing:
+            return True
     held = (1.0 + a[2] / body.g) * (1.0 + body.delta / body.b)
     share = held - hypot(a[0], a[1]) * body.cos_alpha / (body.g * body.sin_alpha)
     share = with_prestress_share(body, share, 1.0 + body.delta / body.b)
     if share <= 0.0 or excess(body, a) >= 0.0:
         return False
-    standing = energy(body, limit, 0.0, 0.0, 0.0)
     if body.delta > 0.0 and S != 0.0:
         L_there = rolling_momentum(body, theta, L, S) - rolling_momentum(body, limit, 0.0, S)
         highest = energy(body, limit, 0.0, L_there, S) - (1.0 - share) * standing

@@ -37,6 +37,7 @@ from ..trigonometry import sin_cos
 from .record import Vector
 from .result import State
 from .stepping import runge_kutta
+from .stiff import stiff_steps
 from .systems import (
     FLAT,
     PLANAR,
@@ -407,7 +408,8 @@ STEPPERS = {
     "recess": runge_kutta(
         RESISTED_RECESS, _make_combine(_recess_combine), _make_ratio(RECESS, _recess_ratio, pivots=False)
     ),
-    "flat": runge_kutta(
-        RESISTED_FLAT, _make_combine(flat_combine), _make_ratio(FLAT, flat_ratio, pivots=True)
+    "flat": stiff_steps(
+        runge_kutta(RESISTED_FLAT, _make_combine(flat_combine), _make_ratio(FLAT, flat_ratio, pivots=True)),
+        RESISTED_FLAT.derivative,
     ),
 }

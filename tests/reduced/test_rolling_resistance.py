@@ -23,6 +23,9 @@ from rockwobble.models import (
 )
 from rockwobble.reduced.body import Body, body_of
 from rockwobble.reduced.equations import flat_rhs
+from rockwobble.reduced.integration import stiff
+from rockwobble.reduced.integration.resisted import RESISTED_FLAT
+from rockwobble.reduced.integration.result import State
 from rockwobble.reduced.rolling import impact_ratio, momenta_of, needed_to_stand, twist_share
 
 G = 9.81
@@ -353,6 +356,75 @@ def test_releases_on_flat_ground_come_to_an_end(
     assert trace.outcome == "stands"
     assert not trace.tilt_rate[-1]
     assert trace.energy + trace.energy_lost == pytest.approx(trace.energy[0], rel=1e-6)  # 1e2 rtol
+
+
+@pytest.mark.parametrize("seed", [35, 61, 68, 71, 78])
+def test_a_couple_as_large_as_the_restoring_one_asks_for_no_million_steps(seed: int) -> None:
+    """Its direction turns with a velocity that it holds near nothing: explicit steps took millions."""
+    random = np.random.default_rng(seed)
+    cylinder = Cylinder(
+        semidiagonal=10.0 ** random.uniform(-1.0, 1.5), tan_alpha=10.0 ** random.uniform(-1.3, 0.1)
+    )
+    peak = G * cylinder.tan_alpha * random.uniform(1.1, 4.0)
+    (motion,) = synthetic_motions(1, peak=peak, seed=seed, duration=8.0)
+    case = Case(cylinder, motion, rolling_resistance=random.uniform(0.1, 0.98) * cylinder.base_radius)
+    trace = reduced.simulate(case, support="flat", rtol=1e-8)
+    assert trace.outcome in ("stands", "overturned")
+    assert trace.step_count < 100_000  # 75,869 at most
+
+
+def rolling(seed: int, speed: float) -> tuple[Body, State]:
+    """Return a body and a state that rolls and tilts about as fast [rad/s]."""
+    random = np.random.default_rng(seed)
+    cylinder = list(BODIES.values())[seed % 4]
+    body = body_of(cylinder, G, random.uniform(0.05, 0.4) * cylinder.base_radius)
+    tilt = random.uniform(0.05, 0.9) * cylinder.alpha
+    s, c = math.sin(tilt), math.cos(tilt)
+    across = speed * random.uniform(0.5, 1.0)
+    Lambda, S = momenta_of(body, s, c, random.normal() * math.sqrt(G / cylinder.semidiagonal), across)
+    return body, (tilt, -speed, random.uniform(0.0, 6.0), Lambda, 0.0, S, 0.0, 0.0, 0.0, 1.0)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_the_rates_of_a_long_step_are_those_of_the_momenta(seed: int) -> None:
+    """By the law of moments in the angular velocity, and by (18), (19) and the twist."""
+    body, y = rolling(seed, 1e-3)
+    a = tuple(np.random.default_rng(seed).normal(size=3))
+    work = np.zeros((stiff._ROWS, stiff._ALL))
+    stiff.write_rates(body, y, work)
+    assert stiff.state_of(body, work, stiff.START, 1.0) == pytest.approx(y, rel=1e-9, abs=1e-12)
+    stiff.rates_on_flat_ground(body, work, stiff.START, a, stiff.END)
+    wanted = RESISTED_FLAT.derivative(body, y, a)
+    step = 1e-6
+    found = []
+    start = work[stiff.START].copy()
+    for sign in (1.0, -1.0):
+        work[stiff.START] = start + sign * step * work[stiff.END]
+        found.append(np.array(stiff.state_of(body, work, stiff.START, 1.0)))
+    slope = (found[0] - found[1]) / (2.0 * step)
+    size = np.abs(np.array(wanted)).max()
+    assert slope[:9] == pytest.approx(np.array(wanted)[:9], rel=1e-5, abs=1e-8 * size)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_long_step_is_of_fourth_order(seed: int) -> None:
+    body, y = rolling(seed, 0.3)
+    a, slope = (0.3, -0.2, 0.1), (0.5, 0.4, -0.3)
+
+    def after(count: int, length: float = 0.1) -> np.ndarray:
+        work = np.zeros((stiff._ROWS, stiff._ALL))
+        stiff.write_rates(body, y, work)
+        h = length / count
+        for k in range(count):
+            now = tuple(each + rate * k * h for each, rate in zip(a, slope, strict=True))
+            stiff.implicit_step(body, work, h, now, slope)
+            work[stiff.START] = work[stiff.END]
+        return work[stiff.START].copy()
+
+    exact = after(512)
+    errors = [np.abs(after(count) - exact)[:5].max() for count in (8, 16, 32)]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert (orders > 3.5).all(), (errors, orders)
 
 
 def test_a_mirror_image_and_another_size_move_alike() -> None:
