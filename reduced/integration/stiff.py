@@ -55,8 +55,6 @@ from .systems import scales
 
 Array = NDArray[np.float64]
 _Path = tuple[Any, float]
-    tuple[State, State, Vector, Vector], float
-]  # of an explicit step; length of an implicit one, or 0
 
 GAMMA = 0.25
 # of each stage: share of those before it in its state, and in its slope over h
