@@ -102,7 +102,8 @@ def comparison(
     cases = case_or_suite.cases if isinstance(case_or_suite, Suite) else (case_or_suite,)
     chosen = _runs(case_or_suite, runs, needed=not (external := tuple(external)))
     for case in cases:
-        for run in (*chosen, *(() if reference is None else (reference,))):
+        own = [own_model(run) for run in chosen]
+        for run in (*chosen, *own, *(() if reference is None else (reference,))):
             require_runnable(case, run)
     labels, named = labels_beside_references(chosen, reference)
     by_label = dict(zip(labels, chosen, strict=True))
@@ -173,7 +174,8 @@ def _runs(case_or_suite: Case | Suite, runs: Iterable[Run] | None, *, needed: bo
         return ()
     if not chosen and isinstance(case_or_suite, Suite):
         chosen = case_or_suite.runs
-    chosen = chosen or default_runs()
+    cases = case_or_suite.cases if isinstance(case_or_suite, Suite) else (case_or_suite,)
+    chosen = chosen or default_runs(cases=cases)
     if not chosen:
         raise ValueError("there must be at least one engine to compare with, found none installed")
     return chosen

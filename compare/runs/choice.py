@@ -256,7 +256,10 @@ def require_runnable(case: Case, run: Run) -> None:
 
 
 def default_runs(
-    engines: Sequence[str] | None = None, supports: Sequence[str] | None = None
+    engines: Sequence[str] | None = None,
+    supports: Sequence[str] | None = None,
+    *,
+    cases: Sequence[Case] = (),
 ) -> tuple[Run, ...]:
     """Return every engine that serves any case with each support, those in a recess first.
 
@@ -268,6 +271,8 @@ def default_runs(
     engines : sequence of str, optional
     supports : sequence of str, optional
         "recess", "flat" and "ring".
+    cases : sequence of Case, optional
+        What is to be run: of cases with a tendon, flat ground is left out where no support is named.
 
     Returns
     -------
@@ -285,7 +290,9 @@ def default_runs(
         reserved = reserved_engines()
         engines = [name for name in available_engines() if name not in reserved]
     runs = []
-    for support in SUPPORTS if supports is None else supports:
+    tied = any(case.tendon is not None for case in cases)
+    usual = [each for each in SUPPORTS if SUPPORT_FACTS[each].guided or not tied]
+    for support in usual if supports is None else supports:
         able = [engine for engine in engines if support in find_engine(engine).supports]
         if unnamed and supports is not None and not able:
             _require_one_with(support)

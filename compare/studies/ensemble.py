@@ -176,7 +176,7 @@ def ensemble(
     if len(members) < 2 or len({case.name for case in members}) < len(members):
         raise ValueError(f"an ensemble has at least 2 members of different names, got {len(members)}")
     stated = case_or_members.runs if isinstance(case_or_members, Suite) else ()
-    chosen = (stated or default_runs()) if runs is None else tuple(runs)
+    chosen = (stated or default_runs(cases=members)) if runs is None else tuple(runs)
     if models is MODELS and any(case.tendon is not None for case in members):
         models = MODELS[:1]  # on flat ground the base wanders from its anchor
     for case in members:

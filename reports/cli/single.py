@@ -188,7 +188,10 @@ def _runs(
             raise ValueError("--engine none leaves nothing to compare, give a --trajectory as well")
         return []
     every = engines == [options.ALL]
-    runs = all_runs([case], supports or None) if every else rc.default_runs(engines or None, supports or None)
+    if every:
+        runs = all_runs([case], supports or None)
+    else:
+        runs = rc.default_runs(engines or None, supports or None, cases=[case])
     return [rw.Run(run.engine, run.support, time_step) for run in runs]
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Trace
+from rockwobble.models import Trace, WobblingFrame
 
 from .case_view import CaseView
 from .interactive import base64_of
@@ -16,6 +17,9 @@ from .interactive import base64_of
 _PICTURES = 25.0
 _TRAIL = 4.0  # how much of the path of the contact point is seen [s]
 _TRANSLUCENT, _SOLID = 0.35, 1.0
+_FACTORS = (1, 3, 10, 30)  # on the tilt
+_STEEPEST, _SEEN = np.radians(60.0), np.radians(25.0)  # of a magnified tilt: that may be chosen, at first
+_BEFORE = 0.5  # uplift, from when on the motion is shown [s]
 
 
 def playback(view: CaseView) -> dict[str, object] | None:
@@ -34,6 +38,8 @@ def playback(view: CaseView) -> dict[str, object] | None:
         Numbers, texts and, as base64 of little-endian float32, arrays: ready for JSON.
     """
     cylinder = view.case.cylinder
+    largest = _largest_upright_tilt(view)
+    factors = [factor for factor in _FACTORS if factor * largest < _STEEPEST or factor == 1]
     runs = [_body(label, trace, view.styles[label].colour, _SOLID) for label, trace in view.runs.items()]
     models = [_body(label, trace, "#8a8a8a", _TRANSLUCENT) for label, trace in view.references.items()]
     if not any(body["moves"] for body in [*runs, *models]):
@@ -49,7 +55,11 @@ def playback(view: CaseView) -> dict[str, object] | None:
         "partners": [list(view.references).index(view.partner(label)) for label in view.runs]
         if view.references
         else [],
-        "magnify": _magnifications(view),
+        "slab": isinstance(cylinder, WobblingFrame),
+        "tendon": view.case.tendon is not None,
+        "start": _start(view),
+        "magnify": factors,
+        "shown": max((each for each in factors if each * largest < _SEEN), default=1),
         "trail": round(_TRAIL * _PICTURES),
     }
 
@@ -103,9 +113,14 @@ def _picture_step(time: NDArray[np.float64]) -> int:
     return max(1, round(1.0 / (_PICTURES * float(time[1] - time[0]))))
 
 
-def _magnifications(view: CaseView) -> list[int]:
-    """Return factors on the tilt that leave the largest upright tilt below 60 degrees."""
+def _start(view: CaseView) -> float:
+    """Return when the motion is shown from: half a second before the first uplift [s]."""
+    uplifts = [trace.uplift_time for trace in view.traces.values() if math.isfinite(trace.uplift_time)]
+    return max(0.0, min(uplifts, default=0.0) - _BEFORE)
+
+
+def _largest_upright_tilt(view: CaseView) -> float:
+    """Return the largest tilt of what does not fall [rad]."""
     tilts = [trace.tilt for trace in view.traces.values()]
     upright = [tilt[np.isfinite(tilt) & (tilt < 1.2 * view.case.cylinder.alpha)] for tilt in tilts]
-    largest = max((float(tilt.max(initial=0.0)) for tilt in upright), default=0.0)
-    return [factor for factor in (1, 3, 10, 30) if factor * largest < np.radians(60.0) or factor == 1]
+    return max((float(tilt.max(initial=0.0)) for tilt in upright), default=0.0)

@@ -63,6 +63,21 @@ def test_a_fall_after_the_end_of_the_case_is_played():
     assert 0.0 < row["agreement_time"] <= max(ends)
 
 
+def test_the_motion_starts_at_uplift_so_that_one_sees_it_with_slab_and_tendon():
+    push = np.zeros((300, 2))
+    push[200:, 0] = np.linspace(0.0, 1.5, 100) * 9.81 * PIER.tan_alpha
+    frame = rw.WobblingFrame(PIER, 1.0, columns=1)
+    case = Case(frame, GroundMotion(push, 0.01), tendon=rw.Tendon(prestress=0.1), name="pushed")
+    found = rw.comparison(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1)
+    spec = playback(case_views(found)[0])
+    uplift = min(trace.uplift_time for trace in found.traces.values())
+    assert spec["start"] == pytest.approx(uplift - 0.5)
+    assert spec["slab"] is spec["tendon"] is True
+    largest = max(float(trace.tilt.max()) for trace in found.traces.values())
+    assert spec["shown"] * largest < np.radians(25.0) or spec["shown"] == 1
+    assert all(factor * largest >= np.radians(25.0) for factor in spec["magnify"] if factor > spec["shown"])
+
+
 def test_nothing_is_played_where_nothing_moves():
     still = GroundMotion(np.zeros((20, 2)), 0.01, "still")
     made = rw.comparison(Case(PIER, still, name="still"), runs=[Run("mujoco", "recess", 1e-3)], workers=1)

@@ -22,6 +22,22 @@ def call(*arguments: str) -> int:
 
 
 @pytest.mark.slow
+def test_a_comparison_leaves_flat_ground_out_and_refuses_it_before_anything_runs(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    given = ["compare", *PIER, "--engine", "mujoco", "--tendon-prestress", "0.5", "--out"]
+    assert call(*given, str(tmp_path / "out")) == 0
+    summary = (tmp_path / "out" / "summary.csv").read_text()
+    assert "recess" in summary
+    assert "flat" not in summary
+    capsys.readouterr()
+    assert call(*given, str(tmp_path / "flat"), "--support", "flat") == 2
+    said = capsys.readouterr().err.splitlines()
+    assert said[-1].startswith("rockwobble: a tendon is part of the models in the recess and in a plane")
+    assert not any(line.startswith("running") for line in said)
+
+
+@pytest.mark.slow
 def test_ratios_and_a_drawing_state_the_same_tendon(tmp_path: Path) -> None:
     drawn = rw.Tendon.from_steel(
         prestress=400e3, axial_rigidity=30e6, length=10.0, column_mass=45e3, base_radius=0.8

@@ -12,6 +12,7 @@ function rockwobblePlayback(root, spec) {
   options(runChoice, runs.map((run) => run.label));
   options(modelChoice, models.map((model) => model.label));
   spec.magnify.forEach((factor) => magnify.add(new Option(`${factor} ×`, factor)));
+  magnify.value = spec.shown;
   if (runs.length) modelChoice.value = spec.partners[0];
 
   // pose at a time, between two samples
@@ -27,12 +28,12 @@ function rockwobblePlayback(root, spec) {
     return found;
   };
 
-  let now = 0, playing = false, before = 0;
+  let now = spec.start, playing = false, before = 0;
   const say = () => {
     clock.textContent = `${now.toFixed(2)} s of ${spec.length.toFixed(2)} s`;
     slider.value = now;
   };
-  const draw = rockwobbleStage(plot, () => ({ b: spec.base_radius, height: spec.height }), () => show());
+  const draw = rockwobbleStage(plot, () => ({ b: spec.base_radius, height: spec.height, slab: spec.slab, tendon: spec.tendon }), () => show());
   const show = () => {
     say();
     const bodies = [
@@ -56,7 +57,7 @@ function rockwobblePlayback(root, spec) {
   const pause = () => { playing = false; button.textContent = "Play"; };
   button.addEventListener("click", () => {
     if (playing) { pause(); return; }
-    if (now >= spec.length) now = 0;
+    if (now >= spec.length) now = spec.start;
     playing = true;
     button.textContent = "Pause";
     requestAnimationFrame((stamp) => { before = stamp; tick(stamp); });

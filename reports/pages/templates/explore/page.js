@@ -288,7 +288,7 @@
 
   const draw = rockwobbleStage(find("plot"), () => {
     const at = bodies.length ? bodies[0].at : state, fell = bodies.some((body) => body.outcome === "overturned");
-    return { b: at.diameter / 2, height: at.height, slab: at.slab > 0, reach: fell ? 0.75 * at.height + at.diameter : 0 };
+    return { b: at.diameter / 2, height: at.height, slab: at.slab > 0, tendon: at.support !== "flat" && at.prestress + at.stiffness > 0, reach: fell ? 0.75 * at.height + at.diameter : 0 };
   }, () => picture());
   function picture() {
     if (!bodies.length) return;

@@ -1,6 +1,7 @@
 // Draws cylinders on their ground in three dimensions, and is turned by dragging or by the arrow keys.
 // A pose is R_z(rolling angle) R_y(tilt) R_z(twist - rolling angle) about the contact point on the rim.
-// `shape()` returns { b, height, slab, reach }: radius, height, whether there is a slab, and, if more is to be seen, how far.
+// `shape()` returns { b, height, slab, tendon, reach }: radius, height, whether there is a slab and a tendon, and, if more is
+// to be seen, how far.
 function rockwobbleStage(plot, shape, changed) {
   const sides = 40;
   let b, height, edge, step, top, rims, stripe, circle;
@@ -119,6 +120,9 @@ function rockwobbleStage(plot, shape, changed) {
     for (let i = 0; i < 4; i++) stroke([lines[0][i], lines[1][i]], "#444", 1);
   };
 
+  // from its anchor in the ground through the gap of the base along the axis
+  const tendon = (at, factor) => stroke([[0, 0, 0], ...place(at, factor, [[0, 0, 0], [0, 0, height]])], "#b3261e", 2.5);
+
   const turn = (u, v) => {
     camera.azimuth -= 0.01 * u;
     camera.elevation = Math.min(Math.max(camera.elevation + 0.01 * v, 0), Math.PI / 2);
@@ -142,6 +146,7 @@ function rockwobbleStage(plot, shape, changed) {
     for (const { body, first, last } of bodies) trail(body, first, last);
     for (const { body, at } of bodies) {
       cylinder(body, at, factor);
+      if (shape().tendon) tendon(at, factor);
       if (shape().slab) slab(body, at, factor);
     }
   };
