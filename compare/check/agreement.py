@@ -60,7 +60,7 @@ _FIELDS = {
 }
 # the guide of a recess, which starts without twist, lets rate and force swing about their mean
 _SWINGS = {"recess": (200.0, 5e3), "flat": (5.0, 5.0)}
-_RAMP = Case(PIER, GroundMotion(np.outer([0.0, 1.5], [0.6, 0.8]) * THRESHOLD, 1.5), name="ramp")
+RAMP = Case(PIER, GroundMotion(np.outer([0.0, 1.5], [0.6, 0.8]) * THRESHOLD, 1.5), name="ramp")
 RECORD = Case(Cylinder(semidiagonal=10.0, tan_alpha=0.1), el_centro_1940(), duration=8.0, name="El Centro")
 _LEVEL = 1e-3  # of alpha: tilt at which an uplift is seen
 
@@ -128,9 +128,9 @@ def tendon(subject: Subject, support: str) -> Iterator[Result]:
 
 def ramp(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt after an uplift on a load that rises, as far as 1.5 times the load that lifts the pier."""
-    found, model = _both(subject, _RAMP, support, 0.05)
+    found, model = _both(subject, RAMP, support, 0.05)
     bound = subject.tolerance_bound(5.0, "the base tips at the threshold", "alpha")
-    yield at_most("tilt and azimuth after an uplift", _difference(found, model, _RAMP.length), bound)
+    yield at_most("tilt and azimuth after an uplift", _difference(found, model, RAMP.length), bound)
 
 
 def record(subject: Subject, support: str) -> Iterator[Result]:
@@ -223,17 +223,17 @@ def _agreement(subject: Subject, case: Case, support: str, model: Trace) -> floa
     return agreement_time(make_pair(case.cylinder, model, copy)).end
 
 
-_SQUAT = release_case(0.5, 0.5, 2.0, SQUAT, "release, tan alpha = 1")
+LOW_RELEASE = release_case(0.5, 0.5, 2.0, SQUAT, "release, tan alpha = 1")
 
 
 def order(subject: Subject, support: str) -> Iterator[Result]:
     """The error against the independent model falls with the order of the engine in its time step."""
     assert subject.at_step is not None
     assert subject.reference is not None
-    exact = subject.reference(_SQUAT, support=support, rtol=1e-11)
+    exact = subject.reference(LOW_RELEASE, support=support, rtol=1e-11)
     errors = [
         math.nan if found.outcome == "failed" else rms(found.tilt - exact.tilt)
-        for found in (subject.at_step(step).simulate(_SQUAT, support) for step in subject.steps)
+        for found in (subject.at_step(step).simulate(LOW_RELEASE, support) for step in subject.steps)
     ]
     slope = math.nan
     if all(math.isfinite(error) and error > 0.0 for error in errors):

@@ -28,7 +28,8 @@ from ..runs.progress import ProgressCallback, Stage, stages
 from ..storage.provenance import package_versions
 from . import agreement, baseline, invariance, lagrange, laws, restraint
 from . import subject as subjects
-from .measurement import Bound, Result, at_most, not_run
+from .cause import likely_cause
+from .measurement import RELEASE, Bound, Result, at_most, not_run
 from .subject import TOLERANCE, Subject
 from .suite import SuiteRuns, check_suite
 
@@ -397,9 +398,30 @@ def check(
     stage = stages(progress, [1.0] * count)
     for each, group, checks in parts:
         results += run_checks(each, [group], checks=checks, stage=stage)
+    for each in chosen:
+        results = with_cause(each, results)
     if not results:
         raise ValueError(f"no check of {', '.join(only or GROUPS)} applies: name an engine, or another group")
     return _checks_of(results)
+
+
+def with_cause(subject: Subject, results: Sequence[Result]) -> list[Result]:
+    """Return results with the likely cause of each failure in the motion of a subject that names none."""
+
+    def lacks(result: Result) -> bool:
+        own = result.subject == subject.label and result.group in ("exact", "conserved", "rest", "agreement")
+        return own and result.failed and not result.cause
+
+    support = next((name for name in BOTH if name in subject.supports), None)
+    can_tell = subject.reference is not None and subject.cases is None
+    if support is None or not can_tell or not any(map(lacks, results)):
+        return list(results)
+    cases = [RELEASE, agreement.LOW_RELEASE, *([agreement.RAMP] if subject.uplifts else [])]
+    try:
+        cause = likely_cause(subject, support, cases)
+    except Exception:  # whatever a model raises is said by its checks
+        cause = ""
+    return [dataclasses.replace(each, cause=cause) if lacks(each) else each for each in results]
 
 
 def baseline_subjects() -> list[Subject]:

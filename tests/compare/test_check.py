@@ -23,6 +23,7 @@ from rockwobble.compare.check import (
     PASSED,
     Result,
     Subject,
+    agreement,
     baseline,
     external_model,
     invariance,
@@ -34,7 +35,9 @@ from rockwobble.compare.check import (
     subject,
     trajectories,
 )
+from rockwobble.compare.check.cause import CANDIDATES, likely_cause
 from rockwobble.compare.check.invariance import _holds
+from rockwobble.compare.check.measurement import RELEASE as MEASURED_RELEASE
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Tendon, Trace, WobblingFrame
 from rockwobble.models.trace_source import Known
 from rockwobble.reduced.body import body_of
@@ -451,6 +454,50 @@ def test_a_trajectory_of_another_body_fails(tmp_path: Path) -> None:
 def test_a_trajectory_without_tilt_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="must have tilt, or qw, qx, qy and qz"):
         checked(tmp_path, table(ours(RELEASE, "recess"), "time [s], x, y, z"))
+
+
+def scaled(name: str, scale: float) -> Callable[[Case, str], Trace]:
+    """Return the model with one number off, or that loses as by a rolling resistance of `scale` b."""
+
+    def model(case: Case, support: str) -> Trace:
+        loss = scale * case.cylinder.base_radius
+        wrong = (
+            dataclasses.replace(case, rolling_resistance=loss)
+            if name == "loss"
+            else CANDIDATES[name](case, scale)
+        )
+        return reduced.simulate(wrong, support=support, sample_step=0.01)
+
+    return model
+
+
+@pytest.mark.parametrize("support", ["recess", "flat"])
+@pytest.mark.parametrize(
+    ("name", "scale", "words"),
+    [
+        *[(name, scale, f"{name} {100.0 * (scale - 1.0):+.2g} %")
+          for name in CANDIDATES for scale in (1.05, 0.98)],
+        ("loss", 0.02, "a loss as of a rolling resistance of 0.02 b"),
+    ],
+)  # fmt: skip
+def test_the_number_that_is_off_is_named(name: str, scale: float, words: str, support: str) -> None:
+    subject = external_model(scaled(name, scale), support=support, tolerance=1e-5)
+    cases = [MEASURED_RELEASE, agreement.LOW_RELEASE, agreement.RAMP]
+    assert likely_cause(subject, support, cases) == words
+
+
+def test_failures_name_their_cause_and_what_no_number_explains_none() -> None:
+    found = rw.check(model=scaled("axial inertia", 1.05), tolerance=1e-5, only=["exact", "agreement"])
+    assert found.failures
+    assert {each.cause for each in found.failures} == {"axial inertia +5 %"}
+
+    def noisy(case: Case, support: str) -> dict[str, np.ndarray]:
+        trace = reduced.simulate(case, support=support, sample_step=0.01)
+        noise = 1e-3 * np.random.default_rng(3).normal(size=len(trace.time))
+        return {"time": trace.time, "tilt": trace.tilt + noise, "azimuth": trace.rolling_angle}
+
+    found = rw.check(model=noisy, tolerance=1e-5, only=["agreement"])
+    assert {each.cause for each in found.failures} == {""}
 
 
 def baseline_of(version: str, kept: baseline.Baseline) -> baseline.Baseline:
