@@ -151,7 +151,7 @@ def _reason_of_overturning(found: Advice) -> str:
         return "no run overturns, but no other scales of this shaking were run"
     if math.isnan(lowest):
         return f"no run overturns, nor up to {number(found.scales['factor'].max())} times this shaking"
-    return f"no run overturns; the lowest scale found to is {number(lowest)}"
+    return f"no run overturns; {number(lowest)} times this shaking does"
 
 
 def _reason_of_friction(found: Advice, slip: float, few: str) -> str:
@@ -425,7 +425,9 @@ def _steps(found: Advice) -> list[str]:
             "vertical": "rw.read_record(x, y, z)",
         }
     else:
-        problem = {name: value for name, value in options.items() if name not in PLAN}
+        # the mass of a column states a tendon, too
+        plan = [name for name in PLAN if name != "mass" or not options.get("tendon_force")]
+        problem = {name: value for name, value in options.items() if name not in plan}
         commands = {
             "friction unknown": command_line("advise", options | {"friction": "MU"}),
             "budget": command_line("compare", problem | {"support": support, "budget": True}),
