@@ -106,12 +106,21 @@ def second_gap(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def load_at_rest(subject: Subject, support: str) -> Iterator[Result]:
-    """A column that stands presses on the ground with its weight and the prestress."""
-    case = Case(PIER, steady([0.0, 0.0], 0.4), tendon=TENDON)
-    found = subject.simulate(case, support, sample_step=0.1)
-    off = found.contact_force[1:4] - [0.0, 0.0, 1.0 + TENDON.prestress]
+    """A column that stands presses on the ground with its weight and the prestress.
+
+    Under a slab that is over the weight with the share gamma of the slab, and at the top over that share.
+    """
     bound = subject.tolerance_bound(1.0, "Newton's law", "weights")
-    yield at_most("contact force at rest with a tendon", largest(off), bound)
+    for of, release in _releases(subject).items():
+        body = release.cylinder
+        found = subject.simulate(Case(body, steady([0.0, 0.0], 0.4), tendon=TENDON), support, sample_step=0.1)
+        base = [0.0, 0.0, 1.0 + TENDON.prestress / (1.0 + body.slab_mass_ratio)]
+        name = "contact force at rest with a tendon" + ("" if of == "column" else f", {of}")
+        yield at_most(name, largest(found.contact_force[1:4] - base), bound)
+        if body.slab_mass_ratio and not np.isnan(found.top_contact_force).all():
+            top = [0.0, 0.0, 1.0 + TENDON.prestress / body.slab_mass_ratio]
+            off = largest(found.top_contact_force[1:4] - top)
+            yield at_most("contact force on a slab at rest with a tendon", off, bound)
 
 
 def raised_uplift(subject: Subject, support: str) -> Iterator[Result]:

@@ -74,7 +74,9 @@ def test_what_tests_and_shared_fixtures_call_is_recorded(tmp_path: Path) -> None
         "PYTHONPATH": f"{tmp_path}{os.pathsep}{CHECKOUT / 'tests'}",
         "REACH": str(tmp_path / "reach.json"),
     }
-    subprocess.run(command, cwd=tmp_path, env=os.environ | paths, check=True, capture_output=True)
+    # of a process of its own, also where this one is a worker of many
+    alone = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+    subprocess.run(command, cwd=tmp_path, env=alone | paths, check=True, capture_output=True)
     calls = {each.test.split("::")[1]: sorted(each.calls) for each in read(tmp_path / "reach.json")}
     assert calls == {"test_a": ["models/a.py:1", "models/a.py:4"], "test_b": ["models/a.py:4"], "test_c": []}
 
