@@ -14,6 +14,7 @@ from math import cos, inf, log, sin
 from .._compile import inlined, jit
 from ..body import Body
 from ..equations import energy
+from ..restoring import balance
 from .result import COMPLETED, HALF_PI, MAXIMUM, UNDECIDED, IntegrationResult, Log, State
 
 LONGEST = 34.0  # of 1/p, between the balance and the tilt alpha on either side of it: log(2e14) and a little
@@ -28,7 +29,7 @@ def decide(body: Body, result: IntegrationResult) -> IntegrationResult:
 
     Here and not in the kernel, whose last bits hang on how much there is to compile.
     """
-    on_balance = abs(result.peak - body.alpha) <= _ROUNDING * body.alpha
+    on_balance = abs(result.peak - balance(body)) <= _ROUNDING * body.alpha
     if on_balance and result.status == COMPLETED:
         return result._replace(status=UNDECIDED)
     return result

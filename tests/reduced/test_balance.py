@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from rockwobble.models import Case, Cylinder, InitialState, WobblingFrame
-from rockwobble.reduced import simulate, steady_wobble_rate
+from rockwobble.models import Case, Cylinder, InitialState, Tendon, Trace, WobblingFrame
+from rockwobble.reduced import balance_tilt_of_case, simulate, steady_wobble_rate
 from rockwobble.reduced.body import body_of
 
 SHAPES = [(0.5, 0.05), (2.0, 0.2), (math.hypot(0.5, 2.5), 0.2), (30.0, 1.0)]
@@ -75,3 +75,21 @@ def test_rolling_resistance_holds_what_sits_on_its_balance() -> None:
     on = case(2.0, 0.2, 1.0, 100.0)
     trace = simulate(Case(on.cylinder, initial=on.initial, duration=on.duration, rolling_resistance=0.01))
     assert (trace.outcome, trace.peak_tilt) == ("stands", trace.tilt[0])
+
+
+@pytest.mark.parametrize("tendon", [Tendon(prestress=0.5), Tendon(prestress=0.3, stiffness=1.0)])
+def test_with_a_tendon_the_balance_is_its_own_and_alpha_is_a_tilt_like_others(tendon: Tendon) -> None:
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+
+    def released(tilt: float) -> Trace:
+        return simulate(Case(pier, initial=InitialState(tilt), duration=10.0, tendon=tendon))
+
+    balance = balance_tilt_of_case(Case(pier, initial=InitialState(0.1), duration=1.0, tendon=tendon))
+    assert balance > 1.4 * pier.alpha
+    assert [released(share * balance).outcome for share in (0.99, 1.0, 1.01)] == [
+        "stands",
+        "undecided",
+        "overturned",
+    ]
+    back = released(pier.alpha)
+    assert (back.outcome, back.peak_tilt) == ("stands", pier.alpha)
