@@ -49,6 +49,46 @@ window.lookFurther = (found) => {
 """  # noqa: E501
 
 
+# its words and controls are legible (WCAG 2.2, 1.4.3), and what it offers for download is whole
+LEGIBLE = """
+const beforeLegible = window.lookFurther;
+window.lookFurther = (found) => {
+  beforeLegible(found);
+  const root = document.getElementById("explore"), say = (words) => found.push(words);
+  const numbers = (colour) => (colour.match(/[\\d.]+/g) || []).map(Number);
+  const linear = (c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+  const bright = ([r, g, b]) => 0.2126 * linear(r / 255) + 0.7152 * linear(g / 255) + 0.0722 * linear(b / 255);
+  const ground = (element) => {
+    for (let at = element; at; at = at.parentElement) {
+      const colour = numbers(getComputedStyle(at).backgroundColor);
+      if (colour.length === 3 || colour[3] === 1) return colour;
+    }
+    return [255, 255, 255];
+  };
+  const speaks = (element) => element.matches("input:not([type=range]), select")
+    || [...element.childNodes].some((node) => node.nodeType === 3 && node.data.trim());
+  for (const element of root.querySelectorAll(":not(option, script, style, :disabled)")) {
+    if (!element.offsetWidth || !speaks(element)) continue;
+    const style = getComputedStyle(element);
+    const [dark, light] = [numbers(style.color), ground(element)].map(bright).sort((a, b) => a - b);
+    const ratio = (light + 0.05) / (dark + 0.05), least = parseFloat(style.fontSize) >= 24 ? 3 : 4.5;
+    if (ratio < least) say(`contrast ${ratio.toFixed(2)}: ${element.outerHTML.slice(0, 90)}`);
+  }
+  const given = {}, made = URL.createObjectURL;
+  HTMLAnchorElement.prototype.click = function () { given.name = this.download; };
+  URL.createObjectURL = (content) => {
+    Object.assign(given, { size: content.size, type: content.type });
+    return made.call(URL, content);
+  };
+  const files = [["csv", "rockwobble-trace.csv", "text/csv"], ["svg", "rockwobble-tilt.svg", "image/svg+xml"]];
+  for (const [part, name, type] of files) {
+    root.querySelector(`[data-part="${part}"]`).click();
+    if (given.name !== name || given.type !== type || given.size < 1000) say(`${name}: ${JSON.stringify(given)}`);
+  }
+};
+"""  # noqa: E501
+
+
 def call(*arguments: str) -> int:
     with pytest.raises(SystemExit) as ended:
         main(["explore", "--no-open", *arguments])
@@ -77,7 +117,7 @@ def test_the_page_is_drawn_and_says_what_it_shows(folder: Path) -> None:
     page = (folder / "explore.html").read_text(encoding="utf-8")
     assert len(page.encode()) <= MOST
     page = page.replace("<body>", f"<body><script>{WORKER}</script>")
-    assert complaints(page, folder, figures=4, further=MOVED) == []
+    assert complaints(page, folder, figures=4, further=MOVED + LEGIBLE) == []
 
 
 def test_the_options_are_where_the_sliders_stand(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
