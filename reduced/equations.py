@@ -29,7 +29,7 @@ from __future__ import annotations
 
 from ._compile import inlined, jit
 from .body import Body
-from .restoring import restoring, with_tendon, with_tendon_energy
+from .restoring import restoring, restoring_moment, stored_energy
 from .trigonometry import sin_cos
 
 _PLANE = 1e-13  # a few hundred roundings: what a rotation of a record leaves across its plane
@@ -140,10 +140,9 @@ def flat_rhs(
 
     centrifugal = L_over_B * L_over_B * s * (c * H + 0.5 * s * H_theta)
     twisting = -0.5 * delta * H_theta / (H * H) * tau_rate * tau_rate - roll_ratio_theta * Lambda * tau_rate
-    weight = (body.g + az) * (b * c - h * s)
+    held = restoring_moment(body, s, c, body.g + az)
     inertial = (b * s + h * c) * a_r
-    theta_acceleration = (centrifugal + twisting - weight - inertial) / body.A
-    theta_acceleration = with_tendon(body, theta_acceleration, s, c)  # in the recess, for its forces
+    theta_acceleration = (centrifugal + twisting - held - inertial) / body.A
     Lambda_rate = -body.mu * b * (b * s + h * c) * omega * tau_rate - s * (h + b * t) * a_t
     # without spin the coupling is none, also at theta = 0 where its coefficient is infinite
     coupling = twist_coupling(body, t, H) * omega * Lambda if Lambda != 0.0 else 0.0
@@ -170,5 +169,4 @@ def energy(body: Body, theta: float, omega: float, L: float, S: float) -> float:
     H = base_inertia(body, t)
     spin = L * L / (2.0 * s * s * H) if L != 0.0 else 0.0
     twist = S * S * H / (2.0 * (body.J * body.C - body.E * body.E)) if S != 0.0 else 0.0
-    whole = 0.5 * body.A * omega * omega + spin + twist + body.g * s * (body.b - body.h * t)
-    return with_tendon_energy(body, whole, c)
+    return 0.5 * body.A * omega * omega + spin + twist + stored_energy(body, s, c, t)

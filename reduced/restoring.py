@@ -65,32 +65,49 @@ restoring = by_body(_weight, _weight_and_tendon)
 
 
 @inlined
-def _as_it_is(body: Body, acceleration: float, s: float, c: float) -> float:
-    """Return theta'' [rad/s^2], from that without a tendon."""
-    return acceleration
+def _moment_of_weight(body: Body, s: float, c: float, gravity: float) -> float:
+    """Return V' [m^2/s^2] under `gravity`, as a moment about the rim."""
+    return gravity * (body.b * c - body.h * s)
 
 
 @inlined
-def _held_back(body: TiedBody, acceleration: float, s: float, c: float) -> float:
-    return acceleration - body.p2 / body.g * _tendon(body, s, sqrt(0.5 * (1.0 + c)))
+def _moment_of_both(body: TiedBody, s: float, c: float, gravity: float) -> float:
+    tendon = body.b * (body.prestress * sqrt(0.5 * (1.0 + c)) + body.stiffness * s)
+    return gravity * (body.b * c - body.h * s) + tendon
 
 
-with_tendon = by_body(_as_it_is, _held_back)
-
-
-@inlined
-def _no_energy(body: Body, energy: float, c: float) -> float:
-    """Return an energy [m^2/s^2] with what the tendon has stored since upright."""
-    return energy
+restoring_moment = by_body(_moment_of_weight, _moment_of_both)
 
 
 @inlined
-def _tendon_energy(body: TiedBody, energy: float, c: float) -> float:
+def _back_by_weight(body: Body, theta: float) -> float:
+    """Return the acceleration back to upright over still ground, without spin [rad/s^2]."""
+    return body.p * body.p * sin(body.alpha - theta)
+
+
+@inlined
+def _back_by_both(body: TiedBody, theta: float) -> float:
+    tendon = _tendon(body, sin(theta), cos(0.5 * theta))
+    return body.p * body.p * (sin(body.alpha - theta) + tendon / body.g)
+
+
+acceleration_back = by_body(_back_by_weight, _back_by_both)
+
+
+@inlined
+def _energy_of_weight(body: Body, s: float, c: float, t: float) -> float:
+    """Return V [m^2/s^2], zero upright; t is tan(theta/2)."""
+    return body.g * s * (body.b - body.h * t)
+
+
+@inlined
+def _energy_of_both(body: TiedBody, s: float, c: float, t: float) -> float:
     half = 0.5 * (1.0 - c)
-    return energy + 2.0 * body.b * (body.prestress * sqrt(max(0.0, half)) + body.stiffness * half)
+    tendon = 2.0 * body.b * (body.prestress * sqrt(max(0.0, half)) + body.stiffness * half)
+    return body.g * s * (body.b - body.h * t) + tendon
 
 
-with_tendon_energy = by_body(_no_energy, _tendon_energy)
+stored_energy = by_body(_energy_of_weight, _energy_of_both)
 
 
 @inlined
@@ -152,21 +169,25 @@ with_tendon_moment = by_body(_moment_alone, _moment_tied)
 
 
 @inlined
-def _slope_alone(body: Body, Q: float) -> float:
-    """Return the growth of theta'' with the tilt at uplift [1/s^2], from that without a tendon."""
-    return Q
+def _growth_by_weight(body: Body, az: float, widened: float) -> float:
+    """Return the growth of theta'' with the tilt at uplift [1/s^2].
+
+    Without rolling resistance `widened` is 1; it widens the base, and adds to the inertia.
+    """
+    return body.p2 * (1.0 + az / body.g) / body.cos_alpha * widened
 
 
 @inlined
-def _slope_tied(body: TiedBody, Q: float) -> float:
+def _growth_by_both(body: TiedBody, az: float, widened: float) -> float:
+    Q = body.p2 * (1.0 + az / body.g) / body.cos_alpha * widened
     # |a| = (g + az + q)(b + delta)/h, and r of the tendon grows by k sin(alpha); delta adds to b and to A
-    widened = (1.0 + body.delta / body.b) / (1.0 + body.delta * body.mu * body.b / body.A)
-    return Q + body.p2 / body.g * body.sin_alpha * widened * (
+    of_both = (1.0 + body.delta / body.b) / (1.0 + body.delta * body.mu * body.b / body.A)
+    return Q + body.p2 / body.g * body.sin_alpha * of_both * (
         body.prestress * body.sin_alpha / body.cos_alpha - body.stiffness
     )
 
 
-with_tendon_slope = by_body(_slope_alone, _slope_tied)
+growth_at_uplift = by_body(_growth_by_weight, _growth_by_both)
 
 
 @inlined

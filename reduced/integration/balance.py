@@ -14,7 +14,7 @@ from math import cos, inf, log, sin
 from .._compile import inlined, jit
 from ..body import Body
 from ..equations import energy
-from ..restoring import balance
+from ..restoring import acceleration_back, balance
 from .result import COMPLETED, HALF_PI, MAXIMUM, UNDECIDED, IntegrationResult, Log, State
 
 LONGEST = 34.0  # of 1/p, between the balance and the tilt alpha on either side of it: log(2e14) and a little
@@ -47,7 +47,7 @@ def may_rise_above(
 ) -> bool:
     """Return whether over still ground the energy of a state lets the tilt rise above `peak` later."""
     L, S = momenta(y)
-    return energy(body, y[0], y[1], L, S) > energy(body, min(peak, body.alpha), 0.0, 0.0, 0.0)
+    return energy(body, y[0], y[1], L, S) > energy(body, min(peak, balance(body)), 0.0, 0.0, 0.0)
 
 
 @jit
@@ -88,7 +88,7 @@ def free_acceleration(body: Body, theta: float, L: float) -> float:
     Its own formula, not the one of the model: one more call of that changes the last bits of all runs, by
     where the compiler fuses a multiplication with an addition.
     """
-    acceleration = -body.p * body.p * sin(body.alpha - theta)
+    acceleration = -acceleration_back(body, theta)
     if L != 0.0:
         s, c = sin(theta), cos(theta)
         t = s / (1.0 + c)

@@ -18,7 +18,7 @@ import numpy as np
 from .._compile import jit
 from ..body import Body
 from ..equations import in_plane_below
-from ..restoring import fastest_rate, standing_force, with_tendon_slope
+from ..restoring import fastest_rate, growth_at_uplift, standing_force
 from .record import Vector, ground
 
 # The series is left at the share x of the shortest time scale there: 1/p, and the time in which the
@@ -143,8 +143,7 @@ def start(
     F2 = factor * size * turning * turning * (1.0 - behind * behind) + held_less
     F3 = -3.0 * F2 * along / size
     widened = (1.0 + body.delta * body.b / (body.b * body.b + body.h * body.h)) / heavier
-    Q = body.p2 * (1.0 + az / body.g) / body.cos_alpha * widened
-    Q = with_tendon_slope(body, Q) + body.J / body.A / heavier * rolling * rolling
+    Q = growth_at_uplift(body, az, widened) + body.J / body.A / heavier * rolling * rolling
     t = time
     theta = t * t * (F0 / 2 + t * (F1 / 6 + t * ((F2 + Q * F0) / 24 + t * (F3 + Q * F1) / 120)))
     theta_1 = t * (F0 + t * (F1 / 2 + t * ((F2 + Q * F0) / 6 + t * (F3 + Q * F1) / 24)))

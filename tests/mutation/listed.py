@@ -157,8 +157,8 @@ def _tendons() -> list[Mutation]:
             "return 1.0 - v",
         ),
         "half angle: energy": (
-            "_tendon_energy(body, energy, c)",
-            "return without_fault(body, energy, 2 * c * c - 1)",
+            "_energy_of_both(body, s, c, t)",
+            "return without_fault(body, s, 2 * c * c - 1, t)",
         ),
         "half angle: pull": ("_pull(body, c)", "return without_fault(body, 2.0 * c * c - 1.0)"),
         "uplift: no prestress": ("_weight_and_prestress(body, az)", "return body.g + az"),

@@ -10,7 +10,9 @@ from tendon import Pier, accelerations, potential, released
 
 import rockwobble as rw
 from rockwobble import reduced
-from rockwobble.models import GroundMotion, Tendon
+from rockwobble.models import Case, GroundMotion, Tendon
+from rockwobble.reduced.equations import recess_rhs
+from rockwobble.reduced.integration.balance import free_acceleration
 from rockwobble.reduced.problem import Problem
 
 G = 9.81
@@ -250,3 +252,16 @@ def test_what_is_not_modelled_is_refused_in_one_line() -> None:
     case = rw.Case(PIER, initial=rw.InitialState(0.1), duration=1.0, tendon=tendon)
     with pytest.raises(ValueError, match="in the recess and in a plane, got support 'flat'"):
         reduced.simulate(case, support="flat")
+
+
+@pytest.mark.parametrize("tendon", [None, *TENDONS], ids=repr)
+@pytest.mark.parametrize("gamma", BODIES.values(), ids=BODIES)
+def test_the_verdict_at_a_balance_has_the_acceleration_of_the_model(
+    gamma: float, tendon: Tendon | None
+) -> None:
+    body = Problem(case=Case(body_of(PIER, gamma), duration=1.0, tendon=tendon)).body
+    for tilt in (0.05, 0.9 * PIER.alpha, 1.3 * PIER.alpha, 1.2):
+        for L in (0.0, 0.3):
+            expected = recess_rhs(body, tilt, 0.0, 0.0, L, 0.0, 0.0, 0.0)[1]
+            # two sums of some five terms, each rounded
+            assert free_acceleration(body, tilt, L) == pytest.approx(expected, rel=1e-13, abs=1e-14)
