@@ -80,7 +80,7 @@ def likely_cause(subject: Subject, support: str, cases: Sequence[Case]) -> str:
     found = [subject.simulate(case, support) for case in cases]
     if any(not len(trace.time) or trace.outcome == "failed" for trace in found):
         return ""
-    whole = _apart(found, [_model(subject, case, support) for case in cases])
+    whole = _difference(found, [_model(subject, case, support) for case in cases])
     if not _LEAST * subject.tolerance < whole < math.inf:
         return ""
     fits = {name: _fit(subject, support, cases, found, name) for name in (*CANDIDATES, _CLOCK)}
@@ -106,18 +106,18 @@ def _fit(
     """Return the scale of a candidate that fits best, and the difference that it leaves."""
     unscaled = [_model(subject, case, support) for case in cases] if name == _CLOCK else []
 
-    def left(exponent: float) -> float:
+    def difference(exponent: float) -> float:
         scale = math.exp(exponent)
         if name == _CLOCK:
-            return _apart(found, unscaled, clock=scale)
+            return _difference(found, unscaled, clock=scale)
         try:
             changed = [CANDIDATES[name](case, scale) for case in cases]
         except ValueError:  # no body has such an inertia
             return math.inf
-        return _apart(found, [_model(subject, case, support) for case in changed])
+        return _difference(found, [_model(subject, case, support) for case in changed])
 
-    exponent, rest = _lowest(left, -_WIDEST, _WIDEST)
-    return math.exp(exponent), rest
+    exponent, least = _lowest(difference, -_WIDEST, _WIDEST)
+    return math.exp(exponent), least
 
 
 def _fitted_loss(
@@ -125,13 +125,13 @@ def _fitted_loss(
 ) -> tuple[float, float]:
     """Return the rolling resistance over b that fits best, and the difference that it leaves."""
 
-    def left(share: float) -> float:
+    def difference(share: float) -> float:
         lossy = [
             dataclasses.replace(case, rolling_resistance=share * case.cylinder.base_radius) for case in cases
         ]
-        return _apart(found, [_model(subject, case, support) for case in lossy])
+        return _difference(found, [_model(subject, case, support) for case in lossy])
 
-    return _lowest(left, 0.0, _LARGEST_LOSS)
+    return _lowest(difference, 0.0, _LARGEST_LOSS)
 
 
 def _lowest(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:
@@ -145,7 +145,7 @@ def _lowest(function: Callable[[float], float], low: float, high: float) -> tupl
     return float(found.x), float(found.fun)
 
 
-def _apart(found: Sequence[Trace], models: Sequence[Trace], *, clock: float = 1.0) -> float:
+def _difference(found: Sequence[Trace], models: Sequence[Trace], *, clock: float = 1.0) -> float:
     """Return the root mean square difference of the leans of all cases, over sin(alpha)."""
     from scipy.interpolate import CubicSpline
 

@@ -240,10 +240,10 @@ def headline(rows: pd.DataFrame, length: float) -> str:
         )
     if not groups:
         return "No run could be compared."
-    return " ".join(_followed(group, length) for group in groups)
+    return " ".join(_agreement(group, length) for group in groups)
 
 
-def _followed(rows: pd.DataFrame, length: float) -> str:
+def _agreement(rows: pd.DataFrame, length: float) -> str:
     """Return the headline on the runs of one support, compared with their own model."""
     first = next(iter(rows_of(rows)))
     external, support = first.support == EXTERNAL, SUPPORTS.get(first.support)
@@ -287,7 +287,7 @@ def budget_sentences(summary: pd.DataFrame) -> list[str]:
     large = known[known["whole_rms"] > WORTH_EXPLAINING]
     worth, found = large[large["not_split"] == ""], unexplained(known)
     said = [
-        f"{_compared(row)}: {100 * row.unexplained_share:.0f} % of the difference of {small(row.whole_rms)} "
+        f"{_pair(row)}: {100 * row.unexplained_share:.0f} % of the difference of {small(row.whole_rms)} "
         f"alpha stay unexplained (the extrapolation itself is known to {small(row.limit_error)} alpha)."
         for row in rows_of(found.head(_LISTED))
     ]
@@ -312,7 +312,7 @@ def budget_sentences(summary: pd.DataFrame) -> list[str]:
     return said
 
 
-def _compared(row: SummaryRow) -> str:
+def _pair(row: SummaryRow) -> str:
     return f"{row.case}, {row.run} compared with {the(row.reference, row.reference_engine)}"
 
 
@@ -323,8 +323,7 @@ def early_sentences(summary: pd.DataFrame) -> list[str]:
     """
     early = (summary["divergence"] == "earlier") & (summary["support"] != EXTERNAL)
     return [
-        f"{_compared(row)}: they diverge earlier than predicted, a finding."
-        for row in rows_of(summary[early])
+        f"{_pair(row)}: they diverge earlier than predicted, a finding." for row in rows_of(summary[early])
     ]
 
 
