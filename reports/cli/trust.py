@@ -16,7 +16,8 @@ import rockwobble.compare as rc
 import rockwobble.compare.storage as rs
 from rockwobble.compare.runs.plan import Plan, options_in
 
-from ..console import FAILED, complain, interruptible, shown_progress, user_input
+from ..console import FAILED, complain, echo, interruptible, shown_progress, user_input
+from ..pages.cases import case_warnings, record_lines
 from . import options
 from .command import takes_options
 from .outputs import plan_in_json, plan_of, require_own_file
@@ -193,6 +194,9 @@ def check(
                     raise ValueError("--update-baseline goes with no subject and not with --only")
                 update(reason)
                 return
+            if "suite" in given:
+                cases = given["suite"].cases
+                echo([*record_lines(case.motion for case in cases), *case_warnings(cases)])
             found = _run(given, only)
             seconds = time.monotonic() - begun
             print(headline(found, seconds))

@@ -83,6 +83,17 @@ def test_a_bad_file_of_a_folder_of_records_is_one_line(
         assert not (folder / "out").exists()
 
 
+@pytest.mark.usefixtures("folder")
+def test_a_check_of_a_suite_states_its_records(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("a.suite.toml").write_text(
+        '[[runs]]\nengine = "mujoco"\nsupport = "recess"\n[[cases]]\nname = "pier"\n'
+        'cylinder = { semidiagonal = 6.0, tan_alpha = 0.2 }\nmotion = { files = "good.csv" }\n'
+    )
+    exit_code("check", "--suite", "a.suite.toml", "--workers", "1")
+    text = "".join(capsys.readouterr().out.split())
+    assert "".join(str(read_record("good.csv").source).split()) in text
+
+
 @pytest.mark.parametrize("command", ["compare", "simulate", "explore", "sweep"])
 @pytest.mark.usefixtures("folder", "in_this_process")
 def test_a_good_file_is_stated_in_the_same_words(
