@@ -135,7 +135,7 @@ class SuiteFile(pytest.File):
             suite = rw.read_suite(self.path)
         except ValueError as error:
             raise self.CollectError(str(error)) from None
-        runs = suite.runs or rc.default_runs()
+        runs = suite.runs or rc.default_runs(cases=suite.cases)
         here, _ = rr.runs_here(runs)
         for case in suite.cases:
             for run, label in zip(runs, run_labels(runs), strict=True):

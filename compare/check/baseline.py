@@ -24,7 +24,7 @@ from rockwobble.multibody.engines.registry import find_engine
 from ..runs.progress import ProgressCallback
 from ..storage.provenance import other_versions, package_versions, version_words
 from .fingerprint import as_json, fingerprint, repeat
-from .measurement import NO_BASELINE, Bound, Result, at_most
+from .measurement import NO_BASELINE, Bound, Result, at_most, not_run
 from .subject import Subject
 from .verdict import SAME, Entry, FingerprintVerdict, Sample, compare_entries
 
@@ -83,19 +83,19 @@ def new_fingerprint(subject: Subject, progress: ProgressCallback | None = None) 
 
 def same_as_baseline(subject: Subject, support: str) -> Iterator[Result]:
     """A few short motions are those that are kept."""
+    if subject.run is not None and (subject.run.time_step is not None or subject.run.settings):
+        yield not_run("baseline", "kept at the default time step and settings")
+        return
     kept, version = read_baseline(subject), _version(subject)
     old = [one for one in kept.fingerprint if one["support"] == support]
     if not old:
-        found = at_most(
-            "baseline", math.nan, _BOUND, note=f"no baseline for {subject.label} {version}".rstrip()
-        )
-        yield dataclasses.replace(found, outcome=NO_BASELINE)
+        note = f"no baseline for {subject.label} {version}".rstrip()
+        yield dataclasses.replace(at_most("baseline", math.nan, _BOUND, note=note), outcome=NO_BASELINE)
+    others = other_versions(kept.versions, subject.label)
     for one, new in zip(old, repeat(subject, old), strict=True):
         verdict = compare_entries(one, new)
         share = _share(verdict, one, new)
-        notes = (
-            [] if verdict.word == SAME else [verdict.words(), version_words(other_versions(kept.versions))]
-        )
+        notes = [] if verdict.word == SAME else [verdict.words(), version_words(others)]
         found = at_most(one["name"], share, _BOUND)
         if version != kept.version:
             notes.insert(0, f"the baseline is of {subject.label} {kept.version}, this is {version}")
@@ -104,14 +104,16 @@ def same_as_baseline(subject: Subject, support: str) -> Iterator[Result]:
         yield dataclasses.replace(found, note="; ".join(notes))
 
 
-def baseline_changes(old: Baseline, new: tuple[Entry, ...]) -> list[str]:
-    """Return what a new fingerprint changes: a line for each case that is not the same, and for new ones."""
+def baseline_changes(old: Baseline, new: tuple[Entry, ...], subject: Subject) -> list[str]:
+    """Return what a new fingerprint changes: of the version, of each case that differs, of new ones."""
     before, after = ({one["name"]: one for one in each} for each in (old.fingerprint, new))
     verdicts = [compare_entries(before[name], after[name]) for name in before if name in after]
     lines = [verdict.words() for verdict in verdicts if verdict.word != SAME]
     for words, ours, theirs in (("new", after, before), ("gone", before, after)):
         if names := [name for name in ours if name not in theirs]:
             lines.append(f"{words}: {', '.join(names)}")
+    if old.fingerprint and _version(subject) != old.version:
+        lines.insert(0, f"version {old.version}, now {_version(subject)}")
     return lines
 
 

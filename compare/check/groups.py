@@ -431,7 +431,7 @@ def baseline_subjects() -> list[Subject]:
 
 def _of_suite(runs: SuiteRuns, suite: Suite) -> Iterator[Result]:
     """Yield the results of each run of each case of a suite."""
-    chosen, _ = runs_here(suite.runs or default_runs())
+    chosen, _ = runs_here(suite.runs or default_runs(cases=suite.cases))
     for case in suite.cases:
         for run in chosen:
             require_runnable(case, run)

@@ -99,9 +99,12 @@ def package_versions(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
     return versions | {package: _version(package) for package in packages}
 
 
-def other_versions(then: Mapping[str, str]) -> dict[str, tuple[str, str]]:
-    """Return the versions that are others than `then`: then and now, by name."""
-    now = package_versions()
+def other_versions(then: Mapping[str, str], engine: str | None = None) -> dict[str, tuple[str, str]]:
+    """Return the versions that are others than `then`: then and now, by name; of engines that of one."""
+    now, engines = package_versions(), engine_packages()
+    for name, package in engines.items():
+        if name != engine:
+            now.pop(package, None)
     return {name: (old, now[name]) for name, old in then.items() if now.get(name, old) != old}
 
 

@@ -232,7 +232,9 @@ def ensemble(
                 members = [] if isinstance(stated, rw.Case) else stated
                 lines = describe(stated) if isinstance(stated, rw.Case) else describe(members[0])[:1]
                 lines += [f"Members: {len(members) or copies.copies}, {source}"]
-            runs = _runs(engine, support, time_step, given)
+            runs = _runs(
+                engine, support, time_step, given, [stated] if isinstance(stated, rw.Case) else members
+            )
             echo([*lines, *record_lines(each.motion for each in members), *case_warnings(members)])
         with user_input(), shown_progress() as progress:
             found = rw.ensemble(
@@ -263,16 +265,20 @@ def _members(
 
 
 def _runs(
-    engines: list[str] | None, supports: list[str] | None, time_step: TimeStep, suite: rw.Suite | None
+    engines: list[str] | None,
+    supports: list[str] | None,
+    time_step: TimeStep,
+    suite: rw.Suite | None,
+    cases: list[rw.Case],
 ) -> list[rw.Run]:
-    """Return the runs of the options, chosen among those of a suite."""
+    """Return the runs of the options for some cases, chosen among those of a suite."""
     if engines == [options.NO_ENGINE]:
         return []
     if suite is not None:
         return without_missing(chosen_runs(suite, engines, supports, time_step), engines)
     if not engines:
         say_what_is_left_out(supports or ())
-    chosen = rc.default_runs(engines or None, supports or None)
+    chosen = rc.default_runs(engines or None, supports or None, cases=cases)
     return [rw.Run(run.engine, run.support, time_step) for run in chosen]
 
 
@@ -355,7 +361,7 @@ def _suite(name: str, models: list[str] | None) -> rw.Suite:
     added = suite.runs
     if not added and not models:
         say_what_is_left_out()
-        added = rc.default_runs()
+        added = rc.default_runs(cases=suite.cases)
     runs = (*chosen, *added)
     return runnable_suite(rw.Suite(suite.cases, runs))
 

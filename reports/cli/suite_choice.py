@@ -41,7 +41,7 @@ def chosen_runs(
     """
     runs = list(suite.runs)
     if not runs:
-        runs = list(rc.default_runs(engines or None, supports or None))
+        runs = list(rc.default_runs(engines or None, supports or None, cases=suite.cases))
     else:
         if engines:
             places = list(dict.fromkeys(run.support for run in runs))

@@ -24,6 +24,9 @@ from .outputs import plan_in_json, plan_of, require_own_file
 
 if TYPE_CHECKING:
     from rockwobble.compare.check import Checks
+    from rockwobble.compare.check import Subject as CheckSubject
+    from rockwobble.compare.check.baseline import Baseline
+    from rockwobble.compare.check.verdict import Entry
 
 _subject = options_in("Subject (default: the reduced models, and the engines that are installed)")
 _output = options_in("Output for programs")
@@ -235,21 +238,22 @@ def update(reason: str | None) -> None:
     from rockwobble.compare.check.groups import baseline_subjects
 
     date = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
-    texts = dict[Path, bytes]()
+    changed: list[tuple[CheckSubject, Baseline, tuple[Entry, ...]]] = []
     for subject in baseline_subjects():
         with shown_progress(f"cases of {subject.label}", each=False) as progress:
             new = baseline.new_fingerprint(subject, progress)
         old = baseline.read_baseline(subject)
-        changes = baseline.baseline_changes(old, new)
-        for each in changes:
+        changes = baseline.baseline_changes(old, new, subject)
+        for each in changes or ["same"]:
             print(f"{subject.label}: {each}")
-        if not changes:
-            print(f"{subject.label}: same")
-        elif (reason or "").strip():
-            text = baseline.updated_baseline(old, new, subject, reason=reason or "", date=date)
-            texts[baseline.baseline_path(subject)] = text.encode()
-        else:
+        if changes:
+            changed.append((subject, old, new))
+    texts = dict[Path, bytes]()
+    for subject, old, new in changed:
+        if not (reason or "").strip():
             raise ValueError("nothing was changed: a new baseline needs a --reason, got none")
+        text = baseline.updated_baseline(old, new, subject, reason=reason or "", date=date)
+        texts[baseline.baseline_path(subject)] = text.encode()
     for path, content in texts.items():
         rs.replace_files(path.parent, {path.name: content})
         print(f"Written: {path}")
@@ -342,7 +346,7 @@ def verify(
         stated = read_certificate(certificate)
         with shown_progress("cases", each=False) as progress:
             verdict = verdict_on(stated, progress=progress)
-        others = other_versions(stated["versions"])
+        others = other_versions(stated["versions"], stated["method"]["engine"])
     if as_json:
         known = {name: None if value != value else value for name, value in asdict(verdict).items()}
         print(json.dumps({**known, "other_versions": others}, indent=1, allow_nan=False))

@@ -25,6 +25,7 @@ from rockwobble.compare.check import (
     Subject,
     agreement,
     baseline,
+    engine,
     external_model,
     invariance,
     lagrange,
@@ -517,6 +518,13 @@ def test_another_version_that_changed_something_is_no_failure_but_said(
         assert all(each.note.startswith("the baseline is of reduced model 0.0.1, this is ") for each in found)
 
 
+def test_an_engine_at_another_step_has_no_baseline() -> None:
+    for given in ({"time_step": 1e-4}, {"iterations": 60}):
+        subject = engine("mujoco", **given)
+        (found,) = baseline.same_as_baseline(subject, "recess")
+        assert (found.outcome, found.note) == (NOT_RUN, "kept at the default time step and settings")
+
+
 def test_a_subject_without_a_baseline_is_said(right: Subject) -> None:
     (found,) = baseline.same_as_baseline(dataclasses.replace(right, label="another"), "recess")
     assert (found.outcome, found.note) == (NO_BASELINE, "no baseline for another")
@@ -541,10 +549,12 @@ def test_an_update_keeps_the_reason_and_names_what_changes(right: Subject) -> No
     first, second, *others = kept.fingerprint
     signals = {**first["signals"], "tilt": [2.0 * float(tilt or 0.0) for tilt in first["signals"]["tilt"]]}
     new = ({**first, "signals": signals}, second, *others[:-1])
-    changed, gone = baseline.baseline_changes(kept, new)
+    changed, gone = baseline.baseline_changes(kept, new, right)
     assert changed.startswith("changed: tilt of tilting from 0 s by 0.5, allowed ")
     assert gone == f"gone: {others[-1]['name']}"
-    assert baseline.baseline_changes(kept, kept.fingerprint) == []
+    assert baseline.baseline_changes(kept, kept.fingerprint, right) == []
+    older = baseline_of("0.0.1", kept)
+    assert baseline.baseline_changes(older, kept.fingerprint, right) == ["version 0.0.1, now "]
     text = baseline.updated_baseline(kept, new, right, reason=" a  new kernel ", date="2026-11-21")
     found = json.loads(text)
     assert found["fingerprint"] == list(new)

@@ -13,6 +13,7 @@ from rockwobble.compare.studies.fragility.fit import resamples
 from rockwobble.compare.studies.fragility.intensity import uplift_scale
 from rockwobble.compare.studies.fragility.risk import (
     Exposure,
+    Resampled,
     frequencies_of,
     lognormal_frequency,
     mean_over,
@@ -389,3 +390,14 @@ def test_the_margin_is_the_median_of_the_curve_over_what_is_exceeded_with_2_perc
 def test_below_the_first_point_of_a_hazard_its_frequency_counts() -> None:
     hazard = power_law(low=0.1)
     assert lognormal_frequency(hazard, math.log(1e-4), 0.3) == pytest.approx(hazard.annual_frequency[0])
+
+
+def test_an_end_that_nobody_knows_stays_unknown_where_few_motions_have_the_most() -> None:
+    parts = np.r_[5.0, np.full(21, 0.01)]
+    drawn = np.r_[np.zeros(60), np.linspace(1.0, 3.0, 440)]
+
+    def resampled(scale: float) -> Resampled:
+        return Resampled(value=scale, drawn=scale * drawn, errors=None, parts=scale * parts)
+
+    found = resampled(2.0).over(resampled(1.0), 22)  # 60 resamples of none by either: no ratio
+    assert (found.low, found.high) == (-math.inf, math.inf)

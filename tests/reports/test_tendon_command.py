@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from pathlib import Path
 
@@ -128,3 +129,13 @@ def test_the_threshold_of_uplift_counts_the_prestress(slab: float) -> None:
         (line,) = (each for each in describe(rw.Case(body, motion, tendon=held)) if each.startswith("Ground"))
         times.append(float(line.rpartition("(")[2].split()[0]))
     assert times[0] / times[1] == pytest.approx(tendon.uplift_factor(body), rel=2e-3)
+
+
+def test_a_suite_with_a_tendon_leaves_flat_ground_out_by_default() -> None:
+    from rockwobble.compare import default_runs
+
+    release = rw.InitialState(0.1)
+    case = rw.Case(rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2), initial=release, duration=1.0)
+    tied = dataclasses.replace(case, tendon=rw.Tendon(prestress=0.5))
+    assert {run.support for run in default_runs(cases=[case])} == {"recess", "flat"}
+    assert {run.support for run in default_runs(cases=[case, tied])} == {"recess"}

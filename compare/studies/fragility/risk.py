@@ -271,7 +271,11 @@ class Resampled:
         if self.parts is None or other.parts is None or not found.value > 0.0:
             return found
         wider = _few_parts_factor(self.parts - other.parts)
-        low, high = (found.value * (end / found.value) ** wider for end in (found.low, found.high))
+        # an end that is not known or not bounded stays so
+        low, high = (
+            found.value * (end / found.value) ** wider if 0.0 < end < math.inf else end
+            for end in (found.low, found.high)
+        )
         return Interval(value=found.value, low=low, high=high)
 
     def interval(self, motions: int) -> Interval:
