@@ -29,7 +29,7 @@ from .measurement import (
     Result,
     at_most,
     largest,
-    lean,
+    lean_difference,
     release_case,
     steady,
     why,
@@ -198,16 +198,9 @@ def _both(subject: Subject, case: Case, support: str, sample_step: float = 0.01)
 
 
 def _difference(found: Trace, model: Trace, end: float) -> float:
-    """Root mean square difference of the leans until a time, over sin(alpha); of the tilt without azimuth."""
-    from scipy.interpolate import CubicSpline
-
-    at = found.time[found.time <= min(end, float(model.time[-1]))]
-    if len(at) < 2:
-        return math.inf
-    own, other = lean(found), lean(model)
-    if not np.isfinite(found.rolling_angle).any():
-        own, other = np.abs(own), np.abs(other)
-    return rms(np.abs(own[: len(at)] - CubicSpline(model.time, other)(at)))
+    """Root mean square difference of the leans until a time, over sin(alpha)."""
+    apart = lean_difference(found, model, end)
+    return rms(apart) if len(apart) > 1 else math.inf
 
 
 def _agreement(subject: Subject, case: Case, support: str, model: Trace) -> float:

@@ -36,7 +36,7 @@ from rockwobble.models.members import perturbed
 from rockwobble.models.support import SUPPORTS
 
 from ..runs.progress import ProgressCallback, stages
-from .measurement import FRAME, SQUAT, release_case
+from .measurement import FRAME, GRAVITY, SQUAT, release_case
 from .subject import Subject
 from .verdict import SAME, Entry, Sample, compare_entries
 
@@ -45,7 +45,6 @@ _SAMPLES = 40  # of each motion
 _BEYOND = 10.0  # what counts is so many times larger than the difference of the copies
 _MEMBERS = 16
 _REPEATS = 10.0  # times the tolerance of a subject: how closely a number repeats
-G = 9.81
 _SLENDER = Cylinder(semidiagonal=1.0, tan_alpha=0.2)
 _LOW = Cylinder(semidiagonal=1.0, tan_alpha=1.0)
 _HOLLOW = Cylinder(semidiagonal=4.0, tan_alpha=0.35, transverse_inertia=7.0, axial_inertia=3.0)
@@ -169,7 +168,7 @@ def _with_tendon() -> ShortCase:
 def _record(name: str, term: str, strength: float, length: float) -> ShortCase:
     """Return a case under El Centro, so many times as strong as what lifts the pier."""
     record = el_centro_1940()
-    motion = record.scaled(strength * G * PIER.tan_alpha / record.peak)
+    motion = record.scaled(strength * GRAVITY * PIER.tan_alpha / record.peak)
     case = Case(PIER, motion, duration=length)
     return ShortCase(name=name, claim="response to shaking", term=term, case=case)
 
@@ -260,7 +259,7 @@ def _signals(trace: Trace) -> Array:
             lean.real,
             lean.imag,
             trace.twist,
-            trace.energy / (G * body.semidiagonal),
+            trace.energy / (GRAVITY * body.semidiagonal),
             trace.contact_force,
             trace.restraining_moment / body.base_radius,
         ]

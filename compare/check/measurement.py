@@ -178,6 +178,22 @@ def lean(trace: Trace) -> NDArray[np.complex128]:
     return np.asarray(np.sin(trace.tilt) / math.sin(trace.case.cylinder.alpha) * turn)
 
 
+def lean_difference(found: Trace, model: Trace, end: float = math.inf, *, clock: float = 1.0) -> Array:
+    """Return the difference of the leans until a time (n,), over sin(alpha) of `found`.
+
+    Of the tilt alone without an azimuth; `clock` stretches the time of `found`.
+    """
+    from scipy.interpolate import CubicSpline
+
+    at = found.time * clock
+    at = at[at <= min(end, float(model.time[-1]))]
+    share = math.sin(model.case.cylinder.alpha) / math.sin(found.case.cylinder.alpha)
+    own, other = lean(found)[: len(at)], share * lean(model)
+    if not np.isfinite(found.rolling_angle).any():
+        own, other = np.abs(own), np.abs(other)
+    return np.asarray(np.abs(own - CubicSpline(model.time, other)(at)), dtype=np.float64)
+
+
 def turning_points(time: Array, tilt: Array, angle: Array) -> Array:
     """Return time, tilt, rolling angle and 1 or -1 of each maximum and minimum of sampled tilts (k, 4).
 

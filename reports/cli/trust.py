@@ -332,7 +332,7 @@ def verify(
     same: every number repeats. chaotic: what differs does so after agreement must end, and distributions
     agree. changed: something differs before that; the claim and the first term concerned are named.
 
-    Versions that are others than those of the certificate are named.
+    Versions that differ from those of the certificate are named.
 
     Exit code 0 for same and chaotic, 1 for changed, 2 for bad input.
 
