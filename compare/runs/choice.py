@@ -292,8 +292,12 @@ def default_runs(
     runs = []
     tied = any(case.tendon is not None for case in cases)
     usual = [each for each in SUPPORTS if SUPPORT_FACTS[each].guided or not tied]
-    for support in usual if supports is None else supports:
+    for support in SUPPORTS if supports is None else supports:
         able = [engine for engine in engines if support in find_engine(engine).supports]
+        if supports is None and support not in usual:
+            # one that is named and has no other is refused for it, not left out
+            others = [] if unnamed else able
+            able = [engine for engine in others if not set(usual) & set(find_engine(engine).supports)]
         if unnamed and supports is not None and not able:
             _require_one_with(support)
         runs += [Run(engine, support) for engine in able or (engines if supports is not None else ())]

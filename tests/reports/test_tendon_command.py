@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -131,7 +132,8 @@ def test_the_threshold_of_uplift_counts_the_prestress(slab: float) -> None:
     assert times[0] / times[1] == pytest.approx(tendon.uplift_factor(body), rel=2e-3)
 
 
-def test_a_suite_with_a_tendon_leaves_flat_ground_out_by_default() -> None:
+@pytest.mark.skipif(find_spec("exudyn") is None, reason="an engine of flat ground alone")
+def test_a_case_with_a_tendon_leaves_flat_ground_out_by_default() -> None:
     from rockwobble.compare import default_runs
 
     release = rw.InitialState(0.1)
@@ -139,3 +141,8 @@ def test_a_suite_with_a_tendon_leaves_flat_ground_out_by_default() -> None:
     tied = dataclasses.replace(case, tendon=rw.Tendon(prestress=0.5))
     assert {run.support for run in default_runs(cases=[case])} == {"recess", "flat"}
     assert {run.support for run in default_runs(cases=[case, tied])} == {"recess"}
+    # what is named runs or is refused, and nothing else takes its place
+    named = default_runs(["mujoco", "exudyn"], cases=[tied])
+    assert named == (rw.Run("mujoco", "recess"), rw.Run("exudyn", "flat"))
+    with pytest.raises(ValueError, match="a tendon is part of the models in the recess"):
+        rw.comparison(tied, runs=named)
