@@ -6,6 +6,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -96,6 +97,22 @@ def passes_between(
         if before.is_maximum and not low.is_maximum
     ]
     return pd.DataFrame(rows, columns=["time", "minimum_tilt", "angle_of_turn"], dtype=float)
+
+
+def faint_openings(
+    points: Sequence[TurningPoint], threshold: float, rests: Sequence[tuple[float, float]]
+) -> list[float]:
+    """Return when the base opened between two rests by less than `threshold` [rad], before it moved by more.
+
+    The models, which lose nothing there, still move when it opens next; contact has come to rest or moves
+    otherwise, so that the direction in which the next motion begins is left to it.
+    """
+    largest = [
+        (opened, max((point.tilt for point in points if opened <= point.time < closed), default=0.0))
+        for (_, opened), (closed, _) in pairwise([*rests, (math.inf, math.inf)])
+    ]
+    moved = max((opened for opened, tilt in largest if tilt >= threshold), default=-math.inf)
+    return [opened for opened, tilt in largest if 0.0 < tilt < threshold and opened < moved]
 
 
 def _vertex(values: Array) -> tuple[float, float]:

@@ -22,7 +22,7 @@ from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, engine_fo
 from .excitation import StepMeans
 from .extrapolated_step import EXTRAPOLATED, FINEST, extrapolate, require_finest
 from .guard import check_time_step
-from .passes import STEPS_OF_A_PASS, passes_between, true_swings
+from .passes import STEPS_OF_A_PASS, TurningPoint, faint_openings, passes_between, true_swings
 from .protocol import Engine, Settings
 from .reaction import EARLY
 from .recorder import COLUMNS, Recorder
@@ -411,10 +411,9 @@ def diagnostics(
         yield Diagnostic(
             code="unresolved_pass", time=recorder.uplift[0] * unit_time, size=1, bound=resolution
         )
-    elif len(close):
-        yield Diagnostic(
-            code="unresolved_pass",
-            time=float(close["time"].iloc[0]),
-            size=len(close),
-            bound=resolution,
-        )
+        return
+    # a motion that only grows has no turning point before the last step
+    last = TurningPoint(float(recorder.last_row[0]), recorder.last_value("tilt"), 0.0, is_maximum=True)
+    faint = faint_openings([*recorder.points, last], resolution, recorder.rests.rests())
+    if unresolved := sorted([*close["time"], *(unit_time * opened for opened in faint)]):
+        yield Diagnostic(code="unresolved_pass", time=unresolved[0], size=len(unresolved), bound=resolution)

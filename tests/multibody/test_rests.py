@@ -7,7 +7,13 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
-from rockwobble.multibody.passes import SHORTEST, RestWatch, TurningPoint, passes_between
+from rockwobble.multibody.passes import (
+    SHORTEST,
+    RestWatch,
+    TurningPoint,
+    faint_openings,
+    passes_between,
+)
 
 STEP = 1e-3
 
@@ -81,3 +87,30 @@ def test_between_a_release_that_lands_and_a_later_pulse_there_is_no_pass(engine:
     first = run.passes[run.passes["time"] < 1.0]
     np.testing.assert_allclose(np.abs(first["angle_of_turn"]), np.pi, atol=1e-6)
     assert len(run.passes) < 20
+
+
+def test_a_faint_opening_comes_before_a_motion_and_belongs_to_none() -> None:
+    points = [TurningPoint(1.0, 2e-5, 0.0, True), TurningPoint(3.0, 0.01, 0.0, True)]
+    rests = [(0.0, 0.9), (1.1, 2.5), (3.5, 4.0)]
+    assert faint_openings(points, 1e-4, rests) == [0.9]
+    # contact resolves it, no motion follows, it never stood still in between, or none opened there
+    assert faint_openings(points, 1e-5, rests) == []
+    assert faint_openings(points[:1], 1e-4, rests) == []
+    assert faint_openings(points, 1e-4, [(0.0, 0.9), (3.5, 4.0)]) == []
+    assert faint_openings(points[1:], 1e-4, rests) == []
+
+
+@pytest.mark.parametrize("speaks", [False, True])
+def test_an_opening_below_what_contact_resolves_leaves_the_next_start_to_chance(speaks: bool) -> None:
+    # the first pulse passes the uplift threshold by a twentieth for some milliseconds, or stays below it
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    time = 0.005 * np.arange(360)
+    push = np.zeros((len(time), 2))
+    for start, length, strength in ((0.5, 0.1, 1.05 if speaks else 0.95), (1.2, 0.6, 1.5)):
+        inside = (time >= start) & (time < start + length)
+        push[inside, 0] += strength * 9.81 * 0.2 * np.sin(np.pi * (time[inside] - start) / length)
+    run = multibody.simulate(Case(pier, GroundMotion(push, 0.005), friction=5.0), engine="mujoco")
+    assert run.peak_tilt > 100.0 * run.contact_resolution
+    said = [fact.time for fact in run.diagnostics if fact.code == "unresolved_pass"]
+    assert len(said) == speaks
+    assert all(0.5 < first < 0.6 for first in said)
