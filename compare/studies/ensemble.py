@@ -61,11 +61,13 @@ class Ensemble(Results, kind=KIND):
         One row for each method: own_model (of the support of an engine; of a ring, which has none, the recess
         model), runs, uplifted, overturned, failed, failed_members (their names), and of the peak tilts of
         what did not fail [alpha] the median with its interval (peak_median, _low, _high) and the 16th and
-        84th percentile (peak_16, peak_84): infinite where they overturn.
+        84th percentile (peak_16, peak_84): infinite where they overturn; peak_median_least and _most: the
+        median were all that failed at rest, and were all to overturn.
     contrasts : DataFrame
         One row for each two methods: the numbers of `Contrast`, intervals in columns _low and _high, its
-        verdict, masked (members that failed by one of them), and both probabilities corrected for the number
-        of pairs (Holm) in columns _adjusted.
+        verdict, masked (members that failed by one of them), ratio_least and ratio_most (the median ratio,
+        whatever these members would have done: a run may fail where it overturns), and both probabilities
+        corrected for the number of pairs (Holm) in columns _adjusted.
 
     Its facts are what the members are, the range of their sizes and slendernesses, the model of the support
     of each method, the seed, and the hash of all inputs.
@@ -268,6 +270,16 @@ class Pairs:
         """Return the logarithms of the ratios of the members, see `distributions.log_ratios`."""
         return log_ratios(self.peaks, self.against, self.overturned, self.against_overturned)
 
+    def ratio_bounds(self) -> tuple[float, float]:
+        """Return the least and the largest median ratio, whatever the members that failed would have done."""
+        known, unknown = self.log_ratios()[~self.failed], np.count_nonzero(self.failed)
+        known = known[~np.isnan(known)]
+        least, most = (
+            quantile_interval(np.append(known, np.full(unknown, fate)), 0.5).exponential().value
+            for fate in (-math.inf, math.inf)
+        )
+        return least, most
+
     def contrast(self) -> Contrast | None:
         """Return the contrast of the methods; None where fewer than two members ran by both."""
         if np.count_nonzero(~self.failed) < 2:
@@ -318,6 +330,10 @@ def method_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFr
         fallen = known["outcome"] == "overturned"
         peaks = np.where(fallen, math.inf, known["peak_tilt"].to_numpy(float))
         median = quantile_interval(peaks, 0.5)
+        least, most = (
+            quantile_interval(np.append(peaks, np.full(len(failed), fate)), 0.5).value
+            for fate in (0.0, math.inf)
+        )
         rows.append(
             {
                 "method": method,
@@ -332,6 +348,8 @@ def method_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFr
                 "peak_median_low": max(median.low, 0.0),
                 "peak_median_high": median.high,
                 "peak_84": quantile_interval(peaks, 0.84).value,
+                "peak_median_least": least,
+                "peak_median_most": most,
             }
         )
     return pd.DataFrame(rows)
@@ -344,8 +362,17 @@ def contrast_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.Data
         both = pairs(members, method, against)
         found = both.contrast()
         if found is not None:
-            masked = ", ".join(both.members[both.failed])
-            rows.append({"method": method, "against": against, **contrast_row(found), "masked": masked})
+            least, most = both.ratio_bounds()
+            rows.append(
+                {
+                    "method": method,
+                    "against": against,
+                    **contrast_row(found),
+                    "masked": ", ".join(both.members[both.failed]),
+                    "ratio_least": least,
+                    "ratio_most": most,
+                }
+            )
     table = pd.DataFrame(rows)
     for name in ("ratio_p", "overturned_p") if len(table) else ():
         table[f"{name}_adjusted"] = adjusted(table[name].to_numpy(float))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from rockwobble.compare import Ensemble
 from rockwobble.compare.metrics.statistics import (
     FEWEST,
@@ -17,6 +19,9 @@ from rockwobble.models.diagnostic import codes_in
 from ..figures.ensemble import main_pairs, pictures
 from .page import Page
 
+# of tables kept before there were bounds for runs that failed
+_UNBOUNDED = dict.fromkeys(("peak_median_least", "peak_median_most", "ratio_least", "ratio_most"), math.nan)
+
 
 def page_of(found: Ensemble) -> Page:
     """Return the page of an ensemble."""
@@ -28,7 +33,10 @@ def ensemble_values(found: Ensemble) -> dict[str, object]:
     """Return the values of the template of an ensemble."""
     contrasts, methods = found.contrasts, found.methods.to_dict("records")
     rows, main = (
-        [{**row, "ratio": value_if_enough(row["ratio"], row["compared"], ratio=True)} for row in each]
+        [
+            {**_UNBOUNDED, **row, "ratio": value_if_enough(row["ratio"], row["compared"], ratio=True)}
+            for row in each
+        ]
         for each in (contrasts.to_dict("records"), main_pairs(found))
     )
     # those that matter first, then the others by their probability
@@ -52,7 +60,7 @@ def ensemble_values(found: Ensemble) -> dict[str, object]:
         "apart": [row for row in every.values() if row["ratio_p_adjusted"] < SIGNIFICANCE],
         "apart_by_falls": [row for row in rows if row["overturned_p_adjusted"] < SIGNIFICANCE],
         "any_falls": bool(found.methods["overturned"].any()),
-        "failed": [row for row in methods if row["failed"]],
+        "failed": [{**_UNBOUNDED, **row} for row in methods if row["failed"]],
         "margin": MARGIN,
         "power": POWER,
         "significance": SIGNIFICANCE,

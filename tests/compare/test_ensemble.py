@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 
 import numpy as np
@@ -167,6 +168,36 @@ def test_a_failed_run_is_no_member_that_stands():
     turned = ensemble_of(members, {**found.facts, "methods": {"flat-ground model": "", "recess model": ""}})
     assert turned.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
     assert again.methods.loc[0, ["runs", "uplifted", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
+
+
+def test_bounds_hold_whatever_the_runs_that_failed_would_have_done(monkeypatch):
+    monkeypatch.setattr(execution, "run_job", lambda job: made_up(job, job.case.initial.tilt))
+    found = ensemble(CASE, runs=[], copies=9, perturbation=0.05, workers=1)
+    whole = found.methods.set_index("method")
+    assert (whole["peak_median_least"] == whole["peak_median"]).all()
+    failed = found.members.copy()
+    lost = failed.index[failed["method"] == "flat-ground model"][[1, 4]]
+    failed.loc[lost, "outcome"] = "failed"
+    bounds = ensemble_of(failed, found.facts)
+    median, ratio = bounds.methods.set_index("method").loc["flat-ground model"], bounds.contrasts.loc[0]
+    assert ratio["ratio_least"] <= ratio["ratio"] <= ratio["ratio_most"]
+    told = []
+    for fates in itertools.product(("overturned", "stands"), repeat=2):
+        known = found.members.copy()
+        known.loc[lost, "outcome"] = fates
+        known.loc[lost, "peak_tilt"] = [math.pi if fate == "overturned" else 1e-9 for fate in fates]
+        again = ensemble_of(known, found.facts)
+        told.append(
+            (
+                again.methods.set_index("method").loc["flat-ground model", "peak_median"],
+                again.contrasts.loc[0],
+            )
+        )
+        assert median["peak_median_least"] <= told[-1][0] <= median["peak_median_most"]
+        assert ratio["ratio_least"] <= told[-1][1]["ratio"] <= ratio["ratio_most"]
+    assert told[0][0] == median["peak_median_most"]
+    assert told[-1][0] == median["peak_median_least"]
+    assert {told[0][1]["ratio"], told[-1][1]["ratio"]} == {ratio["ratio_least"], ratio["ratio_most"]}
 
 
 def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monkeypatch, tmp_path):

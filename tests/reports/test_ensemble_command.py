@@ -100,6 +100,21 @@ def test_words_say_what_is_equivalent_what_is_told_and_what_cannot_be_seen():
     assert "it takes at least 6 that overturn by one of two methods alone" in words
 
 
+def test_words_bound_what_failed_runs_leave_open_and_tables_of_before_have_no_bounds():
+    found = made_up()
+    members = found.members.copy()
+    members.loc[[12, 13], "outcome"] = "failed"
+    bounded = ensemble_of(members, found.facts)
+    assert "α if they were all at rest" in said(bounded)
+    assert "whatever failed runs would have done" in said(bounded)
+    assert "failed runs would" not in said(found)
+    before = {
+        name: table[[each for each in table if not each.endswith(("_least", "_most"))]]
+        for name, table in bounded.tables.items()
+    }
+    assert "failed runs would" not in said(Ensemble(tables=before, facts=bounded.facts))
+
+
 def test_what_is_told_apart_may_be_equivalent_and_what_is_not_need_not():
     close = said(made_up(1.001))
     assert "Equivalent within 5 % in the median: mujoco recess with recess model." in close
