@@ -200,6 +200,7 @@ _Way = Literal["auto", "extrapolated"]
 WAYS_TO_A_STEP: tuple[_Way, ...] = ("auto", "extrapolated")
 TimeStep = float | _Way | None
 """Time step of an engine [s], or the way to one."""
+REDUCED = "reduced"  # the engine of a reduced model, in tables
 _MODEL_NAMES = {"flat": "flat-ground model"}
 
 
@@ -262,10 +263,24 @@ class Run:
         return line("Run", [repr(self.engine), repr(self.support), *given])
 
     def __str__(self) -> str:
-        if self.engine is not None:
+        if not self.is_model:
             return f"{self.engine} {self.support}"
-        planar = self.settings.get("plane") is not None
-        return "planar model" if planar else _MODEL_NAMES.get(self.support, f"{self.support} model")
+        return "planar model" if self.is_planar else _MODEL_NAMES.get(self.support, f"{self.support} model")
+
+    @property
+    def is_model(self) -> bool:
+        """Whether it is a reduced model, not an engine or an external trajectory."""
+        return self.engine is None
+
+    @property
+    def is_planar(self) -> bool:
+        """Whether it is the planar model: motion in one vertical plane."""
+        return self.settings.get("plane") is not None
+
+    @property
+    def engine_name(self) -> str:
+        """Name of the engine in tables; "reduced" of a reduced model."""
+        return self.engine or REDUCED
 
     def __hash__(self) -> int:
         return hash((self.engine, self.support, self.time_step, frozenset(self.settings.items())))

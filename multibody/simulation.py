@@ -141,9 +141,8 @@ def _simulate(
 ) -> Trace:
     """Run with one time step [s]."""
     started = clock.perf_counter()
-    assert run.engine is not None
     scale = froude_scale(case.cylinder.semidiagonal, case.gravity)
-    backend, scene, resolved = _statement(case, run.engine, run.support, settings, step)
+    backend, scene, resolved = _statement(case, run.engine_name, run.support, settings, step)
     samples = _sample_times(case.length, require_sample_step(sample_step, case.length)) / scale.time
     release = InitialState(0.0) if case.initial is None else case.initial
     recorder = Recorder(

@@ -143,7 +143,7 @@ class SuiteFile(pytest.File):
                     self, name=f"{case.name}, {label}", suite=suite, case=case, run=run, label=label
                 )
                 if run not in here:
-                    item.add_marker(pytest.mark.skip(reason=f"{run.engine} {engine_fault(str(run.engine))}"))
+                    item.add_marker(pytest.mark.skip(reason=f"{run.engine} {engine_fault(run.engine_name)}"))
                 yield item
 
 

@@ -135,7 +135,7 @@ def updated_baseline(
 
 
 def _version(subject: Subject) -> str:
-    return "" if subject.run is None or subject.run.engine is None else find_engine(subject.label).version()
+    return "" if subject.run is None or subject.run.is_model else find_engine(subject.label).version()
 
 
 def _share(verdict: FingerprintVerdict, old: Entry, new: Sample) -> float:

@@ -363,7 +363,7 @@ def check(
     given = [engine, model, trajectory, suite]
     if sum(each is not None for each in given) > 1:
         raise ValueError("one of engine, model, trajectory and suite may be given, got more")
-    if (time_step is not None or settings) and engine is None:
+    if engine is None and (time_step is not None or settings):
         raise ValueError("time_step and settings belong to an engine, got them alone")
     for group in only or ():
         require_one_of("a group", group, tuple(GROUPS))
@@ -387,11 +387,12 @@ def check(
         asked = [name for name in engine_packages() if name in (*standard_engines(), *available_engines())]
         faults = {name: engine_fault(name) for name in asked}
         results = [not_run(f"checks of {name}", fault) for name, fault in faults.items() if fault]
+    by_default = not any(each is not None for each in given)
     parts: list[tuple[Subject, str, Mapping[str, tuple[Check, ...]]]] = []
     for group in (each for each in GROUPS if only is None or each in only):
         for each in chosen:
             checks: Mapping[str, tuple[Check, ...]] = GROUPS
-            if engine is None and each.run is not None:
+            if by_default and each.run is not None:
                 checks = _OF_ENGINES if each.label in standard_engines() else _OF_EXTRAS
             parts.append((each, group, checks))
     count = sum(len(chosen_checks(each, [group], checks=checks)) for each, group, checks in parts)

@@ -260,7 +260,7 @@ def _copies(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, by_step: Arra
         closed = runs.simulate(case, model.run, rest_tilt=min(threshold, LARGEST_REST_TILT))
         closing.append(_tilt_difference(model, closed))
 
-    by_table = estimated_error(case, job.run.engine, trace.time_step)
+    by_table = estimated_error(case, job.run, trace.time_step)
     error = max(early_rms(case, trace.time[: len(by_step)], by_step, start), by_table)
     relative = disturbance(case, model, error, runs.simulate)
     moved = [disturbed(case, share) for share in ((relative, -relative) if relative else ())]

@@ -293,8 +293,7 @@ class Refined:
     @property
     def smooth(self) -> bool:
         """Whether the error of the run is a power series in the step: from rest not in every engine."""
-        assert self.run.engine is not None  # only runs of engines are refined
-        return self.case.is_release or engine_facts(self.run.engine).smooth_uplift
+        return self.case.is_release or engine_facts(self.run.engine_name).smooth_uplift
 
     @property
     def key(self) -> Key:
@@ -398,7 +397,7 @@ def case_budgets(
     for case in cases:
         for label, run in runs.items():
             trajectory = results[case.name, label]
-            if run.engine is None or trajectory.outcome == "failed":
+            if run.is_model or trajectory.outcome == "failed":
                 continue
             found = {
                 model: agreement

@@ -194,9 +194,7 @@ def _row(
     reference, own, trial = (found[case.name, each] for each in (name, str(own_model(run)), label))
     if not len(trial.time) or not len(reference.time):
         return lost_row(case, name, reference, label, trial)
-    error = (
-        estimated_error(case, run.engine, trial.time_step) if budget is None else measured_error(case, budget)
-    )
+    error = estimated_error(case, run, trial.time_step) if budget is None else measured_error(case, budget)
 
     def own_prediction(tolerance: float) -> Prediction:
         return predict(

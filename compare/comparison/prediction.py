@@ -69,20 +69,21 @@ class Prediction:
     reason: str
 
 
-def estimated_error(case: Case, engine: str | None, time_step: float) -> float:
+def estimated_error(case: Case, run: Run, time_step: float) -> float:
     """Return the tilt error of an engine in the first second of motion, without running it [alpha].
 
     Parameters
     ----------
     case : Case
-    engine : str or None
-        One that nothing is known of counts as one of the better, see `EngineFacts`; a reduced model has none.
+    run : Run
+        An engine that nothing is known of counts as one of the better, see `EngineFacts`; a reduced model has
+        no more than the smallest.
     time_step : float
         [s]
     """
-    if engine is None:
+    if run.is_model:
         return _SMALLEST_ERROR
-    facts = engine_facts(engine)
+    facts = engine_facts(run.engine_name)
     step = time_step / time_scale(case) / REFERENCE_TIME_STEP
     error = facts.release_error * case.cylinder.tan_alpha**2 if case.is_release else facts.uplift_error
     return max(error * math.pow(step, facts.order), _SMALLEST_ERROR)

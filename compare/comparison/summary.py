@@ -30,7 +30,6 @@ from ..metrics.pair import (
     tolerance_of,
     turn_difference,
 )
-from ..runs.choice import REDUCED
 from .budget import ErrorBudget
 from .prediction import Prediction, close_pass, verdict
 
@@ -192,9 +191,9 @@ def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) 
     """Run and reference, and the outcomes of both."""
     return {
         "case": case.name,
-        "engine": trial.run.engine or REDUCED,
+        "engine": trial.run.engine_name,
         "support": trial.run.support,
-        "reference_engine": reference.run.engine or REDUCED,
+        "reference_engine": reference.run.engine_name,
         "reference_support": reference.run.support,
         "outcome": trial.outcome,
         "reference_outcome": reference.outcome,
@@ -304,7 +303,7 @@ def _rows(
     own = {label: trace for (of, label), trace in traces.items() if of == name and len(trace.time)}
     for support in dict.fromkeys(trace.run.support for trace in own.values()):
         members = {label: trace for label, trace in own.items() if trace.run.support == support}
-        if len({trace.run.engine for trace in members.values()} - {None}) < 2:
+        if len({trace.run.engine for trace in members.values() if not trace.run.is_model}) < 2:
             continue
         for run, other in permutations(members, 2):
             whole, _, difference = _difference(case, members[run], members[other], until)

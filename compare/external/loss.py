@@ -64,7 +64,7 @@ def losses(
     """
     before = reference.difference(motion)
     share = loss_of(motion, reference)
-    if not (before.tilt.differs and share > LEAST_LOSS and trace.run.engine is None):
+    if not (before.tilt.differs and share > LEAST_LOSS and trace.run.is_model):
         return (), before
     found: tuple[Loss, ...] = (Loss(code=ENERGY_LOSS, concerns="tilt", value=share),)
     resistance, follows = _resistance(motion, reference, trace, case)

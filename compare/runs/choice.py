@@ -93,17 +93,14 @@ def _setting_names(case: Case, run: Run) -> tuple[str, ...]:
     start = Case(
         case.cylinder, initial=InitialState(_LEAN * case.cylinder.alpha), duration=1.0, name=case.name
     )
-    if run.engine is None:
+    if run.is_model:
         return ("plane", "restitution", "rtol", "rest_tilt")
-    return (*resolved_settings(start, run.engine, run.support, {}), *step_settings(run))
+    return (*resolved_settings(start, run.engine_name, run.support, {}), *step_settings(run))
 
 
 def step_settings(run: Run) -> tuple[str, ...]:
     """Return the settings of the way to a time step that the run takes."""
     return tuple(name for name, way in STEP_SETTINGS.items() if way == run.time_step)
-
-
-REDUCED = "reduced"  # the engine of a reduced model, in tables
 
 
 def labels_beside_references(runs: Sequence[Run], reference: Run | None) -> tuple[tuple[str, ...], str]:
@@ -242,7 +239,7 @@ def require_runnable(case: Case, run: Run) -> None:
         If the engine is unknown, not installed or does not load, does not have the support or cannot start
         the case, the time step is too large for contact, or a setting is unknown or out of range.
     """
-    if run.engine is None:
+    if run.is_model:
         # loads the compiler, which who only imports this need not wait for
         from rockwobble.reduced.problem import Problem
 
@@ -252,7 +249,7 @@ def require_runnable(case: Case, run: Run) -> None:
     settings = dict(run.settings)
     for name in step_settings(run):
         settings.pop(name, None)
-    resolved_settings(case, run.engine, run.support, settings, step)
+    resolved_settings(case, run.engine_name, run.support, settings, step)
 
 
 def default_runs(
@@ -321,7 +318,7 @@ def all_runs(cases: Sequence[Case], supports: Sequence[str] | None = None) -> tu
     """
     engines = [name for name in available_engines() if not _unable(name, cases)]
     asked = default_runs(engines, supports or SUPPORTS)
-    found = [run for run in asked if run.support in find_engine(str(run.engine)).supports]
+    found = [run for run in asked if run.support in find_engine(run.engine_name).supports]
     if not found:
         raise ValueError(
             f"no installed engine has the support {' or '.join(supports or SUPPORTS)} for this case"

@@ -121,7 +121,7 @@ def simulate_run(case: Case, run: Run, *, sample_step: float = SAMPLE_STEP) -> T
     ValueError
         What `reduced.simulate` or `multibody.simulate` raises.
     """
-    if run.engine is None:
+    if run.is_model:
         from rockwobble import reduced
 
         if run.time_step is not None:
@@ -136,7 +136,7 @@ def simulate_run(case: Case, run: Run, *, sample_step: float = SAMPLE_STEP) -> T
 
     return multibody.simulate(
         case,
-        engine=run.engine,
+        engine=run.engine_name,
         support=run.support,
         time_step=run.time_step,
         sample_step=sample_step,
@@ -189,7 +189,7 @@ def simulate_all(
         jobs,
         workers=workers,
         # a reduced model may have to be compiled
-        cost=lambda job: math.inf if job.run.engine is None else engine_time(job.case, job.run),
+        cost=lambda job: math.inf if job.run.is_model else engine_time(job.case, job.run),
         label=lambda job: job.name,
         progress=progress,
         cache=cache,
@@ -236,18 +236,17 @@ def equal_step(case: Case, run: Run) -> float:
 
 def engine_time(case: Case, run: Run) -> float:
     """Return the rough computing time of a run of an engine [s]."""
-    assert run.engine is not None
-    return case.length / equal_step(case, run) * engine_facts(run.engine).step_time
+    return case.length / equal_step(case, run) * engine_facts(run.engine_name).step_time
 
 
 def makers_of(run: Run) -> dict[str, str]:
     """Return versions and code on which a run depends."""
-    return reduced_makers() if run.engine is None else engine_makers(run.engine)
+    return reduced_makers() if run.is_model else engine_makers(run.engine_name)
 
 
 def all_makers(runs: Iterable[Run]) -> dict[str, str]:
     """Return versions and code on which any of the runs depends; of none, those of the reduced models."""
-    engines = sorted({run.engine for run in runs if run.engine is not None})
+    engines = sorted({run.engine_name for run in runs if not run.is_model})
     return reduced_makers() | (engine_makers(*engines) if engines else {})
 
 

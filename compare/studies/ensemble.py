@@ -202,7 +202,7 @@ def ensemble(
 
 def _compared_with(run: Run) -> str:
     """Return the label of the model of an engine's own support, or the recess model."""
-    return str(Run(None, support_of(run).compared_with[-1])) if run.engine else ""
+    return "" if run.is_model else str(Run(None, support_of(run).compared_with[-1]))
 
 
 def ensemble_of(members: pd.DataFrame, about: Mapping[str, object]) -> Ensemble:

@@ -283,7 +283,7 @@ def _shaken(peak: float, *, spacing: float = 0.01) -> Case:
 def judge(condition: Condition, run: Run) -> Verdict:
     """Run a condition by a method, and return what is found."""
     sets_contact = math.isfinite(condition.contact)
-    if (run.engine is None and condition.only_engines) or (sets_contact and not _contact_time(run)):
+    if (run.is_model and condition.only_engines) or (sets_contact and not _contact_time(run)):
         return Verdict(verdict="n/a")
     case, run = _request(condition, run)
     try:
@@ -294,14 +294,14 @@ def judge(condition: Condition, run: Run) -> Verdict:
     if trace.outcome == "failed":
         codes = [fact.code for fact in trace.facts if fact.code in FAILURES]
         return Verdict(verdict="caught" if codes else "silent", limit=cell_of(codes))
-    return (_model_verdict if run.engine is None else _engine)(condition, run, trace)
+    return (_model_verdict if run.is_model else _engine)(condition, run, trace)
 
 
 def _request(condition: Condition, run: Run) -> tuple[Case, Run]:
     """The case, as one vertical plane can hold it, and the run that a condition asks of a method."""
     case = condition.case
-    if run.engine is None:
-        if "plane" in run.settings and condition.extreme != "spin" and case.initial is not None:
+    if run.is_model:
+        if run.is_planar and condition.extreme != "spin" and case.initial is not None:
             case = replace(case, initial=replace(case.initial, rolling_rate=0.0))
         return case, run
     step = _step(condition)
@@ -316,7 +316,7 @@ def _step(condition: Condition) -> float:
 
 def _contact_time(run: Run) -> str:
     """The setting that is the time of a run's contact; "" without one."""
-    return "" if run.engine is None else engine_facts(run.engine).contact_time
+    return "" if run.is_model else engine_facts(run.engine_name).contact_time
 
 
 def _tighter(run: Run, rtol: float) -> Run:

@@ -86,7 +86,7 @@ def single_run(
     progress : callable, optional
         Called with a `Progress` at the start and at the end of each stage.
     """
-    model = run if run.engine is None else own_model(run)
+    model = run if run.is_model else own_model(run)
     plan = AdvicePlan()
     stage = stages(progress, [1.0, 1.0])
     with stage(Job(case=case, run=run).label):

@@ -20,7 +20,7 @@ from rockwobble.models.records.units import sources_of
 
 from ..metrics.pair import outcome_of
 from ..metrics.statistics import value_if_enough
-from ..runs.choice import REDUCED, require_runnable, run_labels
+from ..runs.choice import require_runnable, run_labels
 from ..runs.execution import Job, all_makers, job_fingerprint, run_job, run_tables
 from ..runs.progress import ProgressCallback
 from ..storage.manifest import Number
@@ -83,7 +83,7 @@ def runnable_suite(plan: Suite | Iterable[Case]) -> Suite:
 def chunks_of(suite: Suite, size: int | None = None) -> Iterator[CaseChunk]:
     """Cut the runs of a suite into chunks, in the order of the table: method by method."""
     for run, label in zip(suite.runs, run_labels(suite.runs), strict=True):
-        step = size or (_ENGINE_CHUNK_SIZE if run.engine else _REDUCED_CHUNK_SIZE)
+        step = size or (_REDUCED_CHUNK_SIZE if run.is_model else _ENGINE_CHUNK_SIZE)
         for i in range(0, len(suite.cases), step):
             yield CaseChunk(
                 jobs=tuple(Job(case=case, run=run, label=label) for case in suite.cases[i : i + step])
@@ -114,7 +114,7 @@ def _row(job: Job, trace: Trace) -> dict[str, object]:
     return {
         "case": job.case.name,
         "run": job.label,
-        "engine": job.run.engine or REDUCED,
+        "engine": job.run.engine_name,
         "support": job.run.support,
         "time_step": trace.time_step,
         "semidiagonal": cylinder.semidiagonal,

@@ -253,9 +253,9 @@ def simulate(
 def _with_settings(case: rw.Case, run: rw.Run, setting: list[str] | None, model: dict[str, Any]) -> rw.Run:
     """Return the run with the options that belong to its method; others are refused, not ignored."""
     model = {name: value for name, value in model.items() if value is not None}
-    if run.engine is None and run.time_step is not None:
+    if run.is_model and run.time_step is not None:
         raise ValueError("--time-step belongs to an engine, give --engine as well")
-    if run.engine is not None and model:
+    if not run.is_model and model:
         option = "--" + next(iter(model)).replace("_", "-")
         raise ValueError(f"{option} belongs to the reduced models, got --engine {run.engine}")
     if twice := model.keys() & settings(setting).keys():
@@ -329,7 +329,7 @@ def _run(case: rw.Case, engine: str | None, support: str, time_step: float | Non
     from rockwobble.multibody.engines.registry import engine_fault
 
     default = rw.multibody.DEFAULT_ENGINE
-    fault = engine_fault(default) if engine is None else ""
+    fault = "" if engine else engine_fault(default)
     if fault:
         complain(f"{default} {fault}; the prediction stays unverified")
     if fault or engine == options.NO_ENGINE:

@@ -34,6 +34,12 @@ Subject = dict[str, Any]  # arguments of `rockwobble.check`
 _STEP = "Time step of the engine, in s. Default: its own choice."
 
 
+def _require_engine(engine: str | None, time_step: float | None) -> None:
+    """Refuse a time step without an engine."""
+    if engine is None and time_step is not None:
+        raise ValueError("--time-step belongs to --engine, got it alone")
+
+
 @dataclass(frozen=True, kw_only=True)
 class SubjectOptions(Plan):
     """The options that name what is checked."""
@@ -75,8 +81,7 @@ class SubjectOptions(Plan):
         for name, value in (("--support", self.support), ("--tolerance", self.tolerance)):
             if value is not None and model is None and trajectory is None:
                 raise ValueError(f"{name} belongs to --model or --trajectory, got it without either")
-        if self.time_step is not None and self.engine is None:
-            raise ValueError("--time-step belongs to --engine, got it alone")
+        _require_engine(self.engine, self.time_step)
         if self.workers is not None and (suite is None or trajectory is not None):
             raise ValueError("--workers belongs to the runs of a --suite, got it without one")
         if self.engine is not None:
@@ -297,8 +302,7 @@ def certify(
         from rockwobble.models.number_checks import require_one_of
         from rockwobble.models.support import SUPPORTS
 
-        if time_step is not None and engine is None:
-            raise ValueError("--time-step belongs to --engine, got it alone")
+        _require_engine(engine, time_step)
         for group in only or ():
             require_one_of("--only", group, CLAIMING)
         require_file("--out", out)

@@ -147,7 +147,7 @@ def case_views(comparison: Comparison) -> list[CaseView]:
                 facts={label: trace.facts for label, trace in whole.items()},
                 rows=rows,
                 styles=label_styles(
-                    list(traces), [label for label, trace in traces.items() if trace.run.engine is None]
+                    list(traces), [label for label, trace in traces.items() if trace.run.is_model]
                 ),
                 budgets={
                     (run, reference): budget

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare import Sweep
-from rockwobble.compare.runs.choice import REDUCED
+from rockwobble.models.case import REDUCED
 
 from .ensemble import distributions
 from .heat import PEAKS, names, peak_map

@@ -203,10 +203,10 @@ def _tendon_words(found: Advice) -> str:
 
 
 def _reason_of_trace(found: Advice) -> str:
-    trust, engine = found.trust, found.verification
+    trust, verification = found.trust, found.verification
     if not found.copies_differ and trust.kind != "statistics":
         return "the copies are all one run"
-    ran = engine is not None and engine.outcome not in NO_PEAK
+    ran = verification is not None and verification.outcome not in NO_PEAK
     if trust.kind == "trace":
         return f"{'model, engine' if ran else 'model'} and copies agree to the end"
     ends = []
@@ -234,21 +234,21 @@ def _reason_of_intensity(found: Advice) -> str:
 
 
 def _reason_of_engine(found: Advice) -> str:
-    engine = found.verification
-    if engine is None:
+    verification = found.verification
+    if verification is None:
         return "not run"
-    if engine.outcome in NO_PEAK:
-        return f"it {_NO_PEAK[engine.outcome]}: {_failure(engine)}"
-    agrees = f"agrees until {_agreed_until(engine)}, predicted until {_predicted_until(found)}"
-    if engine.divergence == "earlier":
+    if verification.outcome in NO_PEAK:
+        return f"it {_NO_PEAK[verification.outcome]}: {_failure(verification)}"
+    agrees = f"agrees until {_agreed_until(verification)}, predicted until {_predicted_until(found)}"
+    if verification.divergence == "earlier":
         return f"{agrees}: less than half as long"
-    if not engine.moves:
+    if not verification.moves:
         return "it stays at rest, the model moves"
-    if (engine.outcome == "overturned") != found.overturned:
+    if (verification.outcome == "overturned") != found.overturned:
         return "it stands, the model overturns" if found.overturned else "it overturns, the model stands"
-    if engine.divergence == "too little motion":
+    if verification.divergence == "too little motion":
         return "the model's tilt hardly changes, which tests nothing"
-    return f"{agrees}, which tests nothing" if engine.divergence in UNTESTED else agrees
+    return f"{agrees}, which tests nothing" if verification.divergence in UNTESTED else agrees
 
 
 def _groups(found: Advice) -> list[dict[str, Any]]:
@@ -483,7 +483,7 @@ def _check(name: str, value: str, note: str = "") -> Row:
 
 
 def _agreement(found: Advice) -> Iterator[Row]:
-    trust, engine = found.trust, found.verification
+    trust, verification = found.trust, found.verification
     until, note = "its end", ""
     if trust.kind != "trace":
         until, note = f"{number(trust.until, '.4g')} s", f"then {_ENDS[trust.because]}"
@@ -491,15 +491,17 @@ def _agreement(found: Advice) -> Iterator[Row]:
     tolerance = min(AGREEMENT, found.response["tolerance"])
     name = f"model and engine agree within {number(tolerance)} α, predicted, until"
     yield _check(name, _predicted_until(found), _PREDICTED[found.facts["prediction"]["reason"]])
-    if engine is None:
+    if verification is None:
         return
-    method = f"{engine.label} {engine.version}, step {number(engine.time_step)} s, agrees until"
-    if engine.outcome in NO_PEAK:
-        yield _check(method, engine.outcome, _failure(engine))
+    method = (
+        f"{verification.label} {verification.version}, step {number(verification.time_step)} s, agrees until"
+    )
+    if verification.outcome in NO_PEAK:
+        yield _check(method, verification.outcome, _failure(verification))
         return
-    tilt = f"largest tilt {number(engine.peak_tilt)} α" if engine.moves else "it stays at rest"
-    tilt = "it overturns" if engine.outcome == "overturned" else tilt
-    yield _check(method, _agreed_until(engine), f"{_DIVERGENCE[engine.divergence]}; {tilt}")
+    tilt = f"largest tilt {number(verification.peak_tilt)} α" if verification.moves else "it stays at rest"
+    tilt = "it overturns" if verification.outcome == "overturned" else tilt
+    yield _check(method, _agreed_until(verification), f"{_DIVERGENCE[verification.divergence]}; {tilt}")
 
 
 def _predicted_until(found: Advice) -> str:
@@ -508,12 +510,12 @@ def _predicted_until(found: Advice) -> str:
     return f"{number(end, '.4g')} s" if prediction["reason"] else "the end"
 
 
-def _agreed_until(engine: Verification) -> str:
-    return f"{number(engine.agreed_until, '.4g')} s" if engine.diverged else "the end"
+def _agreed_until(verification: Verification) -> str:
+    return f"{number(verification.agreed_until, '.4g')} s" if verification.diverged else "the end"
 
 
-def _failure(engine: Verification) -> str:
-    return "; ".join(CODES[code][1] for code in codes_in(engine.diagnostics))
+def _failure(verification: Verification) -> str:
+    return "; ".join(CODES[code][1] for code in codes_in(verification.diagnostics))
 
 
 def _scales(found: Advice) -> Iterator[Row]:

@@ -16,8 +16,8 @@ from rockwobble.compare.external.loss import ENERGY_LOSS
 from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
 from rockwobble.compare.external.verdict import mistakes_of
 from rockwobble.compare.metrics.pair import make_pair
-from rockwobble.compare.runs.choice import REDUCED
 from rockwobble.models import AGREEMENT, Run
+from rockwobble.models.case import REDUCED
 from rockwobble.models.diagnostic import codes_in
 from rockwobble.models.support import FLAT, RECESS, SUPPORTS
 

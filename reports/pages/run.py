@@ -18,7 +18,7 @@ from .page import Page
 def page_of(found: SingleRun) -> Page:
     """Return the page of a run; numbers are NaN or infinite where there is none."""
     trace, single = found.trace, found.facts.get("single_trace", {})
-    cylinder, engine, falls = trace.case.cylinder, trace.run.engine is not None, fall_of(trace)
+    cylinder, engine, falls = trace.case.cylinder, not trace.run.is_model, fall_of(trace)
     held = trace.assumptions_until(falls)  # a fall asks nothing
     part = single.get("copies_part", math.inf)  # of earlier versions nothing is known
     support = SUPPORTS.get(trace.run.support)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from rockwobble.compare.runs.choice import REDUCED
+from rockwobble.models.case import REDUCED
 
 from .cases import conditions
 from .diagnostics import warnings

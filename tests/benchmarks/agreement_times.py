@@ -114,7 +114,7 @@ def _row(case: Case, model: str, trial: Trace, own: Trace, reference: Trace) -> 
         reference=reference,
         own=own,
         contact_resolution=trial.contact_resolution,
-        error=estimated_error(case, trial.run.engine, trial.time_step),
+        error=estimated_error(case, trial.run, trial.time_step),
         simulate=simulate_run,
     )
     times = own.passes["time"].to_numpy(float)

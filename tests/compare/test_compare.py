@@ -63,7 +63,7 @@ def made_up(monkeypatch, cylinder, make_trace):
     def use(engine=None, model=None):
         def run_job(job: Job):
             fields = {"case": job.case, "run": job.run}
-            if job.run.engine is None:
+            if job.run.is_model:
                 offset = 0.002 if job.run.support == "flat" else 0.0
                 fields |= {"passes": [(3.0, 1e-5)], "wall_time": 0.5} | (model or {})
             else:
@@ -163,7 +163,7 @@ def test_a_run_that_left_nothing_is_a_failed_row(monkeypatch, made_up, case):
     run_job = execution.run_job
 
     def dying(job: Job):
-        return run_job(job) if job.run.engine is None else lost_trace(job.case, job.run, "status -11")
+        return run_job(job) if job.run.is_model else lost_trace(job.case, job.run, "status -11")
 
     monkeypatch.setattr(execution, "run_job", dying)
     row = comparison(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]

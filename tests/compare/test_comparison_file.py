@@ -64,7 +64,7 @@ def test_runs_are_the_same(saved):
         assert (trace.outcome, trace.diagnostics) == (loaded.outcome, loaded.diagnostics)
         for name in ("contact_point", "centre_of_mass", "contact_force", "energy", "peak_tilt"):
             assert np.array_equal(getattr(trace, name), getattr(loaded, name), equal_nan=True), name
-        if trace.run.engine is None:
+        if trace.run.is_model:
             assert trace.assumptions == loaded.assumptions
 
 

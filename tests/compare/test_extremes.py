@@ -138,7 +138,7 @@ def test_only_a_diagnostic_that_explains_an_error_and_is_no_later_flags_it(
     alpha = longer.case.cylinder.alpha
 
     def other(case: Case, run: Run, *, sample_step: float) -> Trace:
-        if run.engine is None:
+        if run.is_model:
             return simulate_run(case, run, sample_step=sample_step)
         moved = dataclasses.replace(case, initial=InitialState(0.45 * alpha, rolling_rate=0.5))
         found = simulate_run(moved, run, sample_step=sample_step)
@@ -163,7 +163,7 @@ def test_methods_are_the_three_models_and_each_support_of_each_engine() -> None:
         {run.support for run in found if run.engine == name} == set(find_engine(name).supports)
         for name in own_engines()
     )
-    assert sum(run.engine is None for run in found) == 3
+    assert sum(run.is_model for run in found) == 3
 
 
 def test_one_thing_at_a_time_is_taken_to_its_extreme() -> None:

@@ -69,6 +69,19 @@ def test_a_run_has_no_time_step_of_its_own_by_default() -> None:
     assert Run("pybullet", "flat").time_step is None
 
 
+@pytest.mark.parametrize(
+    ("run", "is_model", "is_planar", "engine_name"),
+    [
+        (Run(None, "recess"), True, False, "reduced"),
+        (Run(None, "recess", plane=0.0), True, True, "reduced"),
+        (Run("mujoco", "recess"), False, False, "mujoco"),
+        (Run("shaking table", "external"), False, False, "shaking table"),
+    ],
+)
+def test_a_run_knows_what_it_is(run: Run, is_model: bool, is_planar: bool, engine_name: str) -> None:
+    assert (run.is_model, run.is_planar, run.engine_name) == (is_model, is_planar, engine_name)
+
+
 def test_a_run_travels_to_another_process() -> None:
     run = Run("mujoco", "recess", 1e-4, cone="elliptic")
     assert pickle.loads(pickle.dumps(run)) == run

@@ -22,7 +22,7 @@ RESOLUTION = 2e-5  # [rad]
 def disguised(job: Job, **fields: Any) -> Trace:
     """Return the trace of a model; for an engine that of a body slightly off, on the model of its support."""
     case, run = job.case, job.run
-    if run.engine is None:
+    if run.is_model:
         return reduced.simulate(case, support=run.support, **run.settings)
     off = dataclasses.replace(case.cylinder, semidiagonal=case.cylinder.semidiagonal * (1.0 + 1e-5))
     recess = run.support != "flat"

@@ -123,10 +123,10 @@ def test_the_support_divides_only_what_its_models_tell_apart(monkeypatch, moved_
     def simulated(jobs: list[Job], **_: object) -> list[Trace]:  # by an engine that errs by 0.2 % in size
         found = []
         for job in jobs:
-            off = dataclasses.replace(pier, semidiagonal=6.0 if job.run.engine is None else 6.012)
+            off = dataclasses.replace(pier, semidiagonal=6.0 if job.run.is_model else 6.012)
             trace = reduced.simulate(dataclasses.replace(job.case, cylinder=off), support=job.run.support)
             given = {"case": job.case, "run": job.run, "contact_resolution": 2e-5, "time_step": 1e-4}
-            found.append(trace if job.run.engine is None else dataclasses.replace(trace, **given))
+            found.append(trace if job.run.is_model else dataclasses.replace(trace, **given))
         return found
 
     monkeypatch.setattr(driver, "simulate_all", simulated)

@@ -267,7 +267,7 @@ class Advice(Results, kind=KIND):
     @property
     def grades(self) -> dict[str, Grade]:
         """Grade of each topic that there is something to say about; the criteria are in `grades`."""
-        response, facts, engine = self.response, self.facts, self.verification
+        response, facts, verification = self.response, self.facts, self.verification
         tendon = facts.get("tendon")  # none in what an earlier version saved
         if response["outcome"] in NO_PEAK:
             return {"trace": "not satisfied"}
@@ -303,9 +303,9 @@ class Advice(Results, kind=KIND):
             low, high = self.range_as_strong
             found["intensity"] = grade_intensity(low, self.peak, high)
         found["engine"] = "not tested"
-        if engine is not None:
-            differs = (engine.outcome == "overturned") != self.overturned or not engine.moves
-            found["engine"] = grade_engine(engine.outcome, engine.divergence, differs=differs)
+        if verification is not None:
+            differs = (verification.outcome == "overturned") != self.overturned or not verification.moves
+            found["engine"] = grade_engine(verification.outcome, verification.divergence, differs=differs)
         return found
 
     @property

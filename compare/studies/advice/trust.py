@@ -153,7 +153,7 @@ def model_prediction(case: Case, trace: Trace, run: Run | None) -> Prediction:
         own=trace,
         # of the fastest fall; the penetration counts for less than it
         contact_resolution=STEPS_OF_A_PASS * float(np.abs(trace.tilt_rate).max()) * step,
-        error=estimated_error(case, DEFAULT_ENGINE if run is None else run.engine, step),
+        error=estimated_error(case, run or Run(DEFAULT_ENGINE, trace.run.support), step),
         simulate=simulate_run,
         tolerance=tolerance_of(trace),
     )

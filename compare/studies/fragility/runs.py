@@ -63,7 +63,7 @@ class Method:
     @property
     def support(self) -> str:
         """What holds the cylinder: "recess", "flat", "ring" or "planar"."""
-        if self.run is None or self.run.settings.get("plane") is not None:
+        if self.run is None or self.run.is_planar:
             return "planar"
         return self.run.support
 
@@ -116,9 +116,9 @@ def own_model(method: Method, methods: Sequence[Method]) -> str:
 
     No reduced model knows the walls of a ring.
     """
-    if method.run is None or method.run.engine is None:
+    if method.run is None or method.run.is_model:
         return ""
-    reduced = [other for other in methods if other.run is not None and other.run.engine is None]
+    reduced = [other for other in methods if other.run is not None and other.run.is_model]
     return next((other.label for other in reduced if other.support == method.support), "")
 
 
@@ -177,15 +177,15 @@ class Task:
         """Rough computing time [s]."""
 
         def time(case: Case) -> float:
-            if self.run.engine is not None:
-                return engine_time(case, self.run)
-            return case.length * (_KERNEL_TIME if self._of_peaks else _SOLUTION_TIME)
+            if self.run.is_model:
+                return case.length * (_KERNEL_TIME if self._of_peaks else _SOLUTION_TIME)
+            return engine_time(case, self.run)
 
         return sum(time(shaking.case) * len(shaking.scales) for shaking in self.shakings)
 
     def key(self) -> str:
         """Return the hash of all that the results depend on; names are no part of it."""
-        own = {"contact": self.contact, "rtol": _RTOL} if self.run.engine is None else {}
+        own = {"contact": self.contact, "rtol": _RTOL} if self.run.is_model else {}
         shakings = [case_inputs(shaking.case) | {"scales": shaking.scales} for shaking in self.shakings]
         made_with = makers_of(self.run)
         return fingerprint({"shakings": shakings, "run": self.run, "made with": made_with, **own})
@@ -195,7 +195,7 @@ class Task:
         """Whether the batch kernel does, which knows homogeneous cylinders, a slab, and peaks alone."""
         own = self.shakings[0].case.cylinder
         homogeneous = (own.height, own.transverse_inertia, own.axial_inertia) == (None, None, None)
-        return self.run.engine is None and homogeneous and not self.contact
+        return self.run.is_model and homogeneous and not self.contact
 
     def rows(self) -> list[Row]:
         """Return a row for each motion and factor, in their order."""
@@ -232,11 +232,11 @@ class Task:
     def _simulate(self, case: Case, scale: float) -> Row:
         assert case.motion is not None
         run = self.run
-        if run.engine is None:
+        if run.is_model:
             run = Run(None, run.support, **{"rtol": _RTOL, **run.settings})
         trace = simulate_run(replace(case, motion=case.motion.scaled(scale)), run)
         lost = math.nan
-        if trace.outcome not in NO_PEAK and (self.contact or run.engine):
+        if trace.outcome not in NO_PEAK and (self.contact or not run.is_model):
             lost = float(any(fact.code in _LOST for fact in trace.diagnostics))
         return _row(trace.peak_tilt / case.cylinder.alpha, outcome_of(trace), lost)
 
@@ -374,12 +374,12 @@ class RunPlan:
                 run = self._with_step(method.run, cylinder)
                 tasks = [
                     Task(name=name, label=method.label, run=run, shakings=(shaking,), contact=contact)
-                    for shaking in (shakings if run.engine is None else single)
+                    for shaking in (shakings if run.is_model else single)
                 ]
-                yield from tasks if run.engine else _together(tasks)
+                yield from _together(tasks) if run.is_model else tasks
 
     def _with_step(self, run: Run, cylinder: Cylinder) -> Run:
-        if run.engine is None or run.time_step is not None or self.options.step_factor == 1.0:
+        if run.is_model or run.time_step is not None or self.options.step_factor == 1.0:
             return run
         step = self.options.step_factor * default_step(cylinder.semidiagonal, self.options.gravity)
         return Run(run.engine, run.support, step, **run.settings)
@@ -453,7 +453,7 @@ def _together(singles: Sequence[Task]) -> Iterator[Task]:
 
 
 def _has_default_step(method: Method) -> bool:
-    return method.run is not None and method.run.engine is not None and method.run.time_step is None
+    return method.run is not None and not method.run.is_model and method.run.time_step is None
 
 
 # a task whose process died is tried this often: the process may have been ended from outside

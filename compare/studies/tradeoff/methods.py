@@ -195,7 +195,7 @@ def _variants(problem: Problem, engine: str, quick: bool) -> Iterator[Method]:
 def _engine_line(problem: Problem, line: str, panel: str, runs: Mapping[float, Run]) -> Iterator[Method]:
     run = next(iter(runs.values()))
     solved = {step: partial(_by_engine, problem, each) for step, each in runs.items()}
-    yield from _line(line, str(run.engine), solved, panel=panel, support=run.support, knob="time step")
+    yield from _line(line, run.engine_name, solved, panel=panel, support=run.support, knob="time step")
 
 
 def _by_engine(problem: Problem, run: Run, case: Case) -> MethodResult:
