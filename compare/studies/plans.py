@@ -12,12 +12,15 @@ from ..runs.plan import Plan, option
 if TYPE_CHECKING:
     from rockwobble.models import Case, Tendon
 
-_ROLLING = "Rolling resistance length, in m, below every base radius; 0 loses nothing."
-MASS = "Mass of the cylinder, or of one column without a slab, in t: forces in kN and moments in kNm."
-_PLANE = "Planar motion: azimuth of the vertical plane that holds it, in rad."
+_ROLLING = "Rolling resistance length, in m, below every base radius. 0: no loss."
+MASS = (
+    "Mass of the cylinder, or of one column without its slab, in t. With it forces are in kN and moments in "
+    "kNm."
+)
+_PLANE = "Azimuth of the plane of a planar motion, in rad. Default: motion in three dimensions."
 _RESTITUTION = (
-    "Ratio of tilt rates at an impact of planar motion. Default: 1, as in the paper; momentum: from the "
-    "moment of momentum about the new pivot."
+    "Ratio of tilt rates after and before an impact of planar motion. momentum: by conservation of "
+    "angular momentum about the new pivot. Default: 1, as in the paper."
 )
 
 
@@ -29,7 +32,7 @@ class ModelPlan(Plan):
     restitution: float | str | None = option(None, _RESTITUTION, group="Reduced model", form="restitution")
     rest_tilt: float | None = option(
         None,
-        "Rest threshold: tilt over alpha below which the base is closed; 0 leaves the rule out.",
+        "Tilt / alpha below which the cylinder comes to rest. 0: never.",
         group="Reduced model",
     )
 
@@ -41,13 +44,13 @@ class Copies(Plan):
     copies: int = option(20, "Number of perturbed copies.", group="Members", least=2)
     perturbation: float = option(
         0.01,
-        "Relative standard deviation of tilt and rolling rate at release, or of the two components of the "
-        "ground motion.",
+        "Relative standard deviation of the perturbations: of both horizontal components, or of tilt "
+        "and rolling rate at release.",
         group="Members",
         above=0.0,
         most=0.1,
     )
-    seed: int = option(0, "Seed of the perturbations.", group="Members", least=0)
+    seed: int = option(0, "Random seed of the perturbations.", group="Members", least=0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,7 +58,7 @@ class AdvicePlan(Copies):
     """Advice on one case: its copies, of which 5 % have to be a run or more, and its support."""
 
     copies: int = option(100, "Number of perturbed copies.", group="Members", least=20, most=10_000)
-    seed: int = option(1, "Seed of the perturbations.", group="Members", least=0)
+    seed: int = option(1, "Random seed of the perturbations.", group="Members", least=0)
     support: str = option(
         "recess",
         "Support: recess (ideal recess), flat (flat ground) or ring (recess with clearance).",
@@ -95,12 +98,12 @@ class TendonPlan(Plan):
 
     tendon_prestress: float = option(
         0.0,
-        "Tension at rest of a tendon along the axis, in weights of one column.",
+        "Prestress of a tendon along the axis / weight of one column.",
         group="Tendon",
         least=0.0,
     )
     tendon_stiffness: float = option(
-        0.0, "Its stiffness, in weights of one column per base radius.", group="Tendon", least=0.0
+        0.0, "Stiffness of the tendon, in weights of one column per base radius.", group="Tendon", least=0.0
     )
 
     @property
@@ -115,21 +118,21 @@ class FragilityPlan(TendonPlan):
 
     measure: str = option(
         "peak_acceleration",
-        "Intensity: peak_acceleration (over g tan alpha), peak_velocity (times p over g tan alpha), pga, "
-        "pgv, sa or sa_mean.",
+        "Intensity measure: peak_acceleration (/ g tan alpha), peak_velocity (times p / g tan alpha), "
+        "pga, pgv, sa or sa_mean.",
         group="Intensity",
         choices=("peak_acceleration", "peak_velocity", "pga", "pgv", "sa", "sa_mean"),
     )
     levels: Sequence[float] | None = option(
         None,
-        "Intensities to which every motion is scaled: a list 1.5,2,3 or FROM:TO:COUNT, evenly in the "
-        "logarithm. Default: 20, from a little above uplift to where most overturn.",
+        "Intensities to which every motion is scaled: a list 1.5,2,3 or a logarithmic range "
+        "FROM:TO:COUNT. Default: 20, from just above uplift to where most motions overturn.",
         group="Intensity",
         form="levels",
     )
     scales: Sequence[float] | None = option(
         None,
-        "Factors on the motions as they are, in the place of levels: 1, or 0.5,1,2.",
+        "Scale factors for the unscaled motions, instead of --levels: 1, or 0.5,1,2.",
         group="Intensity",
         form="numbers",
         flag="--scale",
@@ -137,34 +140,36 @@ class FragilityPlan(TendonPlan):
     period: float = option(1.0, "Period of sa and sa_mean, in s.", group="Intensity", above=0.0)
     limits: Sequence[str] | None = option(
         None,
-        'Limit: uplift, "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", overturned or contact_lost; may '
-        "be repeated. Default: all but the last, which takes the forces of every run.",
+        'Limit state: uplift, "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", overturned or '
+        "contact_lost; may be repeated. Default: all but contact_lost.",
         group="Statistics",
         choices=("uplift", "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", "overturned", "contact_lost"),
         flag="--limit",
     )
     margin: float = option(
-        0.1, "Relative difference within which two medians are equivalent.", group="Statistics", above=0.0
+        0.1,
+        "Equivalence margin: relative difference within which two medians count as equivalent.",
+        group="Statistics",
+        above=0.0,
     )
     resamples: int = option(
-        1000, "Number of bootstrap resamples of the motions, for intervals.", group="Statistics", least=2
+        1000, "Number of bootstrap resamples for the intervals.", group="Statistics", least=2
     )
-    seed: int = option(0, "Seed of resamples and synthetic motions.", group="Statistics", least=0)
+    seed: int = option(0, "Random seed of resamples and synthetic motions.", group="Statistics", least=0)
     restitution: float | str = option(
         1.0,
-        "Ratio of tilt rates at an impact of the planar models: a number, or momentum for Housner's. "
-        "Default: 1, as in the models in three dimensions.",
+        "Ratio of tilt rates after and before an impact of the planar models: a number, or momentum "
+        "(Housner). Default: 1, as in the 3D models.",
         form="restitution",
     )
     step_factor: float = option(
         1.0,
-        "Factor on the default time step of engines: the share of many runs that overturn needs less than a "
-        "trace.",
+        "Multiplies the default time step of the engines; probabilities need less accuracy than traces.",
         above=0.0,
     )
-    friction: float = option(1.0, "Coefficient of friction of cylinder and ground.", above=0.0)
+    friction: float = option(1.0, "Friction coefficient between cylinder and ground.", above=0.0)
     rolling_resistance: float = option(0.0, _ROLLING, least=0.0)
-    gravity: float = option(9.81, "g, in m/s2.", above=0.0)
+    gravity: float = option(9.81, "Gravitational acceleration g, in m/s2.", above=0.0)
 
     def __post_init__(self) -> None:
         # with numpy, which help can do without
@@ -211,22 +216,20 @@ class SpectrumPlan(TendonPlan):
         flag="--intensity",
     )
     slab_mass_ratio: float = option(
-        0.0, "Mass of a rigid slab over that of the cylinders that carry it.", group="Cylinder", least=0.0
+        0.0, "Mass of a rigid slab / total mass of the columns that carry it.", group="Cylinder", least=0.0
     )
-    gravity: float = option(9.81, "g, in m/s2.", group="Ground motion", above=0.0)
+    gravity: float = option(9.81, "Gravitational acceleration g, in m/s2.", group="Ground motion", above=0.0)
     rolling_resistance: float = option(0.0, _ROLLING, group="Ground motion", least=0.0)
-    support: str = option(
-        "recess", "Support of the model in three dimensions: recess or flat.", choices=("recess", "flat")
-    )
+    support: str = option("recess", "Support of the 3D model: recess or flat.", choices=("recess", "flat"))
     search_step: float = option(
         STEP,
-        "Finest step of the search for the lowest intensity that overturns, in g tan alpha.",
+        "Resolution of the overturning boundary, in g tan alpha.",
         least=1e-5,  # a search in smaller steps would take a day
     )
     probes: int = option(
         PROBES,
-        "Random intensities that are run below each lowest until none of them overturns: so many bound the "
-        "share that does. They take most of the time; 0 draws none.",
+        "Number of random intensities tried below each overturning boundary (bounds the missed share; "
+        "most of the computing time). 0: none.",
         least=0,
     )
 
@@ -246,7 +249,8 @@ class QuickPlan(Plan):
 
     quick: bool = option(
         False,
-        "Coarser maps, fewer points, members and conditions: some two minutes on two idle cores.",
+        "Reduced extent: coarser maps, fewer points, members and conditions (about two minutes on two "
+        "idle cores).",
         flag="--quick",
     )
 
@@ -257,7 +261,7 @@ class ValidityPlan(QuickPlan):
 
     slab_mass_ratio: float = option(
         0.0,
-        "Mass of a rigid slab that only translates over that of the column under it; 0 is a cylinder alone.",
+        "Mass of a rigid slab that only translates / mass of the column under it. 0: no slab.",
         group="Cylinder",
         least=0.0,
     )
@@ -276,7 +280,7 @@ class GridPlan(TendonPlan):
 
     semidiagonals: Sequence[float] | None = option(
         None,
-        "R, in m: a list 1,2,6 or an even range FROM:TO:COUNT. Default: 0.5:30:100.",
+        "Semidiagonals R, in m: a list 1,2,6 or an even range FROM:TO:COUNT. Default: 0.5:30:100.",
         group="Grid",
         form="numbers",
         flag="--semidiagonal",
@@ -290,14 +294,14 @@ class GridPlan(TendonPlan):
     )
     scales: Sequence[float] | None = option(
         None,
-        "Factors on the records: a list or a range. Default: 0.5:6:100.",
+        "Scale factors of the records: a list or a range. Default: 0.5:6:100.",
         group="Grid",
         form="numbers",
         flag="--scale",
     )
-    gravity: float = option(9.81, "g, in m/s2.", group="Ground motion", above=0.0)
+    gravity: float = option(9.81, "Gravitational acceleration g, in m/s2.", group="Ground motion", above=0.0)
     slab_mass_ratio: float = option(
-        0.0, "Mass of a rigid slab over that of the cylinders that carry it.", group="Cylinder", least=0.0
+        0.0, "Mass of a rigid slab / total mass of the columns that carry it.", group="Cylinder", least=0.0
     )
     plane: float | None = option(None, _PLANE, group="Reduced models", least=-math.tau, most=math.tau)
     restitution: float | str | None = option(None, _RESTITUTION, group="Reduced models", form="restitution")

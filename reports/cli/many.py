@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 Cylinders = Annotated[
     list[str] | None,
     options.body(
-        "A cylinder by name, as NAME=R,TAN_ALPHA such as pier=6,0.2; may be repeated.",
+        "Named cylinder, such as pier=6,0.2; may be repeated.",
         metavar="NAME=R,TAN_ALPHA",
     ),
 ]
@@ -52,19 +52,18 @@ def fragility(
 ) -> None:
     """Fragility curves: probability of overturning against intensity, by several methods.
 
-    Every motion is scaled to the same intensities and moves every cylinder by every method, so that
-    methods are compared motion by motion. Lognormal curves by maximum likelihood, with bands by
-    resampling the motions.
+    Every motion is scaled to the same intensities and run on every cylinder by every method: methods are
+    compared motion by motion. Lognormal curves by maximum likelihood, with bootstrap bands over the motions.
 
     Without options: the five reduced models of R = 6 m, tan alpha = 0.2 under 100 synthetic motions.
 
-    Whatever ends it, the same command resumes.
+    An interrupted run resumes with the same command.
 
-    With --hazard, the annual frequency of overturning at that site by each method, without and with the
+    With --hazard: annual frequency of overturning at the site by each method, with the counted and the
     lognormal curve.
 
-    Writes fragility.html, the same as fragility.md with its figures, the tables as Parquet, and
-    counts.csv and counts.json, from which other tools can fit curves of their own.
+    Writes fragility.html, fragility.md with its figures, the tables as Parquet, and the counts for other
+    tools (counts.csv, counts.json).
 
     Example: rockwobble fragility --p695 --cylinder pier=6,0.2 --engine mujoco
     """
@@ -127,21 +126,21 @@ def spectrum(
     out: options.Out = Path("rockwobble-spectrum"),
     overwrite: options.Overwrite = False,
 ) -> None:
-    """Map the peak tilt over size and intensity, in 3D and by planar analysis of each component.
+    """Overturning spectrum: peak tilt over size and intensity, in 3D and by planar analysis.
 
-    The record is scaled until its peak horizontal resultant reaches each intensity. A planar run takes
-    one component of the same shaking alone.
+    The record is scaled to each intensity by its peak horizontal resultant. A planar run takes one
+    horizontal component of the same scaled record.
 
     Without options: figure 6 of the paper, the 1940 El Centro record on cylinders of tan alpha = 0.1.
 
-    The lowest intensity that overturns each size is searched between the intensities and below them,
-    too; what the search misses is measured.
+    The overturning boundary (lowest intensity that overturns each size) is also searched between and below
+    the intensities of the grid; the share that the search misses is estimated.
 
-    Whatever ends it, the same command resumes.
+    An interrupted run resumes with the same command.
 
-    Writes spectrum.html, the same as spectrum.md with spectrum.svg, and as Parquet the cells (spectrum),
-    the lowest intensities found to overturn (lowest), the gaps in the overturning region above them
-    (gaps), the shares by size (contrast), and some cells run again to a tighter tolerance (checked).
+    Writes spectrum.html, spectrum.md with spectrum.svg, and as Parquet the cells (spectrum), the overturning
+    boundary (lowest), the gaps in the overturning region (gaps), the shares by size (contrast), and cells
+    repeated to a tighter tolerance (checked).
 
     Example: rockwobble spectrum --tan-alpha 0.2 --semidiagonal 1:20:50 --intensity 1:9:50
     """
@@ -180,7 +179,7 @@ _MOTIONS = {"p695", "records", "synthetic", "peak"}
 Peak = Annotated[
     float | None,
     typer.Option(
-        help="Peak horizontal resultant to which each of many motions is scaled, in g tan alpha. Default: 3.",
+        help="Peak horizontal resultant to which each motion is scaled, in g tan alpha. Default: 3.",
         rich_help_panel="Many ground motions",
     ),
 ]
@@ -200,16 +199,15 @@ def ensemble(
     out: options.Out = Path("rockwobble-ensemble"),
     overwrite: options.Overwrite = False,
 ) -> None:
-    """Compare distributions of peak tilt between methods.
+    """Distributions of peak tilt by several methods, and their contrasts.
 
-    Without options: El Centro on R = 6 m, tan alpha = 0.2, with 20 slightly perturbed copies. With
-    --synthetic, --p695 or --records the members are ground motions, with a SUITE its cases, by its runs,
-    among which --engine and --support choose. --engine none runs the reduced models alone.
+    Without options: 20 perturbed copies of El Centro 1940 on R = 6 m, tan alpha = 0.2. With --synthetic,
+    --p695 or --records the members are ground motions; with a SUITE, its cases with its runs, among which
+    --engine and --support select. With --engine none: the reduced models only.
 
-    Whatever ends it, the same command resumes.
+    An interrupted run resumes with the same command.
 
-    Writes ensemble.html, the same as ensemble.md with ensemble.svg, and members, methods and contrasts as
-    Parquet and CSV.
+    Writes ensemble.html, ensemble.md with ensemble.svg, and members, methods and contrasts (Parquet, CSV).
 
     Example: rockwobble ensemble --synthetic 40 --peak 3 --engine mujoco
     """
@@ -286,19 +284,20 @@ SuiteFile = Annotated[
     str | None,
     typer.Argument(
         metavar="[SUITE]",
-        help="A suite instead of a grid: a TOML file, or the name of a shipped one.",
+        help="Suite instead of a grid: a TOML file, or a shipped one (canon, p695, quick).",
         show_default=False,
     ),
 ]
 Models = Annotated[
     list[str] | None,
     options.method(
-        "recess, flat or planar; may be repeated. Default: recess; with a suite, none but its runs."
+        "Reduced model: recess, flat or planar; may be repeated. Default: recess; with a suite, the "
+        "runs of the suite."
     ),
 ]
 ChunkSize = Annotated[
     int | None,
-    options.work("Runs in a chunk. Default: about a second of work.", callback=options.whole(1)),
+    options.work("Number of runs in a chunk. Default: about one second of work.", callback=options.whole(1)),
 ]
 
 
@@ -316,12 +315,12 @@ def sweep(
 ) -> None:
     """Peak tilt over a grid of sizes, slendernesses and scales.
 
-    A grid takes every size with every slenderness, scale, record and model, from rest, for its
-    peak tilt; friction is assumed to suffice. A suite takes every case with every run.
+    A grid combines every size, slenderness, scale, record and model, from rest, without sliding. A suite
+    combines its cases and runs.
 
-    Whatever ends the sweep, the same command resumes.
+    An interrupted run resumes with the same command.
 
-    Writes sweep.parquet, one row for each run, sweep.html (open it in a browser), sweep.md and sweep.svg.
+    Writes sweep.parquet (one row per run), sweep.html, sweep.md and sweep.svg.
 
     Example: rockwobble sweep --semidiagonal 0.5:30:100 --scale 1,2,4 --out grid
     """

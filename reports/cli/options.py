@@ -137,22 +137,23 @@ def whole(least: int, most: float = math.inf) -> Callable[[int | None], int | No
 
 body, method, work, output = map(panel, ("Cylinder", "Method", "Work", "Output"))
 
-SLENDERNESS = "Slenderness b/h, radius over half the height."
-UNITS = "Unit of the numbers in the files, such as g, m/s2 or cm/s2; required where the files do not say."
-RECORD_COLUMNS = (
-    "Columns of time, x, y and z in this order, by name or number, as Zeit,Ost,Nord or 1,4,3; time,x,y,z for "
-    "those of a file without names; values: all numbers are one component."
+SLENDERNESS = "Slenderness b/h: radius / half the height."
+UNITS = (
+    "Unit of the accelerations in the files, such as g, m/s2 or cm/s2; required if the files do not state it."
 )
-RECORD_STEP = "Time step of files that give no times, in s."
-LENGTHS = "Where components differ in length: pad (fill the shorter with zeros) or cut (the longer)."
-REMOVE_MEAN = "Take its mean, the offset of the sensor, from each component."
+RECORD_COLUMNS = (
+    "Columns of time, x, y and z in this order, by name or number: Zeit,Ost,Nord or 1,4,3. values: all "
+    "numbers of the file are one component."
+)
+RECORD_STEP = "Time step of files without times, in s."
+LENGTHS = "Components of different length: pad (fill the shorter with zeros) or cut (shorten the longer)."
+REMOVE_MEAN = "Subtract the mean (sensor offset) of each component."
 ROTATE = (
-    "Turn the record by this angle, in deg, counter-clockwise from above; north: to x east and y north, by "
-    "the azimuths of its files."
+    "Rotation of the record, in deg, counter-clockwise from above. north: to x east and y north, by the "
+    "azimuths in its files."
 )
 RESAMPLE = (
-    "Take components of different time steps at the largest step that divides all; linear between samples, "
-    "which stay, so that none changes."
+    "Resample components to a common time step by linear interpolation (all original samples are kept)."
 )
 ALL, NO_ENGINE = "all", "none"  # in place of the names of engines
 
@@ -177,16 +178,16 @@ def engine_names(names: list[str] | None) -> list[str] | None:
     return _standing_alone(names)
 
 
-ENGINES = "mujoco, pybullet, dart, drake, exudyn, rapier or another that is installed"
-_SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (recess with clearance, by engines)"
-_DEFAULT = "Default: those that serve any case and are no extra"
+ENGINES = "Engine: mujoco, pybullet, dart, drake, exudyn, rapier or another that is installed"
+_SUPPORTS = "Support: recess (ideal recess), flat (flat ground) or ring (recess with clearance; engines only)"
+_DEFAULT = "Default: MuJoCo and PyBullet (DART where PyBullet is missing)"
 Engines = Annotated[
     list[str] | None, method(f"{ENGINES}; may be repeated. {_DEFAULT}.", callback=engine_names)
 ]
 EnginesOrAll = Annotated[
     list[str] | None,
     method(
-        f"{ENGINES}; may be repeated. {_DEFAULT}; all: every one that is installed.",
+        f"{ENGINES}; may be repeated. {_DEFAULT}. all: every installed engine.",
         callback=_standing_alone,
     ),
 ]
@@ -195,9 +196,9 @@ Supports = Annotated[list[str] | None, method(f"{_SUPPORTS}; may be repeated. De
 TimeStep = Annotated[
     Any,  # a number, a word or None: typer knows no type for that, `time_step` makes it
     method(
-        "Time step of the engines, in s. Default: 1e-4 s at R = 6 m, with the root of the size. auto "
-        "halves it until the tilt has settled, extrapolated gives what three steps tend to; both say what "
-        "error is left.",
+        "Time step of the engines, in s. Default: 1e-4 s at R = 6 m, scaled with sqrt(R). auto: halved until "
+        "the tilt converges. extrapolated: Richardson extrapolation from three steps. Both state the "
+        "remaining error.",
         parser=time_step,
         metavar="FLOAT|auto|extrapolated",
     ),
@@ -205,8 +206,8 @@ TimeStep = Annotated[
 Settings = Annotated[
     list[str] | None,
     method(
-        "Setting of the method, such as ring_clearance=0.01, integrator=discrete or rtol=1e-10, for each run "
-        "that has one of that name; may be repeated.",
+        "Setting of an engine or model, such as ring_clearance=0.01, integrator=discrete or rtol=1e-10; "
+        "applied to every run that has it. May be repeated.",
         "--set",
         metavar="NAME=VALUE",
     ),
@@ -215,25 +216,25 @@ SuiteName = Annotated[
     str | None,
     typer.Argument(
         metavar="[SUITE]",
-        help="A suite of cases and runs: a TOML file, or one that ships: canon, p695, quick.",
+        help="Suite of cases and runs: a TOML file, or a shipped one (canon, p695, quick).",
         show_default=False,
     ),
 ]
 Workers = Annotated[
-    int | None, work("Processes on this machine. Default: one for each processor.", callback=whole(1))
+    int | None, work("Number of processes on this machine. Default: one per processor.", callback=whole(1))
 ]
 Scheduler = Annotated[
     str | None,
     work(
-        "Dask scheduler that has the work done, such as tcp://10.0.0.1:8786: started by dask scheduler, "
-        "and on each machine dask worker tcp://10.0.0.1:8786. Needs the extra distributed."
+        "Address of a Dask scheduler, such as tcp://10.0.0.1:8786 (start it by dask scheduler, and on "
+        "each machine dask worker tcp://10.0.0.1:8786). Needs the extra distributed."
     ),
 ]
 Out = Annotated[Path, output("Folder for the results.")]
 Overwrite = Annotated[
     bool,
     output(
-        "Replace what another command, or this one with other options, has left there. Default: refused.",
+        "Overwrite results of another command or of other options. Default: refused.",
         "--overwrite",
     ),
 ]

@@ -50,19 +50,21 @@ class Records(Plan):
     """The option that names several ground motions."""
 
     records: Path | None = _several(
-        None, "Folder of up to 10 records, as for ensemble, in place of one record; --units and others apply."
+        None, "Folder of up to 10 records, as for ensemble, instead of one record."
     )
 
 
 Plane = Annotated[
     float | None,
-    options.method("Begin with planar motion: azimuth of the vertical plane that holds it, in rad."),
+    options.method(
+        "Azimuth of the plane of a planar motion at the start, in rad. Default: motion in three dimensions."
+    ),
 ]
-Support = Annotated[str, options.method("Begin with recess (ideal recess) or flat (flat ground).")]
-Out = Annotated[Path, options.output("File for the page.")]
+Support = Annotated[str, options.method("Support at the start: recess (ideal recess) or flat (flat ground).")]
+Out = Annotated[Path, options.output("File of the page.")]
 Open = Annotated[
     bool | None,
-    options.output("Show it in the browser. Default: where there is a terminal.", "--open/--no-open"),
+    options.output("Open the page in the browser. Default: yes in a terminal.", "--open/--no-open"),
 ]
 
 
@@ -77,10 +79,10 @@ def explore(
     overwrite: options.Overwrite = False,
     opened: Open = None,
 ) -> None:
-    """Write a page to play with: sliders for column, shaking and support; the motion, at once.
+    """Interactive page of the motion, with sliders for column, ground motion and support.
 
-    The reduced model runs in the page, which needs nothing else: it works offline, from a mail or on a
-    phone. The options say where its sliders stand at first.
+    The reduced model runs in the page itself: it works offline, from a mail or on a phone. The options set
+    the initial values of the sliders.
 
     Without options: R = 6 m, tan alpha = 0.2 under the 1940 El Centro record, with a pulse and two
     synthetic ground motions to choose from.

@@ -27,24 +27,30 @@ SEMIDIAGONAL, TAN_ALPHA = 6.0, 0.2  # [m], [-]
 class Body(Plan):
     """The options that state a cylinder, or a slab on cylinders."""
 
-    semidiagonal: float | None = _cylinder(None, "R = sqrt(b^2 + h^2), in m. Default: 6.")
+    semidiagonal: float | None = _cylinder(None, "Semidiagonal R = sqrt(b^2 + h^2), in m. Default: 6.")
     tan_alpha: float | None = _cylinder(None, options.SLENDERNESS)
-    diameter: float | None = _cylinder(None, "2b, in m; with --height in place of the two above.", above=0.0)
-    height: float | None = _cylinder(None, "2h, in m.")
+    diameter: float | None = _cylinder(
+        None, "Diameter 2b, in m; with --height, instead of --semidiagonal and --tan-alpha.", above=0.0
+    )
+    height: float | None = _cylinder(None, "Height 2h, in m.")
     mass_centre_height: float | None = _cylinder(
-        None, "Height of the mass centre, in m; with --diameter and --height. Default: half of that."
+        None, "Height of the mass centre, in m; with --diameter and --height. Default: half the height."
     )
     transverse_inertia: float | None = _cylinder(
-        None, "I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder."
+        None,
+        "Transverse moment of inertia per mass, I1/m, about the mass centre, in m2. Default: "
+        "homogeneous solid cylinder.",
     )
-    axial_inertia: float | None = _cylinder(None, "I2/m about the axis, in m2.")
+    axial_inertia: float | None = _cylinder(
+        None, "Axial moment of inertia per mass, I2/m, in m2. Default: homogeneous solid cylinder."
+    )
     slab_mass_ratio: float | None = _cylinder(
-        None, "Mass of a rigid slab over that of the cylinders that carry it. Default: a cylinder alone."
+        None, "Mass of a rigid slab / total mass of the columns that carry it. Default: no slab."
     )
     columns: int | None = _cylinder(
         None,
-        "Number of the cylinders under the slab: 3 or more, or 1 for a slab that cannot turn. Engines run "
-        "one, under a slab that only translates, whatever the number, and say so. Default: 3.",
+        "Number of columns under the slab: 3 or more, or 1 for a slab that cannot rotate. Engines "
+        "always run one column under a slab that only translates. Default: 3.",
     )
 
     def cylinder(self) -> rw.Cylinder:
@@ -131,16 +137,16 @@ class Record(Reading):
     """The options that state a ground motion."""
 
     record: Path | None = _ground(
-        None, "File, or folder of a station, of all components, in place of the files below."
+        None, "File, or folder of a station, with all components; instead of --record-x, -y and -z."
     )
     record_x: Path | None = _ground(
         None,
-        "East-west component, in any format of the guide Records, or zero beside the other (planar motion). "
+        "East-west component: a file in any format of the guide Records, or zero (planar motion). "
         "Default: El Centro 1940.",
     )
-    record_y: Path | None = _ground(None, "North-south component, or zero.")
-    record_z: Path | None = _ground(None, "Vertical component, may be left out.")
-    scale: float = _ground(1.0, "Factor on all components.", above=0.0)
+    record_y: Path | None = _ground(None, "North-south component: a file, or zero.")
+    record_z: Path | None = _ground(None, "Vertical component. Default: none.")
+    scale: float = _ground(1.0, "Scale factor of all components.", above=0.0)
 
     def motion(self, *, still: bool = False) -> rw.GroundMotion | None:
         """Return the ground motion; without a record El Centro, or None where the ground is then `still`.
@@ -179,21 +185,21 @@ class Release(Plan):
 
     release_tilt_deg: float | None = _release(
         None,
-        "Release at this tilt, in deg; without a record the ground is then still.",
+        "Tilt at release, in deg. Without a record the ground is then still.",
         least=0.0,
         below=90.0,
     )
     release_azimuth_deg: float = _release(
         0.0,
-        "Direction of the lean at release, in deg, counter-clockwise from x (east).",
+        "Tilt direction at release, in deg, counter-clockwise from x (east).",
         least=-360.0,
         most=360.0,
     )
     rolling_rate: float = _release(0.0, "Rolling rate at release, in rad/s.")
     duration: float | None = _release(
         None,
-        "Length of the run, in s; what moves then is followed over still ground to its next maximum. "
-        "Default: that of the ground motion, 10 s without one.",
+        "Duration of the run, in s; motion at its end is continued over still ground to the next peak. "
+        "Default: that of the record, 10 s without one.",
     )
 
     def initial(self) -> rw.InitialState | None:
@@ -220,18 +226,24 @@ class Restraint(Plan):
     """The options that state a tendon: by ratios, or by what a drawing gives."""
 
     tendon_prestress: float | None = _tendon(
-        None, "Tension at rest of a tendon along the axis, in weights of one column.", least=0.0
+        None, "Prestress of a tendon along the axis / weight of one column.", least=0.0
     )
     tendon_stiffness: float | None = _tendon(
-        None, "Its stiffness, in weights of one column per base radius.", least=0.0
+        None, "Stiffness of the tendon, in weights of one column per base radius.", least=0.0
     )
-    tendon_yield: float | None = _tendon(None, "Tension at which it yields, in weights.", above=0.0)
+    tendon_yield: float | None = _tendon(
+        None, "Yield force of the tendon / weight of one column. Default: no yielding.", above=0.0
+    )
     tendon_force: float | None = _tendon(
-        None, "Tension at rest, in N; with --tendon-rigidity, --tendon-length and --mass.", least=0.0
+        None, "Prestress, in N; with --tendon-rigidity, --tendon-length and --mass.", least=0.0
     )
-    tendon_rigidity: float | None = _tendon(None, "E A of the steel, in N.", above=0.0)
-    tendon_length: float | None = _tendon(None, "Free length between the anchors, in m.", above=0.0)
-    tendon_yield_force: float | None = _tendon(None, "Tension at which it yields, in N.", above=0.0)
+    tendon_rigidity: float | None = _tendon(None, "Axial rigidity E A of the tendon, in N.", above=0.0)
+    tendon_length: float | None = _tendon(
+        None, "Free length of the tendon between its anchors, in m.", above=0.0
+    )
+    tendon_yield_force: float | None = _tendon(
+        None, "Yield force of the tendon, in N. Default: no yielding.", above=0.0
+    )
     mass: float | None = option(None, MASS, group="Cylinder", above=0.0)
 
     def tendon(self, cylinder: rw.Cylinder, gravity: float) -> rw.Tendon | None:
@@ -277,15 +289,15 @@ def _first_stated(plan: Plan, *names: str) -> str:
 class Problem(Release, Record, Restraint, Body):
     """The options that state a problem."""
 
-    gravity: float = _ground(9.81, "g, in m/s2.")
+    gravity: float = _ground(9.81, "Gravitational acceleration g, in m/s2.")
     friction: float = _ground(
         1.0,
-        "Coefficient of cylinder and ground. The reduced models assume that it suffices and say where it "
-        "would not.",
+        "Friction coefficient between cylinder and ground. The reduced models assume no sliding and "
+        "warn where it would occur.",
     )
     rolling_resistance: float = _ground(
         0.0,
-        "Rolling resistance length, in m, below the base radius; 0 loses nothing.",
+        "Rolling resistance length, in m, below the base radius. 0: no loss.",
     )
 
     def case(self) -> rw.Case:

@@ -23,17 +23,17 @@ def validity(
     out: options.Out = Path("rockwobble-validity"),
     overwrite: options.Overwrite = False,
 ) -> None:
-    """Report the limits of the reduced model: what must hold, what error to expect, where it matters.
+    """Limits of the reduced model: conditions, expected errors, and where they matter.
 
-    Peaks over records by the reduced models, and by MuJoCo in an ideal recess, in a recess with clearance
-    and on flat ground, beside a perturbed copy of the model; what friction, contact and moment a recess
-    needs; clearances, softer contact and less friction. Takes about 40 minutes on two idle cores. What is
-    measured is kept in the folder: a second run repeats nothing.
+    Peak tilts of records by the reduced models and by MuJoCo (ideal recess, recess with clearance, flat
+    ground), beside a perturbed copy of the model; friction, contact and moment demands of a recess; effects
+    of clearance, softer contact and less friction. Takes about 40 minutes on two idle cores; an interrupted
+    run resumes.
 
-    With a slab the same of a frame of one column. A recess with clearance, which takes no slab, is left out.
+    With a slab: the same for a frame of one column, without the recess with clearance.
 
-    Writes validity.html, validity.md with its pictures as SVG, as Parquet the tables of all parts and every
-    number of the report (limits). `rockwobble report` draws the pages again.
+    Writes validity.html, validity.md with SVG figures, and as Parquet the tables of all parts and every
+    number of the report (limits).
 
     Example: rockwobble validity --quick --out validity
     """
@@ -51,14 +51,13 @@ def tradeoff(
     out: options.Out = Path("rockwobble-tradeoff"),
     overwrite: options.Overwrite = False,
 ) -> None:
-    """Measure what accuracy costs: the reduced models, scipy's solvers and the engines on three problems.
+    """Accuracy against computing time: reduced models, SciPy's solvers and engines on three problems.
 
-    The angle of turn in free response, two times El Centro until ten seconds after uplift, and the
-    distribution of peak tilt over synthetic ground motions; then the cost of each part of an engine's scene.
-    All runs are timed in turn, one after another in one process.
+    The problems: azimuth jump in a near-upright pass of the free response, 2 x El Centro until ten seconds
+    after uplift, and the distribution of peak tilt over synthetic motions. Then the computing time of each
+    part of an engine's scene. All runs are timed one after another in one process.
 
-    Writes tradeoff.html (open it in a browser), tradeoff.md with its pictures as SVG, and the tables points,
-    problems and scenes as Parquet. `rockwobble report` draws the pages again.
+    Writes tradeoff.html, tradeoff.md with SVG figures, and the tables points, problems and scenes as Parquet.
 
     Example: rockwobble tradeoff --quick --out tradeoff
     """
@@ -83,8 +82,7 @@ def extremes(
     friction. Each verdict is backed by an exact answer, an invariant or a converged reference; a wrong run
     counts as flagged only if one of its diagnostics explains the error.
 
-    Writes extremes.html (open it in a browser), extremes.md and the table as extremes.parquet. `rockwobble
-    report` draws the pages again. Exit code 1 if anything is wrong and nothing explains it.
+    Writes extremes.html, extremes.md and extremes.parquet. Exit code 1 if a wrong answer is not flagged.
 
     Example: rockwobble extremes --quick --out extremes
     """
@@ -102,19 +100,18 @@ def figures(
     grid: Annotated[
         int,
         typer.Option(
-            help="Sizes, and intensities, of the maps of figure 6.",
+            help="Number of sizes and of intensities in the maps of figure 6.",
             callback=options.whole(3, 1000),  # three sizes make bands to compare, and a map
         ),
     ] = 100,
     out: options.Out = Path("rockwobble-figures"),
     overwrite: options.Overwrite = False,
 ) -> None:
-    """Compute figures 3 to 6 of the paper again, and compare its statements with the numbers.
+    """Figures 3 to 6 of the paper, computed again, with a verdict on each of its statements.
 
-    Whatever ends it, the same command resumes.
+    An interrupted run resumes with the same command.
 
-    Writes paper.md and paper.html with a verdict on each statement, the figures as SVG, and the data of each
-    and the numbers of the statements as Parquet.
+    Writes paper.md and paper.html, the figures as SVG, and the data of figures and statements as Parquet.
 
     Example: rockwobble figures --out paper
     """

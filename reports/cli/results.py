@@ -27,16 +27,14 @@ from .problem import Problem, given_options, refuse
 if TYPE_CHECKING:
     from rockwobble.compare.storage.manifest import Manifest
 
-Store = Annotated[
-    Path, typer.Argument(help="Folder of results that a command has written.", show_default=False)
-]
-Json = Annotated[bool, options.output("Print all there is to know as JSON.", "--json")]
+Store = Annotated[Path, typer.Argument(help="Folder of results.", show_default=False)]
+Json = Annotated[bool, options.output("Print everything as JSON.", "--json")]
 
 
 def show(store: Store, as_json: Json = False) -> None:
-    """Summarise a folder of results: what they are, their main numbers, and what made them.
+    """Summary of stored results: kind, main numbers, command and versions that made them.
 
-    Nothing runs, and nothing is written. Files that are not what was written are named, with exit code 1.
+    Nothing runs, and nothing is written. Files that were changed since are named, with exit code 1.
 
     Example: rockwobble show rockwobble-compare
     """
@@ -97,18 +95,18 @@ def _text(value: object) -> str:
     return number(value)
 
 
-Folder = Annotated[Path, typer.Argument(help="Folder that a command has written.", show_default=False)]
+Folder = Annotated[Path, typer.Argument(help="Folder of results.", show_default=False)]
 Out = Annotated[
     Path | None,
-    options.output("Where the pages go. Default: into the folder of the results.", show_default=False),
+    options.output("Folder of the pages. Default: the folder of the results.", show_default=False),
 ]
 
 
 def report(folder: Folder, out: Out = None, overwrite: options.Overwrite = False) -> None:
-    """Draw the pages and pictures again of results that are stored. Nothing runs again.
+    """Pages and figures of stored results, drawn again without new runs.
 
-    They say what they said: which engines and records are installed here has no part in it. The results
-    stay as they are.
+    The pages depend on the stored results only, not on the engines and records installed here. The results
+    stay unchanged.
 
     Example: rockwobble report rockwobble-compare --out pages
     """
@@ -138,17 +136,15 @@ def report(folder: Folder, out: Out = None, overwrite: options.Overwrite = False
 Stored = Annotated[
     Path | None,
     typer.Argument(
-        help="Folder of a comparison, to play what is stored there. Without it the case is run.",
+        help="Folder of a stored comparison. Without it the case is run.",
         show_default=False,
     ),
 ]
-CaseName = Annotated[
-    str | None, typer.Option("--case", help="Which case of the folder, where it has several.")
-]
-Engine = Annotated[str | None, options.method(f"{options.ENGINES}. Default: the first of them.")]
+CaseName = Annotated[str | None, typer.Option("--case", help="Name of the case, if the folder has several.")]
+Engine = Annotated[str | None, options.method(f"{options.ENGINES}. Default: mujoco.")]
 Open = Annotated[
     bool | None,
-    options.output("Show it in the browser. Default: where there is a terminal.", "--open/--no-open"),
+    options.output("Open the page in the browser. Default: yes in a terminal.", "--open/--no-open"),
 ]
 
 
@@ -166,11 +162,11 @@ def view(
     overwrite: options.Overwrite = False,
     opened: Open = None,
 ) -> None:
-    """Play one case in three dimensions: the engine's cylinder, and the reduced model translucent over it.
+    """3D animation of one case: the cylinder of an engine, with the reduced model translucent over it.
 
-    Without options: MuJoCo recess under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
+    Without options: MuJoCo in a recess under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
 
-    Writes view.html, which needs nothing else and works offline, and the comparison that it plays.
+    Writes view.html (works offline) and the comparison that it shows.
 
     Example: rockwobble view --scale 2 --support flat
     """

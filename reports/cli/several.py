@@ -25,12 +25,14 @@ _motions = options_in("Many ground motions")
 class ManyMotions(Reading):
     """The options that name many ground motions."""
 
-    p695: bool = _motions(False, "The 22 far-field pairs of FEMA P-695 (extra records).", flag="--p695")
+    p695: bool = _motions(
+        False, "The 22 far-field pairs of FEMA P-695 (needs the extra records).", flag="--p695"
+    )
     records: Path | None = _motions(
         None,
-        "A folder of PEER with its _SearchResults.csv, or one with a table records.csv: columns x and y "
-        "(files), or record (file or folder of all), maybe z, name, units, scale, level and the options "
-        "below.",
+        "Folder of records: a PEER download with its _SearchResults.csv, or files with a table "
+        "records.csv (columns x and y, or record; optional z, name, units, scale, level and options "
+        "such as lengths).",
     )
     synthetic: int | None = _motions(None, "Number of synthetic motions.", least=2)
 
@@ -107,8 +109,8 @@ class ManyMethods:
     model: Annotated[
         list[str] | None,
         options.method(
-            "Reduced model: recess, flat, planar-x, planar-y, worse-plane (of the two), or none; may be "
-            "repeated. Default: all."
+            "Reduced model: recess, flat, planar-x, planar-y, worse-plane (larger of the two planar "
+            "peaks) or none; may be repeated. Default: all."
         ),
     ] = None
     engine: Annotated[
@@ -170,23 +172,28 @@ class Hazard(Plan):
 
     hazard: Path | None = _hazard(
         None,
-        "Hazard curve of the site: CSV of intensity and annual frequency, CSV of OpenQuake or JSON of the "
-        "USGS. Adds the annual frequency of overturning.",
+        "Hazard curve of the site, which adds the annual frequency of overturning: CSV of intensity and "
+        "annual frequency, CSV of OpenQuake or JSON of the USGS.",
     )
     hazard_measure: str | None = _hazard(
         None,
-        "What its intensity is: pga, pgv or sa_mean (geometric means), pga_resultant, pgv_resultant or sa "
-        "(of the horizontal resultant).",
+        "Intensity measure of the hazard curve: pga, pgv or sa_mean (geometric means), pga_resultant, "
+        "pgv_resultant or sa (horizontal resultant).",
     )
-    hazard_units: str | None = _hazard(None, "Unit of its intensity. Default: g, and m/s for velocities.")
+    hazard_units: str | None = _hazard(
+        None, "Unit of the intensity of the hazard curve. Default: g, or m/s for velocities."
+    )
     hazard_years: float | None = _hazard(
-        None, "Years of the probabilities that it gives in place of annual frequencies.", above=0.0
+        None,
+        "Period, in years, if the file gives probabilities of exceedance instead of annual frequencies.",
+        above=0.0,
     )
-    hazard_site: int = _hazard(1, "Number of the site in a file of OpenQuake.", least=1)
-    risk_years: float = _hazard(50.0, "Years of the probability of overturning.", above=0.0)
+    hazard_site: int = _hazard(1, "Number of the site in an OpenQuake file.", least=1)
+    risk_years: float = _hazard(50.0, "Period of the overturning probability, in years.", above=0.0)
     total_dispersion: float | None = _hazard(
         None,
-        "Dispersion of the lognormal curves in place of that of the motions, as the total of FEMA P-695.",
+        "Dispersion of the lognormal curves, such as the total dispersion of FEMA P-695. Default: the "
+        "record-to-record dispersion.",
         above=0.0,
     )
 
@@ -226,13 +233,13 @@ class GridOptions(GridPlan, Reading):
     """The options that state a grid."""
 
     record: list[Path] | None = _motion(
-        None, "File or folder of all components; may be repeated for several records."
+        None, "File or folder with all components of a record; may be repeated."
     )
     record_x: list[Path] | None = _motion(
-        None, "East-west component, or zero; may be repeated for several records. Default: El Centro 1940."
+        None, "East-west component of a record, or zero; may be repeated. Default: El Centro 1940."
     )
-    record_y: list[Path] | None = _motion(None, "North-south component of each, or zero.")
-    record_z: list[Path] | None = _motion(None, "Vertical component of each, or of none.")
+    record_y: list[Path] | None = _motion(None, "North-south component of each record, or zero.")
+    record_z: list[Path] | None = _motion(None, "Vertical component of each record. Default: none.")
 
     def grid(self, models: list[str] | None) -> rw.Grid:
         """Return the grid of these axes by some reduced models, the recess model without any.

@@ -44,15 +44,20 @@ class Trajectories(Plan):
 
     trajectory: list[Path] | None = _external(
         None,
-        "CSV of time and: tilt and azimuth, or qw, qx, qy, qz, or x, y, z of the mass centre; from a shake "
-        "table or another code. What it does not hold is not compared; may be repeated.",
+        "Trajectory of a shake table or another code, as CSV: time with tilt and azimuth, with qw, qx, "
+        "qy, qz, or with x, y, z of the mass centre. Quantities that are missing are not compared. May "
+        "be repeated.",
     )
-    trajectory_angles: str | None = _external(None, "deg or rad, where its header does not say.")
-    trajectory_offset: float = _external(0.0, "Added to its times, in s, so that 0 is the start of the run.")
+    trajectory_angles: str | None = _external(
+        None, "Unit of its angles if the header does not state it: deg or rad."
+    )
+    trajectory_offset: float = _external(
+        0.0, "Offset added to its times, in s, so that 0 is the start of the run."
+    )
     trajectory_noise_deg: float | None = _external(
         None,
-        "Tilt below which it counts as standing, in deg. Default: as its scatter asks for, at least 1e-4 "
-        "alpha.",
+        "Tilt below which the trajectory counts as at rest, in deg. Default: estimated from the "
+        "scatter, at least 1e-4 alpha.",
         above=0.0,
         below=90.0,
     )
@@ -96,26 +101,26 @@ def compare(
     budget: Annotated[
         bool,
         options.method(
-            "Split each difference into model form, numerics and what stays unexplained, by runs at finer "
-            "steps: takes some seven times as long.",
+            "Split each difference into model form, numerics and an unexplained rest, by runs at finer "
+            "steps (about seven times as long).",
             "--budget",
         ),
     ] = False,
     out: options.Out = Path("rockwobble-compare"),
     overwrite: options.Overwrite = False,
 ) -> None:
-    """Run the reduced model and the engines on one problem, and report how long they agree.
+    """Agreement of the reduced model with multibody engines on one problem, and why they diverge.
 
-    Without options: the 1940 El Centro record on R = 6 m, tan alpha = 0.2, every installed engine, in an
-    ideal recess and on flat ground.
+    Without options: the 1940 El Centro record on R = 6 m, tan alpha = 0.2, the default engines, in an ideal
+    recess and on flat ground.
 
-    With a SUITE: its cases and runs, among which --engine and --support choose. A suite that was ended
-    before its end resumes when it is started again with the same folder.
+    With a SUITE: its cases and runs; --engine and --support select among the runs. An interrupted suite
+    resumes with the same command.
 
     With --engine all: every installed engine that can run the problem, and their agreement matrix.
 
-    With --trajectory: that of a shake table or of another code is one more run. With --engine none it is
-    compared with the reduced model alone.
+    With --trajectory: the trajectory of a shake table or another code is compared too; with --engine none,
+    with the reduced model only.
 
     Writes summary.csv, the samples as Parquet, report.html and figure.svg.
 
@@ -201,7 +206,7 @@ def simulate(
     problem: Problem,
     model: ModelPlan,
     engine: Annotated[
-        str | None, options.method(f"{options.ENGINES}. Default: none, the reduced model.")
+        str | None, options.method(f"{options.ENGINES}. Default: the reduced model instead of an engine.")
     ] = None,
     support: options.Support = "recess",
     time_step: options.TimeStep = None,
@@ -209,13 +214,13 @@ def simulate(
     out: options.Out = Path("rockwobble-simulate"),
     overwrite: options.Overwrite = False,
 ) -> None:
-    """Run the reduced model, or one engine, on one problem.
+    """Motion of one case by the reduced model or one engine: traces, forces and diagnostics.
 
     Without options: the recess model under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
 
-    Writes the samples to run.csv, the passes to passes.csv, all to run.parquet, which Trace.load reads,
-    manifest.json, which says units and meaning of each column, and run.html, run.md and trace.svg; SI units
-    and radians.
+    Writes the samples (run.csv), the near-upright passes (passes.csv), both for Trace.load (run.parquet),
+    units and meaning of each column (manifest.json), and the page (run.html, run.md, trace.svg). SI units and
+    radians.
 
     Example: rockwobble simulate --release-tilt-deg 5 --rolling-rate 0.5 --duration 8
     """
@@ -266,12 +271,9 @@ def _with_settings(case: rw.Case, run: rw.Run, setting: list[str] | None, model:
 
 Engine = Annotated[
     str | None,
-    options.method(
-        f"{options.ENGINES}. Its one run verifies the prediction; none leaves it out. "
-        "Default: the first of them."
-    ),
+    options.method(f"{options.ENGINES}; checks the model by one run. none: no check. Default: mujoco."),
 ]
-Details = Annotated[bool, options.output("Print what is folded on the page, too.", "--details")]
+Details = Annotated[bool, options.output("Print the details that are folded on the page.", "--details")]
 
 
 @takes_options
@@ -285,16 +287,15 @@ def advise(
     out: options.Out = Path("rockwobble-advise"),
     overwrite: options.Overwrite = False,
 ) -> None:
-    """Say how one case ends, how far its results can be trusted, and what its support must supply.
+    """Verdict on one case: does it overturn, how reliable is the answer, what must the support carry.
 
-    A verdict, a grade with its reason for each check, the largest tilt, the displacement of the top and the
-    probability of overturning, over copies of the record and over other records as strong; the design
-    demands on ground and recess; and what to do next.
+    Gives a verdict; a grade with its reason for each check; peak tilt, top displacement and overturning
+    probability for the record, its perturbed copies and other records of the same intensity; the design
+    demands on ground and recess; and next steps.
 
     Without options: the 1940 El Centro record on R = 6 m, tan alpha = 0.2, in a recess.
 
-    Writes advice.html, one page that needs nothing else, the same as advice.md with advice.svg, and
-    the runs as Parquet.
+    Writes advice.html (one page, works offline), advice.md with advice.svg, and the runs as Parquet.
 
     Example: rockwobble advise --record-x EW.AT2 --record-y NS.AT2 --friction 0.5
     """

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 _subject = options_in("Subject (default: the reduced models, and the engines that are installed)")
 _output = options_in("Output for programs")
 Subject = dict[str, Any]  # arguments of `rockwobble.check`
-_STEP = "Time step of the engine, in s. Default: its own choice."
+_STEP = "Time step of the engine, in s. Default: its default."
 
 
 def _require_engine(engine: str | None, time_step: float | None) -> None:
@@ -44,21 +44,27 @@ def _require_engine(engine: str | None, time_step: float | None) -> None:
 class SubjectOptions(Plan):
     """The options that name what is checked."""
 
-    engine: str | None = _subject(None, "Check one engine, the protocol of an engine included.")
+    engine: str | None = _subject(None, "Engine to check, with its protocol.")
     time_step: float | None = _subject(None, _STEP)
     model: str | None = _subject(
         None,
-        "Check a model, MODULE:FUNCTION: a function of a rockwobble.Case and a support that returns time, "
-        "tilt, azimuth.",
+        "Model to check, as MODULE:FUNCTION: takes a rockwobble.Case and a support, returns time, tilt "
+        "and azimuth.",
     )
     trajectory: Path | None = _subject(
-        None, "Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite."
+        None, "Trajectory to check (CSV with time, tilt, azimuth), of the one case of --suite."
     )
     suite: str | None = _subject(
-        None, "Compare the engine runs of a suite with the models: a TOML file, or one that ships."
+        None,
+        "Suite whose engine runs are compared with the models: a TOML file, or a shipped one (canon, "
+        "p695, quick).",
     )
-    support: str | None = _subject(None, "What model or trajectory is of: recess or flat. Default: recess.")
-    tolerance: float | None = _subject(None, "Claimed relative accuracy. Default: 0.001.")
+    support: str | None = _subject(
+        None, "Support of the model or trajectory: recess or flat. Default: recess."
+    )
+    tolerance: float | None = _subject(
+        None, "Claimed relative accuracy of the model or trajectory. Default: 0.001."
+    )
     workers: options.Workers = None
 
     def subject(self) -> Subject:
@@ -105,9 +111,11 @@ class SubjectOptions(Plan):
 class OutputOptions(Plan):
     """The options that name files for programs."""
 
-    json: Path | None = _output(None, "Write all results as JSON.")
-    junit: Path | None = _output(None, "Write a JUnit report (XML).")
-    markdown: Path | None = _output(None, "Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.")
+    json: Path | None = _output(None, "File for all results, as JSON.")
+    junit: Path | None = _output(None, "File for a JUnit report (XML).")
+    markdown: Path | None = _output(
+        None, "File to which a summary for a CI job is appended, such as $GITHUB_STEP_SUMMARY."
+    )
 
     overwrite: options.Overwrite = False
 
@@ -158,7 +166,7 @@ def check(
         list[str] | None,
         typer.Option(
             metavar="GROUP",
-            help="Run one group of checks; may be repeated: equations, exact, conserved, rest, invariance, "
+            help="Group of checks, may be repeated: equations, exact, conserved, rest, invariance, "
             "tendon, order, trace, agreement, protocol, baseline. Default: all.",
         ),
     ] = None,
@@ -166,23 +174,23 @@ def check(
         bool,
         typer.Option(
             "--update-baseline",
-            help="Show what new baselines would change, and write them if a reason is given.",
+            help="Show the changes of new baselines; written only with --reason.",
         ),
     ] = False,
     reason: Annotated[
         str | None,
-        typer.Option(help="Why the baselines change; kept in their file."),
+        typer.Option(help="Reason for new baselines, kept in their file."),
     ] = None,
 ) -> None:
-    """Check by physics that reduced models and engines are right, and still do what they did.
+    """Physical checks of reduced models and engines, and comparison with their baselines.
 
-    One list of checks, tightest first: residuals in the equations of motion, exact solutions, conserved
-    quantities, rest and uplift, invariance, a tendon, order of convergence, consistency of a trace, agreement
-    with the independent model, the protocol of an engine, baseline (short motions that are kept). Printed are
-    failures, with value and bound, and one line for each group.
+    The groups, tightest first: residuals of the equations of motion, exact solutions, conserved quantities,
+    rest and uplift, invariance, tendon, order of convergence, consistency of a trace, agreement with the
+    independent model, protocol of an engine, baseline (stored results of short motions). Prints failures with
+    value and bound, and one line per group.
 
-    A suite is compared with the bounds that it states; one that states none, with what the time step of each
-    run leaves, measured by a second run of twice that step.
+    The runs of a suite are compared within the bounds that it states; without bounds, within the error of
+    their time step, estimated by a second run at twice the step.
 
     Exit code 0 if all checks hold, 1 if one does not, 2 for bad input.
 
@@ -266,7 +274,7 @@ def update(reason: str | None) -> None:
 
 def certify(
     context: typer.Context,
-    out: Annotated[Path, typer.Option(help="File to write.")] = Path("certificate.json"),
+    out: Annotated[Path, typer.Option(help="File of the certificate.")] = Path("certificate.json"),
     engine: Annotated[
         str | None, typer.Option(help="Engine to certify. Default: the reduced models.")
     ] = None,
@@ -275,17 +283,17 @@ def certify(
         list[str] | None,
         typer.Option(
             metavar="GROUP",
-            help="Make claims of one group of `rockwobble check`; may be repeated. Default: all but protocol "
+            help="Group of checks whose results become claims; may be repeated. Default: all but protocol "
             "and baseline.",
         ),
     ] = None,
     overwrite: options.Overwrite = False,
 ) -> None:
-    """Write a certificate: claims with their evidence, and a fingerprint of short cases.
+    """Certificate of a model or engine: claims with their evidence, and a fingerprint of short cases.
 
     A claim is verified (against exact solutions), cross-validated (between independent formulations) or
-    validated (against an experiment, by the hash of its data; there is none yet). Nothing is written where a
-    check fails.
+    validated (against an experiment, by the hash of its data; none yet). Nothing is written if a check
+    fails.
 
     Exit code 0 if it is written, 1 if a check fails, 2 for bad input.
 
@@ -328,15 +336,16 @@ def certify(
 
 
 def verify(
-    certificate: Annotated[Path, typer.Argument(help="File that certify wrote.", show_default=False)],
+    certificate: Annotated[
+        Path, typer.Argument(help="Certificate written by rockwobble certify.", show_default=False)
+    ],
     as_json: Annotated[bool, typer.Option("--json", help="Print the answer as JSON.")] = False,
 ) -> None:
-    """Answer in one word whether this installation still does what a certificate says.
+    """Verdict on a certificate: same, chaotic or changed results on this installation.
 
-    same: every number repeats. chaotic: what differs does so after agreement must end, and distributions
-    agree. changed: something differs before that; the claim and the first term concerned are named.
-
-    Versions that differ from those of the certificate are named.
+    same: every number repeats. chaotic: traces differ only after the predicted end of agreement, and
+    distributions agree. changed: traces differ before; the claim and the first term concerned are named, and
+    versions that differ from those of the certificate.
 
     Exit code 0 for same and chaotic, 1 for changed, 2 for bad input.
 
