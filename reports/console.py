@@ -11,6 +11,7 @@ import textwrap
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -207,21 +208,40 @@ def _lines(what: str, few: int) -> Iterator[ProgressCallback]:
     yield show_progress
 
 
-def print_facts(heading: Sequence[str | Text], facts: Mapping[str, str]) -> None:
+def print_facts(heading: Sequence[str | Text], facts: Mapping[str, str], *, command: str = "") -> None:
     """Print a heading and facts by their names, as text, in which brackets are no markup.
 
-    No word is broken: one that is longer than a line, such as a path, is a line.
+    Names and facts are wrapped each in a column. No word is broken: one that is longer than a line, such as
+    a path, is a line.
+
+    Parameters
+    ----------
+    heading : sequence of str or Text
+    facts : mapping of str to str
+    command : str, optional
+        Name of the fact that is a command, to be copied.
     """
     from rich.console import Console
 
+    from .pages.command_line import command_lines
+
     console = Console()
-    console.print(*heading, highlight=False)
-    indent = max(map(len, facts), default=0) + 2
+    console.print(*heading, highlight=False, soft_wrap=True)
+    # a hash of forty characters stands beside the names on eighty columns
+    words = [len(word) for name in facts for word in name.split()]
+    indent = max(min(max(map(len, facts), default=0), console.width * 2 // 5 - 2), *words, 0) + 2
+
+    def wrapped(text: str, width: int) -> list[str]:
+        return textwrap.wrap(text, max(width, 1), break_long_words=False, break_on_hyphens=False)
+
     for name, fact in facts.items():
-        lines = textwrap.wrap(
-            fact, max(console.width - indent, 1), break_long_words=False, break_on_hyphens=False
-        )
-        print(name.ljust(indent) + ("\n" + " " * indent).join(lines))
+        if name == command:
+            print("\n".join([name, *command_lines(fact, console.width)]))
+            continue
+        for left, right in zip_longest(
+            wrapped(name, indent - 2), wrapped(fact, console.width - indent), fillvalue=""
+        ):
+            print(f"{left.ljust(indent)}{right}".rstrip())
     print()
 
 

@@ -83,7 +83,8 @@ def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
         ),
         "pages": ", ".join(made.pages),
     }
-    print_facts((f"[bold]{store}[/]: {made.kind}",), {name: text for name, text in lines.items() if text})
+    heading = (f"[bold]{store}[/]: {made.kind}",)
+    print_facts(heading, {name: text for name, text in lines.items() if text}, command="made by")
 
 
 def _text(value: object) -> str:

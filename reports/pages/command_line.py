@@ -12,6 +12,9 @@ _OF_SPECTRUM = (
 )
 
 
+_BREAK = " \\"  # at the end of a line that goes on
+
+
 def command_line(command: str, options: Mapping[str, object]) -> str:
     """Return a command with options by the names of their parameters; a flag is True, None is left out.
 
@@ -26,6 +29,39 @@ def command_line(command: str, options: Mapping[str, object]) -> str:
             continue
         parts += [f"--{name.replace('_', '-')}", *([] if value is True else [str(value)])]
     return shlex.join(parts)
+
+
+def command_lines(command: str, width: int) -> list[str]:
+    r"""Return a command in indented lines that a shell takes as one: broken before options alone.
+
+    A line is longer than `width` only where one option with its value is.
+
+    Examples
+    --------
+    >>> print("\n".join(command_lines("rockwobble advise --record-x 'E W.AT2' --scale 0.5 --resample", 44)))
+      rockwobble advise --record-x 'E W.AT2' \
+        --scale 0.5 --resample
+    """
+    try:
+        words = [shlex.quote(word) for word in shlex.split(command)]
+    except ValueError:  # no command of a shell: Python, whose lines break elsewhere
+        return [f"  {command}"]
+    if not words or shlex.join(shlex.split(command)) != command:
+        return [f"  {command}"]
+    groups: list[str] = []
+    for word in words:
+        if groups and groups[-1].startswith("--") and " " not in groups[-1] and not word.startswith("--"):
+            groups[-1] += f" {word}"
+        else:
+            groups.append(word)
+    lines = [f"  {groups[0]}"]
+    for group in groups[1:]:
+        if len(lines[-1]) + len(group) + len(_BREAK) + 1 > width:
+            lines[-1] += _BREAK
+            lines.append(f"    {group}")
+        else:
+            lines[-1] += f" {group}"
+    return lines
 
 
 def spectrum_line(options: Mapping[str, object], tan_alpha: float) -> str:

@@ -27,6 +27,7 @@ from rich.markdown import Markdown
 from ..figures.interactive import charts, colour_bar
 from ..figures.picture import Picture
 from ..figures.svg import svg
+from .command_line import command_lines
 from .sentences import environment
 from .table import Row, Table, columns_of, number
 
@@ -34,6 +35,8 @@ Output = Literal["terminal", "markdown", "html"]
 _PLACE = re.compile(r"\n?@@(\d+)@@\n?")
 # what Markdown would take for markup in a name; an underscore only where a word begins or ends
 _MARKUP = re.compile(r"([\\`*<])|(?<!\w)_|_(?!\w)")
+# a command at the end of a line
+_COMMAND = re.compile(r"^(.*\S) `([^`\n]* [^`\n]*)`$", re.MULTILINE)
 _LEAST_WIDTH = 80  # of what is not a terminal, such as a file
 
 
@@ -48,6 +51,13 @@ class Fold:
     """Beginning of the details under a title, or their end, which has none."""
 
     title: str
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A command, in lines of its own, so that it can be copied."""
+
+    line: str
 
 
 Part = str | Picture | Table | Safe | Fold
@@ -134,15 +144,22 @@ class Page:
         console = console or Console()
         if not console.is_terminal:
             console.width = max(console.width, _LEAST_WIDTH)
-        parts = list(_unfold(self._parts("terminal", console.width), details))
+        parts = list(_with_commands(_unfold(self._parts("terminal", console.width), details)))
         for place, part in enumerate(parts):
+            after = parts[place + 1] if place + 1 < len(parts) else None
             if isinstance(part, Table):
                 if place and isinstance(parts[place - 1], Table):
                     console.print()
                 console.print(part.rich(console.width))
+            elif isinstance(part, Command):
+                # a word that is longer than the line runs on: a break in it would be copied, too
+                for line in command_lines(part.line, console.width):
+                    console.print(line, markup=False, highlight=False, soft_wrap=True)
+                if after is not None and not str(after).startswith("- "):
+                    console.print()
             else:
                 console.print(Markdown(part), highlight=False)
-                if part is not parts[-1]:
+                if after is not None and not isinstance(after, Command):
                     console.print()
 
     def _parts(self, output: Output, width: int = 0) -> list[Part]:
@@ -196,6 +213,23 @@ def _unfold(parts: Iterable[Part], details: bool) -> Iterator[str | Table]:
             folded = bool(part.title) and not details
         elif not folded and isinstance(part, str | Table) and not isinstance(part, Safe):
             yield part
+
+
+def _with_commands(parts: Iterable[str | Table]) -> Iterator[str | Table | Command]:
+    """Yield the parts of a terminal, with a command at the end of a line as a part."""
+    for part in parts:
+        if isinstance(part, Table):
+            yield part
+            continue
+        words, *rest = _COMMAND.split(part)
+        # words before it, its lead, its line, and so on
+        pieces = [words]
+        for lead, line, more in zip(rest[::3], rest[1::3], rest[2::3], strict=True):
+            yield f"{pieces.pop()}{lead}".strip("\n")
+            yield Command(line)
+            pieces.append(more)
+        if last := pieces.pop().strip("\n"):
+            yield last
 
 
 def _html(part: Part) -> str:

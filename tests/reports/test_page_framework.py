@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import re
+import shlex
 from collections import Counter
 
 import jinja2
@@ -191,3 +192,32 @@ def test_a_legend_explains_the_columns_that_are_shown(page):
         assert "note: by hand." in text
     assert "peak: the largest." in printed(60)
     assert "note: by hand." not in printed(60)
+
+
+@pytest.mark.parametrize("width", [40, 80, 200])
+@pytest.mark.parametrize(
+    "columns", ["--scale 2", "--out '/a long/name of a folder.d' --engine none --friction 0.5"]
+)
+def test_a_command_of_a_page_is_copied_whole(columns, width):
+    command = f"rockwobble advise --record-x 'E W.AT2' --diameter 1.6 --height 9 {columns}"
+    page = Page(name="test", template="test", values={})
+    text = (
+        f"# Title\n\nNext:\n\n- An engine: `{command}`\n- Another: `{command}`\n- Words\n\nA `b/h` of `c d`."
+    )
+    screen = io.StringIO()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Page, "_parts", lambda *_: [text])
+        page.show(Console(file=screen, width=width, force_terminal=True, color_system=None))
+    printed = screen.getvalue()
+    lines = printed.splitlines()
+    begins = [place for place, line in enumerate(lines) if line.startswith("  rockwobble")]
+    assert len(begins) == 2
+    for place in begins:
+        copied = [lines[place]]
+        while copied[-1].endswith("\\"):
+            copied.append(lines[place + len(copied)])
+        assert shlex.split("\n".join(copied).replace("\\\n", "")) == shlex.split(command)
+        # one option alone may be longer than the line
+        assert all(len(line) <= width or line.split()[0].startswith("--") for line in copied)
+    for words in ("Title", "An engine:", "Another:", "Words", "b/h", "c d"):
+        assert words in printed

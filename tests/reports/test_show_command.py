@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import pytest
 
 from rockwobble import comparison
 from rockwobble.compare import Comparison
-from rockwobble.compare.storage.manifest import MANIFEST
+from rockwobble.compare.storage.manifest import MANIFEST, read_manifests
 from rockwobble.models import Case, Cylinder, InitialState, Run, plain_json
 from rockwobble.reports.cli.main import main
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 CASE = Case(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=0.5, name="release")
+PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
 RUNS = [Run("mujoco", "recess", 1e-3)]
 
 
@@ -60,6 +62,21 @@ def test_show_says_what_is_there_and_what_made_it(stored, capsys):
     said = " ".join(capsys.readouterr().out.split())
     for words in ("comparison", "median agreement time [s]", "commit", "traces.parquet", result["inputs"]):
         assert words in said
+
+
+@pytest.mark.usefixtures("nothing_runs")
+@pytest.mark.parametrize("folder", ["validity", "risk/p695", "ensemble/copies"])
+def test_eighty_columns_hold_what_show_prints(folder, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    store = PUBLISHED / folder
+    assert call("show", str(store)) == 0
+    printed = capsys.readouterr().out
+    made = read_manifests(store)[0]
+    _, *lines = printed.splitlines()  # the first names the folder
+    assert max(map(len, lines)) <= 80
+    below = printed[printed.index("made by\n") :].removeprefix("made by\n")
+    command = below[: below.index("made on")]
+    assert shlex.split(command.replace("\\\n", "")) == shlex.split(made.command)
 
 
 def test_show_names_a_damaged_file_and_fails(tmp_path, capsys):
