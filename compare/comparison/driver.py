@@ -123,7 +123,17 @@ def comparison(
             return simulate_all([Job(case=case, run=run, label="copy")], workers=1, cache=cache)[0]
 
         rows = [
-            _row(case, name, found, label, run, budgets.get((case.name, label, name)), copy_of, until)
+            comparison_row(
+                case,
+                name,
+                found[case.name, name],
+                label,
+                found[case.name, label],
+                own=found[case.name, str(own_model(run))],
+                simulate=copy_of,
+                budget=budgets.get((case.name, label, name)),
+                until=until,
+            )
             for case in cases
             for label, run in by_label.items()
             for name in references_of(case, run, label, reference, named=named)
@@ -181,20 +191,49 @@ def _runs(case_or_suite: Case | Suite, runs: Iterable[Run] | None, *, needed: bo
     return chosen
 
 
-def _row(
+def comparison_row(
     case: Case,
     name: str,
-    found: Mapping[tuple[str, str], Trace],
+    reference: Trace,
     label: str,
-    run: Run,
-    budget: ErrorBudget | None,
-    copy_of: Simulate,
-    until: float | None,
+    trial: Trace,
+    *,
+    own: Trace,
+    simulate: Simulate,
+    budget: ErrorBudget | None = None,
+    until: float | None = None,
 ) -> Row:
-    reference, own, trial = (found[case.name, each] for each in (name, str(own_model(run)), label))
+    """Return the row of the summary for one run and one reference, with the prediction of their agreement.
+
+    Parameters
+    ----------
+    case : Case
+    name : str
+        Label of the reference.
+    reference : Trace
+    label : str
+        Label of the run.
+    trial : Trace
+        The run; one whose process died has no samples, and its row says no more than that.
+    own : Trace
+        Response of the reduced model of the run's support; may be the reference itself.
+    simulate : callable
+        Runs a reduced model on a case; for the perturbed copies of the prediction.
+    budget : ErrorBudget, optional
+        What the difference of run and reference is made of. Without one the error of the run is estimated.
+    until : float, optional
+        End of the window of the RMS columns, in the time of the run [s]. Default: the whole run.
+
+    Returns
+    -------
+    dict
+        Value of each of `SUMMARY_COLUMNS`.
+    """
     if not len(trial.time) or not len(reference.time):
         return lost_row(case, name, reference, label, trial)
-    error = estimated_error(case, run, trial.time_step) if budget is None else measured_error(case, budget)
+    error = (
+        estimated_error(case, trial.run, trial.time_step) if budget is None else measured_error(case, budget)
+    )
 
     def own_prediction(tolerance: float) -> Prediction:
         return predict(
@@ -203,7 +242,7 @@ def _row(
             own=own,
             contact_resolution=trial.contact_resolution,
             error=error,
-            simulate=copy_of,
+            simulate=simulate,
             tolerance=tolerance,
         )
 

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pytest
+import scheduled
 from showing import shows_itself
 
 from rockwobble import reduced
+from rockwobble.compare.comparison.driver import comparison
 from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.metrics.statistics import contrast
+from rockwobble.compare.runs import execution
 from rockwobble.compare.studies.advice import advice as study
 from rockwobble.compare.studies.advice.advice import Advice, advice_of, advise, vertical_effect
 from rockwobble.compare.studies.advice.demands import (
@@ -589,10 +594,42 @@ def test_a_prediction_of_an_engine_is_the_same_after_a_second_of_rest() -> None:
         still = np.zeros((round(rest / shaking.time_step), shaking.acceleration.shape[1]))
         motion = GroundMotion(np.vstack([still, shaking.acceleration]), shaking.time_step)
         case = Case(Cylinder(semidiagonal=3.0, tan_alpha=0.15), motion, duration=9.0 + rest)
-        predictions.append(verify_run(case, Run("mujoco", "recess"), Run(None, "recess"))[1])
+        reference = reduced.simulate(case)
+        predictions.append(verify_run(case, Run("mujoco", "recess"), reference)[1])
     first, later = predictions
     assert first.reason == later.reason != ""
     assert later.length == pytest.approx(first.length, rel=COUNTED)
+
+
+@pytest.mark.slow
+def test_a_verification_says_what_the_row_of_a_comparison_says() -> None:
+    """Of a run on flat ground, whose reference is not the model of its support, and of one that was lost."""
+    shaken, run = Case(PIER, el_centro_1940(), duration=5.0), Run("mujoco", "flat")
+    row = comparison(shaken, runs=[run], reference=Run(None, "recess"), workers=1).summary.iloc[0]
+    verified, prediction, trace = verify_run(shaken, run, reduced.simulate(shaken))
+    assert (verified.label, verified.version) == (row["run"], row["engine_version"])
+    for name in ("time_step", "outcome", "diagnostics", "peak_tilt", "divergence"):
+        assert getattr(verified, name) == row[name], name
+    assert (verified.agreed_until, verified.diverged) == (
+        row["within_tolerance_until"],
+        row["left_tolerance"],
+    )
+    assert prediction.reason == row["predicted_by"] == "model form"
+    assert row["reference_uplift_time"] + prediction.length == pytest.approx(
+        row["predicted_until"], rel=1e-12
+    )
+    assert trace.run.engine == "mujoco"
+
+
+@pytest.mark.slow
+def test_an_engine_that_ends_its_process_leaves_the_advice(monkeypatch: pytest.MonkeyPatch) -> None:
+    here = [str(Path(scheduled.__file__).parent), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, here)))
+    monkeypatch.setattr(execution, "run_job", scheduled.killed)
+    release = Case(PIER, initial=InitialState(0.1, rolling_rate=0.5), duration=1.0)
+    verified, prediction, trace = verify_run(release, Run("mujoco", "recess"), reduced.simulate(release))
+    assert (verified.outcome, verified.diagnostics, verified.diverged) == ("failed", "died", True)
+    assert (prediction.length, prediction.reason, len(trace.time)) == (1.0, "", 0)
 
 
 @pytest.mark.parametrize(

@@ -475,7 +475,7 @@ def advise(
     if run is not None:
         with stage(str(run)):
             if moves:
-                verification, prediction, engine = verify_run(case, run, model)
+                verification, prediction, engine = verify_run(case, run, trace)
     alpha, band = case.cylinder.alpha, band_of(case, perturbed)
     trust = Trust(kind="trace", until=case.length, because="")
     if moves:

@@ -17,10 +17,11 @@ from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.multibody.passes import STEPS_OF_A_PASS
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 
-from ...comparison.driver import comparison
+from ...comparison.driver import comparison_row
 from ...comparison.prediction import Prediction, estimated_error, predict, time_scale
 from ...metrics.pair import tolerance_of
-from ...runs.execution import SAMPLE_STEP, simulate_run
+from ...runs.choice import labels_beside_references, own_model
+from ...runs.execution import SAMPLE_STEP, Job, simulate_all, simulate_run
 
 # A trace is lost where the copies are spread over half of the peak tilt. A percent of alpha, the limit of
 # agreement between methods, would be exceeded by the percent that the copies differ by itself.
@@ -159,20 +160,38 @@ def model_prediction(case: Case, trace: Trace, run: Run | None) -> Prediction:
     )
 
 
-def verify_run(case: Case, run: Run, model: Run) -> tuple[Verification, Prediction, Trace]:
-    """Run the engine; what it resolved makes the prediction sharper."""
-    found = comparison(case, runs=[run], reference=model)
-    (row,) = found.summary.to_dict("records")
-    trace = found.traces[case.name, row["run"]]
+def verify_run(case: Case, run: Run, reference: Trace) -> tuple[Verification, Prediction, Trace]:
+    """Run an engine and compare it with a reduced model; what it resolved makes the prediction sharper.
+
+    Parameters
+    ----------
+    case : Case
+    run : Run
+    reference : Trace
+        Response of the reduced model.
+    """
+    (label,), name = labels_beside_references([run], reference.run)
+    own = own_model(run)
+    # in a process of its own: an engine that crashes leaves the rest of the advice
+    (trace,) = simulate_all([Job(case=case, run=run, label=label)], workers=2)
+    row = comparison_row(
+        case,
+        name,
+        reference,
+        label,
+        trace,
+        own=reference if own == reference.run else simulate_run(case, own),
+        simulate=simulate_run,
+    )
     verification = Verification(
-        label=row["run"],
+        label=label,
         version=row["engine_version"],
         moves=math.isfinite(trace.uplift_time),
-        agreed_until=row["within_tolerance_until"],
-        diverged=row["left_tolerance"],
+        agreed_until=float(row["within_tolerance_until"]),
+        diverged=bool(row["left_tolerance"]),
         **{name: row[name] for name in ("time_step", "outcome", "diagnostics", "peak_tilt", "divergence")},
     )
-    until, reason = row["predicted_until"], row["predicted_by"]
+    until, reason = float(row["predicted_until"]), row["predicted_by"]
     if not math.isfinite(until):  # a run that was lost left none
         return verification, Prediction(length=case.length, reason=""), trace
     start = row["reference_uplift_time"] if reason else 0.0
