@@ -118,7 +118,7 @@ class Comparison(Results, kind="comparison"):
         """
         return agreement_matrix(self.cases, self.traces, until=self.until)
 
-    def of_case(self, name: str) -> View:
+    def of_case(self, name: str) -> Comparison:
         """Return the part on one case.
 
         Raises
@@ -132,7 +132,7 @@ class Comparison(Results, kind="comparison"):
             facts: Mapping[str, object] = self.facts[part]
             return {key: fact for key, fact in facts.items() if key.split(_SEPARATOR)[0] == name}
 
-        return View(
+        return Comparison(
             tables={
                 table: rows[rows["case"] == name].reset_index(drop=True)
                 for table, rows in self.tables.items()
@@ -198,8 +198,59 @@ class Comparison(Results, kind="comparison"):
         return str(self.summary[[*names, "diverged", "diagnostics"]].to_html(index=False))
 
 
-class View(Comparison, kind="view"):
-    """The part of a comparison on one case, to be played."""
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class View(Results, kind="view"):
+    """What is played: tables and facts are those of the comparison of one case.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> case = rw.Case(pier, initial=rw.InitialState(0.5 * pier.alpha), duration=1.0, name="release")
+    >>> found = rw.comparison(case, runs=[rw.Run(None, "flat")], workers=1)
+    >>> list(View.of(found, "release").comparison.cases)
+    ['release']
+    """
+
+    @classmethod
+    def of(cls, comparison: Comparison, name: str) -> Self:
+        """Return the view of one case of a comparison.
+
+        Raises
+        ------
+        ValueError
+            If there is no such case.
+        """
+        part = comparison.of_case(name)
+        return cls(tables=part.tables, facts=part.facts)
+
+    @cached_property
+    def comparison(self) -> Comparison:
+        """The comparison of the case."""
+        return Comparison(tables=self.tables, facts=self.facts, manifest=self.manifest)
+
+    def headline(self) -> Mapping[str, Number]:
+        """Return the numbers of the comparison."""
+        return self.comparison.headline()
+
+    def _about(self) -> Mapping[str, object]:
+        return {}  # as of a comparison
+
+    def sheets(self) -> Mapping[str, bytes]:
+        """Return the files of the comparison."""
+        return self.comparison.sheets()
+
+    @classmethod
+    def of_stored(cls, stored: Stored) -> Self:
+        """Return the results whose files are whole.
+
+        Raises
+        ------
+        ValueError
+            If they cannot be read.
+        """
+        found = Comparison.of_stored(stored)
+        return cls(tables=found.tables, facts=found.facts, manifest=found.manifest)
 
 
 def comparison_of(

@@ -171,6 +171,8 @@ def view(
 
     Example: rockwobble view --scale 2 --support flat
     """
+    from rockwobble.compare.comparison.result import View
+
     from ..figures.playback import require_motion
 
     with interruptible():
@@ -194,9 +196,9 @@ def view(
             echo(describe(case))
             with user_input(), shown_progress() as progress:
                 comparison = rw.comparison(case, runs=[run], progress=progress)
-        found = comparison.of_case(name)
+        found = View.of(comparison, name)
         with user_input():
-            require_motion(name, found.traces.values())
+            require_motion(name, found.comparison.traces.values())
         show_and_save(found, out)
     if sys.stdout.isatty() if opened is None else opened:
         import webbrowser

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 # wait for the imports of all
 KINDS: Mapping[str, str] = {
     "comparison": "pages.comparison",
-    "view": "pages.comparison",
+    "view": "pages.view",
     "run": "pages.run",
     "sweep": "pages.sweep",
     "ensemble": "pages.ensemble",

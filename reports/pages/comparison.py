@@ -9,7 +9,6 @@ from collections.abc import Iterator, Mapping, Sequence
 import pandas as pd
 
 from rockwobble.compare import SUMMARY_COLUMNS, WORTH_EXPLAINING, Comparison
-from rockwobble.compare.comparison.result import View
 from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
 from rockwobble.compare.external.verdict import lists_in_words
 from rockwobble.models import Run
@@ -27,7 +26,7 @@ from ..figures.comparison import (
     turn_picture,
 )
 from ..figures.picture import Line, Picture
-from ..figures.playback import playback, require_motion
+from ..figures.playback import playback
 from .cases import describe, group_of
 from .findings import (
     CAUSES,
@@ -53,15 +52,7 @@ _ALONE = ("figure", "budget")
 
 
 def page_of(found: Comparison) -> Page:
-    """Return the report of a comparison, or the page that plays one case of it.
-
-    Raises
-    ------
-    ValueError
-        If a case is to be played in which nothing moves.
-    """
-    if isinstance(found, View):
-        return _player_page(found)
+    """Return the report of a comparison."""
     views = case_views(found)
     many = len(views) > SINGLY
     summary, lengths = found.summary, {view.case.name: view.case.length for view in views}
@@ -329,23 +320,3 @@ def _cell(rows: pd.DataFrame) -> str:
 
 def _short(label: str, support: str) -> str:
     return "model" if label == str(Run(None, support)) else label.removesuffix(f" {support}")
-
-
-def _player_page(found: View) -> Page:
-    """Return the page that plays a comparison of one case; a ValueError if nothing moves."""
-    (view,) = case_views(found)
-    require_motion(view.case.name, found.traces.values())
-    spec = playback(view)
-    return Page(
-        name="view",
-        template="comparison/view",
-        values={
-            "name": view.case.name,
-            "headline": headline(view.rows, view.case.length),
-            "notes": notes(view),
-            "lines": describe(view.case),
-            "about": found.manifest,
-        },
-        blocks={"player": fragment("comparison/player.html.j2", name="player", spec=spec)},
-        outputs=["html"],  # without the player there is nothing to see
-    )

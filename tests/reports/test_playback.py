@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 import rockwobble as rw
+from rockwobble.compare.comparison.result import View
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.case_view import case_views
 from rockwobble.reports.figures.playback import playback
-from rockwobble.reports.pages.comparison import page_of
+from rockwobble.reports.pages.view import page_of
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 # a page plays in float32: seven digits of some metres
@@ -83,7 +84,7 @@ def test_nothing_is_played_where_nothing_moves():
     made = rw.comparison(Case(PIER, still, name="still"), runs=[Run("mujoco", "recess", 1e-3)], workers=1)
     assert playback(case_views(made)[0]) is None
     with pytest.raises(ValueError, match="there is nothing to play in 'still'"):
-        page_of(made.of_case("still"))
+        page_of(View.of(made, "still"))
 
 
 @pytest.mark.slow
@@ -116,11 +117,13 @@ def test_stored_results_are_played_and_drawn_again_without_a_run(comparison, tmp
     assert ended.value.code == 0
     page = (tmp_path / "played" / "view.html").read_text()
     assert "rockwobblePlayback" in page
+    (tmp_path / "played" / "view.html").unlink()
     for command in ("show", "report"):
         with pytest.raises(SystemExit) as ended:
             main([command, str(tmp_path / "played")])
         assert ended.value.code == 0
     assert (tmp_path / "played" / "view.html").read_text() == page
+    assert list(View.load(tmp_path / "played").comparison.cases) == ["release"]
 
 
 @pytest.mark.parametrize(
