@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Self
 
 from rockwobble.models import Case, Suite, Trace, read_suite
 from rockwobble.models.argument_kinds import with_argument_kinds
@@ -26,15 +28,13 @@ from ..runs.choice import default_runs, require_runnable, run_labels, runs_here
 from ..runs.execution import Job
 from ..runs.progress import ProgressCallback, Stage, stages
 from ..storage.provenance import package_versions
+from ..storage.results import Results
 from . import agreement, baseline, invariance, lagrange, laws, restraint
 from . import subject as subjects
 from .cause import likely_cause
 from .measurement import RELEASE, Bound, Result, at_most, not_run
 from .subject import TOLERANCE, Subject
 from .suite import SuiteRuns, check_suite
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Measure = Callable[[Subject, str], Iterator[Result]]
 BOTH = ("recess", "flat")
@@ -258,27 +258,42 @@ def chosen_checks(
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Checks:
+class Checks(Results, kind="check"):
     """Results of checks.
 
     Attributes
     ----------
-    results : list of Result
-        In the order in which they were made.
+    tables : mapping of str to DataFrame
+        results: one row for each result, its fields as columns.
     facts : mapping
-        Subjects, versions of the packages.
+        subjects: their labels; versions of the packages; seconds that the checks took [s].
     """
 
-    results: list[Result]
-    facts: Mapping[str, Any]
+    @classmethod
+    def of(cls, results: Sequence[Result], *, seconds: float) -> Self:
+        """Return the checks with these results.
 
-    @property
-    def tables(self) -> Mapping[str, pd.DataFrame]:
-        """Table "results": one row for each result, its fields as columns."""
+        Parameters
+        ----------
+        results : sequence of Result
+        seconds : float
+            Time that they took [s].
+        """
         import pandas as pd
 
-        rows, columns = [asdict(each) for each in self.results], list(Result.__dataclass_fields__)
-        return {"results": pd.DataFrame(rows, columns=columns).astype({"value": float, "bound": float})}
+        rows, columns = [asdict(each) for each in results], list(Result.__dataclass_fields__)
+        table = pd.DataFrame(rows, columns=columns).astype({"value": float, "bound": float})
+        subjects = dict.fromkeys(result.subject for result in results if result.subject)
+        facts = {"subjects": list(subjects), "versions": package_versions(), "seconds": seconds}
+        return cls(tables={"results": table}, facts=facts)
+
+    @cached_property
+    def results(self) -> list[Result]:
+        """The results in the order in which they were made."""
+        return [
+            Result(**{str(name): value for name, value in row.items()})
+            for row in self.tables["results"].to_dict("records")
+        ]
 
     @property
     def failures(self) -> list[Result]:
@@ -360,6 +375,7 @@ def check(
     >>> rw.check(only=["equations"])
     Checks(5 passed, reduced model)
     """
+    begun = time.monotonic()
     given = [engine, model, trajectory, suite]
     if sum(each is not None for each in given) > 1:
         raise ValueError("one of engine, model, trajectory and suite may be given, got more")
@@ -371,7 +387,7 @@ def check(
     if suite is not None:
         runs = SuiteRuns(workers=workers, progress=progress)
         found = _of_suite(runs, read_suite(suite) if not isinstance(suite, Suite) else suite)
-        return _checks_of([*found])
+        return Checks.of([*found], seconds=time.monotonic() - begun)
     if engine is not None:
         chosen = [subjects.engine(engine, time_step, **settings)]
     elif model is not None:
@@ -403,7 +419,7 @@ def check(
         results = with_cause(each, results)
     if not results:
         raise ValueError(f"no check of {', '.join(only or GROUPS)} applies: name an engine, or another group")
-    return _checks_of(results)
+    return Checks.of(results, seconds=time.monotonic() - begun)
 
 
 def with_cause(subject: Subject, results: Sequence[Result]) -> list[Result]:
@@ -444,8 +460,3 @@ def _of_suite(runs: SuiteRuns, suite: Suite) -> Iterator[Result]:
     ]
     for result in check_suite(runs, jobs, suite.bounds):
         yield dataclasses.replace(result, group="agreement")
-
-
-def _checks_of(results: list[Result]) -> Checks:
-    labels = dict.fromkeys(result.subject for result in results if result.subject)
-    return Checks(results=results, facts={"subjects": list(labels), "versions": package_versions()})

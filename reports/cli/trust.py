@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import datetime
 import json
-import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -16,11 +15,20 @@ import rockwobble.compare as rc
 import rockwobble.compare.storage as rs
 from rockwobble.compare.runs.plan import Plan, options_in
 
-from ..console import FAILED, complain, echo, interruptible, shown_progress, user_input
+from ..console import (
+    FAILED,
+    command_line,
+    complain,
+    echo,
+    interruptible,
+    save_with_page,
+    shown_progress,
+    user_input,
+)
 from ..pages.cases import case_warnings, record_lines
 from . import options
 from .command import takes_options
-from .outputs import plan_in_json, plan_of, require_own_file
+from .outputs import claim_folder, plan_in_json, plan_of, require_own_file
 
 if TYPE_CHECKING:
     from rockwobble.compare.check import Checks
@@ -117,6 +125,7 @@ class OutputOptions(Plan):
         None, "File to which a summary for a CI job is appended, such as $GITHUB_STEP_SUMMARY."
     )
 
+    out: Path | None = _output(None, "Folder for the results and their page. Default: none is written.")
     overwrite: options.Overwrite = False
 
     def require_writable(self, plan: str) -> None:
@@ -136,23 +145,27 @@ class OutputOptions(Plan):
         if self.markdown is not None:  # to which a page is added
             require_file("--markdown", self.markdown)
 
-    def write(self, found: Checks, seconds: float, plan: str) -> None:
-        """Write the files.
+    def write(self, found: Checks, plan: str) -> None:
+        """Write the folder and the files.
 
         Raises
         ------
         ValueError
             If one cannot be written.
         """
-        from ..pages.check import as_json, as_junit, check_page
+        from ..pages import page_of
+        from ..pages.check import as_json, as_junit
 
+        if self.out is not None:
+            save_with_page(found, self.out)
+            print(f"Written to {self.out}: check.html, check.md, manifest.json, results.parquet")
         for path, text_of in ((self.json, as_json), (self.junit, as_junit)):
             if path is not None:
-                rs.replace_files(path.parent, {path.name: text_of(found, seconds, plan).encode()})
+                rs.replace_files(path.parent, {path.name: text_of(found, plan).encode()})
         if self.markdown is not None:
             try:  # the summary of a CI job may hold pages of other steps
                 with self.markdown.open("a", encoding="utf-8") as file:
-                    file.write(check_page(found, seconds).markdown())
+                    file.write(page_of(found.made_by(command_line())).markdown())
             except OSError as error:
                 raise ValueError(f"{self.markdown} cannot be written: {error.strerror or error}") from None
 
@@ -196,27 +209,26 @@ def check(
 
     Example: rockwobble check --only equations --only conserved
     """
-    with interruptible():
-        begun = time.monotonic()
-        with user_input():
-            from ..pages.check import headline
+    with interruptible(), user_input():
+        from ..pages.check import headline
 
-            if reason is not None and not update_baseline:
-                raise ValueError("--reason belongs to --update-baseline, got it alone")
-            output.require_writable(plan := plan_of(context))
-            given = subject.subject()
-            if update_baseline:
-                if given or only:
-                    raise ValueError("--update-baseline goes with no subject and not with --only")
-                update(reason)
-                return
-            if "suite" in given:
-                cases = given["suite"].cases
-                echo([*record_lines(case.motion for case in cases), *case_warnings(cases)])
-            found = _run(given, only)
-            seconds = time.monotonic() - begun
-            print(headline(found, seconds))
-            output.write(found, seconds, plan)
+        if reason is not None and not update_baseline:
+            raise ValueError("--reason belongs to --update-baseline, got it alone")
+        output.require_writable(plan := plan_of(context))
+        given = subject.subject()
+        if update_baseline:
+            if given or only or output.out:
+                raise ValueError("--update-baseline goes with no subject and not with --only or --out")
+            update(reason)
+            return
+        if output.out is not None:
+            claim_folder(context)
+        if "suite" in given:
+            cases = given["suite"].cases
+            echo([*record_lines(case.motion for case in cases), *case_warnings(cases)])
+        found = _run(given, only)
+        print(headline(found))
+        output.write(found, plan)
     if not found.passed:
         raise typer.Exit(FAILED)
 

@@ -26,6 +26,7 @@ KINDS: Mapping[str, str] = {
     "validity": "pages.validity",
     "tradeoff": "pages.tradeoff",
     "extremes": "pages.extremes",
+    "check": "pages.check",
     "engine versions": "pages.versions",
     "paper": "paper.page",
 }

@@ -31,7 +31,7 @@ def print_checks(console: Console, found: Checks) -> None:
         console.print(f"{TITLES.get(group, 'engines')}: {words}", highlight=False, markup=False)
 
 
-def check_page(found: Checks, seconds: float) -> Page:
+def page_of(found: Checks) -> Page:
     """Return the report: what failed first, then every check, group by group."""
 
     def rows(chosen: Sequence[Result]) -> list[Row]:
@@ -44,22 +44,21 @@ def check_page(found: Checks, seconds: float) -> Page:
         state = f"{bad} of {len(of_group)} failed" if bad else f"{len(of_group)} checks"
         groups.append((f"{TITLES.get(group, 'engines')}: {state}", rows(of_group)))
     values = {
-        "headline": headline(found, seconds),
+        "headline": headline(found),
         "failed": rows(found.failures),
         "groups": groups,
-        "versions": ", ".join(f"{name} {version}" for name, version in found.facts["versions"].items()),
+        "about": found.manifest,
     }
     return Page(name="check", template="check", values=values)
 
 
-def as_json(found: Checks, seconds: float, plan: str = "") -> str:
+def as_json(found: Checks, plan: str = "") -> str:
     """Return everything, with the floats to the last bit, and the hash of the command."""
     from rockwobble.models.plain_json import dumps
 
     content = {
         "passed": found.passed,
         "counts": found.headline(),
-        "seconds": seconds,
         **({"plan": plan} if plan else {}),
         **found.facts,
         "results": found.results,
@@ -81,14 +80,14 @@ def plan_in_junit(content: bytes) -> str | None:
     return "" if found is None else found.get("value")
 
 
-def as_junit(found: Checks, seconds: float, plan: str = "") -> str:
+def as_junit(found: Checks, plan: str = "") -> str:
     """Return a JUnit report with one test case for each check, in a suite for each group.
 
     The hash of the command is a property of each suite.
     """
     from xml.etree import ElementTree
 
-    root = ElementTree.Element("testsuites", name="rockwobble check", time=f"{seconds:.3f}")
+    root = ElementTree.Element("testsuites", name="rockwobble check", time=f"{found.facts['seconds']:.3f}")
     for group, of_group in _by_group(found.results).items():
         outcomes = Counter(_kind(result) for result in of_group)
         counts = {"tests": len(of_group), "failures": outcomes["failure"], "skipped": outcomes["skipped"]}
@@ -120,13 +119,13 @@ def as_junit(found: Checks, seconds: float, plan: str = "") -> str:
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
-def headline(found: Checks, seconds: float) -> str:
+def headline(found: Checks) -> str:
     """Return the result of all checks, in one sentence."""
     counts = {outcome: count for outcome, count in found.headline().items() if count}
     failed, passed = counts.pop("FAILED", 0), counts.pop("passed", 0)
     rest = f" ({', '.join(f'{count} {outcome}' for outcome, count in counts.items())})" if counts else ""
     first = f"{failed} of {len(found.results)} checks FAILED" if failed else f"{passed} checks passed"
-    return f"{first}{rest}, in {seconds:.0f} s."
+    return f"{first}{rest}, in {found.facts['seconds']:.0f} s."
 
 
 def in_words(result: Result) -> str:

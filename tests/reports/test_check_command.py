@@ -17,7 +17,8 @@ from rockwobble.compare.check import FAILED, NOT_RUN, PASSED, Checks, Result, Su
 from rockwobble.compare.check.measurement import Bound, at_most, not_run
 from rockwobble.compare.storage.files import replace_files
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.pages.check import as_junit, check_page, headline
+from rockwobble.reports.pages import page_of
+from rockwobble.reports.pages.check import as_junit, headline
 
 FAST = ["--only", "rest", "--only", "equations"]
 MADE = (
@@ -33,7 +34,7 @@ GOOD, BAD, NONE, LEFT = (
 
 
 def checks(*results: Result) -> Checks:
-    return groups._checks_of(results)
+    return Checks.of(results, seconds=3.0)
 
 
 def check_of(measure: Any) -> tuple[groups.Check, ...]:
@@ -148,7 +149,7 @@ def test_interrupted(
 
 
 def test_junit_counts_failures_and_what_did_not_run() -> None:
-    root = ElementTree.fromstring(as_junit(checks(GOOD, BAD, NONE, LEFT), 1.5))
+    root = ElementTree.fromstring(as_junit(checks(GOOD, BAD, NONE, LEFT)))
     agreement = root.find("testsuite[@name='agreement']")
     assert agreement is not None
     assert [agreement.get(key) for key in ("tests", "failures", "skipped")] == ["3", "2", "1"]
@@ -161,11 +162,11 @@ def test_junit_counts_failures_and_what_did_not_run() -> None:
 
 def test_junit_is_xml_whatever_an_engine_says() -> None:
     strange = at_most("a\x1b[0m<&>", 1.0, Bound(0.0, "\x00"), "\x07", "\x08")
-    assert ElementTree.fromstring(as_junit(checks(strange), 0.0)) is not None
+    assert ElementTree.fromstring(as_junit(checks(strange))) is not None
 
 
 def test_markdown_has_what_is_wrong_first() -> None:
-    text = check_page(checks(GOOD, BAD, LEFT), 3.0).markdown()
+    text = page_of(checks(GOOD, BAD, LEFT)).markdown()
     lines = text.splitlines()
     assert lines[2] == "1 of 3 checks FAILED (1 not run), in 3 s."
     assert lines[6] == "| one | El ∣ Centro | 0.5 alpha | 0.1 | contact of x | why |"
@@ -173,9 +174,41 @@ def test_markdown_has_what_is_wrong_first() -> None:
     assert "contact &lt;2 h>" in text
 
 
+def test_results_are_saved_shown_and_drawn_again(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.setattr(groups, "baseline_subjects", lambda: [groups.subjects.reduced_model()])
+    monkeypatch.setattr(groups, "GROUPS", {"agreement": check_of(lambda *_: iter(MADE))})
+    out = tmp_path / "checks"
+    assert run("--only", "agreement", "--out", str(out)) == 1
+    assert capsys.readouterr().out.splitlines()[-1].startswith(f"Written to {out}: check.html, ")
+    stored = Checks.load(out)
+    assert [each.outcome for each in stored.results] == [PASSED, FAILED, FAILED, NOT_RUN]
+    assert stored.results[1].bound == MADE[1].bound
+    page = (out / "check.html").read_text()
+    assert '<details class="fold"><summary>agreement with the independent model: 2 of 4 failed' in page
+    (out / "check.html").unlink()
+    for command in ("show", "report"):
+        with pytest.raises(SystemExit) as ended:
+            main([command, str(out)])
+        assert ended.value.code == 0
+    assert (out / "check.html").read_text() == page
+    assert run("--only", "exact", "--out", str(out)) == 2
+    assert "holds check of `" in capsys.readouterr().err
+    assert run("--update-baseline", "--out", str(out)) == 2
+
+
+def test_checks_that_are_loaded_are_the_same_value(tmp_path: Path) -> None:
+    made = checks(GOOD, BAD, NONE, LEFT)
+    made.save(tmp_path)
+    stored = Checks.load(tmp_path)
+    assert stored.facts == made.facts
+    assert [repr(each) for each in stored.results] == [repr(each) for each in (GOOD, BAD, NONE, LEFT)]
+
+
 def test_outcomes() -> None:
     assert [result.outcome for result in (GOOD, BAD, NONE, LEFT)] == [PASSED, FAILED, FAILED, NOT_RUN]
-    assert headline(checks(GOOD), 1.0) == "1 checks passed, in 1 s."
+    assert headline(checks(GOOD)) == "1 checks passed, in 3 s."
 
 
 def test_an_update_needs_a_reason_and_keeps_it(
