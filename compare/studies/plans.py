@@ -243,7 +243,7 @@ class SpectrumPlan(TendonPlan):
                 raise ValueError(f"{name} must be at most {self._MOST} numbers, got {len(given)}")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)  # no slots: two classes that have them are not inherited together
 class QuickPlan(Plan):
     """Extent of a published study."""
 
@@ -256,8 +256,8 @@ class QuickPlan(Plan):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ValidityPlan(QuickPlan):
-    """Extent of the study of the limits, and the slab that its cylinders carry."""
+class ValidityPlan(TendonPlan, QuickPlan):
+    """Extent of the study of the limits, and the slab and the tendon of its cylinders."""
 
     slab_mass_ratio: float = option(
         0.0,

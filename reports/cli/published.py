@@ -30,7 +30,8 @@ def validity(
     of clearance, softer contact and less friction. Takes about 40 minutes on two idle cores; an interrupted
     run resumes.
 
-    With a slab: the same for a frame of one column, without the recess with clearance.
+    With a slab: the same for a frame of one column, without the recess with clearance. With a tendon: shaking
+    raised by the factor by which the prestress raises uplift, without the flat-ground model.
 
     Writes validity.html, validity.md with SVG figures, and as Parquet the tables of all parts and every
     number of the report (limits).

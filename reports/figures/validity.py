@@ -16,7 +16,7 @@ from rockwobble.compare.studies.validity.limits import (
     contrasts,
     models_apart,
 )
-from rockwobble.compare.studies.validity.shaken import FLAT, FREE, PERTURBED, RECESS
+from rockwobble.compare.studies.validity.shaken import FLAT, FREE, INTENSITY, PERTURBED, RECESS, STRONG
 from rockwobble.compare.studies.validity.study import Validity
 from rockwobble.models.support import SUPPORTS
 
@@ -99,7 +99,8 @@ def map_pictures(tables: Tables) -> list[Picture]:
     table, free = cells(tables), tables["free_response"]
     table = table.assign(flat_percent=100.0 * (table["flat_ratio"] - 1.0))
     found = [_shaken(table, *given) for given in _MAPS if table[given[3]].notna().any()]
-    for name, what in (("turn", "Angle of turn"), ("period", "Period")):
+    two = free["flat_turn"].notna().any()  # models of free response, which are compared
+    for name, what in (("turn", "Angle of turn"), ("period", "Period")) if two else ():
         off = 100.0 * (free[f"flat_{name}"] / free[name] - 1.0)
         found.append(_free(f"free-{name}", what, free.assign(off=off)))
     return found
@@ -207,15 +208,20 @@ _ONE = Rule(at=1.0, axis="y", colour=GREY, dash="solid")
 
 def pictures(found: Validity) -> list[Picture]:
     """Return all figures of the report, in its order."""
-    tables = found.tables
+    tables, uplift = found.tables, found.structure.uplift
     return [
         _records(contrasts(tables)),
         *map_pictures(tables),
         _agreement(tables["following"]),
-        _verification(tables["verification"]),
+        # with a tendon there is no second model to tell apart
+        *([] if found.structure.tendon else [_verification(tables["verification"])]),
         # with a slab there is no ring, and what slips first is not the base
-        *([] if found.facts.get("slab_mass_ratio") else [_slip(tables["slip"]), _rings(tables["rings"])]),
-        _contact(tables["contact"]),
+        *(
+            []
+            if found.structure.slab_mass_ratio
+            else [_slip(tables["slip"]), _rings(tables["rings"], uplift)]
+        ),
+        _contact(tables["contact"], uplift),
     ]
 
 
@@ -324,7 +330,7 @@ def _slip(table: pd.DataFrame) -> Picture:
     )
 
 
-def _rings(table: pd.DataFrame) -> Picture:
+def _rings(table: pd.DataFrame, uplift: float) -> Picture:
     # walls of another inclination or friction are in the table, and would be too many lines here
     plain = table[has_walls(table) & (table["inclination"] == 0.0)]
     default = plain["friction"].mode().iloc[0] if len(plain) else 0.0
@@ -346,8 +352,9 @@ def _rings(table: pd.DataFrame) -> Picture:
     return Picture(
         name="rings",
         title="A recess with clearance and the ideal recess",
-        caption="Recesses whose walls lean by α, under El Centro at 1.5 g tan α and in free response; bars: "
-        "over the azimuths by which the problem is turned. Energy: where the walls are touched.",
+        caption=f"Recesses whose walls lean by α, under El Centro at {INTENSITY * uplift:.3g} g tan α and in "
+        "free response; bars: over the azimuths by which the problem is turned. Energy: where the walls are "
+        "touched.",
         panels=[
             Panel(
                 x=clearance,
@@ -377,7 +384,7 @@ def has_walls(table: pd.DataFrame) -> pd.Series[bool]:
     return table["support"].map(lambda name: SUPPORTS[name].walls)
 
 
-def _contact(table: pd.DataFrame) -> Picture:
+def _contact(table: pd.DataFrame, uplift: float) -> Picture:
     failed = (table["free_outcome"] == "failed") | (table["outcome"] == "failed")
     known = table[~failed].sort_values("softness")
     known = known.assign(ratio=known["peak"] / known["recess_peak"], lost=np.maximum(known["loss"], 1e-6))
@@ -393,8 +400,8 @@ def _contact(table: pd.DataFrame) -> Picture:
     return Picture(
         name="contact",
         title="Contact that gives",
-        caption="Peak tilt under El Centro at 2 g tan α, and energy lost in a pass of free response over "
-        "that of the release, by the softness of contact and its damping ratio.",
+        caption=f"Peak tilt under El Centro at {STRONG * uplift:.3g} g tan α, and energy lost in a pass of "
+        "free response over that of the release, by the softness of contact and its damping ratio.",
         panels=[
             Panel(
                 x=softness,

@@ -11,7 +11,7 @@ import pandas as pd
 from rockwobble.compare.metrics.statistics import MARGIN
 from rockwobble.compare.studies.validity.limits import cells, contrasts, damping, limits_of, needs
 from rockwobble.compare.studies.validity.plan import LARGEST_PEAK
-from rockwobble.compare.studies.validity.shaken import FREE
+from rockwobble.compare.studies.validity.shaken import FREE, INTENSITY
 from rockwobble.compare.studies.validity.study import Validity
 from rockwobble.models.support import SUPPORTS
 
@@ -22,6 +22,7 @@ from .table import number
 _NEEDS = {
     "friction": "friction over tan α",
     "moment": "κ of the recess over weight × b",
+    "tension": "force in the tendon over weight of a column",
     "motions": "motions counted",
 }
 
@@ -35,7 +36,7 @@ _PLACES = {
 
 def page_of(found: Validity) -> Page:
     """Return the report."""
-    tables, slab = found.tables, found.facts.get("slab_mass_ratio", 0.0)
+    tables, structure = found.tables, found.structure
     values: dict[str, object] = {
         "limits": limits_of(tables),
         "margin": MARGIN,
@@ -55,10 +56,13 @@ def page_of(found: Validity) -> Page:
         },
         "largest_peak": LARGEST_PEAK,
         "records": found.facts["records"],
-        "slab_mass_ratio": slab,
+        "slab_mass_ratio": structure.slab_mass_ratio,
+        "tendon": structure.tendon,
+        "uplift": structure.uplift,
+        "ring_level": INTENSITY * structure.uplift,
         "about": found.manifest,
     }
-    if not slab:
+    if not structure.slab_mass_ratio:
         values |= {"rings": _rings(tables["rings"]), "worst": _worst(tables["rings"])}
     drawn = pictures(found)
     values["drawn"] = {picture.name for picture in drawn}
@@ -116,6 +120,7 @@ def _needs(table: pd.DataFrame) -> dict[str, object]:
             **dict(zip(map("{:g}".format, own["intensity"]), own[name], strict=True)),
         }
         for name, words in _NEEDS.items()
+        if name in table
         for tan_alpha, own in table.groupby("tan_alpha")
     ]
     columns = [["tan_alpha", "tan α", "g"], *([name, f"{name} g tan α", ".3g"] for name in intensities)]

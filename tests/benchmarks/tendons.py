@@ -4,14 +4,16 @@ The bodies meet the same motions at the same intensities, and ratios of medians 
 the motions. Stiffness is stated over the one at which the static couple neither falls nor grows with the
 tilt, w h/(n^2 b) weights per base radius.
 
-`python tests/benchmarks tendons` prints the tables that are published; ``--motions p695`` (or a number of
-synthetic ones) makes that of medians first, ``--engine mujoco`` that of flat ground, where the tendon takes
-the place of the recess, and ``--out FOLDER`` writes them there, medians with their figure.
+`python tests/benchmarks tendons` prints the tables that are published; ``--motions p695`` makes that of
+medians first, ``--motions 2000`` that of so many synthetic ones at fewer points, each at intensities about
+its own median, ``--engine mujoco`` that of flat ground, where the tendon takes the place of the recess, and
+``--out FOLDER`` writes them there, medians with their figure.
 """
 
 from __future__ import annotations
 
 import itertools
+import math
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -19,9 +21,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockwobble import multibody
+from rockwobble import multibody, reduced
 from rockwobble.compare.metrics.statistics import quantile_interval
-from rockwobble.compare.studies.fragility.fit import Curves, interval, resamples
+from rockwobble.compare.studies.fragility.fit import Curves, Sample, interval, resamples
 from rockwobble.compare.studies.fragility.study import fragility
 from rockwobble.compare.studies.fragility.tables import Key, blocks_of, curves_of
 from rockwobble.models import Case, Cylinder, GroundMotion, Tendon, WobblingFrame
@@ -54,7 +56,20 @@ STIFFNESS = (
     1.5,
 )  # over the neutral one: at it and beyond the couple brings it back from all tilts
 LEVELS = tuple(float(f"{level:.3g}") for level in np.geomspace(1.5, 60.0, 12))  # over g tan(alpha)
+# of many synthetic motions: prestress and stiffness, and what the medians grow by there, as those of P-695
+GROWTH = {
+    (0.0, 0.0): 1.0,
+    (0.5, 0.0): 1.5,
+    (1.0, 0.0): 2.0,
+    (0.0, 0.5): 2.0,
+    (0.5, 0.5): 2.7,
+    (0.0, 1.0): 9.0,
+}
+# levels without a tendon [g tan(alpha)]: the median in 3D is near the second, in a plane near the third
+ABOUT = {"pier": 3.8, "pier under a deck": 4.6, "column": 2.3, "tower": 6.5}
+_STEPS = (0.65, 1.0, 1.5, 2.2, 3.2)
 FLAT_LEVEL, FLAT_STEP = 2.75, 5e-4  # [g tan(alpha)], [s]
+_SIDE_DOWN = 0.5 * math.pi * (1.0 - 1e-9)  # peak of what overturns [rad]
 _OVERTURNED = "overturned"
 
 
@@ -96,6 +111,60 @@ def medians(motions: Sequence[GroundMotion]) -> Iterator[dict[str, float | str]]
                     **_stated("over_without", own, alone, len(motions)),
                     **_stated("over_3d", own, in_3d, len(motions)),
                 }
+
+
+def medians_of_many(motions: Sequence[GroundMotion]) -> Iterator[dict[str, float | str]]:
+    """Yield what `medians` does, at fewer points and by the batch kernel."""
+    weights = resamples(len(motions), RESAMPLES, SEED)
+    for name, body in BODIES.items():
+        without: dict[str, list[Curves]] = {}
+        for (prestress, stiffness), growth in GROWTH.items():
+            tendon = Tendon(prestress=prestress, stiffness=stiffness * neutral_stiffness(body))
+            levels = ABOUT[name] * growth * np.array(_STEPS)
+            samples = _overturned(body, tendon, motions, levels)
+            curves = {method: [own.curves(), own.curves(weights)] for method, own in samples.items()}
+            without = without or curves
+            for method in curves:
+                own, alone, in_3d = (
+                    [each.centre for each in of]
+                    for of in (curves[method], without[method], curves["recess model"])
+                )
+                share = float(np.nanmean(samples[method].y[:, -1]))
+                yield {
+                    **{"body": name, "prestress": prestress, "stiffness": stiffness, "method": method},
+                    **_stated("median", own, None, len(motions)),
+                    **_stated("over_without", own, alone, len(motions)),
+                    **_stated("over_3d", own, in_3d, len(motions)),
+                    **{"highest_level": float(levels[-1]), "overturned_there": share},
+                }
+
+
+def _overturned(
+    body: Cylinder, tendon: Tendon, motions: Sequence[GroundMotion], levels: Array
+) -> dict[str, Sample]:
+    """Return by method which motions at which levels [g tan(alpha)] overturn a body."""
+    peaks: dict[str, list[Array]] = {"recess model": [], "planar x": [], "planar y": []}
+    planes = (None, 0.0, 0.5 * math.pi)
+    for motion in motions:
+        scales = levels * 9.81 * body.tan_alpha / motion.peak
+        for own, plane in zip(peaks.values(), planes, strict=True):
+            found = reduced.peak_tilts(
+                [body.semidiagonal],
+                body.tan_alpha,
+                motion,
+                scales,
+                plane=plane,
+                slab_mass_ratio=body.slab_mass_ratio,
+                tendon=tendon,
+            )
+            own.append(found[0])
+    tilts = {method: np.array(own) for method, own in peaks.items()}
+    tilts["worse plane"] = np.maximum(tilts["planar x"], tilts["planar y"])
+    x = np.broadcast_to(np.log(levels), (len(motions), len(levels)))
+    return {
+        method: Sample(x=x, y=np.where(np.isnan(own), np.nan, (own >= _SIDE_DOWN).astype(float)))
+        for method, own in tilts.items()
+    }
 
 
 def _stated(name: str, centres: list[Array], over: list[Array] | None, motions: int) -> dict[str, float]:
@@ -159,10 +228,13 @@ def main(arguments: Sequence[str]) -> int:
     options = parser.parse_args(arguments)
     tables: dict[str, pd.DataFrame] = {}
     if options.motions is not None:
-        tables[f"medians-{options.motions}"] = _table(medians(motions_of(options.motions)), len(BODIES) * 64)
+        motions, many = motions_of(options.motions), options.motions != "p695"
+        rows = medians_of_many(motions) if many else medians(motions)
+        count = len(BODIES) * (4 * len(GROWTH) if many else 64)
+        tables[f"medians-{options.motions}"] = _table(rows, count)
     if options.engine is not None:
-        rows = on_flat_ground(motions_of("p695"), options.engine)
-        tables[f"flat-{options.engine}"] = _table(rows, len(PRESTRESS))
+        left = on_flat_ground(motions_of("p695"), options.engine)
+        tables[f"flat-{options.engine}"] = _table(left, len(PRESTRESS))
     if options.out is not None:
         options.out.mkdir(parents=True, exist_ok=True)
         for name, table in tables.items():

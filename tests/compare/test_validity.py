@@ -16,6 +16,7 @@ from tiny_validity import TINY, kept_engine_runs, tiny_tables, tiny_validity
 
 from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.runs.progress import Progress
+from rockwobble.compare.studies.plans import ValidityPlan
 from rockwobble.compare.studies.validity import study
 from rockwobble.compare.studies.validity.limits import (
     ALIKE,
@@ -37,13 +38,15 @@ from rockwobble.compare.studies.validity.plan import (
     LARGEST_PEAK,
     QUICK,
     REFERENCE_SIZE,
+    Structure,
+    needs_of,
     shaken_case,
     source_of,
 )
 from rockwobble.compare.studies.validity.shaken import FREE, HALVED, RECESS
-from rockwobble.compare.studies.validity.study import PARTS, measure_all, validity_of
-from rockwobble.models import Cylinder, InitialState, Run, WobblingFrame
-from rockwobble.reduced import body, free_response, problem, steady_wobble_rate
+from rockwobble.compare.studies.validity.study import PARTS, measure_all, measure_validity, validity_of
+from rockwobble.models import Cylinder, InitialState, Run, Tendon, WobblingFrame
+from rockwobble.reduced import body, free_response, problem, simulate, steady_wobble_rate
 from rockwobble.reduced.body import Body
 from rockwobble.reduced.exact import _shape
 
@@ -90,7 +93,7 @@ def test_every_part_measures_and_every_limit_has_numbers(tables: Tables) -> None
     ring = tables["rings"].query("support == 'ring'")
     assert set(ring[ring["peak"] > 0.0]["motion"]) == {FREE, EL_CENTRO}
     limits = limits_of(tables)
-    assert set(limits) == set(LIMITS)
+    assert set(limits) == set(LIMITS) - {"tendon"}
     assert all(isinstance(value, float) for numbers in limits.values() for value in numbers.values())
 
 
@@ -104,7 +107,7 @@ def test_every_limit_rests_on_the_reduced_model_and_the_engine_does_not(
     tables: Tables, heavier: Tables
 ) -> None:
     right, wrong = limits_of(tables), limits_of(heavier)
-    assert {name for name in LIMITS if right[name] != wrong[name]} == set(LIMITS)
+    assert {name for name in right if right[name] != wrong[name]} == set(LIMITS) - {"tendon"}
     ours, theirs = (found["records"] for found in (tables, heavier))
     engine = ~ours["method"].isin((RECESS, "flat-ground model", "perturbed copy"))
     np.testing.assert_array_equal(ours[engine]["peak"], theirs[engine]["peak"])
@@ -312,7 +315,7 @@ OF_THE_BODY = {
 def test_with_a_slab_every_part_but_that_of_rings_is_of_the_frame_and_says_so(
     tables: Tables, tmp_path: Path
 ) -> None:
-    extent = replace(TINY, sizes=(4.0,), slab_mass_ratio=1.0)
+    extent = replace(TINY, sizes=(4.0,), structure=Structure(slab_mass_ratio=1.0))
     found = validity_of(measure_all(extent, tmp_path, workers=1), extent)
     assert set(found.tables) == {*OF_THE_BODY, "limits"} == {*PARTS, "limits"} - {"rings"}
     assert all((table["slab_mass_ratio"] == 1.0).all() for table in found.tables.values())
@@ -320,7 +323,7 @@ def test_with_a_slab_every_part_but_that_of_rings_is_of_the_frame_and_says_so(
         known, alone = (each[name][column].dropna() for each in (found.tables, tables))
         assert len(known)
         assert not set(known) & set(alone), name
-    assert set(found.limits["limit"]) == set(LIMITS) - {"rings"}
+    assert set(found.limits["limit"]) == set(LIMITS) - {"rings", "tendon"}
     assert "ring" not in set(found.records["method"])
     frame = WobblingFrame(Cylinder(semidiagonal=REFERENCE_SIZE, tan_alpha=0.2), 1.0, columns=1)
     tilt = 0.5 * frame.alpha
@@ -331,3 +334,67 @@ def test_with_a_slab_every_part_but_that_of_rings_is_of_the_frame_and_says_so(
     assert (numbers["free_response"]["confirmed"], numbers["free_response"]["points"]) == (2.0, 2.0)
     assert (numbers["friction"]["slips_at"], numbers["friction"]["holds_from"]) == (0.9, 1.05)
     assert numbers["traces"]["recess_peak_worst"] < ALIKE
+
+
+# a number of each part that a tendon changes
+OF_THE_TENDON = {**OF_THE_BODY, "rings": "recess_peak", "slip": "needed"}
+TIED = Structure(tendon_prestress=0.5, tendon_stiffness=2.0)
+
+
+def test_with_a_tendon_every_part_is_of_it_and_flat_ground_is_of_the_engine_alone(
+    tables: Tables, tmp_path: Path
+) -> None:
+    extent = replace(TINY, sizes=(4.0,)).of(TIED)
+    found = validity_of(measure_all(extent, tmp_path, workers=1), extent)
+    assert set(found.tables) == {*PARTS, "limits"}
+    for table in found.tables.values():
+        assert (table[["tendon_prestress", "tendon_stiffness"]] == [0.5, 2.0]).all(axis=None)
+    for name, column in OF_THE_TENDON.items():
+        known, alone = (set(each[name][column].dropna()) - {0.5} for each in (found.tables, tables))
+        assert known, name  # besides the release, which is at alpha/2
+        assert not known & alone, name
+    numbers = limits_of(found.tables)
+    assert set(numbers) == set(LIMITS)
+    assert (numbers["free_response"]["confirmed"], numbers["free_response"]["points"]) == (1.0, 1.0)
+    assert (numbers["friction"]["slips_at"], numbers["friction"]["holds_from"]) == (0.9, 1.05)
+    assert numbers["traces"]["recess_peak_worst"] < ALIKE
+    assert found.tables["peaks"]["flat"].isna().all()
+    assert set(found.records["method"]) == set(tables["records"]["method"]) - {"flat-ground model"}
+    assert set(found.tables["following"]["support"]) == {"recess"}
+    # what is asked of the tendon is its tension at the peak tilt
+    stands = found.tables["peaks"].dropna(subset="tension").iloc[0]
+    cylinder = Cylinder(semidiagonal=stands["semidiagonal"], tan_alpha=stands["tan_alpha"])
+    tension = Tendon(prestress=0.5, stiffness=2.0).tension(cylinder, stands["recess"] * cylinder.alpha)
+    assert stands["tension"] == pytest.approx(tension, rel=1e-12)
+    assert numbers["tendon"]["shaken"] == found.tables["peaks"]["tension"].max()
+
+
+@pytest.mark.parametrize("prestress", [0.5, 2.0])
+def test_a_prestress_multiplies_forces_and_leaves_the_friction(prestress: float) -> None:
+    # at small tilts all forces grow as that of uplift: so do contact and the moment of the recess, not their
+    # ratio; the tilts are of 3e-3 alpha
+    alone, tied = (
+        needs_of(
+            simulate(shaken_case(EL_CENTRO, 0.2, 6.0, 1.5 * structure.uplift, structure=structure), rtol=1e-9)
+        )
+        for structure in (Structure(), Structure(tendon_prestress=prestress))
+    )
+    assert tied["friction"] == pytest.approx(alone["friction"], rel=1e-3)
+    for name in ("least_normal", "moment"):
+        assert tied[name] == pytest.approx((1.0 + prestress) * alone[name], rel=5e-3), name
+    assert set(tied) == {*alone, "tension"}
+
+
+def test_shaking_is_as_far_beyond_uplift_as_without_a_tendon() -> None:
+    structure = Structure(slab_mass_ratio=0.5, tendon_prestress=1.0)
+    assert structure.uplift == 1.0 + 2.0 * 1.0 / 2.0
+    extent = QUICK.of(structure)
+    assert extent.intensities == tuple(2.0 * level for level in QUICK.intensities)
+    assert FULL.of(Structure()) == FULL
+    points = FULL.of(Structure(tendon_prestress=1.0)).record_points
+    assert (0.2, 6.0, 7.0) in points
+    assert max(tan_alpha * level for tan_alpha, _, level in points) <= LARGEST_PEAK
+    with pytest.raises(
+        ValueError, match=r"shaking of 1\.5 g something to rock, got one that raises uplift to 51"
+    ):
+        measure_validity("nowhere", ValidityPlan(quick=True, tendon_prestress=50.0))

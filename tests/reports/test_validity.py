@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import re
 from pathlib import Path
 
@@ -93,6 +94,27 @@ def test_with_a_slab_it_is_named_and_no_clearance_is(found: Validity) -> None:
     document = page.markdown()
     assert "under a slab of 0.25 times its mass" in document
     assert "## A recess with clearance" not in document
+    shown = re.findall(r"\]\((.*?)\.svg\)", document)
+    assert sorted(shown) == sorted(picture.name for picture in page.pictures)
+
+
+def test_with_a_tendon_it_is_stated_and_nothing_stands_against_flat_ground(found: Validity) -> None:
+    tables = dict(found.tables)
+    tables["peaks"] = tables["peaks"].assign(flat=math.nan, tension=1.25)
+    free = dict.fromkeys(("flat_turn", "flat_period", "flat_peak"), math.nan)
+    tables["free_response"] = tables["free_response"].assign(tension=1.0, **free)
+    for name, model in (("records", "method"), ("following", "reference_support")):
+        tables[name] = tables[name][~tables[name][model].isin(("flat-ground model", "flat"))]
+    tables["verification"] = tables["verification"].query("support == 'recess'")
+    facts = {**found.facts, "tendon_prestress": 0.5, "tendon_stiffness": 2.0}
+    page = page_of(dataclasses.replace(found, tables=tables, facts=facts))
+    document = page.markdown()
+    assert "prestress 0.5 weights of a column, stiffness 2 weights\nper base radius" in document
+    assert "raises uplift to 1.5 g tan α" in document
+    assert "carries at most 1.25 weights of a column" in document
+    assert "rolling out" not in document.split("## Free response")[1].split("## Friction")[0]
+    assert "El Centro at 2.25 g tan α" in document
+    assert not re.search(r"\bnan\b|None|\{\{|\}\}|@@", document)
     shown = re.findall(r"\]\((.*?)\.svg\)", document)
     assert sorted(shown) == sorted(picture.name for picture in page.pictures)
 

@@ -149,7 +149,8 @@ def cells(tables: Tables) -> pd.DataFrame:
         peaks (NAME_ratio, low, high) and the factor that nine in ten records do not exceed to either side
         (NAME_90); overturned and flat_overturned, shares of the records; standing, records that rock without
         overturning, and of these friction_90 over tan(alpha), normal_10 [weights] and moment_90, which nine
-        in ten do not exceed, or keep (NaN of fewer than `FEWEST`), and lost, the share that loses contact.
+        in ten do not exceed, or keep (NaN of fewer than `FEWEST`), with a tendon tension_90 [weights of a
+        column], and lost, the share that loses contact. Without a flat-ground model its columns are NaN.
     """
     rows = []
     table = tables["peaks"]
@@ -179,6 +180,8 @@ def cells(tables: Tables) -> pd.DataFrame:
             "moment_90": _nine_in_ten(column(members, "moment")),
             "lost": float((known <= 0.0).mean()) if len(known) else math.nan,
         }
+        if "tension" in members:
+            row["tension_90"] = _nine_in_ten(column(members, "tension"))
         rows.append(row)
     return pd.DataFrame(rows)
 
@@ -236,16 +239,18 @@ def needs(tables: Tables) -> pd.DataFrame:
     -------
     DataFrame
         tan_alpha, intensity, sizes with enough such records, motions that rock them, friction over
-        tan(alpha), normal [weights] (at least), and moment over weight and base radius. No row where no size
-        has enough.
+        tan(alpha), normal [weights] (at least), moment over weight and base radius, and with a tendon tension
+        [weights of a column]. No row where no size has enough.
     """
     known = cells(tables).dropna(subset="moment_90")
+    tension = {"tension": ("tension_90", "max")} if "tension_90" in known else {}
     return known.groupby(["tan_alpha", "intensity"], as_index=False).agg(
         sizes=("semidiagonal", "count"),
         motions=("standing", "sum"),
         friction=("friction_90", "max"),
         normal=("normal_10", "min"),
         moment=("moment_90", "max"),
+        **tension,
     )
 
 
@@ -299,9 +304,20 @@ def restraining_moment(tables: Tables) -> Numbers:
     }
 
 
+def tendon(tables: Tables) -> Numbers:
+    """Return the largest tension of a tendon [weights of a column]."""
+    parts = {"free_response": "free_response", "shaken": "peaks"}
+    return {name: largest(column(tables[part], "tension")) for name, part in parts.items()}
+
+
 def free_response(tables: Tables) -> Numbers:
-    """Return the difference of recess and flat ground in a pass, and the releases that an engine decides."""
+    """Return the difference of recess and flat ground in a pass, and the releases that an engine decides.
+
+    Without a flat-ground model there is no difference.
+    """
     table = tables["free_response"]
+    if table["flat_turn"].isna().all():
+        return _confirmations(tables["verification"])
     off = np.abs(column(table, "flat_turn") - column(table, "turn"))
     turns = np.abs(quotient(table, "flat_turn", "turn") - 1.0)
     periods = np.abs(quotient(table, "flat_period", "period") - 1.0)
@@ -321,7 +337,8 @@ def free_response(tables: Tables) -> Numbers:
 def _confirmations(table: pd.DataFrame) -> Numbers:
     """Count the runs that confirm their model, those that contradict it, and all whose pass is resolved.
 
-    One that failed decides nothing: it has said so itself.
+    One that failed decides nothing: it has said so itself. Where there is one model it is confirmed by what
+    does not contradict it.
     """
     decides = table["resolved"].astype(bool) & ~table["outcome"].isin(NO_PEAK)
     resolved = table.assign(apart=models_apart(table))[decides]
@@ -329,7 +346,8 @@ def _confirmations(table: pd.DataFrame) -> Numbers:
     turn_off = error / np.abs(column(resolved, "turn"))
     period_off = np.abs(quotient(resolved, "engine_half_period", "half_period") - 1.0)
     contradicts = ~((turn_off <= _CONTRADICTS) & (period_off <= _CONTRADICTS))
-    confirms = ~contradicts & (error < _CONFIRMS * column(resolved, "apart"))
+    apart = column(resolved, "apart")
+    confirms = ~contradicts & (np.isnan(apart) | (error < _CONFIRMS * apart))
     return {
         "confirmed": float(confirms.sum()),
         "contradicted": float(contradicts.sum()),
@@ -338,9 +356,13 @@ def _confirmations(table: pd.DataFrame) -> Numbers:
 
 
 def models_apart(table: pd.DataFrame) -> Array:
-    """Return how far the turns of the recess and of the flat model are apart in the release of each row."""
+    """Return how far the turns of the recess and of the flat model are apart in the release of each row.
+
+    NaN where there is one of them alone.
+    """
     turns = table.groupby(list(RELEASE))["turn"]
-    return turns.transform(lambda each: np.ptp(each.to_numpy())).to_numpy(dtype=np.float64)
+    apart = turns.transform(lambda each: np.ptp(each.to_numpy())).to_numpy(dtype=np.float64)
+    return np.where(turns.transform("size") > 1, apart, math.nan)
 
 
 def traces(tables: Tables) -> Numbers:
@@ -442,7 +464,7 @@ LIMITS: Mapping[str, Callable[[Tables], Numbers]] = {
     limit.__name__: limit
     for limit in (
         *(records, traces, free_response, friction, contact),
-        *(restraining_moment, rings, soft_contact, vertical),
+        *(restraining_moment, tendon, rings, soft_contact, vertical),
     )
 }
 
@@ -453,6 +475,10 @@ def limits_of(tables: Tables) -> dict[str, Numbers]:
     Parameters
     ----------
     tables : mapping of DataFrame
-        Of each part by its name, as `measure_all` returns them: without rings there is no limit of them.
+        Of each part by its name, as `measure_all` returns them: without rings there is no limit of them, nor
+        of a tendon without one.
     """
-    return {name: limit(tables) for name, limit in LIMITS.items() if name != rings.__name__ or name in tables}
+    lacking = {rings.__name__} - set(tables)
+    if "tension" not in tables["peaks"]:
+        lacking.add(tendon.__name__)
+    return {name: limit(tables) for name, limit in LIMITS.items() if name not in lacking}

@@ -14,6 +14,7 @@ from rockwobble.models import (
     Cylinder,
     GroundMotion,
     InitialState,
+    Tendon,
     Trace,
     WobblingFrame,
     el_centro_1940,
@@ -24,7 +25,11 @@ from rockwobble.models.records.p695 import missing_packages
 from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.multibody.ring import RingSettings
 
-Inputs = Mapping[str, object]  # arguments of `Part.measure` by name: numbers, text and tuples of them
+from ...runs.choice import SUPPORTS
+from ..plans import tendon_of
+
+# arguments of `Part.measure` by name: numbers, text, tuples of them and a `Structure`
+Inputs = Mapping[str, object]
 Row = dict[str, float | str | bool]
 # names of the numbers of a point
 RELEASE = ("tan_alpha", "release", "spin")
@@ -39,6 +44,41 @@ def inputs_at(names: Sequence[str], points: Iterable[tuple[float, ...]], **more:
 def grid(**axes: Iterable[object]) -> list[Inputs]:
     """Return the inputs of tasks at all combinations of values, the last name the fastest."""
     return [dict(zip(axes, point, strict=True)) for point in itertools.product(*axes.values())]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Structure:
+    """What a column carries, and what holds it down.
+
+    Attributes
+    ----------
+    slab_mass_ratio : float
+        Mass of a slab that only translates over that of the column under it; 0 is a cylinder alone.
+    tendon_prestress, tendon_stiffness : float
+        Of a tendon, see `Tendon`; both 0 are none.
+    """
+
+    slab_mass_ratio: float = 0.0
+    tendon_prestress: float = 0.0
+    tendon_stiffness: float = 0.0
+
+    @property
+    def tendon(self) -> Tendon | None:
+        """The tendon; None where it does not pull."""
+        return tendon_of(self.tendon_prestress, self.tendon_stiffness)
+
+    @property
+    def uplift(self) -> float:
+        """Horizontal acceleration at uplift over g tan(alpha)."""
+        return 1.0 if self.tendon is None else self.tendon.uplift_factor(self.column(REFERENCE_SIZE, 1.0))
+
+    def column(self, semidiagonal: float, tan_alpha: float) -> Cylinder:
+        """Return a cylinder alone, or the frame of one column under the slab."""
+        cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
+        return WobblingFrame(cylinder, self.slab_mass_ratio, columns=1) if self.slab_mass_ratio else cylinder
+
+
+ALONE = Structure()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,8 +164,8 @@ class Extent:
         Slenderness; walls; azimuth by which the problem is turned [rad]; [s].
     contact_tan_alphas, time_constants, dampings : tuple of float
         Of soft contact: slenderness, time constant at R = 6 m [s], damping ratio.
-    slab_mass_ratio : float, optional
-        Of a frame, see `column_of`; 0 is a cylinder alone.
+    structure : Structure, optional
+        Of every column.
     """
 
     name: str
@@ -150,7 +190,40 @@ class Extent:
     contact_tan_alphas: tuple[float, ...]
     time_constants: tuple[float, ...]
     dampings: tuple[float, ...]
-    slab_mass_ratio: float = 0.0
+    structure: Structure = ALONE
+
+    def of(self, structure: Structure) -> Extent:
+        """Return the extent for a structure: a tendon raises the intensities as it raises that of uplift.
+
+        Raises
+        ------
+        ValueError
+            If no shaking of at most `LARGEST_PEAK` is strong enough.
+        """
+        factor = structure.uplift
+
+        def raised(points: tuple[tuple[float, float, float], ...]) -> tuple[tuple[float, float, float], ...]:
+            strong = [(tan_alpha, size, _digits(factor * level)) for tan_alpha, size, level in points]
+            return tuple(point for point in strong if factor == 1.0 or point[0] * point[2] <= LARGEST_PEAK)
+
+        records, traces = raised(self.record_points), raised(self.trace_points)
+        if not (records and traces):
+            raise ValueError(
+                f"a tendon must leave shaking of {LARGEST_PEAK:g} g something to rock, got one that raises "
+                f"uplift to {factor:.3g} g tan alpha"
+            )
+        return replace(
+            self,
+            structure=structure,
+            intensities=tuple(_digits(factor * level) for level in self.intensities),
+            record_points=records,
+            trace_points=traces,
+        )
+
+
+def _digits(value: float) -> float:
+    """Return a number that tables can show."""
+    return float(f"{value:.3g}")
 
 
 # of a record: hardly any was ever measured above it [g]
@@ -227,14 +300,8 @@ AMPLE = 3.0  # friction, so that a squat cylinder uplifts and does not slip
 _SYNTHETIC_SEED = 1940
 
 
-def column_of(semidiagonal: float, tan_alpha: float, slab_mass_ratio: float) -> Cylinder:
-    """Return a cylinder alone, or the frame of one column under a slab that only translates."""
-    cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
-    return WobblingFrame(cylinder, slab_mass_ratio, columns=1) if slab_mass_ratio > 0.0 else cylinder
-
-
 def release_case(
-    tan_alpha: float, release: float, spin: float, periods: float = 1.0, *, slab_mass_ratio: float = 0.0
+    tan_alpha: float, release: float, spin: float, periods: float = 1.0, *, structure: Structure = ALONE
 ) -> Case:
     """Return a free response.
 
@@ -247,13 +314,19 @@ def release_case(
         Rolling rate over that of steady wobble at the tilt; below 1 the release is a tilt maximum.
     periods : float, optional
         Length, in times from tilt maximum to next maximum of the recess model.
-    slab_mass_ratio : float, optional
+    structure : Structure, optional
     """
-    cylinder = column_of(REFERENCE_SIZE, tan_alpha, slab_mass_ratio)
+    cylinder, tendon = structure.column(REFERENCE_SIZE, tan_alpha), structure.tendon
     tilt = release * cylinder.alpha
-    initial = InitialState(tilt=tilt, rolling_rate=spin * reduced.steady_wobble_rate(cylinder, tilt))
-    period = reduced.free_response(cylinder, initial).period
-    return Case(cylinder, initial=initial, duration=periods * period)
+    steady = reduced.steady_wobble_rate(cylinder, tilt, tendon=tendon)
+    initial = InitialState(tilt=tilt, rolling_rate=spin * steady)
+    period = reduced.free_response(cylinder, initial, tendon=tendon).period
+    return Case(cylinder, initial=initial, duration=periods * period, tendon=tendon)
+
+
+def modelled(structure: Structure) -> tuple[str, ...]:
+    """Return the supports of which there is a reduced model of a structure."""
+    return SUPPORTS if structure.tendon is None else ("recess",)
 
 
 def record_names(members: int) -> list[str]:
@@ -289,7 +362,7 @@ def shaken_case(
     duration: float | None = None,
     vertical: bool = False,
     turn: float = 0.0,
-    slab_mass_ratio: float = 0.0,
+    structure: Structure = ALONE,
 ) -> Case:
     """Return a cylinder or frame at rest under a motion by name.
 
@@ -298,10 +371,10 @@ def shaken_case(
     whole = motion_named(name)
     motion = whole if vertical else GroundMotion(whole.acceleration[:, :2], whole.time_step, whole.name)
     motion = motion.scaled(intensity * GRAVITY * tan_alpha / motion.peak)
-    cylinder = column_of(semidiagonal, tan_alpha, slab_mass_ratio)
+    cylinder = structure.column(semidiagonal, tan_alpha)
     length = motion.duration if duration is None else min(duration, motion.duration)
     label = f"{name}, tan α {tan_alpha:g}, R {semidiagonal:g} m, {intensity:g} g tan α"
-    case = Case(cylinder, motion, duration=length, friction=AMPLE, name=label)
+    case = Case(cylinder, motion, duration=length, friction=AMPLE, tendon=structure.tendon, name=label)
     return replace(case, motion=motion.rotated(turn)) if turn else case
 
 
@@ -310,16 +383,19 @@ def needs_of(trace: Trace) -> dict[str, float]:
 
     friction, least_normal [weights], moment, the restraining moment over weight and base radius; NaN where it
     does not move or overturns. In a frame of base or top, whichever asks for more, over the weight that it
-    carries.
+    carries. With a tendon tension, its largest over the weight of a column.
     """
     needs = trace.assumptions
+    names = ("friction", "least_normal", "moment", *(() if trace.case.tendon is None else ("tension",)))
     if needs is None or trace.outcome != "stands" or not trace.peak_tilt > 0.0:
-        return dict.fromkeys(("friction", "least_normal", "moment"), math.nan)
-    return {
+        return dict.fromkeys(names, math.nan)
+    found = {
         "friction": needs.largest_friction_needed,
         "least_normal": needs.least_normal_force,
         "moment": needs.largest_restraining_moment / trace.case.cylinder.base_radius,
+        "tension": trace.peak_tendon_force,
     }
+    return {name: found[name] for name in names}
 
 
 def loss_of(trace: Trace) -> float:

@@ -11,9 +11,9 @@ from rockwobble.models import Run, Trace
 from rockwobble.multibody import DEFAULT_ENGINE
 
 from ...metrics.pair import make_pair, tilt_rms
-from ...runs.choice import SUPPORTS, own_model
+from ...runs.choice import own_model
 from ...runs.execution import simulate_run
-from .plan import RELEASE, Part, Row, grid, inputs_at, needs_of, release_case
+from .plan import ALONE, RELEASE, Part, Row, Structure, grid, inputs_at, modelled, needs_of, release_case
 
 _RTOL = 1e-10
 _CYCLES = 10.0  # over which the flat-ground model may gather tilt
@@ -21,24 +21,26 @@ _MAXIMUM = 1.0  # in the fourth column of `Trace.extrema`
 
 
 def measure_free_response(
-    tan_alpha: float, releases: Sequence[float], spins: Sequence[float], slab_mass_ratio: float = 0.0
+    tan_alpha: float, releases: Sequence[float], spins: Sequence[float], structure: Structure = ALONE
 ) -> list[Row]:
     """Return one row for each release and spin.
 
     The columns: tan_alpha, release, spin; period [s] and turn [rad] from tilt maximum to next maximum, exact
     (recess) and integrated (flat_period, flat_turn; NaN where it overturns first), flat_peak, the
-    largest tilt of the flat-ground model in ten periods over the release; `needs_of` the recess model in one
-    period.
+    largest tilt of the flat-ground model in ten periods over the release, all three NaN with a tendon;
+    `needs_of` the recess model in one period.
     """
-    return [_row(tan_alpha, release, spin, slab_mass_ratio) for release in releases for spin in spins]
+    return [_row(tan_alpha, release, spin, structure) for release in releases for spin in spins]
 
 
-def _row(tan_alpha: float, release: float, spin: float, slab_mass_ratio: float) -> Row:
-    case = release_case(tan_alpha, release, spin, slab_mass_ratio=slab_mass_ratio)
+def _row(tan_alpha: float, release: float, spin: float, structure: Structure) -> Row:
+    case = release_case(tan_alpha, release, spin, structure=structure)
     assert case.initial is not None
-    exact = reduced.free_response(case.cylinder, case.initial)
-    flat = reduced.simulate(replace(case, duration=_CYCLES * exact.period), support="flat", rtol=_RTOL)
-    period, turn = next_maximum(flat)
+    exact = reduced.free_response(case.cylinder, case.initial, tendon=case.tendon)
+    period = turn = peak = math.nan
+    if case.tendon is None:  # which the flat-ground model does not know
+        flat = reduced.simulate(replace(case, duration=_CYCLES * exact.period), support="flat", rtol=_RTOL)
+        (period, turn), peak = next_maximum(flat), flat.peak_tilt
     return {
         "release": release,
         "spin": spin,
@@ -46,7 +48,7 @@ def _row(tan_alpha: float, release: float, spin: float, slab_mass_ratio: float) 
         "flat_period": period,
         "turn": exact.angle_of_turn,
         "flat_turn": turn,
-        "flat_peak": flat.peak_tilt / case.initial.tilt,
+        "flat_peak": peak / case.initial.tilt,
         **needs_of(reduced.simulate(case, rtol=_RTOL)),
     }
 
@@ -74,18 +76,18 @@ _FRICTION = 10.0  # whatever the motion needs: friction is another limit
 
 
 def measure_verification(
-    tan_alpha: float, release: float, spin: float, slab_mass_ratio: float = 0.0
+    tan_alpha: float, release: float, spin: float, structure: Structure = ALONE
 ) -> list[Row]:
-    """Return a row for each support: what model and engine say of the first pass, and how far tilts differ.
+    """Return a row for each support that has a model: the first pass by model and engine, and the tilts.
 
     The columns: tan_alpha, release, spin, support; turn, engine_turn [rad], half_period, engine_half_period
     [s] to the first tilt minimum; tilt_rms over alpha; resolved, whether the contact of the engine resolves
     the pass; outcome.
     """
-    case = release_case(tan_alpha, release, spin, _VERIFIED_PERIODS, slab_mass_ratio=slab_mass_ratio)
+    case = release_case(tan_alpha, release, spin, _VERIFIED_PERIODS, structure=structure)
     case = replace(case, friction=_FRICTION)
     rows: list[Row] = []
-    for support in SUPPORTS:
+    for support in modelled(structure):
         trial = Run(DEFAULT_ENGINE, support)
         own = simulate_run(case, Run(None, own_model(trial).support, rtol=_RTOL))
         run = simulate_run(case, trial)
@@ -119,7 +121,7 @@ _SLIP_PERIODS = 1.1  # one pass: the friction of the next is the same
 
 
 def measure_slip(
-    tan_alpha: float, release: float, spin: float, shares: Sequence[float], slab_mass_ratio: float = 0.0
+    tan_alpha: float, release: float, spin: float, shares: Sequence[float], structure: Structure = ALONE
 ) -> list[Row]:
     """Return a row for each friction, as a share of what the recess model needs.
 
@@ -127,11 +129,11 @@ def measure_slip(
     period [b], tilt_rms against the recess model over alpha, outcome. No row where the model loses contact:
     no friction is enough.
     """
-    period = release_case(tan_alpha, release, spin, slab_mass_ratio=slab_mass_ratio)
+    period = release_case(tan_alpha, release, spin, structure=structure)
     needed = needs_of(reduced.simulate(period, rtol=_RTOL))["friction"]
     if not math.isfinite(needed):
         return []
-    case = release_case(tan_alpha, release, spin, _SLIP_PERIODS, slab_mass_ratio=slab_mass_ratio)
+    case = release_case(tan_alpha, release, spin, _SLIP_PERIODS, structure=structure)
     recess = reduced.simulate(case, rtol=_RTOL)
     rows: list[Row] = []
     for share in shares:

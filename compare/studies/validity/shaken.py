@@ -20,9 +20,9 @@ from rockwobble.reduced.body import body_of
 
 from ...comparison.driver import comparison
 from ...metrics.pair import FloatArray
-from ...runs.choice import SUPPORTS
 from ...runs.execution import simulate_run
 from .plan import (
+    ALONE,
     AMPLE,
     EL_CENTRO,
     LARGEST_PEAK,
@@ -32,9 +32,11 @@ from .plan import (
     Inputs,
     Part,
     Row,
+    Structure,
     grid,
     inputs_at,
     loss_of,
+    modelled,
     motion_named,
     needs_of,
     record_names,
@@ -66,16 +68,16 @@ def measure_peaks(
     tan_alpha: float,
     semidiagonal: float,
     intensities: Sequence[float],
-    slab_mass_ratio: float = 0.0,
+    structure: Structure = ALONE,
 ) -> list[Row]:
     """Return one row for each intensity.
 
     The columns: motion, tan_alpha, semidiagonal [m], intensity; peak tilt over alpha, pi/2 over alpha if
     overturned, of the recess model, of its perturbed copy under a record stronger by 1 %, of the flat-ground
-    model, and of the recess model with the vertical component (NaN where the record has none); `needs_of` the
-    recess model.
+    model (NaN with a tendon), and of the recess model with the vertical component (NaN where the record has
+    none); `needs_of` the recess model.
     """
-    shaken = partial(shaken_case, motion, tan_alpha, semidiagonal, slab_mass_ratio=slab_mass_ratio)
+    shaken = partial(shaken_case, motion, tan_alpha, semidiagonal, structure=structure)
     vertical = motion_named(motion).has_vertical
     return [_row(shaken, intensity, vertical) for intensity in intensities]
 
@@ -86,13 +88,14 @@ def _row(shaken: Callable[..., Case], intensity: float, vertical: bool) -> Row:
     found = {
         "recess": recess,
         "copy": reduced.simulate(stronger, rtol=_RTOL),
-        "flat": reduced.simulate(case, support="flat", rtol=_RTOL),
     }
+    if case.tendon is None:
+        found["flat"] = reduced.simulate(case, support="flat", rtol=_RTOL)
     if vertical:
         found["vertical"] = reduced.simulate(shaken(intensity, vertical=True), rtol=_RTOL)
     return {
         "intensity": intensity,
-        "vertical": math.nan,
+        **dict.fromkeys(("flat", "vertical"), math.nan),
         **{name: trace.peak_tilt / case.cylinder.alpha for name, trace in found.items()},
         **needs_of(recess),
     }
@@ -118,21 +121,21 @@ def measure_records(
     semidiagonal: float,
     intensity: float,
     time_step: float,
-    slab_mass_ratio: float = 0.0,
+    structure: Structure = ALONE,
 ) -> list[Row]:
     """Return a row for each method.
 
     The columns: motion, tan_alpha, semidiagonal [m], intensity, method, peak over alpha, outcome;
-    contact_time with walls [s] and loss, see `loss_of`. The methods: the two reduced models, the perturbed
-    copy of the recess model under a record stronger by 1 %, the engine in a recess, on flat ground and,
-    without a slab, in a ring, and this at half its step.
+    contact_time with walls [s] and loss, see `loss_of`. The methods: the reduced models (one with a tendon),
+    the perturbed copy of the recess model under a record stronger by 1 %, the engine in a recess, on flat
+    ground and, without a slab, in a ring, and this at half its step.
     """
-    shaken = partial(shaken_case, motion, tan_alpha, semidiagonal, slab_mass_ratio=slab_mass_ratio)
+    shaken = partial(shaken_case, motion, tan_alpha, semidiagonal, structure=structure)
     case, stronger = shaken(intensity), shaken(intensity * (1.0 + COPY))
-    walls = slab_mass_ratio == 0.0
+    walls = structure.slab_mass_ratio == 0.0
     runs = {
         RECESS: (case, Run(None, "recess")),
-        FLAT: (case, Run(None, "flat")),
+        **({FLAT: (case, Run(None, "flat"))} if "flat" in modelled(structure) else {}),
         PERTURBED: (stronger, Run(None, "recess")),
         **{
             name: (case, Run(DEFAULT_ENGINE, name, time_step))
@@ -183,15 +186,13 @@ def measure_following(
     intensity: float,
     support: str,
     duration: float,
-    slab_mass_ratio: float = 0.0,
+    structure: Structure = ALONE,
 ) -> list[Row]:
     """Return the summary of a run of the engine against the recess and, on flat ground, the flat model.
 
     The columns are tan_alpha, semidiagonal, intensity, duration and those of `SUMMARY_COLUMNS`.
     """
-    case = shaken_case(
-        EL_CENTRO, tan_alpha, semidiagonal, intensity, duration=duration, slab_mass_ratio=slab_mass_ratio
-    )
+    case = shaken_case(EL_CENTRO, tan_alpha, semidiagonal, intensity, duration=duration, structure=structure)
     summary = comparison(case, runs=[Run(DEFAULT_ENGINE, support)], workers=1).summary[list(_COLUMNS)]
     return [{str(name): value for name, value in row.items()} for row in summary.to_dict("records")]
 
@@ -201,7 +202,7 @@ FOLLOWING = Part(
     tasks=lambda extent: [
         {**point, "support": support}
         for point in inputs_at(POINT, extent.trace_points, duration=extent.trace_length)
-        for support in SUPPORTS
+        for support in modelled(extent.structure)
     ],
     measure=measure_following,
     keys=(*POINT, "duration"),
@@ -210,11 +211,12 @@ FOLLOWING = Part(
 
 
 _RELEASE, _SPIN, _PASSES = 0.5, 0.1, 4
-_INTENSITY, _LENGTH = 2.0, 10.0
+# over the acceleration at uplift; [s]
+STRONG, _LENGTH = 2.0, 10.0
 
 
 def measure_contact(
-    tan_alpha: float, time_constant: float, damping: float, slab_mass_ratio: float = 0.0
+    tan_alpha: float, time_constant: float, damping: float, structure: Structure = ALONE
 ) -> list[Row]:
     """Return a row: what free response in a recess loses, and the peak tilt under El Centro.
 
@@ -223,10 +225,15 @@ def measure_contact(
     the release, passes, peak and recess_peak under El Centro over alpha, free_outcome, outcome.
     """
     run = Run(DEFAULT_ENGINE, "recess", contact_time_constant=time_constant, contact_damping_ratio=damping)
-    release = release_case(tan_alpha, _RELEASE, _SPIN, _PASSES, slab_mass_ratio=slab_mass_ratio)
+    release = release_case(tan_alpha, _RELEASE, _SPIN, _PASSES, structure=structure)
     free = simulate_run(release, run)
     case = shaken_case(
-        EL_CENTRO, tan_alpha, REFERENCE_SIZE, _INTENSITY, duration=_LENGTH, slab_mass_ratio=slab_mass_ratio
+        EL_CENTRO,
+        tan_alpha,
+        REFERENCE_SIZE,
+        STRONG * structure.uplift,
+        duration=_LENGTH,
+        structure=structure,
     )
     shaken = simulate_run(case, run)
     lost = -float(free.energy_error[-1]) / float(free.energy[0])
@@ -254,7 +261,7 @@ CONTACT = Part(
 )
 
 
-# strong rocking without a fall
+# over the acceleration at uplift: strong rocking without a fall
 INTENSITY = 1.5
 FREE, SHAKEN = "free response", EL_CENTRO
 _WALLS = ("clearance", "inclination", "friction")
@@ -284,6 +291,7 @@ def measure_rings(
     clearance: float,
     inclination: float,
     friction: float,
+    structure: Structure = ALONE,
 ) -> list[Row]:
     """Return a row for free response or El Centro; none where the walls leave no room for the release.
 
@@ -296,9 +304,12 @@ def measure_rings(
         walls = {"ring_clearance": clearance, "ring_friction": friction}
         walls |= {"ring_inclination": inclination} if inclination > 0.0 else {}
     if motion == FREE:
-        case = release_of(tan_alpha, turn, length)
+        case = dataclasses.replace(release_of(tan_alpha, turn, length), tendon=structure.tendon)
     else:
-        case = shaken_case(motion, tan_alpha, REFERENCE_SIZE, INTENSITY, duration=length, turn=turn)
+        strong = INTENSITY * structure.uplift
+        case = shaken_case(
+            motion, tan_alpha, REFERENCE_SIZE, strong, duration=length, turn=turn, structure=structure
+        )
     run, finer = (Run(DEFAULT_ENGINE, support, part * REFERENCE_TIME_STEP, **walls) for part in (1.0, 0.5))
     if not has_room(case, run):
         return []

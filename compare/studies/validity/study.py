@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import inspect
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 import pandas as pd
@@ -18,12 +18,13 @@ from ...storage.results import Results
 from ..plans import ValidityPlan
 from .limits import limits_of, records
 from .plan import (
+    ALONE,
     FULL,
     QUICK,
     Extent,
     Inputs,
     Part,
-    column_of,
+    Structure,
     motion_named,
     record_names,
     release_case,
@@ -54,12 +55,19 @@ class Validity(Results, kind=KIND):
     Attributes
     ----------
     free_response, verification, ... : DataFrame
-        What each of `PARTS` measured; with a slab every table ends with its slab_mass_ratio.
+        What each of `PARTS` measured; every table ends with slab_mass_ratio, tendon_prestress and
+        tendon_stiffness, where they are not 0.
     limits : DataFrame
         Every number of every limit, see `limits_of`: limit, number, value.
 
-    Its facts are the extent, what the ground motions are and the mass of the slab over that of the column.
+    Its facts are the extent, what the ground motions are, the mass of the slab over that of the column, and
+    prestress and stiffness of a tendon.
     """
+
+    @property
+    def structure(self) -> Structure:
+        """What every column carries, and what holds it down."""
+        return Structure(**{each.name: self.facts.get(each.name, 0.0) for each in fields(Structure)})
 
     def headline(self) -> dict[str, Number]:
         """Return the ratios of the peaks of the engine to those of the model, over the records."""
@@ -84,8 +92,9 @@ def measure_validity(
     workers: int | None = None,
     progress: ProgressCallback | None = None,
 ) -> Validity:
-    """Measure the limits of the reduced model; the arguments and errors are those of `measure_all`."""
-    extent = replace(QUICK if plan.quick else FULL, slab_mass_ratio=plan.slab_mass_ratio)
+    """Measure the limits of the reduced model; for arguments and errors see `measure_all` and `Extent.of`."""
+    structure = Structure(**{each.name: getattr(plan, each.name) for each in fields(Structure)})
+    extent = (QUICK if plan.quick else FULL).of(structure)
     return validity_of(measure_all(extent, folder, workers=workers, progress=progress), extent)
 
 
@@ -116,10 +125,11 @@ def measure_all(
     IncompleteError
         If a process ended in a task; what was finished is kept.
     """
-    slab = {"slab_mass_ratio": extent.slab_mass_ratio} if extent.slab_mass_ratio > 0.0 else {}
-    parts = {name: part for name, part in PARTS.items() if not (slab and part.walls)}
+    structure = extent.structure
+    own = {} if structure == ALONE else {"structure": structure}
+    parts = {name: part for name, part in PARTS.items() if not (structure.slab_mass_ratio and part.walls)}
     tasks: list[Task] = [
-        (name, {**inputs, **slab}) for name, part in parts.items() for inputs in part.tasks(extent)
+        (name, {**inputs, **own}) for name, part in parts.items() for inputs in part.tasks(extent)
     ]
     with run_tables(
         measure_task,
@@ -158,11 +168,10 @@ def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent) -> Validity:
     facts = {
         "extent": extent.name,
         "records": source_of(record_names(extent.members)),
-        "slab_mass_ratio": extent.slab_mass_ratio,
+        **asdict(extent.structure),
     }
-    found = {**tables, "limits": limits}
-    if extent.slab_mass_ratio > 0.0:
-        found = {name: table.assign(slab_mass_ratio=extent.slab_mass_ratio) for name, table in found.items()}
+    stated = {name: value for name, value in asdict(extent.structure).items() if value}
+    found = {name: table.assign(**stated) for name, table in {**tables, "limits": limits}.items()}
     return Validity(tables=found, facts=facts)
 
 
@@ -174,7 +183,7 @@ def task_name(task: Task) -> str:
 
 def _makers(part: Part) -> dict[str, str]:
     """Versions and code on which a part depends."""
-    problems = [inspect.getsource(each) for each in (column_of, release_case, motion_named, shaken_case)]
+    problems = [inspect.getsource(each) for each in (Structure, release_case, motion_named, shaken_case)]
     own = Path(str(inspect.getsourcefile(part.measure))).read_bytes() + "".join(problems).encode()
     engine = engine_makers(part.engine) if part.engine else {}
     return {
