@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,7 +15,7 @@ MOST_SAMPLES = 10_000_000  # of one trace: some gigabytes
 _MOST = 70  # characters of a value that is quoted
 
 
-def require_positive(name: str, value: float, unit: str = "") -> float:
+def require_positive(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise ValueError unless it is positive and finite."""
     number = require_finite(name, value, unit)
     if number <= 0.0:
@@ -22,11 +23,11 @@ def require_positive(name: str, value: float, unit: str = "") -> float:
     return number
 
 
-def require_finite(name: str, value: float, unit: str) -> float:
+def require_finite(name: str, value: object, unit: str) -> float:
     """Return `value` as a float, or raise ValueError unless it is a finite real number."""
     try:
         # text is refused even where it spells a number, because it would be kept as text; a truth is no size
-        number = math.nan if isinstance(value, str | bytes | bool | np.bool_) else float(value)
+        number = math.nan if isinstance(value, str | bytes | bool | np.bool_) else float(cast("float", value))
     except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name} must be a finite number{_in(unit)}, got {quoted(value)}") from None
     if not math.isfinite(number):

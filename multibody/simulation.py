@@ -55,7 +55,7 @@ def simulate(
     time_step: TimeStep = None,
     sample_step: float = 0.01,
     progress: Progress | None = None,
-    **settings: Any,
+    **settings: object,
 ) -> Trace:
     """Run a rigid cylinder on rigid ground in a physics engine.
 

@@ -44,7 +44,6 @@ import pytest
 
 import rockwobble as rw
 import rockwobble.compare as rc
-import rockwobble.compare.runs as rr
 
 if TYPE_CHECKING:
     from _pytest._code.code import TerminalRepr, TracebackStyle
@@ -128,7 +127,7 @@ class SuiteFile(pytest.File):
 
     def collect(self) -> Iterator[SuiteItem]:
         """Yield the items."""
-        from rockwobble.compare.runs.choice import run_labels
+        from rockwobble.compare.runs.choice import run_labels, runs_here
         from rockwobble.multibody.engines.registry import engine_fault
 
         try:
@@ -136,7 +135,7 @@ class SuiteFile(pytest.File):
         except ValueError as error:
             raise self.CollectError(str(error)) from None
         runs = suite.runs or rc.default_runs(cases=suite.cases)
-        here, _ = rr.runs_here(runs)
+        here, _ = runs_here(runs)
         for case in suite.cases:
             for run, label in zip(runs, run_labels(runs), strict=True):
                 item: SuiteItem = SuiteItem.from_parent(

@@ -7,7 +7,7 @@ import io
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TypedDict, cast
 
 from ..argument_kinds import with_argument_kinds
 from ..ground_motion import GroundMotion
@@ -19,6 +19,18 @@ TABLE = "records.csv"
 PEER_TABLE = "_SearchResults.csv"
 _WAYS = ("units", "columns", "time_step", "lengths", "remove_mean", "rotate", "resample")
 _COLUMNS = ("name", "record", "x", "y", "z", "scale", "level", *_WAYS)
+
+
+class ReadingOptions(TypedDict, total=False):
+    """The options of `read_record`, as those of a row and of all rows are merged."""
+
+    units: str | None
+    columns: str | Sequence[str | int] | None
+    time_step: float | None
+    lengths: str | None
+    remove_mean: bool
+    rotate: float | str | None
+    resample: bool
 
 
 @with_argument_kinds
@@ -71,23 +83,38 @@ def read_records(
     >>> [(motion.name, motion.peak) for motion in read_records(folder)]
     [('pulse', 0.5)]
     """
-    ways: dict[str, Any] = {
-        **{"units": units, "columns": columns, "time_step": time_step, "lengths": lengths},
-        **{"remove_mean": remove_mean, "rotate": rotate, "resample": resample},
-    }
+    ways = ReadingOptions(
+        units=units,
+        columns=columns,
+        time_step=time_step,
+        lengths=lengths,
+        remove_mean=remove_mean,
+        rotate=rotate,
+        resample=resample,
+    )
     return [motion for motion, _ in _read(Path(folder), ways)]
 
 
 @with_argument_kinds
-def read_records_by_level(folder: str | Path, **ways: Any) -> dict[float, list[GroundMotion]]:
+def read_records_by_level(
+    folder: str | Path,
+    *,
+    units: str | None = None,
+    columns: str | Sequence[str | int] | None = None,
+    time_step: float | None = None,
+    lengths: str | None = None,
+    remove_mean: bool = False,
+    rotate: float | str | None = None,
+    resample: bool = False,
+) -> dict[float, list[GroundMotion]]:
     r"""Return the ground motions of a folder by the column level of its records.csv: multiple stripes.
 
     Parameters
     ----------
     folder : str or Path
         Or the table itself.
-    **ways
-        Options of `read_record`, as of `read_records`.
+    units, columns, time_step, lengths, remove_mean, rotate, resample
+        As of `read_records`.
 
     Returns
     -------
@@ -112,6 +139,15 @@ def read_records_by_level(folder: str | Path, **ways: Any) -> dict[float, list[G
     table = Path(folder) / TABLE if Path(folder).is_dir() else Path(folder)
     if not table.exists() or table.name.endswith(PEER_TABLE) or "level" not in _table(table)[0]:
         return {}
+    ways = ReadingOptions(
+        units=units,
+        columns=columns,
+        time_step=time_step,
+        lengths=lengths,
+        remove_mean=remove_mean,
+        rotate=rotate,
+        resample=resample,
+    )
     motions: dict[float, list[GroundMotion]] = {}
     read = _read(table, ways)
     without = sum(level is None for _, level in read)
@@ -123,7 +159,7 @@ def read_records_by_level(folder: str | Path, **ways: Any) -> dict[float, list[G
     return motions
 
 
-def _read(path: Path, ways: Mapping[str, Any]) -> list[tuple[GroundMotion, float | None]]:
+def _read(path: Path, ways: ReadingOptions) -> list[tuple[GroundMotion, float | None]]:
     """Return motions, each with its level."""
     if path.is_dir() and not (path / TABLE).exists():
         stations, listed = _stations(path)
@@ -173,23 +209,24 @@ def _place(folder: Path, name: str | None) -> str | Path | None:
 _TRUE, _FALSE = ("1", "true", "yes"), ("", "0", "false", "no")
 
 
-def _motion(folder: Path, row: Mapping[str | None, str | list[str]], ways: Mapping[str, Any]) -> GroundMotion:
+def _motion(folder: Path, row: Mapping[str | None, str | list[str]], ways: ReadingOptions) -> GroundMotion:
     beyond = list(row.get(None, ()))  # cells under no column
     if any(cell.strip() for cell in beyond):
         raise ValueError(f"must have {len(row) - 1} cells, got {len(row) - 1 + len(beyond)}")
     cells = {name: (cell or "").strip() for name, cell in row.items() if isinstance(cell, str)}
-    of_row = {name: _way(name, cells[name]) for name in _WAYS if cells.get(name)}
+    of_row = cast("ReadingOptions", {name: _way(name, cells[name]) for name in _WAYS if cells.get(name)})
+    options: ReadingOptions = {**ways, **of_row}
     name = cells.get("name") or None
     if cells.get("record"):
         if any(cells.get(axis) for axis in "xyz"):
             raise ValueError("record holds all components, got x, y or z beside it")
-        motion = read_record(folder / cells["record"], name=name, **{**ways, **of_row})
+        motion = read_record(folder / cells["record"], name=name, **options)
     else:
         if not (cells.get("x") and cells.get("y")):
             raise ValueError("both horizontal components are needed, x and y")
         x, y, z = (_place(folder, cells.get(axis)) for axis in ("x", "y", "z"))
         assert x is not None
-        motion = read_record(x, y, z, name=name, **{**ways, **of_row})
+        motion = read_record(x, y, z, name=name, **options)
     factor = _positive("scale", cells.get("scale"))
     return motion if factor is None else motion.scaled(factor)
 
@@ -286,7 +323,7 @@ def _listed_stations(table: Path) -> list[tuple[str, list[Path]]]:
     return found
 
 
-def _peer_motions(folder: Path, ways: Mapping[str, Any]) -> list[GroundMotion]:
+def _peer_motions(folder: Path, ways: ReadingOptions) -> list[GroundMotion]:
     stations, listed = _stations(folder)
     if not stations:
         raise ValueError(f"the table of PEER in {folder} lists no records")
@@ -302,7 +339,7 @@ def _peer_motions(folder: Path, ways: Mapping[str, Any]) -> list[GroundMotion]:
     return motions
 
 
-def _of_station(paths: Sequence[Path], name: str, ways: Mapping[str, Any], *, listed: bool) -> GroundMotion:
+def _of_station(paths: Sequence[Path], name: str, ways: ReadingOptions, *, listed: bool) -> GroundMotion:
     if not 2 <= len(paths) <= 3:
         raise ValueError(f"must have two or three files, got {', '.join(path.name for path in paths)[:120]}")
     try:

@@ -9,8 +9,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import rockwobble.compare.storage as rs
-
 from ..console import command_line, interruptible, shown_progress, user_input
 
 if TYPE_CHECKING:
@@ -32,9 +30,11 @@ def claim_folder(context: typer.Context) -> None:
         If it holds results of another plan and --overwrite is not given, another process writes to it, or
         nothing can be written there.
     """
+    from rockwobble.compare.storage import claim
+
     stated = context.params
     context.with_resource(
-        rs.claim_folder(
+        claim.claim_folder(
             stated["out"],
             plan=plan_of(context),
             command=command_line(),

@@ -6,7 +6,7 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -16,6 +16,9 @@ from rockwobble.compare.studies.plans import MASS
 
 from ..pages.command_line import command_line
 from . import options
+
+if TYPE_CHECKING:
+    from rockwobble.models.records.folder import ReadingOptions
 
 # length of a free response where the user does not say [s]
 FREE_DURATION = 10.0
@@ -116,7 +119,7 @@ class Reading(Plan):
     rotate: str | None = _ground(None, options.ROTATE)
     resample: bool = _ground(False, options.RESAMPLE, flag="--resample")
 
-    def ways(self) -> dict[str, Any]:
+    def ways(self) -> ReadingOptions:
         """Return them as keywords of `read_record` and `read_records`."""
         return {
             "units": self.units,

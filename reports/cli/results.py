@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import rockwobble as rw
-import rockwobble.compare.runs as rr
-import rockwobble.compare.storage as rs
 
 from ..console import complain, echo, interruptible, print_facts, show_and_save, shown_progress, user_input
 from ..pages import KINDS, stored_page
@@ -111,12 +109,14 @@ def report(folder: Folder, out: Out = None, overwrite: options.Overwrite = False
 
     Example: rockwobble report rockwobble-compare --out pages
     """
+    from rockwobble.compare.storage.manifest import require_writable
+
     place = folder if out is None else out
     with interruptible(), user_input():
         from rockwobble.compare.storage.files import sole_writer
         from rockwobble.compare.storage.manifest import manifests_in, read_manifests, write_pages
 
-        rs.require_writable(place)
+        require_writable(place)
         kinds = [made.kind for made in read_manifests(folder) if made.kind in KINDS]
         if not kinds:
             raise ValueError(f"pages are drawn of {', '.join(KINDS)}; {folder} holds none of them")
@@ -172,6 +172,7 @@ def view(
     Example: rockwobble view --scale 2 --support flat
     """
     from rockwobble.compare.comparison.result import View
+    from rockwobble.compare.runs.choice import require_runnable, with_settings
 
     from ..figures.playback import require_motion
 
@@ -187,8 +188,8 @@ def view(
             else:
                 case = problem.case()
                 asked = rw.Run(engine or _default_engine(support), support, time_step)
-                (run,) = rr.with_settings(case, [asked], settings(setting))
-                rr.require_runnable(case, run)
+                (run,) = with_settings(case, [asked], settings(setting))
+                require_runnable(case, run)
                 name = case.name
                 require_motion(name, [rw.simulate(case)])  # before an engine runs for seconds
             claim_folder(context)

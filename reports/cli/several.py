@@ -9,7 +9,6 @@ from typing import Annotated
 
 import rockwobble as rw
 import rockwobble.compare as rc
-import rockwobble.compare.runs as rr
 from rockwobble.compare.runs.plan import Plan, options_in
 from rockwobble.compare.studies.plans import GridPlan
 
@@ -136,6 +135,7 @@ class ManyMethods:
         ValueError
             If an engine has none of the supports, or nothing has a setting.
         """
+        from rockwobble.compare.runs.choice import with_settings
         from rockwobble.compare.studies.fragility.runs import MODELS, models_with_tendon
         from rockwobble.multibody.engines.registry import find_engine
 
@@ -159,7 +159,7 @@ class ManyMethods:
         if self.time_step is not None:
             runs = [rw.Run(run.engine, run.support, self.time_step) for run in runs]
         if given:
-            runs = list(rr.with_settings(rw.Case(body, rw.el_centro_1940()), runs, given))
+            runs = list(with_settings(rw.Case(body, rw.el_centro_1940()), runs, given))
         return [*chosen, *runs]
 
 

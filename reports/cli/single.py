@@ -13,7 +13,6 @@ import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
-import rockwobble.compare.runs as rr
 from rockwobble.compare.runs.plan import Plan, options_in
 from rockwobble.compare.studies.plans import AdvicePlan, ModelPlan
 
@@ -126,6 +125,8 @@ def compare(
 
     Example: rockwobble compare --semidiagonal 10 --tan-alpha 0.1 --engine mujoco
     """
+    from rockwobble.compare.runs.choice import require_runnable, with_settings
+
     with interruptible(out if suite else None):
         with user_input():
             from rockwobble.compare.runs.choice import unable_engines
@@ -138,11 +139,11 @@ def compare(
                 cases = [problem.case()]
                 runs = _runs(cases[0], engine, support, time_step, alone=bool(external.trajectory))
             if setting:
-                runs = list(rr.with_settings(cases[0], runs, settings(setting)))
+                runs = list(with_settings(cases[0], runs, settings(setting)))
             claim_folder(context)
             for each in cases:
                 for run in runs:
-                    rr.require_runnable(each, run)
+                    require_runnable(each, run)
             trajectories = external.read(cases)
         if suite is None:
             echo(describe(cases[0]))
@@ -224,6 +225,8 @@ def simulate(
 
     Example: rockwobble simulate --release-tilt-deg 5 --rolling-rate 0.5 --duration 8
     """
+    from rockwobble.compare.runs.choice import require_runnable
+
     with interruptible():
         from rockwobble.compare.studies.single_run import single_run
 
@@ -238,7 +241,7 @@ def simulate(
             claim_folder(context)
             named = None if engine == options.NO_ENGINE else engine
             run = _with_settings(case, rw.Run(named, support, time_step), setting, dataclasses.asdict(model))
-            rr.require_runnable(case, run)
+            require_runnable(case, run)
         echo([*record_lines([case.motion]), *case_warnings([case])])
         with user_input(), shown_progress() as progress:
             found = single_run(
@@ -257,6 +260,8 @@ def simulate(
 
 def _with_settings(case: rw.Case, run: rw.Run, setting: list[str] | None, model: dict[str, Any]) -> rw.Run:
     """Return the run with the options that belong to its method; others are refused, not ignored."""
+    from rockwobble.compare.runs.choice import with_settings
+
     model = {name: value for name, value in model.items() if value is not None}
     if run.is_model and run.time_step is not None:
         raise ValueError("--time-step belongs to an engine, give --engine as well")
@@ -265,7 +270,7 @@ def _with_settings(case: rw.Case, run: rw.Run, setting: list[str] | None, model:
         raise ValueError(f"{option} belongs to the reduced models, got --engine {run.engine}")
     if twice := model.keys() & settings(setting).keys():
         raise ValueError(f"{min(twice)} is given twice, by an option and by --set")
-    (whole,) = rr.with_settings(case, [run], settings(setting) | model)
+    (whole,) = with_settings(case, [run], settings(setting) | model)
     return whole
 
 
@@ -325,6 +330,8 @@ def advise(
 
 def _run(case: rw.Case, engine: str | None, support: str, time_step: float | None) -> rw.Run | None:
     """Return the run of the engine that verifies; None without one."""
+    from rockwobble.compare.runs.choice import require_runnable
+
     if engine == options.NO_ENGINE and time_step is not None:
         raise ValueError("--time-step belongs to an engine, got it with --engine none")
     from rockwobble.multibody.engines.registry import engine_fault
@@ -336,5 +343,5 @@ def _run(case: rw.Case, engine: str | None, support: str, time_step: float | Non
     if fault or engine == options.NO_ENGINE:
         return None
     run = rw.Run(engine or default, support, time_step)
-    rr.require_runnable(case, run)
+    require_runnable(case, run)
     return run

@@ -10,7 +10,6 @@ import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
-import rockwobble.compare.runs as rr
 
 from ..console import complain
 from ..pages.cases import case_warnings, group_of, record_lines
@@ -68,7 +67,9 @@ def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list
     ValueError
         If none is left.
     """
-    kept, said = rr.runs_here(runs, named or ())
+    from rockwobble.compare.runs.choice import runs_here
+
+    kept, said = runs_here(runs, named or ())
     if not kept:
         raise ValueError(f"no engine of this suite is installed here: {'; '.join(said)}")
     for line in said:
@@ -78,9 +79,9 @@ def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list
 
 def say_what_is_left_out(supports: Sequence[str] = ()) -> None:
     """Say which engines a default run leaves out, and why: those that do not run here or lack a support."""
-    from rockwobble.compare.runs.choice import left_out, omissions
+    from rockwobble.compare.runs.choice import left_out, missing_engines, omissions
 
-    for name in rr.missing_engines():
+    for name in missing_engines():
         complain(left_out(name))
     for reason in omissions(supports):
         complain(reason)

@@ -12,7 +12,6 @@ import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
-import rockwobble.compare.storage as rs
 from rockwobble.compare.runs.plan import Plan, options_in
 
 from ..console import (
@@ -153,6 +152,8 @@ class OutputOptions(Plan):
         ValueError
             If one cannot be written.
         """
+        from rockwobble.compare.storage.files import replace_files
+
         from ..pages import page_of
         from ..pages.check import as_json, as_junit
 
@@ -161,7 +162,7 @@ class OutputOptions(Plan):
             print(f"Written to {self.out}: check.html, check.md, manifest.json, results.parquet")
         for path, text_of in ((self.json, as_json), (self.junit, as_junit)):
             if path is not None:
-                rs.replace_files(path.parent, {path.name: text_of(found, plan).encode()})
+                replace_files(path.parent, {path.name: text_of(found, seconds, plan).encode()})
         if self.markdown is not None:
             try:  # the summary of a CI job may hold pages of other steps
                 with self.markdown.open("a", encoding="utf-8") as file:
@@ -261,6 +262,7 @@ def update(reason: str | None) -> None:
     """
     from rockwobble.compare.check import baseline
     from rockwobble.compare.check.groups import baseline_subjects
+    from rockwobble.compare.storage.files import replace_files
 
     date = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
     changed: list[tuple[CheckSubject, Baseline, tuple[Entry, ...]]] = []
@@ -280,7 +282,7 @@ def update(reason: str | None) -> None:
         text = baseline.updated_baseline(old, new, subject, reason=reason or "", date=date)
         texts[baseline.baseline_path(subject)] = text.encode()
     for path, content in texts.items():
-        rs.replace_files(path.parent, {path.name: content})
+        replace_files(path.parent, {path.name: content})
         print(f"Written: {path}")
 
 
