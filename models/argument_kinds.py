@@ -33,7 +33,7 @@ def with_argument_kinds(function: C) -> C:
     signature = inspect.signature(function)
 
     @functools.cache
-    def kinds() -> dict[str, Any]:
+    def kinds() -> dict[str, object]:
         return {
             name: _kind(parameter.annotation, function)
             for name, parameter in signature.parameters.items()
@@ -41,7 +41,7 @@ def with_argument_kinds(function: C) -> C:
         }
 
     @functools.wraps(function)
-    def wrapper(*args: Any, **kwargs: Any) -> Any:
+    def wrapper(*args: object, **kwargs: object) -> object:
         bound = signature.bind(*args, **kwargs)  # a TypeError of Python itself, which names the argument
         for name, kind in kinds().items():
             if name in bound.arguments:
@@ -51,7 +51,7 @@ def with_argument_kinds(function: C) -> C:
     return cast("C", wrapper)
 
 
-def require_argument(name: str, value: Any, kind: Any) -> Any:
+def require_argument(name: str, value: object, kind: object) -> object:
     """Return an argument, an iterable as a tuple, or raise ValueError unless it is of a kind.
 
     Parameters
@@ -74,7 +74,7 @@ def require_argument(name: str, value: Any, kind: Any) -> Any:
     return value
 
 
-def in_words(kind: Any) -> str:
+def in_words(kind: object) -> str:
     """Return a kind in words, as "a Case or None"."""
     members = _members(kind)
     words = dict.fromkeys(_name(each) for each in members if each is not type(None))

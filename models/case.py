@@ -243,7 +243,7 @@ class Run:
         engine: str | None,
         support: str,
         time_step: TimeStep = None,
-        **settings: Any,
+        **settings: object,
     ) -> None:
         if isinstance(time_step, str):
             if time_step not in WAYS_TO_A_STEP:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from numbers import Real
-from typing import Any
 
 from .number_checks import quoted, require_finite, require_positive
+from .plain_json import Facts
 from .shown import Brief, brief, line
 
 _UNITS = {
@@ -245,7 +245,7 @@ class WobblingFrame(Cylinder):
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 
-def cylinder_of(values: Mapping[str, Any], make: Callable[..., Cylinder] = Cylinder) -> Cylinder:
+def cylinder_of(values: Facts, make: Callable[..., Cylinder] = Cylinder) -> Cylinder:
     """Return what `make` gives for the values of a cylinder, in a frame where they hold those of a slab."""
     slab = {name: values[name] for name in ("slab_mass_ratio", "columns") if name in values}
     cylinder = make(**{name: value for name, value in values.items() if name not in slab})

@@ -5,9 +5,10 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from . import plain_json
+from .plain_json import JsonObject
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,7 +37,7 @@ def pack(table: pd.DataFrame, about: Mapping[str, object]) -> bytes:
     return buffer.getvalue()
 
 
-def read(content: bytes) -> tuple[pd.DataFrame, dict[str, Any]]:
+def read(content: bytes) -> tuple[pd.DataFrame, JsonObject]:
     """Return the table of a file that `pack` made, and what it says of itself.
 
     Raises
@@ -50,10 +51,10 @@ def read(content: bytes) -> tuple[pd.DataFrame, dict[str, Any]]:
     return table.to_pandas(), read_about(content)
 
 
-def read_about(source: bytes | Path) -> dict[str, Any]:
+def read_about(source: bytes | Path) -> JsonObject:
     """Return what a Parquet file says of itself; nothing where rockwobble did not write it."""
     import pyarrow.parquet as pq
 
     metadata = pq.read_schema(io.BytesIO(source) if isinstance(source, bytes) else source).metadata or {}
-    found: dict[str, Any] = plain_json.loads(metadata.get(METADATA, b"{}"))
+    found: JsonObject = plain_json.loads(metadata.get(METADATA, b"{}"))
     return found

@@ -13,7 +13,12 @@ import numpy as np
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
+JsonObject = dict[str, Any]
+"""An object of JSON: who stored it knows what its members are."""
+Facts = Mapping[str, Any]
+"""What results or a motion say beside their tables, as JSON gives it back."""
 _FLOAT = "float"
+JsonValue = Any  # an object, a list, a text, a number, a truth or None
 
 
 def dumps(value: object, *, indent: int | None = None) -> str:
@@ -24,12 +29,12 @@ def dumps(value: object, *, indent: int | None = None) -> str:
     return json.dumps(_plain(value), indent=indent, allow_nan=False)
 
 
-def loads(text: str | bytes) -> Any:
+def loads(text: str | bytes) -> JsonValue:
     """Return what `dumps` was given, but for mappings and lists in place of dataclasses and tuples."""
     return json.loads(text, object_hook=_float)
 
 
-def fields_of(value: DataclassInstance) -> dict[str, Any]:
+def fields_of(value: DataclassInstance) -> JsonObject:
     """Return the fields of a dataclass by name."""
     return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .diagnostic import Diagnostic
+from .plain_json import Facts
 
 # a mean above this part of the peak is said beside it, and doubted: an offset that was not removed
 LARGEST_MEAN = 0.05
@@ -152,7 +152,7 @@ def _component(part: ComponentSource, *, named: bool) -> str:
     return " ".join(words)
 
 
-def source_from_plain(given: Mapping[str, Any] | None) -> RecordSource | None:
+def source_from_plain(given: Facts | None) -> RecordSource | None:
     """Return a source of its fields, as JSON gives them back."""
     if given is None:
         return None

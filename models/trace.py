@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -179,7 +179,7 @@ class Trace(Shown):
     followed_until: float = math.nan
     rest_intervals: Array = field(default_factory=lambda: np.empty((0, 2)))
     extrema: Array = field(default_factory=lambda: np.empty((0, 4)))
-    settings: Mapping[str, Any] = field(default_factory=dict)
+    settings: plain_json.Facts = field(default_factory=dict)
     time_step: float = math.nan
     wall_time: float = math.nan
     step_count: int = 0
@@ -359,7 +359,7 @@ class Trace(Shown):
         return {**given, "assumptions": self.assumptions, "passes": self.passes.to_dict("list")}
 
     @classmethod
-    def from_plain(cls, facts: Mapping[str, Any], samples: pd.DataFrame, case: Case) -> Trace:
+    def from_plain(cls, facts: plain_json.Facts, samples: pd.DataFrame, case: Case) -> Trace:
         """Return the trace of what `to_plain` and `to_frame` gave, and its case."""
         given, names = trace_file.trace_arguments(facts, samples), {field.name for field in fields(cls)}
         return cls(case=case, **{name: value for name, value in given.items() if name in names})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from .cylinder import cylinder_of
 from .diagnostic import Assumptions, Diagnostic
 from .ground_motion import GroundMotion
 from .parquet_file import pack, read
+from .plain_json import Facts, JsonObject
 from .record_source import source_from_plain
 from .tendon import Tendon
 from .trace_source import Array, Known
@@ -72,7 +73,7 @@ OF_TENDONS = ("elongation", "tendon_force")  # and of a body with a tendon
 FIELDS = ("time", "tilt", "tilt_rate", "rolling_angle", "twist", "contact_point", "centre_of_mass")
 
 
-def trace_arguments(facts: Mapping[str, Any], samples: pd.DataFrame) -> dict[str, Any]:
+def trace_arguments(facts: Facts, samples: pd.DataFrame) -> JsonObject:
     """Return the arguments of a trace, but its case, of what `Trace.to_plain` and its samples hold."""
     import pandas as pd
 
@@ -110,11 +111,11 @@ def trace_arguments(facts: Mapping[str, Any], samples: pd.DataFrame) -> dict[str
     }
 
 
-def _diagnostics(given: Iterable[Mapping[str, Any]]) -> tuple[Diagnostic, ...]:
+def _diagnostics(given: Iterable[Facts]) -> tuple[Diagnostic, ...]:
     return tuple(Diagnostic(**each) for each in given)
 
 
-def case_from_plain(given: Mapping[str, Any]) -> Case:
+def case_from_plain(given: Facts) -> Case:
     """Return the case of its fields, as JSON gives them back."""
     motion, initial = given["motion"], given["initial"]
     fields = {
@@ -131,7 +132,7 @@ def to_parquet(samples: pd.DataFrame, facts: Mapping[str, object], case: Case) -
     return pack(samples, {"case": case, "trace": facts})
 
 
-def from_parquet(path: str | Path) -> tuple[dict[str, Any], pd.DataFrame, Case]:
+def from_parquet(path: str | Path) -> tuple[JsonObject, pd.DataFrame, Case]:
     """Return facts, samples and case of a file that `packed` made.
 
     Raises

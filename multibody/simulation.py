@@ -23,7 +23,7 @@ from .excitation import StepMeans
 from .extrapolated_step import EXTRAPOLATED, FINEST, extrapolate, require_finest
 from .guard import check_time_step
 from .passes import STEPS_OF_A_PASS, TurningPoint, faint_openings, passes_between, true_swings
-from .protocol import Engine, Settings
+from .protocol import Engine, Settings, Stepper
 from .reaction import EARLY
 from .recorder import COLUMNS, Recorder
 from .scene import (
@@ -315,7 +315,7 @@ def resolved_settings(
 
 
 @contextlib.contextmanager
-def open_scene(case: Case, engine: str, support: str, settings: Settings) -> Iterator[Any]:
+def open_scene(case: Case, engine: str, support: str, settings: Settings) -> Iterator[Stepper]:
     """Open the scene of a case as `simulate` does at its default step, for who wants to step it alone.
 
     Yields

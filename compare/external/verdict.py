@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import pandas as pd
@@ -175,8 +175,16 @@ def first_passage(trace: Trace, tilt: float) -> float:
     return exceeds(time, trace.tilt, tilt, 3.0)
 
 
-def mistakes_of(row: Any) -> tuple[Mistake, ...]:
-    """Return the likely mistakes of a row of the summary, a named tuple."""
+class JudgedRow(Protocol):
+    """A row of the summary, with the columns that say what explains its differences."""
+
+    likely_mistake: Sequence[str]
+    likely_mistake_in: Sequence[str]
+    likely_mistake_value: Sequence[float]
+
+
+def mistakes_of(row: JudgedRow) -> tuple[Mistake, ...]:
+    """Return the likely mistakes of a row of the summary."""
     columns = zip(row.likely_mistake, row.likely_mistake_in, row.likely_mistake_value, strict=True)
     return tuple(
         (Loss if code in LOSSES else Mistake)(code=code, concerns=part, value=value)

@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypedDict, TypeVar
 
 from rockwobble.models import plain_json
 from rockwobble.models.parquet_file import pack, read
@@ -163,11 +163,19 @@ def open_table_cache(
     return open_cache(folder, kind, name=name, pack=to_bytes, unpack=lambda _, content: read(content)[0])
 
 
-def unfinished_results(folder: str | Path) -> list[dict[str, Any]]:
+class UnfinishedResults(TypedDict):
+    """Results in a folder that have not come to their end: kind, and tasks done and in all."""
+
+    kind: str
+    done: int
+    total: int
+
+
+def unfinished_results(folder: str | Path) -> list[UnfinishedResults]:
     """Return kind, done and total tasks of the results in a folder that have not come to their end."""
-    found = []
+    found: list[UnfinishedResults] = []
     for path in sorted(Path(folder).glob(f"{CACHE}/*/{_PLAN}")):
         plan = plain_json.loads(path.read_bytes())
         done = len(list(path.parent.glob("*.parquet")))
-        found.append({**plan, "done": min(done, plan["total"])})
+        found.append({"kind": plan["kind"], "done": min(done, plan["total"]), "total": plan["total"]})
     return found

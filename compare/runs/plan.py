@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field, fields
-from functools import partial
 from numbers import Integral, Real
-from typing import Any, TypeVar, get_type_hints
+from typing import TypeVar, get_type_hints
 
 T = TypeVar("T")
 _KEY = "option"
@@ -55,14 +53,42 @@ class Option:
         return " and ".join(part for part in (low, high) if part) or "finite"
 
 
-def option(default: T, text: str, *, group: str = "Method", **more: Any) -> T:
-    """Return the field of a plan that is an option; `text` is its help, `more` are attributes of `Option`."""
-    return field(default=default, metadata={_KEY: Option(help=text, group=group, **more)})
+@dataclass(frozen=True, slots=True)
+class OptionsIn:
+    """What makes the fields of a plan that are options, in one group of the help text."""
+
+    group: str
+
+    def __call__(
+        self,
+        default: T,
+        text: str,
+        *,
+        group: str = "",
+        least: float = -math.inf,
+        most: float = math.inf,
+        above: float = -math.inf,
+        below: float = math.inf,
+        choices: tuple[str, ...] = (),
+        form: str = "",
+        flag: str = "",
+    ) -> T:
+        """Return the field of a plan that is an option: its help, and attributes of `Option`."""
+        stated = Option(
+            help=text,
+            group=group or self.group,
+            least=least,
+            most=most,
+            above=above,
+            below=below,
+            choices=choices,
+            form=form,
+            flag=flag,
+        )
+        return field(default=default, metadata={_KEY: stated})
 
 
-def options_in(group: str) -> Callable[..., Any]:
-    """Return `option` for the options of one group."""
-    return partial(option, group=group)
+option = OptionsIn("Method")
 
 
 class Plan:

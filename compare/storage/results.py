@@ -6,9 +6,10 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
+from typing import TYPE_CHECKING, ClassVar, Self, cast
 
 from rockwobble.models import plain_json
+from rockwobble.models.plain_json import Facts
 from rockwobble.models.shown import Shown, brief
 
 from .claim import claim_on
@@ -36,7 +37,7 @@ class Results(Shown):
     kind: ClassVar[str]
     kinds: ClassVar[dict[str, type[Results]]] = {}
     tables: Mapping[str, pd.DataFrame]
-    facts: Mapping[str, Any]
+    facts: Facts
     manifest: Manifest | None = None
 
     def __post_init__(self) -> None:

@@ -15,7 +15,7 @@ import importlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from types import ModuleType
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -184,7 +184,9 @@ class _ExudynStepper:
         system = self._container.AddSystem()
         ground = system.AddObject(items.ObjectGround())
 
-        def add_body(mass: float, inertia: list[float], pose: list[float], rates: list[float]) -> Any:
+        def add_body(
+            mass: float, inertia: list[float], pose: list[float], rates: list[float]
+        ) -> tuple[int, int]:
             """Return the numbers of the node and the object of a rigid body under gravity and excitation."""
             node = system.AddNode(
                 items.NodeRigidBodyEP(
@@ -202,7 +204,7 @@ class _ExudynStepper:
                     markerNumber=centre, loadVectorUserFunction=self._excitation
                 )
                 system.AddLoad(push)
-            return node, made
+            return int(node), int(made)
 
         def add_rim(plane: int, up: float) -> int:
             """Let the base, or the top, roll on the plane of a body; return the marker of that body."""

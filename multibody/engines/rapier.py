@@ -19,7 +19,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from types import ModuleType
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -217,8 +217,8 @@ def _build(rapier: ModuleType, scene: Scene, settings: RapierSettings) -> tuple[
     how.contact_softness = how.static_contact_softness = softness
     bodies, colliders = world.rigid_bodies, world.colliders
 
-    def add_plane(kind: Any, up: float) -> Any:
-        handle = bodies.insert(kind.build())
+    def add_plane(kind: object, up: float) -> object:
+        handle = bodies.insert(cast("Any", kind).build())
         plane = rapier.Collider.halfspace((0.0, 0.0, up)).density(0.0).friction(scene.friction)
         colliders.insert_with_parent(plane.build(), handle, bodies)
         return bodies[handle]

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import wraps
-from typing import Any, Protocol, overload
+from typing import Protocol, cast, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -60,7 +60,7 @@ def _of_tilts(function: Callable[..., Array]) -> _OfTilts:
     @wraps(function)
     def wrapper(
         cylinder: Cylinder, tilt: ArrayLike, *, gravity: float = 9.81, tendon: Tendon | None = None
-    ) -> Any:
+    ) -> float | Array:
         theta, largest, name = np.asarray(tilt, dtype=float), cylinder.alpha, "alpha"
         if tendon is not None:
             largest = min(balance(body_under(cylinder, gravity, tendon)), 0.5 * np.pi)
@@ -72,7 +72,7 @@ def _of_tilts(function: Callable[..., Array]) -> _OfTilts:
         values = function(cylinder, theta, gravity=gravity, tendon=tendon)
         return values if np.ndim(tilt) else float(values)
 
-    return wrapper
+    return cast("_OfTilts", wrapper)
 
 
 @_of_tilts

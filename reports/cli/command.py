@@ -40,7 +40,7 @@ def takes_options(command: Callable[..., None]) -> Callable[..., None]:
             parameters[name] = parameter.replace(kind=parameter.KEYWORD_ONLY, annotation=own[name])
 
     @wraps(command)
-    def with_options(**given: Any) -> None:
+    def with_options(**given: object) -> None:
         with user_input():
             made = {name: _make(kind, given) for name, kind in stated.items()}
         others = {name: value for name, value in given.items() if name in own and name not in stated}
@@ -95,7 +95,7 @@ class StrictCommand(TyperCommand):
     count in silence. Options that may be repeated stay so.
     """
 
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+    def parse_args(self, ctx: object, args: list[str]) -> list[str]:
         """Return the arguments that are left when the options are taken.
 
         Raises
@@ -103,12 +103,13 @@ class StrictCommand(TyperCommand):
         UsageError
             If a text is empty, an option comes twice, or a value is none of its kind.
         """
-        given, _, order = self.make_parser(ctx).parse_args(args=list(args))
-        if not ctx.resilient_parsing:  # not while a shell asks how a line could go on
-            _refuse_empty(ctx, given, order)
-            _refuse_twice(ctx, order)
+        context: Any = ctx
+        given, _, order = self.make_parser(context).parse_args(args=list(args))
+        if not context.resilient_parsing:  # not while a shell asks how a line could go on
+            _refuse_empty(context, given, order)
+            _refuse_twice(context, order)
         try:
-            return super().parse_args(ctx, args)
+            return super().parse_args(context, args)
         except typer.BadParameter as error:
             text = given.get(getattr(error.param, "name", None) or "")
             if isinstance(text, str) and text not in error.message and ", got " not in error.message:

@@ -114,10 +114,10 @@ def _value(text: str) -> int | float | str:
     return text
 
 
-def panel(title: str) -> Callable[..., Any]:
+def panel(title: str) -> Callable[..., object]:
     """Return what makes an option in a panel of the help text; without names it has that of its parameter."""
 
-    def option(help_text: str, *names: str, **more: Any) -> Any:
+    def option(help_text: str, *names: str, **more: Any) -> object:
         return typer.Option(*names, help=help_text, rich_help_panel=title, **more)
 
     return option

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 import typer
 
 import rockwobble as rw
-from rockwobble.compare.runs.plan import Plan, options_in
+from rockwobble.compare.runs.plan import OptionsIn, Plan
 
 from ..console import echo, interruptible, user_input
 from ..pages.cases import record_lines
@@ -30,7 +30,7 @@ from .problem import (
     stated_options,
 )
 
-_several = options_in("Many ground motions")
+_several = OptionsIn("Many ground motions")
 
 # of a problem, what the model of the page has not
 _NOT_OF_PAGE = {

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 import rockwobble as rw
-from rockwobble.compare.runs.plan import Plan, option, options_in
+from rockwobble.compare.runs.plan import OptionsIn, Plan, option
 from rockwobble.compare.studies.plans import MASS
 
 from ..pages.command_line import command_line
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 # length of a free response where the user does not say [s]
 FREE_DURATION = 10.0
-_cylinder, _ground, _release, _tendon = map(options_in, ("Cylinder", "Ground motion", "Release", "Tendon"))
+_cylinder, _ground, _release, _tendon = map(OptionsIn, ("Cylinder", "Ground motion", "Release", "Tendon"))
 SEMIDIAGONAL, TAN_ALPHA = 6.0, 0.2  # [m], [-]
 
 

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import rockwobble as rw
 import rockwobble.compare as rc
-from rockwobble.compare.runs.plan import Plan, options_in
+from rockwobble.compare.runs.plan import OptionsIn, Plan
 from rockwobble.compare.studies.plans import GridPlan
 
 from . import options
@@ -17,7 +17,7 @@ from .options import settings
 from .problem import WAYS, Body, Reading, first_given, under_slab
 
 DEFAULT_COUNT = 100  # of synthetic motions, where the user does not say
-_motions = options_in("Many ground motions")
+_motions = OptionsIn("Many ground motions")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,7 +163,7 @@ class ManyMethods:
         return [*chosen, *runs]
 
 
-_hazard = options_in("Hazard")
+_hazard = OptionsIn("Hazard")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -225,7 +225,7 @@ class Hazard(Plan):
         )
 
 
-_motion = options_in("Ground motion")
+_motion = OptionsIn("Ground motion")
 
 
 @dataclass(frozen=True, kw_only=True)

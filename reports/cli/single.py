@@ -13,7 +13,7 @@ import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
-from rockwobble.compare.runs.plan import Plan, options_in
+from rockwobble.compare.runs.plan import OptionsIn, Plan
 from rockwobble.compare.studies.plans import AdvicePlan, ModelPlan
 
 from ..console import FAILED, complain, echo, interruptible, show_and_save, shown_progress, user_input
@@ -34,7 +34,7 @@ from .suite_choice import (
 if TYPE_CHECKING:
     from rockwobble.models.case import TimeStep
 
-_external = options_in("Trajectory of a shake table or another code")
+_external = OptionsIn("Trajectory of a shake table or another code")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,7 +12,7 @@ import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
-from rockwobble.compare.runs.plan import Plan, options_in
+from rockwobble.compare.runs.plan import OptionsIn, Plan
 
 from ..console import (
     FAILED,
@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from rockwobble.compare.check.baseline import Baseline
     from rockwobble.compare.check.verdict import Entry
 
-_subject = options_in("Subject (default: the reduced models, and the engines that are installed)")
-_output = options_in("Output for programs")
+_subject = OptionsIn("Subject (default: the reduced models, and the engines that are installed)")
+_output = OptionsIn("Output for programs")
 Subject = dict[str, Any]  # arguments of `rockwobble.check`
 _STEP = "Time step of the engine, in s. Default: its default."
 

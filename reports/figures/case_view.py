@@ -10,13 +10,14 @@ from typing import Protocol, cast
 import pandas as pd
 
 from rockwobble.compare import Comparison, ErrorBudget, own_model
+from rockwobble.compare.external.verdict import JudgedRow
 from rockwobble.compare.metrics.pair import start_of
 from rockwobble.models import Case, Diagnostic, Run, Trace
 
 from .palette import Style, label_styles
 
 
-class SummaryRow(Protocol):
+class SummaryRow(JudgedRow, Protocol):
     """A row of the summary, or of the agreement matrix: what is read here of its columns."""
 
     case: str

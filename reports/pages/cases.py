@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rockwobble.models import Case, Cylinder, GroundMotion
+    from rockwobble.models.plain_json import Facts
 
 
 def describe(case: Case) -> list[str]:
@@ -59,7 +60,7 @@ _GRAVITY = 9.81  # [m/s^2], of which a page says nothing
 DIFFERS = "differs"  # a condition that cases have several of
 
 
-def conditions(facts: Mapping[str, Any]) -> list[str]:
+def conditions(facts: Facts) -> list[str]:
     """Return a line on each condition of a study that is not the usual one.
 
     Parameters

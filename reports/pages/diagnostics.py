@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 from rockwobble.models import Diagnostic
 from rockwobble.models.diagnostic import FAILURES
 from rockwobble.models.doubts import GRAVITIES, LENGTHS
+from rockwobble.models.plain_json import Facts
 from rockwobble.models.records.plausibility import likely_unit
 
 # why halving the step did not settle it
@@ -163,7 +163,7 @@ def remarks(facts: Iterable[Diagnostic]) -> str:
     return "; ".join(map(sentence, facts))
 
 
-def warnings(doubts: Iterable[Mapping[str, Any]]) -> list[str]:
+def warnings(doubts: Iterable[Facts]) -> list[str]:
     """Return a line on each doubt about records, lengths or gravity, as `doubts_of_cases` gives them."""
     lines = []
     for doubt in doubts:

@@ -263,7 +263,8 @@ def to_html(text: str) -> str:
 
 @cache
 def _environment() -> Environment:
-    found = environment(autoescape=lambda name: str(name).endswith(".html.j2"), finalize=_escape)
+    found = environment(autoescape=lambda name: str(name).endswith(".html.j2"))
+    found.finalize = _escape
     found.filters |= {"number": number, "code": lambda text: Safe(f"`{text}`"), "md": Safe}
     return found
 

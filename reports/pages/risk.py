@@ -16,7 +16,7 @@ _FEWEST = 3  # motions that overturn, of which resamples make an interval
 _TAIL, _SCALED = 0.1, 0.5
 
 
-def risk_values(found: Fragility) -> dict[str, Any] | None:
+def risk_values(found: Fragility) -> dict[str, object] | None:
     """Return the values of the template of the risk; None without a hazard."""
     if "risk" not in found.tables:
         return None

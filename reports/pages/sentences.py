@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 from rockwobble.models.case import REDUCED
 
@@ -54,8 +54,8 @@ _FILTERS = {
 }
 
 
-def environment(**options: Any) -> jinja2.Environment:
-    """Return what reads the templates; more options are those of `jinja2.Environment`."""
+def environment(autoescape: bool | Callable[[str | None], bool] = False) -> jinja2.Environment:
+    """Return what reads the templates."""
     import jinja2
 
     found = jinja2.Environment(
@@ -63,7 +63,7 @@ def environment(**options: Any) -> jinja2.Environment:
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
-        **options,
+        autoescape=autoescape,
     )
     found.filters |= _FILTERS
     found.tests["known"] = math.isfinite

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,6 @@ from rockwobble.compare.studies.plans import SpectrumPlan
 from rockwobble.compare.studies.spectrum.maps import TiltMaps
 from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.compare.studies.spectrum.study import planar_contrast, unconservative_from
-from rockwobble.models import el_centro_1940
 
 from . import Statement, verdict_of
 
@@ -30,14 +28,13 @@ _PROBES = 5  # random intensities below each lowest, for each intensity of the g
 _EVERY = 0.95  # share of the sizes that may pass for all of them: single ones are a matter of chance
 
 
-def problem(grid: int) -> dict[str, Any]:
-    """Return the arguments of `tilt_maps`: `grid` sizes and as many intensities."""
-    plan = SpectrumPlan(
+def plan_of(grid: int) -> SpectrumPlan:
+    """Return the plan of the figure: `grid` sizes and as many intensities."""
+    return SpectrumPlan(
         semidiagonals=np.linspace(*SpectrumPlan.SIZES[:2], grid).tolist(),
         intensities=np.linspace(*SpectrumPlan.INTENSITIES[:2], grid).tolist(),
         probes=_PROBES * grid,
     )
-    return {"tan_alpha": TAN_ALPHA, "motion": el_centro_1940(), "plan": plan}
 
 
 def lowest_on_axes(spectrum: TiltMaps, *, own: bool) -> Mapping[str, Array]:

@@ -19,7 +19,7 @@ from rockwobble.compare.storage.results import Results
 from rockwobble.compare.studies.spectrum.maps import TiltMaps, maps_of, tilt_maps
 from rockwobble.compare.studies.spectrum.parts import SERIES
 from rockwobble.compare.studies.spectrum.study import tables_of
-from rockwobble.models import Run
+from rockwobble.models import Run, el_centro_1940
 from rockwobble.models.cylinder import PIER
 
 from ..figures.palette import DARK, ORDER, SHADED, Style
@@ -65,7 +65,14 @@ def compute(grid: int, progress: ProgressCallback | None = None, resume: Path | 
         modes = free.free_modes()
     with stage("figure 5"):
         shaken = earthquake.shaken()
-    spectrum = tilt_maps(**overturning.problem(grid), progress=progress, resume=resume, kind=KIND)
+    spectrum = tilt_maps(
+        overturning.TAN_ALPHA,
+        el_centro_1940(),
+        plan=overturning.plan_of(grid),
+        progress=progress,
+        resume=resume,
+        kind=KIND,
+    )
     found = [
         *free.period_statements(curves),
         *free.mode_statements(modes),

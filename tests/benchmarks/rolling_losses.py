@@ -13,7 +13,7 @@ import dataclasses
 import math
 import time
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -257,10 +257,10 @@ def contact_shares() -> pd.DataFrame:
         for share in (0.0, 0.004, 0.02):
             case = _released(share, spin=0.5, friction=GRIP["mujoco"], duration=1.0, cylinder=cylinder)
             with open_scene(case, "mujoco", "recess", {}) as stepper:
-                counts = []
+                counts, inside = [], cast("Any", stepper)
                 for still in np.zeros((_WATCHED, 1, 3)):
                     stepper.advance(still)
-                    counts.append(stepper.counts().contacts)
+                    counts.append(inside.counts().contacts)
             rows.append((body, share, float(np.mean(counts)) / ends))
     return pd.DataFrame(rows, columns=["body", "delta_b", "in_contact"])
 

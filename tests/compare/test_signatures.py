@@ -34,3 +34,40 @@ def test_a_study_names_the_options_of_its_plan(study: Callable[..., Any], plan: 
             assert parameters[name].default == getattr(own, name), name
             assert stated[name] == types[name], name
         assert re.search(rf"^(.*, )?{name}(, .*)? : ", inspect.getdoc(study) or "", re.MULTILINE), name
+
+
+PARTS = (rw, rw.models, rw.reduced, rw.multibody, rw.compare)
+# whose options are settings that an engine or a model names, refused there by name
+PASS_SETTINGS = {"Run", "check", "simulate"}
+
+
+def public_functions() -> dict[str, Callable[..., object]]:
+    """Return every public function, and every method of a public class, by name."""
+    found: dict[str, Callable[..., object]] = {}
+    for part in PARTS:
+        for name in part.__all__:
+            value = getattr(part, name)
+            if inspect.isclass(value) and value.__module__.startswith("rockwobble"):
+                if inspect.isfunction(value.__init__):
+                    found[name] = value.__init__
+                found |= {
+                    f"{name}.{own}": each
+                    for own, each in inspect.getmembers(value, inspect.isfunction)
+                    if not own.startswith("_") and each.__module__.startswith("rockwobble")
+                }
+            elif inspect.isfunction(value):
+                found[f"{name} of {part.__name__}"] = value
+    return found
+
+
+@pytest.mark.parametrize("name", public_functions())
+def test_every_parameter_of_a_public_function_is_named_and_typed(name: str) -> None:
+    function = public_functions()[name]
+    for parameter in inspect.signature(function).parameters.values():
+        if parameter.name == "self":
+            continue
+        annotation = str(parameter.annotation)
+        assert parameter.annotation is not parameter.empty, parameter.name
+        assert not re.search(r"\bAny\b", annotation), parameter
+        if parameter.kind is parameter.VAR_KEYWORD:
+            assert name.partition(" ")[0] in PASS_SETTINGS, parameter

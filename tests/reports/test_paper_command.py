@@ -26,9 +26,8 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         # three neighbours tell as much of the command as forty do
         patch.setattr(earthquake, "_NEIGHBOURS", (0.95, 1.0, 1.05))
         # and coarse steps of the search of figure 6 as much as fine ones
-        asked = overturning.problem(6)
-        asked["plan"] = replace(asked["plan"], search_step=0.2)
-        patch.setattr(overturning, "problem", lambda grid: asked)
+        asked = replace(overturning.plan_of(6), search_step=0.2)
+        patch.setattr(overturning, "plan_of", lambda grid: asked)
         folder = tmp_path_factory.mktemp("paper")
         with pytest.raises(SystemExit) as ended:
             main(["figures", "--grid", "6", "--out", str(folder)])

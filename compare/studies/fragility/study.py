@@ -15,7 +15,7 @@ from rockwobble.models import Cylinder, GroundMotion, HazardCurve, Run
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
 from rockwobble.models.number_checks import require_each, require_positive
-from rockwobble.models.plain_json import fields_of
+from rockwobble.models.plain_json import Facts, fields_of
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.trace import NO_PEAK
 
@@ -220,7 +220,7 @@ def known_ratio(ratio: float) -> float | None:
     return float(ratio) if 0.0 < ratio < math.inf else None
 
 
-def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Mapping[str, Any]) -> Fragility:
+def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Facts) -> Fragility:
     """Return the fragility by the runs of the plan that `facts` state."""
     if runs["outcome"].isin(NO_PEAK).all():
         raise ValueError(f"a fragility needs runs that do not fail, got {len(runs)} runs that all failed")

@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, WobblingFrame
 from rockwobble.models.number_checks import require_increasing
+from rockwobble.models.plain_json import Facts
 
 from ...metrics.pair import overturned
 from ...runs.choice import require_runnable
@@ -261,7 +261,7 @@ def record_frame(motion: GroundMotion) -> pd.DataFrame:
     return pd.DataFrame(dict(zip("xyz", motion.acceleration.T, strict=False)))
 
 
-def maps_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, Any]) -> TiltMaps:
+def maps_of(tables: Mapping[str, pd.DataFrame], facts: Facts) -> TiltMaps:
     """Return the maps of stored tables, with the same bits."""
     cells, lowest = tables["spectrum"], tables["lowest"]
     motion = GroundMotion(tables["record"].to_numpy(), **facts["motion"])
