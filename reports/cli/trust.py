@@ -162,7 +162,7 @@ class OutputOptions(Plan):
             print(f"Written to {self.out}: check.html, check.md, manifest.json, results.parquet")
         for path, text_of in ((self.json, as_json), (self.junit, as_junit)):
             if path is not None:
-                replace_files(path.parent, {path.name: text_of(found, seconds, plan).encode()})
+                replace_files(path.parent, {path.name: text_of(found, plan).encode()})
         if self.markdown is not None:
             try:  # the summary of a CI job may hold pages of other steps
                 with self.markdown.open("a", encoding="utf-8") as file:
