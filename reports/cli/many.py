@@ -20,7 +20,18 @@ from ..pages.cases import case_warnings, describe, record_lines, warnings_about
 from . import options
 from .command import takes_options
 from .outputs import claim_folder
-from .problem import BODY, Body, Problem, Record, refuse, refuse_options_of_engines, unread
+from .problem import (
+    BODY,
+    Body,
+    Problem,
+    Record,
+    Steel,
+    refuse,
+    refuse_options_of_engines,
+    under_slab,
+    unread,
+    with_steel,
+)
 from .several import GridOptions, Hazard, ManyMethods, ManyMotions, cylinders_of
 from .suite_choice import chosen_runs, refuse_problem_options, say_what_is_left_out, without_missing
 
@@ -43,6 +54,7 @@ def fragility(
     body: Body,
     methods: ManyMethods,
     plan: FragilityPlan,
+    steel: Steel,
     hazard: Hazard,
     cylinder: Cylinders = None,
     workers: options.Workers = None,
@@ -76,6 +88,7 @@ def fragility(
                 of_body = BODY - {"slab_mass_ratio", "columns"}
                 refuse(context, of_body, "does not go with --cylinder, which states the cylinder")
             bodies = cylinders_of(cylinder, body)
+            plan = with_steel(context, plan, steel, list(bodies.values()), plan.gravity)
             tied = plan.tendon is not None
             chosen = methods.methods(next(iter(bodies.values())), tendon=tied)
             methods_of(chosen, restitution=plan.restitution)  # before motions are read
@@ -121,6 +134,7 @@ def spectrum(
     context: typer.Context,
     record: Record,
     plan: SpectrumPlan,
+    steel: Steel,
     tan_alpha: Annotated[float, options.body(options.SLENDERNESS)] = 0.1,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-spectrum"),
@@ -146,15 +160,19 @@ def spectrum(
     """
     with interruptible(out):
         with user_input():
+            import numpy as np
+
             from rockwobble.compare.studies.spectrum.maps import intensity_unit, require_cases
 
             motion = record.motion()
             assert motion is not None  # without a release there always is one
             intensity_unit(tan_alpha, motion, plan.gravity)
             require_cases(tan_alpha, motion, plan)
-            slender = rw.Case(
-                rw.Cylinder(semidiagonal=1.0, tan_alpha=tan_alpha), motion, gravity=plan.gravity
-            )
+            sizes = np.linspace(*plan.SIZES) if plan.semidiagonals is None else plan.semidiagonals
+            bodies = [rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha) for size in sizes]
+            plan = with_steel(context, plan, steel, bodies, plan.gravity)
+            body = under_slab(bodies[0], plan.slab_mass_ratio or None, None)
+            slender = rw.Case(body, motion, gravity=plan.gravity, tendon=plan.tendon)
             claim_folder(context)
         print(
             f"Cylinders: tan alpha = {tan_alpha:g} (alpha = {math.degrees(slender.cylinder.alpha):.4g} deg)"
@@ -305,6 +323,7 @@ ChunkSize = Annotated[
 def sweep(
     context: typer.Context,
     grid: GridOptions,
+    steel: Steel,
     suite: SuiteFile = None,
     model: Models = None,
     workers: options.Workers = None,
@@ -327,9 +346,15 @@ def sweep(
     with user_input():
         plan: rc.Grid | rw.Suite
         if suite is None:
-            plan = grid.grid(model)
+            made = grid.grid(model)
+            bodies = [
+                rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
+                for size in made.semidiagonals
+                for tan_alpha in made.tan_alphas
+            ]
+            plan = with_steel(context, made, steel, bodies, made.gravity)
         else:
-            stated = {each.name for each in fields(GridOptions)}
+            stated = {each.name for each in (*fields(GridOptions), *fields(Steel))}
             refuse(context, stated, f"does not go with a suite, got {suite}: the file states the problems")
             plan = _suite(suite, model)
         claim_folder(context)

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 
 import rockwobble as rw
 from rockwobble.compare.runs.plan import OptionsIn, Plan, option
-from rockwobble.compare.studies.plans import MASS
+from rockwobble.compare.studies.plans import MASS, TendonPlan
 
 from ..pages.command_line import command_line
 from . import options
@@ -225,7 +225,74 @@ class Release(Plan):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Restraint(Plan):
+class Steel(Plan):
+    """The options that state the tendon of one body by what a drawing gives."""
+
+    tendon_force: float | None = _tendon(
+        None, "Prestress, in N; with --tendon-rigidity, --tendon-length and --mass.", least=0.0
+    )
+    tendon_rigidity: float | None = _tendon(None, "Axial rigidity E A of the tendon, in N.", above=0.0)
+    tendon_length: float | None = _tendon(
+        None, "Free length of the tendon between its anchors, in m.", above=0.0
+    )
+    mass: float | None = option(None, MASS, group="Cylinder", above=0.0)
+
+    def of_steel(
+        self, given: str, cylinder: rw.Cylinder, gravity: float, yield_force: float | None = None
+    ) -> rw.Tendon:
+        """Return the tendon of one column; `given`: an option of steel, `yield_force` [N].
+
+        Raises
+        ------
+        ValueError
+            If an option is out of range, or one is missing.
+        """
+        if self.tendon_rigidity is None or self.tendon_length is None or self.mass is None:
+            needed = ("tendon_rigidity", "tendon_length", "mass")
+            lacks = [f"--{name.replace('_', '-')}" for name in needed if getattr(self, name) is None]
+            raise ValueError(f"{given} needs {' and '.join(lacks)} as well")
+        return rw.Tendon.from_steel(
+            prestress=self.tendon_force or 0.0,
+            axial_rigidity=self.tendon_rigidity,
+            length=self.tendon_length,
+            column_mass=1e3 * self.mass,
+            base_radius=cylinder.base_radius,
+            yield_force=yield_force,
+            gravity=gravity,
+        )
+
+
+_STEEL = ("tendon_force", "tendon_rigidity", "tendon_length")
+_RATIOS = ("tendon_prestress", "tendon_stiffness")
+TiedPlan = TypeVar("TiedPlan", bound=TendonPlan)
+
+
+def with_steel(
+    context: typer.Context, plan: TiedPlan, steel: Steel, cylinders: Sequence[rw.Cylinder], gravity: float
+) -> TiedPlan:
+    """Return the plan of a study with the tendon that steel states, in multiples of the one body.
+
+    Raises
+    ------
+    ValueError
+        If there are several bodies, of which each would need its own mass, or as `Steel.of_steel`.
+    """
+    given = _first_stated(steel, *_STEEL)
+    if not given:
+        refuse(context, {"mass"}, "belongs to a tendon in N, give --tendon-rigidity and --tendon-length")
+        return plan
+    refuse(context, _RATIOS, f"states a tendon in weights, got {given} in N beside it")
+    if len(cylinders) != 1:
+        raise ValueError(
+            f"{given} states the tendon of one body, got {len(cylinders)}: give --tendon-prestress and "
+            "--tendon-stiffness, multiples of weight and base radius of each"
+        )
+    tendon = steel.of_steel(given, cylinders[0], gravity)
+    return replace(plan, tendon_prestress=tendon.prestress, tendon_stiffness=tendon.stiffness)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Restraint(Steel):
     """The options that state a tendon: by ratios, or by what a drawing gives."""
 
     tendon_prestress: float | None = _tendon(
@@ -237,17 +304,9 @@ class Restraint(Plan):
     tendon_yield: float | None = _tendon(
         None, "Yield force of the tendon / weight of one column. Default: no yielding.", above=0.0
     )
-    tendon_force: float | None = _tendon(
-        None, "Prestress, in N; with --tendon-rigidity, --tendon-length and --mass.", least=0.0
-    )
-    tendon_rigidity: float | None = _tendon(None, "Axial rigidity E A of the tendon, in N.", above=0.0)
-    tendon_length: float | None = _tendon(
-        None, "Free length of the tendon between its anchors, in m.", above=0.0
-    )
     tendon_yield_force: float | None = _tendon(
         None, "Yield force of the tendon, in N. Default: no yielding.", above=0.0
     )
-    mass: float | None = option(None, MASS, group="Cylinder", above=0.0)
 
     def tendon(self, cylinder: rw.Cylinder, gravity: float) -> rw.Tendon | None:
         """Return the tendon of one column; None without any of its options.
@@ -257,9 +316,8 @@ class Restraint(Plan):
         ValueError
             If an option is out of range, one is missing, or two do not go together.
         """
-        ratios = ("tendon_prestress", "tendon_stiffness", "tendon_yield")
-        steel = ("tendon_force", "tendon_rigidity", "tendon_length", "tendon_yield_force")
-        ratio, drawn = (_first_stated(self, *names) for names in (ratios, steel))
+        ratio = _first_stated(self, *_RATIOS, "tendon_yield")
+        drawn = _first_stated(self, *_STEEL, "tendon_yield_force")
         if not drawn:
             if not ratio:
                 return None
@@ -270,17 +328,7 @@ class Restraint(Plan):
             )
         if ratio:
             raise ValueError(f"{drawn} states a tendon in N, got {ratio} in weights beside it")
-        if self.tendon_rigidity is None or self.tendon_length is None or self.mass is None:
-            raise ValueError(f"{drawn} needs --tendon-rigidity, --tendon-length and --mass, got it without")
-        return rw.Tendon.from_steel(
-            prestress=self.tendon_force or 0.0,
-            axial_rigidity=self.tendon_rigidity,
-            length=self.tendon_length,
-            column_mass=1e3 * self.mass,
-            base_radius=cylinder.base_radius,
-            yield_force=self.tendon_yield_force,
-            gravity=gravity,
-        )
+        return self.of_steel(drawn, cylinder, gravity, self.tendon_yield_force)
 
 
 def _first_stated(plan: Plan, *names: str) -> str:

@@ -7,6 +7,7 @@ import json
 from importlib.util import find_spec
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 import rockwobble as rw
@@ -67,7 +68,7 @@ def test_ratios_and_a_drawing_state_the_same_tendon(tmp_path: Path) -> None:
     [
         (
             ["simulate", "--tendon-force", "1e5"],
-            "--tendon-force needs --tendon-rigidity, --tendon-length",
+            "--tendon-force needs --tendon-rigidity and --tendon-length and --mass as well",
         ),
         (
             ["simulate", *STEEL, "--tendon-yield", "2"],
@@ -146,3 +147,70 @@ def test_a_case_with_a_tendon_leaves_flat_ground_out_by_default() -> None:
     assert named == (rw.Run("mujoco", "recess"), rw.Run("exudyn", "flat"))
     with pytest.raises(ValueError, match="a tendon is part of the models in the recess"):
         rw.comparison(tied, runs=named)
+
+
+ONE = {  # a study of one body of PIER's dimensions, and of two
+    "fragility": ["--synthetic", "2", "--model", "recess", "--levels", "2,4", "--resamples", "2"],
+    "spectrum": ["--intensity", "1,2,4", "--search-step", "0.5", "--probes", "0"],
+    "sweep": ["--scale", "2,3"],
+    "ensemble": ["--engine", "none", "--copies", "2", "--scale", "3", "--duration", "4"],
+}
+TABLES = {"fragility": "runs", "spectrum": "spectrum", "sweep": "sweep", "ensemble": "members"}
+BODY = rw.Cylinder.from_dimensions(base_radius=0.8, height=9.0)
+BY_SIZE = ["--semidiagonal", repr(BODY.semidiagonal), "--tan-alpha", repr(BODY.tan_alpha)]
+SIZE = {
+    "fragility": ["--diameter", "1.6", "--height", "9"],
+    "spectrum": BY_SIZE,
+    "sweep": BY_SIZE,
+    "ensemble": ["--diameter", "1.6", "--height", "9"],
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", ONE)
+def test_a_study_of_one_body_takes_the_tendon_of_its_drawing(command: str, tmp_path: Path) -> None:
+    drawn = rw.Tendon.from_steel(
+        prestress=400e3, axial_rigidity=30e6, length=10.0, column_mass=45e3, base_radius=0.8
+    )
+    ratios = ["--tendon-prestress", repr(drawn.prestress), "--tendon-stiffness", repr(drawn.stiffness)]
+    peaks = []
+    for name, options in {"drawn": STEEL, "ratios": ratios}.items():
+        given = [command, *SIZE[command], *ONE[command], *options, "--out", str(tmp_path / name)]
+        assert call(*given) == 0
+        table = pd.read_parquet(tmp_path / name / f"{TABLES[command]}.parquet")
+        peaks.append(table["peak_tilt"].to_numpy(float))
+    assert peaks[0].max() > 0.0
+    assert peaks[0] == pytest.approx(peaks[1], rel=1e-6)  # the base radius is known to rounding
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (
+            ["fragility", "--cylinder", "low=4,0.2", "--cylinder", "high=8,0.2", *STEEL],
+            "--tendon-force states the tendon of one body, got 2: give --tendon-prestress and",
+        ),
+        (["spectrum", *STEEL], "--tendon-force states the tendon of one body, got 100: give"),
+        (
+            ["sweep", "--semidiagonal", "6", "--tan-alpha", "0.1,0.2", *STEEL],
+            "--tendon-force states the tendon of one body, got 2: give",
+        ),
+        (
+            ["sweep", "--semidiagonal", "6", *STEEL, "--tendon-prestress", "0"],
+            "--tendon-prestress states a tendon in weights, got --tendon-force in N beside it",
+        ),
+        (["fragility", "--mass", "45"], "--mass belongs to a tendon in N, give --tendon-rigidity and"),
+        (
+            ["fragility", "--tendon-rigidity", "1e6"],
+            "--tendon-rigidity needs --tendon-length and --mass as well",
+        ),
+        (["sweep", "quick", "--tendon-length", "3"], "--tendon-length does not go with a suite, got quick"),
+    ],
+)
+def test_steel_of_no_one_body_is_refused_in_a_line(
+    arguments: list[str], line: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert call(*arguments, "--out", str(tmp_path / "out")) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1
+    assert said[0].startswith(f"rockwobble: {line}")
