@@ -30,7 +30,8 @@ extensions = [
     "numpydoc",
     "myst_nb",
     "sphinx_design",
-    "mathml",  # these four are in _extensions
+    "gallery",  # these five are in _extensions
+    "mathml",
     "mapping_table",
     "command_help",
     "first_use",
@@ -68,7 +69,8 @@ html_sidebars = {name: [] for name in ("start", "glossary", "references", "citin
 toc_object_entries_show_parents = "hide"
 html_context = {"default_mode": "auto"}
 html_theme_options = {
-    "logo": {"text": "rockwobble"},
+    "logo": {"text": f"rockwobble {version}"},
+    "header_links_before_dropdown": 6,  # the reference, too
     "navigation_depth": 2,
     "show_toc_level": 2,
     "secondary_sidebar_items": {"**": ["page-toc"], **{name: [] for name in (*NOTEBOOKS, "guide/limits")}},

@@ -101,7 +101,19 @@ Out = Annotated[
 ]
 
 
-def report(folder: Folder, out: Out = None, overwrite: options.Overwrite = False) -> None:
+Forms = Annotated[
+    list[str] | None,
+    options.output(
+        "Further files: figures as pdf or png, tables as tex (LaTeX). May be repeated.",
+        "--format",
+        metavar="pdf|png|tex",
+    ),
+]
+
+
+def report(
+    folder: Folder, out: Out = None, forms: Forms = None, overwrite: options.Overwrite = False
+) -> None:
     """Pages and figures of stored results, drawn again without new runs.
 
     The pages depend on the stored results only, not on the engines and records installed here. The results
@@ -115,18 +127,22 @@ def report(folder: Folder, out: Out = None, overwrite: options.Overwrite = False
     with interruptible(), user_input():
         from rockwobble.compare.storage.files import sole_writer
         from rockwobble.compare.storage.manifest import manifests_in, read_manifests, write_pages
+        from rockwobble.models.number_checks import require_one_of
 
+        for form in forms or ():
+            require_one_of("--format", form, ("pdf", "png", "tex"))
         require_writable(place)
         kinds = [made.kind for made in read_manifests(folder) if made.kind in KINDS]
         if not kinds:
-            raise ValueError(f"pages are drawn of {', '.join(KINDS)}; {folder} holds none of them")
+            raise ValueError(f"no results in {folder}; known kinds: {', '.join(KINDS)}")
         others = [] if overwrite or place.resolve() == folder.resolve() else manifests_in(place)
         if others:
             there = "; ".join(f"{each.kind} of `{each.command or 'another program'}`" for each in others)
             raise ValueError(
                 f"the folder {place} holds {there}: choose another by --out, or write there by --overwrite"
             )
-        drawn = {kind: stored_page(kind, folder).files() for kind in kinds}
+        found = {kind: stored_page(kind, folder) for kind in kinds}
+        drawn = {kind: {**page.files(), **page.exports(forms or ())} for kind, page in found.items()}
         with sole_writer(place):
             for kind, pages in drawn.items():
                 write_pages(place, kind, pages)

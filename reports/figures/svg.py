@@ -1,4 +1,4 @@
-"""Pictures by matplotlib: as SVG for a document, the same bytes for the same numbers, or as a figure."""
+"""Pictures by matplotlib: as SVG, PDF or PNG, the same bytes for the same numbers, or as a figure."""
 
 from __future__ import annotations
 
@@ -34,6 +34,7 @@ _GRID = "#dddddd"
 _STYLE: Any = {
     "svg.hashsalt": "rockwobble",
     "svg.fonttype": "none",  # text that can be searched, and a third of the file
+    "pdf.fonttype": 42,  # letters that journals accept
     # what is placed stays where it is, whatever the user has set
     "figure.autolayout": False,
     "figure.constrained_layout.use": False,
@@ -57,16 +58,25 @@ _EDGED_CELLS = 2500  # with more cells than these, a white edge would hide them
 _MOST_WRITTEN = 64
 # of the scale of colours: there white letters are read better
 _DARK = 0.6
+# no date: the same numbers give the same bytes
+_METADATA: dict[str, dict[str, Any]] = {
+    "svg": {"Date": None, "Creator": "rockwobble"},
+    "pdf": {"CreationDate": None, "Creator": "rockwobble"},
+    "png": {"Software": "rockwobble"},
+}
 _HATCHES = {"": "", "/": "//", "x": "xx", ".": ".."}
 
 
 def svg(picture: Picture, *, titled: bool = False) -> bytes:
     """Return a picture as SVG, perhaps with its title, where no document says it."""
+    return image(picture, "svg", titled=titled)
+
+
+def image(picture: Picture, form: str, *, titled: bool = False) -> bytes:
+    """Return a picture as "svg", "pdf" or "png"."""
     buffer = io.BytesIO()
     with mpl.rc_context(_STYLE):
-        figure(picture, titled=titled).savefig(
-            buffer, format="svg", dpi=_RASTER_DPI, metadata={"Date": None, "Creator": "rockwobble"}
-        )
+        figure(picture, titled=titled).savefig(buffer, format=form, dpi=_RASTER_DPI, metadata=_METADATA[form])
     return buffer.getvalue()
 
 

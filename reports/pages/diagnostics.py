@@ -16,53 +16,54 @@ from rockwobble.models.records.plausibility import likely_unit
 _UNSETTLED = {
     "fails": "a smaller step fails",
     "still_changes": "it still changes at the smallest step allowed",
-    "no_later": "a smaller step does not put off the divergence",
-    "no_closer": "a smaller step does not bring it closer",
-    "unresolved_pass": "a pass is left to chance, so that its error is not known",
-    "energy": "contact makes or takes energy, so that its error is not known",
+    "no_later": "a smaller step does not delay the divergence",
+    "no_closer": "a smaller step does not reduce the difference",
+    "unresolved_pass": "a near-upright pass is left to chance, so that the error is unknown",
+    "energy": "contact adds or dissipates energy, so that the error is unknown",
 }
 # why runs at successive steps have no limit
 _NOT_EXTRAPOLATED = {
     "fails": "a run at a coarser step fails",
     "diverged": "the runs diverge there",
-    "no_closer": "the runs do not come closer to one another",
-    "unresolved_pass": "a pass is left to chance there",
-    "energy": "contact makes or takes energy",
+    "no_closer": "the runs do not converge",
+    "unresolved_pass": "a near-upright pass is left to chance there",
+    "energy": "contact adds or dissipates energy",
 }
 # with the numbers of `_fields`
 _WORDS: Mapping[str, str] = {
-    "step_budget": "the {size:.0f} steps allowed were used up{at}: the motion chatters near upright, which "
-    "a larger rest threshold ends",
+    "step_budget": "the {size:.0f} steps allowed were used up{at}: the motion chatters near upright: "
+    "use a larger rest threshold",
     "tolerance": "no step met the tolerance of {bound:g}{at}",
     "slip": "contact slipped{since}",
     "lift_off": "the cylinder left the ground{at}",
     "tension": "contact is lost{at}, for {duration} in all: the ground would have to pull (normal force "
     "{size:.3g} weights)",
-    "friction_needed": "the rim would slip{at}, for {duration} in all: it needs a friction of {size:.3g}, "
-    "where there is {bound:g}",
+    "friction_needed": "the rim would slip{at}, for {duration} in all: friction demand {size:.3g}, friction "
+    "coefficient {bound:g}",
     "wall_contact": "the cylinder touched a wall{since}",
-    "energy": "contact {made} {amount:.1e} of the energy of the motion, which shows{since}",
-    "rolling_loss": "rolling resistance took {amount:.1e} of it besides",
-    "undecided": "it stays so near its balance that rounding or the error of the solution decides whether it "
-    "falls or turns back: whether it overturns is not known",
-    "solver": "the solver had not converged in {size:.0f} of the {bound:.0f} steps looked at",
+    "energy": "contact {made} {share:.2g} % of the energy of the motion; above the reporting threshold"
+    "{since}",
+    "rolling_loss": "rolling resistance dissipated another {share:.2g} % of it",
+    "undecided": "it stays so close to its balance that rounding or the error of the solution decides "
+    "whether it overturns: the outcome is unknown",
+    "solver": "the solver had not converged in {size:.0f} of {bound:.0f} steps examined",
     "early_uplift": "the base opened{at} at {percent:.2g} % less load than uplifts it: what follows from "
     "a small uplift is not known",
     "unresolved_pass": "{passes_are} closer to upright than the {bound:.1e} rad that contact resolves, "
     "first{at}",
-    "settled": "the tilt is, until {duration}, within {size:.1e} alpha of its limit for a vanishing step, "
-    "by Richardson with order {bound:.2g}",
-    "unsettled": "the tilt has not settled by halving the step: {why}; until {duration} it differs by "
-    "{size:.1e} alpha from that at twice the step",
-    "extrapolated": "the motion is, until {duration}, what runs at three time steps tend to, with order "
-    "{bound:.0f}: within {size:.1e} alpha, by estimate",
-    "not_extrapolated": "it is not extrapolated{later}, but the run at the finest time step: {why}",
+    "settled": "until {duration} the tilt is within {size:.1e} alpha of its limit at zero step, by "
+    "Richardson extrapolation with order {bound:.2g}",
+    "unsettled": "the tilt has not converged by halving the step: {why}; until {duration} it differs by "
+    "{size:.1e} alpha from the tilt at twice the step",
+    "extrapolated": "until {duration} the motion is the Richardson extrapolation of three time steps, of "
+    "order {bound:.0f}; estimated error {size:.1e} alpha",
+    "not_extrapolated": "no extrapolation{later}, where it is the run at the finest time step: {why}",
     "one_column": "the engine runs one of the {size:.0f} columns, under its share of a slab that only "
     "translates: whether the slab turns, or the columns keep in step, is not tested",
-    "side": "it passed through upright itself, first{at}: the ground had moved in one plane, and the side "
+    "side": "it passed exactly through upright, first{at}: the ground had moved in one plane, and the side "
     "of such a pass is undetermined",
-    "spent_spin": "rolling resistance has taken the spin, from a pass{at}: so near upright that only the "
-    "sense of rolling is left, in which it goes on",
+    "spent_spin": "rolling resistance has stopped the spin, in a near-upright pass{at}: only the sense of "
+    "rolling is left, in which the motion continues",
     "large_peak": "its peak is {size:.3g} g, more than {bound:g} g, which few records have{other_unit}",
     "unlike_components": "the peaks of its components differ by a factor of {size:.3g}, {detail} is the "
     "larger: their units may differ",
@@ -78,7 +79,7 @@ _WORDS: Mapping[str, str] = {
     "unlikely_step": "its time step is {size:g} s, {beyond} {bound:g} s as no recorder has: is the unit of "
     "its times another?",
     "ends_in_strong_motion": "it ends in strong motion, {percent:.0f} % of its peak: is it cut?",
-    "other_direction": "by its file, what stands in the place of {detail}",
+    "other_direction": "by its file, the component given as {detail}",
     "note": "{detail}",
     "missed_pass": "{passes_fell} between two samples, first{at}",
 }
@@ -86,8 +87,8 @@ _WORDS: Mapping[str, str] = {
 _UNKNOWN: Mapping[str, str] = {
     "tension": "contact is lost{at}: a joint holds the rim down",
     "friction_needed": "a joint holds the rim{at}, where the friction of the case would let it slip",
-    "unsettled": "the tilt has not settled by halving the step: {why}",
-    "rolling_loss": "rolling resistance took energy besides",
+    "unsettled": "the tilt has not converged by halving the step: {why}",
+    "rolling_loss": "rolling resistance dissipated energy besides",
     "one_column": "the engine runs one column, under a slab that only translates",
 }
 _INFINITE: Mapping[str, str] = {
@@ -98,18 +99,18 @@ _MANY: Mapping[str, str] = {
     "slip": "slipped",
     "lift_off": "left the ground",
     "wall_contact": "touched a wall",
-    "tension": "lost contact but for a joint",
+    "tension": "lost contact except for a joint",
     "friction_needed": "needed more friction than there is",
-    "energy": "lost or gained energy",
+    "energy": "lost or gained energy in contact",
     "solver": "had steps whose solver did not converge",
-    "unsettled": "did not settle with the time step",
+    "unsettled": "did not converge with the time step",
     "not_extrapolated": "could not be extrapolated in the time step to the end",
     "early_uplift": "opened before the load was at the rim",
     "unresolved_pass": "had passes closer to upright than contact resolves",
-    "undecided": "ended in motion that was not decided",
+    "undecided": "had an undecided end",
     "one_column": "ran one column, under a slab that only translates",
-    "side": "passed through upright itself",
-    "spent_spin": "rolled until the spin was spent",
+    "side": "passed exactly through upright",
+    "spent_spin": "rolled until their spin was dissipated",
 }
 
 
@@ -131,8 +132,8 @@ def _fields(fact: Diagnostic) -> dict[str, str | float]:
     return {
         "meaning": fact.meaning,
         "size": fact.size,
-        "amount": abs(fact.size),
-        "made": "made" if fact.size > 0.0 else "took",
+        "share": 100.0 * abs(fact.size),
+        "made": "added" if fact.size > 0.0 else "dissipated",
         "bound": fact.bound,
         "duration": _s(fact.duration),
         "detail": fact.detail,

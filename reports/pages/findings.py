@@ -44,9 +44,9 @@ _DIFFERENCES: Mapping[str, str] = {
     "uplift_direction": "direction of uplift",
 }
 _NOT_SPLIT: Mapping[str, str] = {
-    "unresolved_pass": "a pass closer to upright than contact resolves leaves it to chance",
-    "order": "runs at smaller time steps do not tend to a limit",
-    "error": "what they tend to is known too badly",
+    "unresolved_pass": "a near-upright pass that contact does not resolve leaves it to chance",
+    "order": "runs at smaller time steps do not converge",
+    "error": "the limit of small time steps is too uncertain",
 }
 
 
@@ -140,8 +140,7 @@ def notes(view: CaseView) -> str:
         said.append("All stay at rest: this excitation does not uplift the cylinder.")
     if swings := [label for label, trace in view.traces.items() if trace.peak_time > trace.time[-1]]:
         said.append(
-            f"The peak of {enumeration(swings)} is that of the swing that goes on when the run ends, which "
-            "the curves do not show."
+            f"The peak of {enumeration(swings)} comes after the end of the run, which the curves do not show."
         )
     said += [*_causes_in_words(causes), *(_mistakes(row) for row in sound if row.support == EXTERNAL)]
     said += [*early_sentences(view.rows), *budget_sentences(view.rows)]
@@ -154,14 +153,15 @@ def _causes_in_words(causes: Mapping[str, list[SummaryRow]]) -> list[str]:
     """Return a sentence on each cause of divergence, and what they mean together."""
     runs = {cause: _parted_runs(rows) for cause, rows in causes.items()}
     meanings = {
-        "support": "Support parts {}: on flat ground the cylinder may roll out of its place, which a recess "
-        "forbids.",
-        "walls": "Walls part {}: they stop the cylinder only where it has rolled out as far as their "
-        "clearance, and each touch takes energy, which no model knows.",
-        "of support": "That is a difference of support, not of accuracy.",
-        "pass": "Passes closer to upright than contact resolves, which leave the side to chance, part {}.",
-        "near passes": "Near passes, which amplify small differences, part {}.",
-        "method": "No pass parts {}, but an error: of the method, or of what it was given.",
+        "support": "Diverging because of the support: {}. On flat ground the cylinder may roll out of its "
+        "place, which a recess prevents.",
+        "walls": "Diverging because of the walls: {}. They stop the cylinder only after it has rolled out by "
+        "their clearance, and each impact dissipates energy, which the models neglect.",
+        "of support": "This is a difference of support, not of accuracy.",
+        "pass": "Diverging after near-upright passes that contact does not resolve, so that the side is left "
+        "to chance: {}.",
+        "near passes": "Diverging after near-upright passes, which amplify small differences: {}.",
+        "method": "Diverging without a near-upright pass, by an error of the method or of its input: {}.",
     }
     runs |= {"of support": ""} if {"support", "walls"} & {*causes} else {}
     said = [words.format(runs[cause]) for cause, words in meanings.items() if cause in runs]
@@ -288,11 +288,11 @@ def budget_sentences(summary: pd.DataFrame) -> list[str]:
     worth, found = large[large["not_split"] == ""], unexplained(known)
     said = [
         f"{_pair(row)}: {100 * row.unexplained_share:.0f} % of the difference of {small(row.whole_rms)} "
-        f"alpha stay unexplained (the extrapolation itself is known to {small(row.limit_error)} alpha)."
+        f"alpha remain unexplained (error of the extrapolation: {small(row.limit_error)} alpha)."
         for row in rows_of(found.head(_LISTED))
     ]
     if (more := len(found) - _LISTED) > 0:
-        said.append(f"So they do in {more} more row{'s' if more > 1 else ''} of the summary.")
+        said.append(f"The same holds for {more} more row{'s' if more > 1 else ''} of the summary.")
     not_split = large.loc[large["not_split"] != "", "not_split"].value_counts().to_dict()
     bound = small(WORTH_EXPLAINING)
     if len(worth):
@@ -323,7 +323,8 @@ def early_sentences(summary: pd.DataFrame) -> list[str]:
     """
     early = (summary["divergence"] == "earlier") & (summary["support"] != EXTERNAL)
     return [
-        f"{_pair(row)}: they diverge earlier than predicted, a finding." for row in rows_of(summary[early])
+        f"{_pair(row)}: they diverge earlier than predicted, which needs an explanation."
+        for row in rows_of(summary[early])
     ]
 
 
@@ -338,13 +339,13 @@ def divergence_counts(summary: pd.DataFrame) -> list[str]:
 _PARTS = ("model_form", "numerics", "unexplained")
 # by the largest part, or why there is none
 _ADVICE: Mapping[str, str] = {
-    "model_form": "Most of it is model form: the support moves by another model, which no step changes.",
+    "model_form": "Most of it is model form: the support follows another model, which no time step changes.",
     "numerics": "Most of it is numerics: a smaller time step removes it.",
     "unexplained": "Most of it is unexplained: contact, settings or support of the engine, or the model.",
     "unresolved_pass": "It is not split: a pass comes closer to upright than contact resolves, which leaves "
     "it to chance at any time step.",
-    "order": "It is not split: runs at smaller time steps do not tend to a limit.",
-    "error": "It is not split: what runs at smaller time steps tend to is known too badly.",
+    "order": "It is not split: runs at smaller time steps do not converge.",
+    "error": "It is not split: the limit of small time steps is too uncertain.",
 }
 
 

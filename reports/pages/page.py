@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import html
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
@@ -26,7 +27,7 @@ from rich.markdown import Markdown
 
 from ..figures.interactive import charts, colour_bar
 from ..figures.picture import Picture
-from ..figures.svg import svg
+from ..figures.svg import image, svg
 from .command_line import command_lines
 from .sentences import environment
 from .table import Row, Table, columns_of, number
@@ -108,6 +109,29 @@ class Page:
                 if self.alone is None or picture.name in self.alone
             },
         }
+
+    def exports(self, forms: Sequence[str]) -> dict[str, bytes]:
+        """Return its figures as "pdf" or "png", and its tables as "tex", by the names of their files.
+
+        A table has the name of the page and of the heading above it.
+        """
+        found: dict[str, bytes] = {}
+        for form in dict.fromkeys(forms):
+            if form == "tex":
+                found |= {f"{name}.tex": table.latex().encode() for name, table in self._named_tables()}
+            else:
+                found |= {f"{each.name}.{form}": image(each, form) for each in self.pictures}
+        return found
+
+    def _named_tables(self) -> Iterator[tuple[str, Table]]:
+        heading, seen = "", Counter[str]()
+        for part in self._parts("markdown"):
+            if isinstance(part, Table):
+                name = re.sub(r"[^a-z0-9]+", "-", f"{self.name} {heading}".lower()).strip("-")
+                seen[name] += 1
+                yield name + (f"-{seen[name]}" if seen[name] > 1 else ""), part
+            elif titles := re.findall(r"^##+ (.*)$", str(part), re.MULTILINE):
+                heading = titles[-1]
 
     def markdown(self) -> str:
         """Return the document."""

@@ -67,6 +67,58 @@ def _duration(seconds: float) -> str:
 _FORMS: Mapping[str, Callable[[float], str]] = {"percent": _percent, "duration": _duration}
 
 
+# what LaTeX reads as a command, and letters that its text fonts lack
+_LATEX = {
+    "\\": r"\textbackslash{}",
+    **{each: f"\\{each}" for each in "&%$#_{}"},
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "–": "--",
+    "\u00a0": "~",
+    "°": r"$^\circ$",
+    "−": "$-$",
+    "×": r"$\times$",
+    "·": r"$\cdot$",
+    "±": r"$\pm$",
+    "∞": r"$\infty$",
+    "√": r"$\surd$",
+    "≤": r"$\le$",
+    "≥": r"$\ge$",
+    "′": r"$'$",
+    "∣": "$|$",
+    "²": "$^2$",
+    "³": "$^3$",
+    **{
+        letter: rf"$\{name}$"
+        for letter, name in {
+            "α": "alpha",
+            "γ": "gamma",
+            "δ": "delta",
+            "θ": "theta",
+            "κ": "kappa",
+            "μ": "mu",
+            "µ": "mu",
+            "τ": "tau",
+            "φ": "varphi",
+            "ψ": "psi",
+        }.items()
+    },
+}
+
+
+def latex_text(text: str) -> str:
+    r"""Return a text as LaTeX shows it, with every special character escaped.
+
+    Examples
+    --------
+    >>> print(latex_text("peak_tilt [α], 5 %"))
+    peak\_tilt [$\alpha$], 5 \%
+    """
+    return "".join(_LATEX.get(letter, letter) for letter in text)
+
+
 @dataclass(frozen=True, slots=True)
 class Column:
     """One column: the name of its values in a row, what stands above it with its unit, and their format.
@@ -130,6 +182,26 @@ class Table:
         whole = [[head for head, _ in heads], [rule for _, rule in heads], *lines]
         # a vertical bar would end a cell
         return "\n".join(f"| {' | '.join(cell.replace('|', '∣') for cell in line)} |" for line in whole)
+
+    def latex(self) -> str:
+        """Return the table as a LaTeX tabular, with units in its heads; a group is a first column."""
+        lead = [self.group.replace("_", " ")] if self.group else []
+        heads = [*lead, *(column.heading for column in self.columns)]
+        lines = [[*([name] if self.group else []), *cells] for name, rows in self.groups() for cells in rows]
+        places = "l" * len(lead) + "".join("l" if column.text else "r" for column in self.columns)
+        head, *body = (" & ".join(map(latex_text, line)) + r" \\" for line in (heads, *lines))
+        return "\n".join(
+            [
+                rf"\begin{{tabular}}{{{places}}}",
+                r"\hline",
+                head,
+                r"\hline",
+                *body,
+                r"\hline",
+                r"\end{tabular}",
+                "",
+            ]
+        )
 
     def html(self) -> str:
         """Return the table as HTML: scrolled on its own where it is wider than the screen."""

@@ -311,7 +311,7 @@ def test_the_copy_in_the_published_folder_reads_certificates_with_numpy_alone(
 
 
 def test_what_is_said_of_releases_is_in_their_table() -> None:
-    """docs/reference/commands/checks.md: what is chaotic, what is the same, and by how much they differ."""
+    """docs/published/certificates.md: what is chaotic, what is the same, and by how much they differ."""
     path = ROOT / "reports" / "published" / "certificates" / "releases.csv"
     rows = list(csv.DictReader(path.read_text().splitlines()))
     assert len(rows) == 12 * 6

@@ -93,11 +93,14 @@ def test_words_say_what_is_equivalent_what_is_told_and_what_cannot_be_seen():
     assert "Not within 5 % in the median: mujoco recess with recess model." in words
     assert (
         "mujoco recess against recess model: median ratio 1.100 (1.100 to 1.100), higher in 9 and lower in 0 "
-        "of 9 members (p = 0.004); so many, so scattered, tell no ratio; 2 and 1 of 10 overturn, 1 by both "
+        "of 9 members (p = 0.004); no detectable ratio; 2 and 1 of 10 overturn, 1 by both "
         "(p = 1.00)."
     ) in words
-    assert "Told apart (p below 0.05): mujoco recess from recess model (higher in 9, lower in 0)." in words
-    assert "it takes at least 6 that overturn by one of two methods alone" in words
+    assert (
+        "Significant differences of peaks (p below 0.05): mujoco recess and recess model (higher in 9, lower "
+        "in 0)." in words
+    )
+    assert "that takes at least 6 members that overturn by only one of two methods" in words
 
 
 def test_words_bound_what_failed_runs_leave_open_and_tables_of_before_have_no_bounds():
@@ -106,7 +109,7 @@ def test_words_bound_what_failed_runs_leave_open_and_tables_of_before_have_no_bo
     members.loc[11:15, "outcome"] = "failed"  # half of the members: the rest do not settle the median
     bounded = ensemble_of(members, found.facts)
     assert "α if they were all at rest" in said(bounded)
-    assert "whatever failed runs would have done" in said(bounded)
+    assert "for any outcome of the failed runs" in said(bounded)
     assert "failed runs would" not in said(found)
     before = {
         name: table[[each for each in table if not each.endswith(("_least", "_most"))]]
@@ -118,15 +121,15 @@ def test_words_bound_what_failed_runs_leave_open_and_tables_of_before_have_no_bo
 def test_what_is_told_apart_may_be_equivalent_and_what_is_not_need_not():
     close = said(made_up(1.001))
     assert "Equivalent within 5 % in the median: mujoco recess with recess model." in close
-    assert "Told apart" in close
+    assert "Significant differences of peaks" in close
     # the first five: so few bound no median, and nothing overturns
     found = made_up()
     few = found.members[found.members["member"].isin([f"record {i}" for i in range(1, 6)])]
     unsure = said(ensemble_of(few, found.facts))
     assert "Undecided: mujoco recess with recess model." in unsure
     assert "recess model: higher in 5 and lower in 0 of 5 members (p" in unsure
-    assert "No peaks are told apart (p below 0.05), which does not make them the same." in unsure
-    assert "No member overturns by any method: the share that would is below 45 % (95 %)." in unsure
+    assert "No significant differences of peaks (p below 0.05), which does not prove equality." in unsure
+    assert "No member overturns by any method: the overturning probability is below 45 % (95 %)." in unsure
 
 
 def test_the_picture_marks_who_overturns_by_one_method_alone():
@@ -163,7 +166,7 @@ def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process,
     assert "alpha = 11.31 deg" in printed
     assert "Members: 3, perturbed copies, 1 %" in printed
     assert "flat-ground model against recess model: higher in 0 and lower in 0 of 3 members" in printed
-    assert f"Of fewer than {FEWEST} members" in printed
+    assert f"Below {FEWEST} members" in printed
     table = pd.read_parquet(tmp_path / "members.parquet")
     assert table["peak_tilt"].to_numpy() == pytest.approx(
         pd.read_csv(tmp_path / "members.csv")["peak_tilt"].to_numpy(), rel=1e-12

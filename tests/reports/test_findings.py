@@ -166,7 +166,7 @@ def test_a_peak_after_the_end_of_its_curve_is_named():
         for label, peak in times.items()
     }
     text = notes(case_view(row(), traces=traces))
-    assert "The peak of mujoco recess is that" in text
+    assert "The peak of mujoco recess comes after the end of the run" in text
 
 
 def test_runs_with_one_diagnostic_are_named_together_and_what_failed_says_why():
@@ -210,25 +210,32 @@ WORDS = {
     "lift_off": ("the cylinder left the ground at 2 s", {}),
     "tension": ("contact is lost at 2 s: a joint holds the rim down", {}),
     "friction_needed": (
-        "the rim would slip at 2 s, for 0.5 s in all: it needs a friction of 0.4, where there is 0.3",
+        "the rim would slip at 2 s, for 0.5 s in all: friction demand 0.4, friction coefficient 0.3",
         {"duration": 0.5, "size": 0.4, "bound": 0.3},
     ),
     "wall_contact": ("the cylinder touched a wall from 2 s on", {}),
-    "energy": ("contact took 2.2e-02 of the energy of the motion, which shows from 2 s on", {"size": -0.022}),
-    "solver": ("the solver had not converged in 3 of the 90 steps looked at", {"size": 3, "bound": 90}),
+    "energy": (
+        "contact dissipated 2.2 % of the energy of the motion; above the reporting threshold from 2 s on",
+        {"size": -0.022},
+    ),
+    "solver": ("the solver had not converged in 3 of 90 steps examined", {"size": 3, "bound": 90}),
     "early_uplift": ("the base opened at 2 s at 3 % less load than uplifts it", {"size": 0.03}),
     "unresolved_pass": ("1 pass is closer to upright than the 8.1e-06 rad", {"size": 1, "bound": 8.1e-6}),
     "settled": (
-        "the tilt is, until 3 s, within 1.0e-05 alpha",
+        "until 3 s the tilt is within 1.0e-05 alpha",
         {"duration": 3.0, "size": 1e-5, "bound": 1.0},
     ),
-    "unsettled": ("the tilt has not settled by halving the step: a smaller step fails", {"detail": "fails"}),
+    "unsettled": (
+        "the tilt has not converged by halving the step: a smaller step fails",
+        {"detail": "fails"},
+    ),
     "extrapolated": (
-        "the motion is, until 3 s, what runs at three time steps tend to, with order 2: within 1.0e-06 alpha",
+        "until 3 s the motion is the Richardson extrapolation of three time steps, of order 2; estimated "
+        "error 1.0e-06 alpha",
         {"duration": 3.0, "size": 1e-6, "bound": 2.0},
     ),
     "not_extrapolated": (
-        "it is not extrapolated from 2 s on, but the run at the finest time step: the runs diverge there",
+        "no extrapolation from 2 s on, where it is the run at the finest time step: the runs diverge there",
         {"detail": "diverged"},
     ),
     "large_peak": (
@@ -254,7 +261,7 @@ WORDS = {
     "gravity_in_record": ("the mean of z is 1 g: gravity is in the record", {"size": 1.0, "detail": "z"}),
     "unlikely_step": ("its time step is 1 s, above 0.1 s", {"size": 1.0, "bound": 0.1}),
     "ends_in_strong_motion": ("it ends in strong motion, 40 % of its peak", {"size": 0.4}),
-    "other_direction": ("by its file, what stands in the place of x is y", {"detail": "x is y"}),
+    "other_direction": ("by its file, the component given as x is y", {"detail": "x is y"}),
     "missed_pass": ("2 near passes fell between two samples, first at 2 s", {"size": 2}),
     "note": ("positions are in mm", {"detail": "positions are in mm"}),
 }

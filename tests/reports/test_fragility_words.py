@@ -44,8 +44,8 @@ def test_the_words_are_those_of_the_tables(found):
     ("ends", "words"),
     [
         ((0.97, 1.04), "equivalent within 4 %"),
-        ((1.0, 1.9), "undecided at 10 %: the interval reaches 90 %"),
-        ((1.0, np.inf), "undecided at 10 %: the interval has no end"),
+        ((1.0, 1.9), "inconclusive: interval wider than ±10 % (up to 90 %)"),
+        ((1.0, np.inf), "inconclusive: interval wider than ±10 % (unbounded)"),
         ((1.2, 1.9), "not equivalent"),
     ],
 )

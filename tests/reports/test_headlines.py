@@ -103,7 +103,7 @@ def test_ensemble(folder: Path) -> None:
     wide = peaks(members, "member", "peak_tilt")
     bullets = re.findall(
         r"^- (.+) against (.+): median ratio (\S+) \(.*?higher in (\d+) and lower in (\d+) of (\d+) members "
-        r"\(p \S+ (\S+)\)[^;]*; so many, so scattered, tell (?:no ratio|a ratio of \S+ or its inverse)"
+        r"\(p \S+ (\S+)\)[^;]*; (?:no detectable ratio|smallest detectable ratio \S+ \(power [^)]*\))"
         r"(?:; (\d+) and (\d+) of \d+ overturn, (\d+) by both)?",
         (folder / "ensemble.md").read_text(encoding="utf-8"),
         re.M,

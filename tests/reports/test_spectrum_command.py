@@ -200,20 +200,23 @@ def test_the_search_says_what_it_missed_and_what_is_chance(spectrum):
     found = int(np.isfinite(spectrum.lowest[SPATIAL]).sum())
     words = said(none, on_grid=none.lowest_frame()["intensity"] + 0.5)  # less than a step of the grid, 1
     # 0 of 5 draws: below 1 - 0.05^(1/5)
-    assert "5 random intensities below each stand: at most 45 % of all overturn (95 %)" in words
-    assert f"0 of {found} sizes overturn more than a step of the grid below" in words
-    assert "a matter of chance" not in words.split("Cells run again")[0]
+    assert (
+        "5 random intensities below each boundary stand: at most 45 % of all intensities below it "
+        "overturn (95 %)" in words
+    )
+    assert f"0 of {found} sizes overturn more than one step of the grid below" in words
+    assert "left to chance: at" not in words.split("Cells run again")[0]
     confirmed = np.ones(36, dtype=bool)
     confirmed[[0, 3]] = False
     sizes = spectrum.semidiagonals[[0, 3]]
     words = said(none, confirmed=confirmed)
-    assert f"A matter of chance: 2, with R from {sizes[0]:.3g} to {sizes[1]:.3g} m" in words
+    assert f"Boundary left to chance: at 2 sizes, with R from {sizes[0]:.3g} to {sizes[1]:.3g} m" in words
 
 
 def test_the_check_tells_chance_from_error(spectrum):
     cells = {"agrees": [True, False, False], "sensitive": [False, True, False]}
     words = said(spectrum, pd.DataFrame(cells))
-    assert "3, of which 1 agree to 2 % of the peak tilt, 1 are a matter of chance" in words
+    assert "3, of which 1 agree to 2 % of the peak tilt, 1 are left to chance" in words
     assert "and 1 do not" in words
 
 
