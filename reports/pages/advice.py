@@ -61,7 +61,7 @@ _DIVERGENCE = {
     "in time": "as predicted",
     "later": "longer than predicted",
     "much later": "more than ten times as long as predicted, which tests nothing",
-    "too little motion": "the model's tilt hardly changes, which tests nothing",
+    "too little motion": "until then the model's tilt hardly changes, which tests nothing",
     "earlier": "less than half as long as predicted: rely on neither before you know why",
 }
 _STRONG = f"{100.0 * (1.0 - AS_STRONG[0]):.0f} % weaker to {100.0 * (AS_STRONG[1] - 1.0):.0f} % stronger"
@@ -211,10 +211,12 @@ def _reason_of_trace(found: Advice) -> str:
         return f"{'model, engine' if ran else 'model'} and copies agree to the end"
     ends = []
     if trust.because == "methods":
-        ends = [f"{'the engine diverges' if ran else 'engines should diverge'} at {number(trust.until)} s"]
+        # a smaller difference than that of the copies, which is why it may come before
+        differs = f"by {number(_tolerance(found))} α from {number(trust.until, '.4g')} s on"
+        ends = [f"{'the engine differs' if ran else 'an engine is predicted to differ'} {differs}"]
     if math.isfinite(found.copies_part):
         off = number(found.facts["perturbation"], "percent")
-        ends.append(f"copies {off} off part at {number(found.copies_part, '.4g')} s")
+        ends.append(f"copies {off} off spread over half of it from {number(found.copies_part, '.4g')} s on")
     what = "it falls" if found.overturned else "largest tilt"
     reason = f"{what} at {number(found.response['peak_time'])} s, {', '.join(ends)}"
     return f"{reason}: trust statistics" if trust.kind == "statistics" else reason
@@ -290,7 +292,17 @@ def _comparison_words(found: Advice) -> str:
         if found.response["in_one_plane"]
         else ""
     )
-    return f"Compared with {kind}, scaled to its PGA and its PGV{plane}."
+    if found.moves:
+        return f"Compared with {kind}, scaled to its PGA and its PGV{plane}."
+    # no table says what they do to what stays at rest as given
+    others = found.members[found.members["peak_tilt"] > 0.0]["group"]
+    peaks = {ACCELERATION: "PGA", VELOCITY: "PGV"}
+    did = [
+        f"to its {peaks[row['group']]} {(others == row['group']).sum()} uplift it and {row['overturned']} "
+        "overturn it"
+        for row in rows
+    ]
+    return f"Of {kind}{plane}, scaled {'; scaled '.join(did)}."
 
 
 def _vertical_words(found: Advice) -> str:
@@ -315,7 +327,10 @@ def _numbers(found: Advice) -> Iterator[Row]:
 
     def row(name: str, overturn: str, covered: str, peak: float) -> Row:
         tilt, top = alpha * peak, found.top(peak)
-        words = ["overturns" if math.isinf(peak) else number(each) for each in (tilt, top)]
+        # "21 of 22" beside "overturns" would say that so many do
+        without = "no limit" if covered else "overturns"
+        words = [without if math.isinf(peak) else number(each) for each in (tilt, top)]
+        covered = "" if math.isinf(peak) else covered
         return {"name": name, "overturn": overturn, "covered": covered, "tilt": words[0], "top": words[1]}
 
     given = math.inf if found.overturned else found.peak
@@ -365,13 +380,15 @@ def _together(found: Advice) -> str:
     """What acts when shear and moment are reached."""
     rows = found.demands.set_index("demand")
     parts = []
+    given = {demand for demand in rows.index if not math.isnan(rows["value"][demand])}
     for demand, symbol in (("shear", "V"), ("moment", "M")):
-        if demand not in rows.index or math.isnan(rows["value"][demand]):
+        if demand not in given:
             continue
         beside = [
             f"{other} of {number(rows[column][demand])}{unit}"
             for column, (other, unit) in _TOGETHER.items()
-            if not math.isnan(rows[column][demand])
+            # no moment where the support supplies none, or none is known
+            if not math.isnan(rows[column][demand]) and column.removeprefix("with_") in given
         ]
         if beside:
             parts.append(f"{symbol} acts with {' and '.join(beside)}")
@@ -389,7 +406,12 @@ def _wall(found: Advice) -> str:
     height, clearance = (number(1e3 * rows[part]["value"]) for part in ("wall_height", "clearance"))
     tilt = number(math.degrees(rows["tilt"]["value"] * found.cylinder.alpha))
     size = f"{height} mm high, {clearance} mm clear of the rim"
-    return f"Wall: {size}, for a tilt of {tilt}° ({_of(found, row)})."
+    tendon = found.facts.get("tendon") or {"balance_tilt": 1.0}
+    beyond = ""
+    if rows["tilt"]["value"] > tendon["balance_tilt"]:
+        fell = f"{int(row['overturned'])} of {int(row['runs'])}"
+        beyond = ", beyond its balance" + (f": {fell} fall, which no wall holds" if row["overturned"] else "")
+    return f"Wall: {size}, for a tilt of {tilt}° ({_of(found, row)}{beyond})."
 
 
 def _of(found: Advice, row: Mapping[Any, Any]) -> str:
@@ -488,8 +510,7 @@ def _agreement(found: Advice) -> Iterator[Row]:
     if trust.kind != "trace":
         until, note = f"{number(trust.until, '.4g')} s", f"then {_ENDS[trust.because]}"
     yield _check("the trace can be trusted until", until, note)
-    tolerance = min(AGREEMENT, found.response["tolerance"])
-    name = f"model and engine agree within {number(tolerance)} α, predicted, until"
+    name = f"shaken the same, model and engine agree within {number(_tolerance(found))} α, predicted, until"
     yield _check(name, _predicted_until(found), _PREDICTED[found.facts["prediction"]["reason"]])
     if verification is None:
         return
@@ -502,6 +523,11 @@ def _agreement(found: Advice) -> Iterator[Row]:
     tilt = f"largest tilt {number(verification.peak_tilt)} α" if verification.moves else "it stays at rest"
     tilt = "it overturns" if verification.outcome == "overturned" else tilt
     yield _check(method, _agreed_until(verification), f"{_DIVERGENCE[verification.divergence]}; {tilt}")
+
+
+def _tolerance(found: Advice) -> float:
+    """Tilt difference of model and engine that ends their agreement [alpha]."""
+    return float(min(AGREEMENT, found.response["tolerance"]))
 
 
 def _predicted_until(found: Advice) -> str:
@@ -561,5 +587,5 @@ def _ratios(found: Advice) -> Iterator[Row]:
         if not math.isnan(ratios["ratio"]):
             note = f"{number(ratios['low'])} to {number(ratios['high'])} (95 %); {note}"
         fell = ratios["overturned"], ratios["against_overturned"]
-        note += f"; {fell[0]} of {ratios['members']} overturn, {fell[1]} otherwise" if any(fell) else ""
+        note += f"; {fell[0]} of {ratios['members']} overturn, against {fell[1]}" if any(fell) else ""
         yield _check(name, number(ratios["ratio"]), note)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import io
 import itertools
+import math
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -154,6 +155,9 @@ def test_the_numbers_are_those_of_the_groups(found):
             assert float(row["tilt"]) == pytest.approx(alpha * group["peak_tilt_95"], rel=PRINTED)
         # one statement: how many overturn, and which order statistic the tilt is
         assert row["overturn"].startswith(f"{group['overturned']} of {group['runs']} (")
+        if row["covered"] == "":  # more than 95 % overturn: no tilt is theirs, and no count stands beside it
+            assert np.isinf(group["peak_tilt_95"])
+            continue
         rank, count = map(int, row["covered"].split(" of "))
         peaks = found.members[found.members["group"] == group["group"]]["peak_tilt"]
         assert (peaks <= group["peak_tilt_95"] * (1.0 + 1e-12)).sum() >= rank >= 0.95 * count
@@ -163,7 +167,8 @@ def test_an_overturned_group_moves_without_bound(found):
     groups = found.groups.assign(peak_tilt_95=np.inf)
     fallen = dataclasses.replace(found, tables={**found.tables, "groups": groups})
     _, *rows = page_of(fallen).values["numbers"]
-    assert [(row["tilt"], row["top"]) for row in rows] == [("overturns", "overturns")] * len(groups)
+    # a count beside it would read as the count of those that overturn
+    assert {(row["covered"], row["tilt"], row["top"]) for row in rows} == {("", "no limit", "no limit")}
 
 
 def reasons_of(found: Advice) -> dict[str, str]:
@@ -234,6 +239,28 @@ def test_every_code_has_words(found):
     for reason in ("", "pass", "growth", "model form"):
         prediction = dataclasses.asdict(Prediction(length=5.0, reason=reason))
         assert page_of(changed(found, prediction=prediction)).markdown()
+
+
+def with_columns(found: Advice, columns: int) -> Advice:
+    return changed(found, cylinder=found.facts["cylinder"] | {"columns": columns, "slab_mass_ratio": 0.5})
+
+
+def test_the_first_screen_states_the_columns_and_their_limit(found):
+    for columns in (1, 3, 4):
+        words = " ".join(printed(with_columns(found, columns)).split())
+        assert f"{columns} columns under a slab" in words or (columns == 1 and "One column under" in words)
+        assert ("share the load unevenly" in words) == (columns > 3)
+    mass = dataclasses.replace(with_columns(found, 4), facts=with_columns(found, 4).facts | {"mass": 45.0})
+    assert "| one column |" in page_of(mass).markdown()
+
+
+def test_what_stays_at_rest_is_told_from_what_others_do_to_it(found):
+    still = changed(found, response={**found.facts["response"], "uplift_time": math.inf, "peak_tilt": 0.0})
+    assert not still.moves
+    words = page_of(still).markdown()
+    moved = (found.members[found.members["group"] == "velocity"]["peak_tilt"] > 0.0).sum()
+    (fell,) = found.groups[found.groups["group"] == "velocity"]["overturned"]
+    assert f"scaled to its PGV {moved} uplift it and {fell} overturn it" in " ".join(words.split())
 
 
 def test_a_failed_run_gets_no_advice(found, tmp_path):
