@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,7 +26,7 @@ def dumps(value: object, *, indent: int | None = None) -> str:
 
     Dataclasses and mappings become objects, arrays and tuples lists, and what JSON does not know text.
     """
-    return json.dumps(_plain(value), indent=indent, allow_nan=False)
+    return json.dumps(_in_words(plain(value)), indent=indent, allow_nan=False)
 
 
 def loads(text: str | bytes) -> JsonValue:
@@ -39,20 +39,54 @@ def fields_of(value: DataclassInstance) -> JsonObject:
     return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
 
 
-def _plain(value: object) -> object:
+def plain(value: object) -> JsonValue:
+    """Return a value as `loads` gives it back: of mappings, lists, texts, numbers and None alone.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> plain({"steps": (1, np.float64(0.5)), 3: math.inf})
+    {'steps': [1, 0.5], '3': inf}
+    """
     if isinstance(value, np.generic | np.ndarray):
         value = value.tolist()
-    if isinstance(value, float) and not math.isfinite(value):
-        return {_FLOAT: str(value)}
     if value is None or isinstance(value, bool | int | float | str):
         return value
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         value = fields_of(value)
     if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
+        return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     return str(value)
+
+
+def first_not_plain(value: object, place: str) -> str | None:
+    """Return the place and type of the first value that `plain` changes; None where it changes none.
+
+    Examples
+    --------
+    >>> first_not_plain({"order": 2, "steps": [1, (2, 3)]}, "facts")
+    'facts.steps.1, tuple'
+    """
+    items: Iterable[tuple[object, object]]
+    if type(value) is dict and all(type(key) is str for key in value):
+        items = value.items()
+    elif type(value) is list:
+        items = enumerate(value)
+    else:
+        same = value is None or type(value) in (bool, int, float, str)
+        return None if same else f"{place}, {type(value).__name__}"
+    return next((found for name, each in items if (found := first_not_plain(each, f"{place}.{name}"))), None)
+
+
+def _in_words(value: JsonValue) -> JsonValue:
+    """Return a plain value with a word for each float that JSON has none for."""
+    if isinstance(value, dict):
+        return {key: _in_words(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_in_words(item) for item in value]
+    return {_FLOAT: str(value)} if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _float(found: dict[str, object]) -> object:

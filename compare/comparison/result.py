@@ -13,7 +13,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Trace, plain_json
 from rockwobble.models.number_checks import require_one_of
-from rockwobble.models.plain_json import fields_of
+from rockwobble.models.plain_json import fields_of, plain
 from rockwobble.models.trace_file import case_from_plain
 
 from ..external.verdict import lists_in_words, lists_of_file
@@ -293,7 +293,7 @@ def comparison_of(
             for key, each in (budgets or {}).items()
         },
     }
-    return Comparison(tables=tables, facts=facts)
+    return Comparison(tables=tables, facts=plain(facts))
 
 
 def _header(case: Case) -> Mapping[str, object] | None:

@@ -28,8 +28,9 @@ class Results(Shown):
     tables : mapping of str to DataFrame
         A table is an attribute, too: `found.members` is `found.tables["members"]`.
     facts : mapping
-        What the tables do not hold, as JSON knows it: numbers, texts, lists and mappings. "inputs" is the
-        hash of all that the results depend on, "seed" that of whatever random numbers were drawn.
+        What the tables do not hold: numbers, texts, lists and mappings alone, as `plain_json.plain` makes
+        them. "inputs" is the hash of all that the results depend on, "seed" that of whatever random numbers
+        were drawn.
     manifest : Manifest or None
         What made results that were loaded, or are about to be saved.
     """
@@ -39,10 +40,6 @@ class Results(Shown):
     tables: Mapping[str, pd.DataFrame]
     facts: Facts
     manifest: Manifest | None = None
-
-    def __post_init__(self) -> None:
-        # as they are loaded: what is drawn of results must not depend on whether they were stored
-        object.__setattr__(self, "facts", plain_json.loads(plain_json.dumps(self.facts)))
 
     def __init_subclass__(cls, *, kind: str) -> None:
         cls.kind = kind
@@ -99,7 +96,13 @@ class Results(Shown):
         ------
         ValueError
             If the folder cannot be written.
+        TypeError
+            If a fact would be another value when it is loaded.
         """
+        if changed := plain_json.first_not_plain(self.facts, "facts"):
+            raise TypeError(
+                f"{self.kind} must have facts that plain_json.plain does not change, got {changed}"
+            )
         manifest = cast("Manifest", self.manifest or self.made_by().manifest)
         if claim := claim_on(folder):
             manifest = dataclasses.replace(manifest, plan=claim.plan)

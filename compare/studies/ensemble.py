@@ -20,7 +20,7 @@ from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.number_checks import require_each
-from rockwobble.models.plain_json import fields_of
+from rockwobble.models.plain_json import fields_of, plain
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.trace import NO_PEAK
 
@@ -213,7 +213,7 @@ def ensemble_of(members: pd.DataFrame, about: Mapping[str, object]) -> Ensemble:
         "methods": method_table(members, methods),
         "contrasts": contrast_table(members, methods),
     }
-    return Ensemble(tables=tables, facts=about)
+    return Ensemble(tables=tables, facts=plain(about))
 
 
 def _of_all(values: Iterable[float | Tendon | None]) -> object:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 from rockwobble.models import Case, Run, Trace
-from rockwobble.models.plain_json import fields_of
+from rockwobble.models.plain_json import fields_of, plain
 from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, to_parquet
 
 from ..runs.choice import own_model
@@ -119,4 +119,4 @@ def single_run_of(
         "single_trace": {"copies_part": part, "perturbation": perturbation, "answer": answer},
         "columns": {"run.csv": COLUMNS, "passes.csv": PASS_COLUMNS},
     }
-    return SingleRun(tables={"run": trace.to_frame()}, facts=facts, trace=trace)
+    return SingleRun(tables={"run": trace.to_frame()}, facts=plain(facts), trace=trace)

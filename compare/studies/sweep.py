@@ -15,7 +15,7 @@ from rockwobble.models import Case, GroundMotion, Run, Suite, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.doubts import doubts_of_cases
-from rockwobble.models.plain_json import fields_of
+from rockwobble.models.plain_json import fields_of, plain
 from rockwobble.models.records.units import sources_of
 
 from ..metrics.pair import outcome_of
@@ -291,12 +291,14 @@ def sweep(
         by_place = dict(zip(order, found, strict=True))
         table: pd.DataFrame = pd.concat([by_place[place] for place in range(len(chunks))], ignore_index=True)
         doubts = whole.doubts() if isinstance(whole, Grid) else doubts_of_cases(whole.cases)
-        plain = whole.describe() if isinstance(whole, Grid) else describe_suite(whole)
+        stated = whole.describe() if isinstance(whole, Grid) else describe_suite(whole)
         motions = whole.motions if isinstance(whole, Grid) else [case.motion for case in whole.cases]
         inputs = fingerprint([chunk.key() for chunk in chunks])
         result = Sweep(
             tables={KIND: table, **_motions(whole)},
-            facts={**plain, "doubts": doubts, "record_sources": sources_of(motions), "inputs": inputs},
+            facts=plain(
+                {**stated, "doubts": doubts, "record_sources": sources_of(motions), "inputs": inputs}
+            ),
         )
         if out is not None:
             result.save(out) if save is None else save(result)

@@ -21,6 +21,7 @@ from rockwobble.compare.studies.spectrum.parts import SERIES
 from rockwobble.compare.studies.spectrum.study import tables_of
 from rockwobble.models import Run, el_centro_1940
 from rockwobble.models.cylinder import PIER
+from rockwobble.models.plain_json import plain
 
 from ..figures.palette import DARK, ORDER, SHADED, Style
 from ..figures.picture import TIME, Axis, Layer, Line, Panel, Picture, Rule
@@ -87,7 +88,7 @@ def compute(grid: int, progress: ProgressCallback | None = None, resume: Path | 
         **tables_of(spectrum),
     }
     inputs = fingerprint([grid, code_digests(), package_versions()])
-    return Paper(tables=tables, facts=spectrum.facts() | {"inputs": inputs})
+    return Paper(tables=tables, facts=plain(spectrum.facts() | {"inputs": inputs}))
 
 
 def page_of(paper: Paper) -> Page:

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import scheduled
-from showing import shows_itself
+from showing import loads_as_it_was, shows_itself
 
 from rockwobble import reduced
 from rockwobble.compare.comparison.driver import comparison
@@ -648,8 +648,9 @@ def test_bad_numbers_are_refused():
 
 
 @pytest.mark.slow
-def test_advice_shows_itself(advice):
+def test_advice_shows_itself(advice, tmp_path):
     shows_itself(advice, "outcome as given ", "grade ")
+    loads_as_it_was(advice, tmp_path)
 
 
 @pytest.mark.slow

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from showing import shows_itself
+from showing import loads_as_it_was, shows_itself
 
 from rockwobble.compare.studies.spectrum import study as bands
 from rockwobble.compare.studies.spectrum.maps import TiltMaps, safe_gaps
@@ -140,6 +140,8 @@ def test_a_single_size_has_a_band():
     assert len(planar_contrast(made_up(["oX"], ["oo"], ["oo"]))) == 2
 
 
-def test_a_spectrum_shows_itself():
+def test_a_spectrum_shows_itself(tmp_path):
     maps = made_up(["ooXoOX"] * 3, ["......"] * 3, ["......"] * 3)
-    shows_itself(spectrum_of(maps), "cells 18", "share that overturns in 3D ")
+    found = spectrum_of(maps)
+    shows_itself(found, "cells 18", "share that overturns in 3D ")
+    loads_as_it_was(found, tmp_path)

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from showing import shows_itself
+from showing import loads_as_it_was, shows_itself
 from tiny_validity import TINY, kept_engine_runs, tiny_tables, tiny_validity
 
 from rockwobble.compare.runs.execution import simulate_run
@@ -291,9 +291,10 @@ def test_measures_of_limits() -> None:
     assert quantile_reached(np.array([1.0, 2.0, math.inf]), 0.9) == math.inf
 
 
-def test_a_report_shows_itself_by_figure(tmp_path_factory: pytest.TempPathFactory) -> None:
+def test_a_report_shows_itself_by_figure(tmp_path_factory: pytest.TempPathFactory, tmp_path: Path) -> None:
     found = tiny_validity(tmp_path_factory.getbasetemp())
     shows_itself(found, "motions ", "peaks 24 rows")
+    loads_as_it_was(found, tmp_path)
     # as where the records are not installed
     synthetic = replace(found, facts={**found.facts, "records": source_of(["synthetic 1"])})
     shows_itself(synthetic, "motions synthetic records", "peaks 24 rows")

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pandas as pd
 import pytest
 
+from rockwobble.compare import Results
 from rockwobble.models.shown import LONGEST, Shown
 
 
@@ -21,3 +25,14 @@ def shows_itself(result: Shown, *facts: str) -> None:
     assert any(axes.has_data() for axes in figure.axes)
     with pytest.raises(ValueError, match="got 'nowhere'"):
         result.plot("nowhere")
+
+
+def loads_as_it_was(made: Results, folder: Path) -> None:
+    """Hold that results are the same value when they are loaded: facts and tables, to the bit and by type."""
+    made.save(folder)
+    loaded = type(made).load(folder)
+    assert repr(loaded.facts) == repr(made.facts)  # to which a NaN is equal, and a tuple is no list
+    assert list(loaded.tables) == list(made.tables)
+    for name, table in made.tables.items():
+        pd.testing.assert_frame_equal(loaded.tables[name], table, check_exact=True, obj=name)
+    assert repr(dict(loaded.headline())) == repr(dict(made.headline()))

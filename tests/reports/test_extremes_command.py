@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from showing import shows_itself
+from showing import loads_as_it_was, shows_itself
 from typer.testing import CliRunner
 
 from rockwobble.compare.studies import extremes as scan
@@ -91,5 +91,7 @@ def test_bad_input_is_one_line(tmp_path: Path) -> None:
     assert not re.search(r"\n.+\n", done.stderr)
 
 
-def test_a_scan_shows_itself() -> None:
-    shows_itself(given(SILENT), "runs 4, fine 1, silent 2")
+def test_a_scan_shows_itself(tmp_path: Path) -> None:
+    found = given(SILENT)
+    shows_itself(found, "runs 4, fine 1, silent 2")
+    loads_as_it_was(found, tmp_path)

@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 from browser import complaints, needs_chromium
 from fragility_example import LEVELS, MOTIONS, made_up
-from showing import shows_itself
+from showing import loads_as_it_was, shows_itself
 
 from rockwobble.compare import Fragility, fragility
 from rockwobble.compare.storage.manifest import read_manifests
@@ -234,8 +234,9 @@ def test_what_no_motion_is_needed_for_is_refused_before_any_is_made(
     assert words in printed.err
 
 
-def test_a_fragility_shows_itself(found):
+def test_a_fragility_shows_itself(found, tmp_path):
     shows_itself(found, "motions ", "runs ")
+    loads_as_it_was(found, tmp_path)
 
 
 def stripes_folder(folder: Path, levels: tuple[float, ...] = (2.0, 9.0)) -> Path:

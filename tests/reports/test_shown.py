@@ -1,13 +1,18 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+import pandas as pd
 import pytest
-from showing import shows_itself
+from showing import loads_as_it_was, shows_itself
 
 import rockwobble as rw
 import rockwobble.compare as rc
-import rockwobble.compare.runs as rr
+from rockwobble.compare.comparison.result import View
 from rockwobble.compare.metrics.pair import make_pair
+from rockwobble.compare.runs.execution import Job
+from rockwobble.compare.studies.single_run import single_run
 from rockwobble.models import Bounds
 from rockwobble.models.shown import LONGEST, Brief
 from rockwobble.multibody.engines.registry import engine_facts, engine_names
@@ -28,22 +33,56 @@ def test_trace_shows_itself():
 
 
 @pytest.mark.slow
-def test_comparison_shows_itself_case_by_case(comparison):
+def test_comparison_shows_itself_case_by_case(comparison, tmp_path):
     shows_itself(comparison, "cases 2")
+    loads_as_it_was(comparison, tmp_path)
     first, second = comparison.plot(), comparison.plot("lighter")
     assert "lighter" not in first.get_suptitle()
     assert not np.array_equal(*(each.axes[0].lines[0].get_ydata() for each in (first, second)))
 
 
-def test_ensemble_shows_itself():
+def test_ensemble_shows_itself(tmp_path):
     found = rw.ensemble(RELEASE, runs=[], copies=4, workers=1)
     shows_itself(found, "4, perturbed copies of free response", "overturned 0 of 8")
+    loads_as_it_was(found, tmp_path)
 
 
-def test_sweep_shows_itself():
-    shows_itself(rw.sweep([RELEASE], workers=1), "runs 1, stands 1")
+def test_sweep_shows_itself(tmp_path):
+    found = rw.sweep([RELEASE], workers=1)
+    shows_itself(found, "runs 1, stands 1")
+    loads_as_it_was(found, tmp_path / "cases")
     grid = rc.Grid(semidiagonals=[1, 6], tan_alphas=[0.2], scales=[0.1, 2], motions=[rw.el_centro_1940()])
-    shows_itself(rw.sweep(grid, workers=1), "runs 4, stands 2, overturned 2")
+    found = rw.sweep(grid, workers=1)
+    shows_itself(found, "runs 4, stands 2, overturned 2")
+    loads_as_it_was(found, tmp_path / "grid")
+
+
+@pytest.mark.slow
+def test_budgets_and_external_trajectories_load_as_they_were(tmp_path):
+    external = tmp_path / "mine.csv"
+    found = rw.simulate(RELEASE)
+    pd.DataFrame({"time [s]": found.time, "tilt [rad]": found.tilt}).to_csv(external, index=False)
+    run = rw.Run("mujoco", "recess", 1e-3)
+    made = rw.comparison(RELEASE, runs=[run], external=[external], budget=True, workers=1)
+    assert len(made.budgets) == 1
+    loads_as_it_was(made, tmp_path / "comparison")
+    loads_as_it_was(View.of(made, RELEASE.name), tmp_path / "view")
+
+
+def test_a_run_loads_as_it_was(tmp_path):
+    tied = rw.Case(
+        rw.WobblingFrame(PIER), initial=RELEASE.initial, duration=0.2, tendon=rw.Tendon(prestress=0.1)
+    )
+    for case, run in ((RELEASE, rw.Run(None, "flat")), (tied, rw.Run(None, "recess", rtol=1e-9))):
+        loads_as_it_was(single_run(case, run), tmp_path / case.name)
+
+
+def test_facts_that_would_load_as_another_value_are_not_saved(tmp_path):
+    made = rw.sweep([RELEASE], workers=1)
+    for facts, named in (({"steps": (1, 2)}, "steps, tuple"), ({"order": np.float64(2.0)}, "order, float64")):
+        with pytest.raises(TypeError, match=f"got facts.{named}"):
+            replace(made, facts=facts).save(tmp_path)
+    assert not [*tmp_path.iterdir()]
 
 
 def test_values_are_a_line(comparison):
@@ -63,7 +102,7 @@ def test_values_are_a_line(comparison):
         ),
         rw.External(path="shake table.csv"),
         rc.Grid(semidiagonals=range(1, 100), tan_alphas=[0.2], scales=[1.0], motions=[record]),
-        rr.Job(case=RELEASE, run=trace.run),
+        Job(case=RELEASE, run=trace.run),
         *trace.diagnostics,
         trace.source,
         engine.source,

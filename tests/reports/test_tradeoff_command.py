@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from showing import shows_itself
+from showing import loads_as_it_was, shows_itself
 from typer.testing import CliRunner
 
 from rockwobble.compare.studies.tradeoff import study
@@ -104,5 +104,6 @@ def test_bad_input_is_one_line(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_measurement_shows_itself(found: Tradeoff) -> None:
+def test_a_measurement_shows_itself(found: Tradeoff, tmp_path: Path) -> None:
     shows_itself(found, "engine over recess model, largest 2100")
+    loads_as_it_was(found, tmp_path)

@@ -16,6 +16,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace, el_centr
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.cylinder import cylinder_of
 from rockwobble.models.doubts import doubts_of_cases
+from rockwobble.models.plain_json import plain
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.support import support_named
 from rockwobble.models.trace import NO_PEAK
@@ -559,7 +560,7 @@ def _restraint(case: Case) -> dict[str, object] | None:
 
 def advice_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, object]) -> Advice:
     """Return the advice of its runs, with the tables that are concluded from them."""
-    found = Advice(tables=tables, facts=facts)
+    found = Advice(tables=tables, facts=plain(facts))
     counting = found.members[~found.members["group"].isin(BESIDE_THE_PROBLEM)]
     demands = demand_table(
         pd.concat([counting, found.weaker]) if len(found.weaker) else counting,

@@ -15,7 +15,7 @@ from rockwobble.models import Cylinder, GroundMotion, HazardCurve, Run
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
 from rockwobble.models.number_checks import require_each, require_positive
-from rockwobble.models.plain_json import Facts, fields_of
+from rockwobble.models.plain_json import Facts, fields_of, plain
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.trace import NO_PEAK
 
@@ -177,7 +177,7 @@ class Fragility(Results, kind=KIND):
         return replace(
             self,
             tables={**self.tables, "risk": risk, "contributions": contributions},
-            facts={**self.facts, "hazard": site | {"total_dispersion": total_dispersion}},
+            facts=plain({**self.facts, "hazard": site | {"total_dispersion": total_dispersion}}),
             manifest=None,
         )
 
@@ -240,7 +240,7 @@ def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Facts) -> Frag
     levels = points.groupby("cylinder")[blocks.measure].nunique()
     if blocks.fewest < FEWEST or levels.min() < FEWEST_LEVELS:
         tables |= _counts_alone(tables)
-    return Fragility(tables=tables, facts=facts)
+    return Fragility(tables=tables, facts=plain(facts))
 
 
 def _counts_alone(tables: Mapping[str, pd.DataFrame]) -> dict[str, pd.DataFrame]:

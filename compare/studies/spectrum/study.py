@@ -19,6 +19,7 @@ from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
+from rockwobble.models.plain_json import plain
 from rockwobble.models.records.units import sources_of
 
 from ...metrics.pair import overturned
@@ -372,4 +373,4 @@ def spectrum_of(maps: TiltMaps) -> OverturningSpectrum:
     facts = maps.facts() | {"doubts": doubts, "record_sources": sources_of([maps.motion])}
     grid = maps.semidiagonals, maps.intensities
     facts["inputs"] = fingerprint([maps.facts(), *grid, maps.motion.acceleration, reduced_makers()])
-    return OverturningSpectrum(tables=tables_of(maps), facts=facts)
+    return OverturningSpectrum(tables=tables_of(maps), facts=plain(facts))
