@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Results(Shown):
-    """Results of a study; a subclass registers its kind by `class Ensemble(Results, kind="ensemble")`.
+    """Results of a study; a subclass states its kind by `class Ensemble(Results, kind="ensemble")`.
 
     Attributes
     ----------
@@ -36,14 +36,12 @@ class Results(Shown):
     """
 
     kind: ClassVar[str]
-    kinds: ClassVar[dict[str, type[Results]]] = {}
     tables: Mapping[str, pd.DataFrame]
     facts: Facts
     manifest: Manifest | None = None
 
     def __init_subclass__(cls, *, kind: str) -> None:
         cls.kind = kind
-        Results.kinds[kind] = cls
 
     def __getattr__(self, name: str) -> pd.DataFrame:
         # not the fields themselves, for which a copy or a pickle asks before there are any

@@ -7,7 +7,7 @@ import importlib
 import inspect
 import os
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Annotated, Any
 
@@ -16,28 +16,18 @@ from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
 from ..console import BAD_INPUT, FAILED, INTERRUPTED, complain, forgive_output
+from ..registry import COMMANDS, HEADINGS
 from .command import StrictCommand
-
-# heading in the help text, the module of its commands, and their names
-_GROUPS: Sequence[tuple[str, str, Sequence[str]]] = (
-    ("One problem", "single", ("compare", "advise", "simulate")),
-    ("One problem", "play", ("explore",)),
-    ("Many problems", "many", ("spectrum", "sweep", "ensemble", "fragility")),
-    ("Results", "results", ("show", "report", "view")),
-    ("Trust", "trust", ("check", "certify", "verify")),
-    ("Published studies", "published", ("validity", "figures", "tradeoff", "extremes")),
-)
-_COMMANDS = {name: (group, module) for group, module, names in _GROUPS for name in names}
 
 
 @cache
 def _command(name: str) -> TyperCommand:
     """Return what typer makes of a command, which is imported here; its docstring ends with an example."""
-    group, module = _COMMANDS[name]
-    function = getattr(importlib.import_module(f".{module}", __package__), name)
+    group = COMMANDS[name].group
+    function = getattr(importlib.import_module(f".{group}", __package__), name)
     words, _, example = (inspect.getdoc(function) or "").partition("\n\nExample: ")
     alone = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
-    alone.command(cls=StrictCommand, help=_help(words, example), rich_help_panel=group)(function)
+    alone.command(cls=StrictCommand, help=_help(words, example), rich_help_panel=HEADINGS[group])(function)
     made = get_command(alone)
     assert isinstance(made, TyperCommand)
     return made
@@ -56,10 +46,10 @@ class _Commands(Mapping[str, TyperCommand]):
         return _command(name)
 
     def __iter__(self) -> Iterator[str]:
-        return iter(_COMMANDS)
+        return iter(COMMANDS)
 
     def __len__(self) -> int:
-        return len(_COMMANDS)
+        return len(COMMANDS)
 
 
 class _Group(TyperGroup):

@@ -13,9 +13,10 @@ import typer
 import rockwobble as rw
 
 from ..console import complain, echo, interruptible, print_facts, show_and_save, shown_progress, user_input
-from ..pages import KINDS, stored_page
+from ..pages import stored_page
 from ..pages.cases import describe
 from ..pages.table import number
+from ..registry import KINDS
 from . import options
 from .command import takes_options
 from .options import settings

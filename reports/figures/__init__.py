@@ -3,26 +3,13 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
+
+from ..registry import KINDS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-# class of what is drawn: the module here whose `pictures` says what its figures show; imported where it is
-# drawn, because one figure must not wait for the imports of all
-_MODULES: Mapping[str, str] = {
-    "Advice": "advice",
-    "Comparison": "comparison",
-    "Ensemble": "ensemble",
-    "Extremes": "extremes",
-    "Fragility": "fragility",
-    "OverturningSpectrum": "spectrum",
-    "Sweep": "sweep",
-    "Trace": "trace",
-    "Tradeoff": "tradeoff",
-    "Validity": "validity",
-}
 
 
 def draw(value: object, part: str | None = None) -> Figure:
@@ -41,7 +28,11 @@ def draw(value: object, part: str | None = None) -> Figure:
     """
     from .svg import figure
 
-    pictures = importlib.import_module(f".{_MODULES[type(value).__name__]}", __name__).pictures(value)
+    kind = getattr(value, "kind", "")
+    name = KINDS[kind].name if kind in KINDS else type(value).__name__.lower()
+    if find_spec(f".{name}", __name__) is None:
+        raise ValueError(f"there is nothing to draw of {value!r}")
+    pictures = importlib.import_module(f".{name}", __name__).pictures(value)
     names = []
     for picture in pictures:
         if part in (None, picture.name):

@@ -3,33 +3,15 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from ..registry import KINDS
 
 if TYPE_CHECKING:
     from rockwobble.compare.storage.results import Results
 
     from .page import Page
-
-# kind: the module whose `page_of` draws it; by name, because a command that shows one of them must not
-# wait for the imports of all
-KINDS: Mapping[str, str] = {
-    "comparison": "pages.comparison",
-    "view": "pages.view",
-    "run": "pages.run",
-    "sweep": "pages.sweep",
-    "ensemble": "pages.ensemble",
-    "fragility": "pages.fragility",
-    "overturning spectrum": "pages.spectrum",
-    "advice": "pages.advice",
-    "validity": "pages.validity",
-    "tradeoff": "pages.tradeoff",
-    "extremes": "pages.extremes",
-    "check": "pages.check",
-    "engine versions": "pages.versions",
-    "paper": "paper.page",
-}
 
 
 def stored_page(kind: str, folder: Path) -> Page:
@@ -40,14 +22,11 @@ def stored_page(kind: str, folder: Path) -> Page:
     ValueError
         If they cannot be read.
     """
-    importlib.import_module(f"rockwobble.reports.{KINDS[kind]}")  # which registers the kind
-    from rockwobble.compare.storage.results import Results
-
-    return page_of(Results.kinds[kind].load(folder))
+    return page_of(KINDS[kind].results_class().load(folder))
 
 
 def page_of(found: Results) -> Page:
     """Return the page of results, not drawn yet."""
     whole = found if found.manifest else found.made_by()
-    page: Page = importlib.import_module(f"rockwobble.reports.{KINDS[found.kind]}").page_of(whole)
+    page: Page = importlib.import_module(f"rockwobble.reports.{KINDS[found.kind].page}").page_of(whole)
     return page

@@ -26,7 +26,8 @@ from pathlib import Path
 
 from rockwobble.compare.storage.manifest import MANIFEST, Manifest, file_state, read_manifests
 from rockwobble.compare.storage.provenance import code_digests
-from rockwobble.reports.pages import KINDS, stored_page
+from rockwobble.reports.pages import stored_page
+from rockwobble.reports.registry import KINDS
 
 HERE = Path(__file__).parent
 

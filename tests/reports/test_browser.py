@@ -12,9 +12,10 @@ from rockwobble.compare import Comparison
 from rockwobble.compare.comparison.result import View
 from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests
 from rockwobble.models import Case, Cylinder, InitialState
-from rockwobble.reports.pages import KINDS, page_of, stored_page
 from rockwobble.reports.pages import comparison as report
+from rockwobble.reports.pages import page_of, stored_page
 from rockwobble.reports.pages.ensemble import page_of as ensemble_page
+from rockwobble.reports.registry import KINDS
 
 pytestmark = pytest.mark.slow
 

@@ -1,0 +1,103 @@
+"""The one list of what `rockwobble` offers: its commands, and the results that they write.
+
+An entry is found by its name: its page is `page_of` of `pages/NAME.py`, its figures are `pictures` of
+`figures/NAME.py`, its command is the function NAME in the module of its group in `cli`, and its results state
+NAME as their kind. What is called otherwise says so. Everything is imported when it is asked for: a command
+must not wait for the imports of the others.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rockwobble.compare.storage.results import Results
+
+# heading in the help of the command line for each module of commands, in the order of the headings
+HEADINGS: Mapping[str, str] = {
+    "single": "One problem",
+    "play": "One problem",
+    "many": "Many problems",
+    "results": "Results",
+    "trust": "Trust",
+    "published": "Published studies",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Entry:
+    """A command, the results that it writes, or both.
+
+    Attributes
+    ----------
+    name : str
+        Of the page and the figures.
+    group : str
+        Module of `cli` with the command, a key of `HEADINGS`; empty without a command.
+    results : str
+        Class of the results below `rockwobble`, such as "compare.studies.ensemble.Ensemble"; empty where the
+        command writes none.
+    command, kind : str
+        Name of the command, and kind of the results. Default: the name.
+    page : str
+        Module with the page, below `reports`. Default: that of the name in `pages`.
+    """
+
+    name: str
+    group: str = ""
+    results: str = ""
+    command: str = ""
+    kind: str = ""
+    page: str = ""
+
+    def __post_init__(self) -> None:
+        for field, default in (("command", self.name), ("kind", self.name), ("page", f"pages.{self.name}")):
+            object.__setattr__(self, field, getattr(self, field) or default)
+
+    def results_class(self) -> type[Results]:
+        """Return the class of the results."""
+        module, _, name = self.results.rpartition(".")
+        found: type[Results] = getattr(importlib.import_module(f"rockwobble.{module}"), name)
+        return found
+
+
+# in the order of the help
+ENTRIES = (
+    Entry(
+        name="comparison", command="compare", group="single", results="compare.comparison.result.Comparison"
+    ),
+    Entry(name="advice", command="advise", group="single", results="compare.studies.advice.advice.Advice"),
+    Entry(name="run", command="simulate", group="single", results="compare.studies.single_run.SingleRun"),
+    Entry(name="explore", group="play"),
+    Entry(
+        name="spectrum",
+        kind="overturning spectrum",
+        group="many",
+        results="compare.studies.spectrum.study.OverturningSpectrum",
+    ),
+    Entry(name="sweep", group="many", results="compare.studies.sweep.Sweep"),
+    Entry(name="ensemble", group="many", results="compare.studies.ensemble.Ensemble"),
+    Entry(name="fragility", group="many", results="compare.studies.fragility.study.Fragility"),
+    Entry(name="show", group="results"),
+    Entry(name="report", group="results"),
+    Entry(name="view", group="results", results="compare.comparison.result.View"),
+    Entry(name="check", group="trust", results="compare.check.groups.Checks"),
+    Entry(name="certify", group="trust"),
+    Entry(name="verify", group="trust"),
+    Entry(name="validity", group="published", results="compare.studies.validity.study.Validity"),
+    Entry(
+        name="paper",
+        command="figures",
+        group="published",
+        results="reports.paper.page.Paper",
+        page="paper.page",
+    ),
+    Entry(name="tradeoff", group="published", results="compare.studies.tradeoff.study.Tradeoff"),
+    Entry(name="extremes", group="published", results="compare.studies.extremes.Extremes"),
+    Entry(name="versions", kind="engine versions", results="reports.pages.versions.EngineVersions"),
+)
+COMMANDS: Mapping[str, Entry] = {entry.command: entry for entry in ENTRIES if entry.group}
+KINDS: Mapping[str, Entry] = {entry.kind: entry for entry in ENTRIES if entry.results}

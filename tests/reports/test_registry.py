@@ -1,0 +1,57 @@
+"""The one list of commands and results: what it names is there, and what is there it names."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+from collections.abc import Iterator
+
+import pytest
+
+from rockwobble.compare import Results
+from rockwobble.compare.check import Checks
+from rockwobble.compare.check.measurement import not_run
+from rockwobble.reports.registry import COMMANDS, ENTRIES, HEADINGS, KINDS
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_kind_finds_its_class_and_its_page(kind: str) -> None:
+    made = KINDS[kind].results_class()
+    assert made.kind == kind
+    page = importlib.import_module(f"rockwobble.reports.{KINDS[kind].page}")
+    parameters = inspect.signature(page.page_of, eval_str=True).parameters.values()
+    assert [each.annotation for each in parameters] == [made]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_command_is_the_function_of_its_name_in_the_module_of_its_group(name: str) -> None:
+    module = importlib.import_module(f"rockwobble.reports.cli.{COMMANDS[name].group}")
+    assert inspect.isfunction(getattr(module, name))
+
+
+def test_names_commands_and_kinds_stand_once_and_groups_in_the_order_of_their_headings() -> None:
+    for field in ("name", "command", "kind"):
+        stated = [getattr(each, field) for each in ENTRIES]
+        assert len({*stated}) == len(stated), field
+    assert [*dict.fromkeys(each.group for each in ENTRIES if each.group)] == list(HEADINGS)
+
+
+@pytest.mark.slow
+def test_all_results_of_the_package_are_in_the_list() -> None:
+    for entry in KINDS.values():
+        entry.results_class()
+
+    def below(kind: type[Results]) -> Iterator[type[Results]]:
+        for each in kind.__subclasses__():
+            yield each
+            yield from below(each)
+
+    own = {each.kind for each in below(Results) if each.__module__.startswith("rockwobble.")}
+    assert own == {*KINDS}
+
+
+def test_results_without_figures_say_so() -> None:
+    with pytest.raises(ValueError, match="there is nothing to draw of"):
+        Checks.of([not_run("a case", "nothing moves")], seconds=0.0).plot()
