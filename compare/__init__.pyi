@@ -8,7 +8,6 @@ from .external.trajectory import External as External
 from .external.trajectory import read_trajectory as read_trajectory
 from .metrics.pair import TILTED as TILTED
 from .runs.choice import default_runs as default_runs
-from .runs.choice import own_model as own_model
 from .runs.execution import simulate as simulate
 from .runs.progress import IncompleteError as IncompleteError
 from .runs.progress import Progress as Progress

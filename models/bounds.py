@@ -6,13 +6,14 @@ from dataclasses import dataclass, fields
 
 from .number_checks import require_one_of, require_positive
 from .shown import Brief
+from .support import MODELLED
 
 # tilt difference that ends an agreement [alpha]
 AGREEMENT = 0.01
 # tilt below which the base counts as closed: no demand is taken there [alpha]. The rim has lifted by two
 # thousandths of alpha b or less, to which ground and joint give way before they feel the edge of a rigid body
 CLOSED_TILT = 1e-3
-REFERENCES = ("own", "recess", "flat")
+REFERENCES = ("own", *MODELLED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

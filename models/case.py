@@ -15,6 +15,7 @@ from .cylinder import Cylinder, WobblingFrame
 from .ground_motion import GroundMotion
 from .number_checks import quoted, require_finite, require_positive
 from .shown import Brief, brief, line
+from .support import EXTERNAL, FLAT, MODELLED, RECESS, Support, support_named
 from .tendon import Tendon
 
 _UNITS = {"tilt": "rad", "tilt_rate": "rad/s", "rolling_angle": "rad", "rolling_rate": "rad/s"}
@@ -201,7 +202,6 @@ WAYS_TO_A_STEP: tuple[_Way, ...] = ("auto", "extrapolated")
 TimeStep = float | _Way | None
 """Time step of an engine [s], or the way to one."""
 REDUCED = "reduced"  # the engine of a reduced model, in tables
-_MODEL_NAMES = {"flat": "flat-ground model"}
 
 
 @dataclass(frozen=True, slots=True, init=False, repr=False)
@@ -213,7 +213,7 @@ class Run:
     engine : str or None
         Name of the engine, such as "mujoco" or "pybullet"; None is a reduced model.
     support : str
-        What holds the cylinder in place: "recess", "flat" or "ring".
+        What holds the cylinder in place: "recess", "flat" or "ring"; kept as the `Support` of that name.
     time_step : float, "auto" or "extrapolated", optional
         [s]; default: the engine's own choice for the size of the cylinder. "auto": halved until the
         result has settled. "extrapolated": what runs at several steps tend to.
@@ -223,7 +223,7 @@ class Run:
     Raises
     ------
     ValueError
-        If the time step is neither positive nor one of those words.
+        If the support is unknown, or the time step is neither positive nor one of those words.
 
     Examples
     --------
@@ -234,7 +234,7 @@ class Run:
     """
 
     engine: str | None
-    support: str
+    support: Support
     time_step: TimeStep
     settings: Mapping[str, Any]
 
@@ -252,6 +252,8 @@ class Run:
                 )
         elif time_step is not None:
             time_step = require_positive("time_step", time_step, "s")
+        if not isinstance(support, Support):
+            support = EXTERNAL if support == EXTERNAL else support_named(support)
         object.__setattr__(self, "engine", engine)
         object.__setattr__(self, "support", support)
         object.__setattr__(self, "time_step", time_step)
@@ -265,7 +267,7 @@ class Run:
     def __str__(self) -> str:
         if not self.is_model:
             return f"{self.engine} {self.support}"
-        return "planar model" if self.is_planar else _MODEL_NAMES.get(self.support, f"{self.support} model")
+        return "planar model" if self.is_planar else self.support.model or f"{self.support} model"
 
     @property
     def is_model(self) -> bool:
@@ -278,6 +280,16 @@ class Run:
         return self.settings.get("plane") is not None
 
     @property
+    def own_model(self) -> Run:
+        """The reduced model of its support: what an exact engine would follow, short of walls."""
+        return Run(None, self.support.own_model)
+
+    @property
+    def compared_with(self) -> tuple[Run, ...]:
+        """The reduced models that a run of its support is compared with; the last is the nearest to it."""
+        return tuple(Run(None, support) for support in self.support.compared_with)
+
+    @property
     def engine_name(self) -> str:
         """Name of the engine in tables; "reduced" of a reduced model."""
         return self.engine or REDUCED
@@ -288,6 +300,10 @@ class Run:
     def __reduce__(self) -> tuple[object, ...]:
         # a mapping proxy does not pickle, and runs travel to worker processes
         return partial(Run, **self.settings), (self.engine, self.support, self.time_step)
+
+
+RECESS_MODEL, FLAT_MODEL = Run(None, RECESS), Run(None, FLAT)
+REDUCED_MODELS = tuple(Run(None, support) for support in MODELLED)
 
 
 @with_argument_kinds

@@ -13,7 +13,7 @@ import numpy as np
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace, WobblingFrame
 from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_positive, require_sample_step
-from rockwobble.models.support import SUPPORTS
+from rockwobble.models.support import RECESS, SUPPORTS
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.models.trace_source import Known
 
@@ -51,7 +51,7 @@ def simulate(
     case: Case,
     *,
     engine: str = DEFAULT_ENGINE,
-    support: str = "recess",
+    support: str = RECESS,
     time_step: TimeStep = None,
     sample_step: float = 0.01,
     progress: Progress | None = None,

@@ -21,8 +21,7 @@ from .simulation import simulate
 
 # name of each reduced model: the options of `simulate` and `peak_tilts`
 MODELS: Mapping[str, Mapping[str, Any]] = {
-    "recess": {"support": "recess"},
-    "flat": {"support": "flat"},
+    **{support: {"support": support} for support in SUPPORTS},
     "planar": {"plane": 0.0},
 }
 

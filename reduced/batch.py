@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockwobble.models import Case, Cylinder, GroundMotion, Tendon, WobblingFrame
 from rockwobble.models.cpus import in_threads, usable_cpus
 from rockwobble.models.number_checks import quoted
+from rockwobble.models.support import RECESS
 
 from .integration.result import OVERTURNED, IntegrationResult
 from .problem import REST_TILT, Problem
@@ -29,7 +30,7 @@ def peak_tilts(
     motion: GroundMotion,
     scales: ArrayLike,
     *,
-    support: str = "recess",
+    support: str = RECESS,
     plane: float | None = None,
     restitution: float | str = 1.0,
     rtol: float = 1e-7,
@@ -130,7 +131,7 @@ def peak_tilts_of_case(
     case: Case,
     scales: ArrayLike,
     *,
-    support: str = "recess",
+    support: str = RECESS,
     plane: float | None = None,
     rtol: float = 1e-7,
     workers: int | None = None,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, InitialState
 from rockwobble.models.number_checks import quoted
-from rockwobble.models.support import SUPPORTS as FACTS
+from rockwobble.models.support import MODELLED, RECESS, support_named
 
 from . import kernels
 from .body import Body, body_of, restitution_from_momentum
@@ -23,7 +23,7 @@ from .integration.result import Driver, IntegrationResult, Options, Task
 from .restoring import balance, tied_body
 from .rolling import impact_ratio
 
-SUPPORTS = tuple(name for name, support in FACTS.items() if support.has_model)
+SUPPORTS: tuple[str, ...] = MODELLED
 _OUT_OF_PLANE = 1e-9  # [rad] more than what rounding makes of an azimuth
 
 # Tilt (over alpha) below which the base is closed again. A rest forgets which way the cylinder leans, and
@@ -71,7 +71,7 @@ class Problem:
 
     case: Case
     _: KW_ONLY
-    support: str = "recess"
+    support: str = RECESS
     plane: float | None = None
     restitution: float | str = 1.0
     rtol: float = 1e-8
@@ -106,8 +106,8 @@ class Problem:
             _require_in_plane(initial, plane)
         if self.case.tendon is not None and self.free_twist:
             raise ValueError(
-                "a tendon is part of the models in the recess and in a plane, got support 'flat': there the "
-                "base wanders from its anchor"
+                f"a tendon is part of the models in the recess and in a plane, got support {self.support!r}: "
+                "there the base wanders from its anchor"
             )
 
     def __getstate__(self) -> dict[str, Any]:
@@ -171,7 +171,7 @@ class Problem:
     @property
     def free_twist(self) -> bool:
         """Whether the model has a twist: on flat ground, but not where it is planar by choice."""
-        return self.plane is None and not FACTS[self.support].guided
+        return self.plane is None and not support_named(self.support).guided
 
     def is_planar(self) -> bool:
         """Return whether the run stays in one vertical plane."""

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Diagnostic, Run, Trace
 from rockwobble.models.number_checks import require_sample_step
+from rockwobble.models.support import RECESS
 from rockwobble.models.trace import NO_PEAK
 
 from . import kernels
@@ -29,7 +30,7 @@ _OUTCOMES = {REST: "stands", COMPLETED: "stands", OVERTURNED: "overturned", UNDE
 def simulate(
     case: Case,
     *,
-    support: str = "recess",
+    support: str = RECESS,
     plane: float | None = None,
     restitution: float | str = 1.0,
     rtol: float = 1e-8,

@@ -11,7 +11,7 @@ from pathlib import Path
 from types import ModuleType
 
 from rockwobble import reduced
-from rockwobble.models import Run
+from rockwobble.models.case import RECESS_MODEL
 
 from ..check import GROUPS, NOT_RUN, Result, Subject, engine, reduced_model
 from ..check.fingerprint import as_json, fingerprint, repeat, short_cases
@@ -81,7 +81,7 @@ def certify(
 
 def description(subject: Subject) -> Described:
     """Return the method of a subject as a certificate has it."""
-    run = subject.run or Run(None, "recess")
+    run = subject.run or RECESS_MODEL
     return {"engine": run.engine, "time_step": run.time_step, "settings": dict(run.settings)}
 
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, el_centro_1940
 from rockwobble.models.cylinder import PIER
+from rockwobble.models.support import FLAT, support_named
 
 from ..external.motion import exceeds
 from ..metrics.pair import agreement_time, energy_loss, make_pair, rms
@@ -59,7 +60,7 @@ _FIELDS = {
     "energy": ("g R", GRAVITY * BODY.semidiagonal, 1.0),
 }
 # the guide of a recess, which starts without twist, lets rate and force swing about their mean
-_SWINGS = {"recess": (200.0, 5e3), "flat": (5.0, 5.0)}
+_GUIDED_SWINGS, _SWINGS = (200.0, 5e3), (5.0, 5.0)
 RAMP = Case(PIER, GroundMotion(np.outer([0.0, 1.5], [0.6, 0.8]) * THRESHOLD, 1.5), name="ramp")
 RECORD = Case(Cylinder(semidiagonal=10.0, tan_alpha=0.1), el_centro_1940(), duration=8.0, name="El Centro")
 _LEVEL = 1e-3  # of alpha: tilt at which an uplift is seen
@@ -77,7 +78,8 @@ def fields(subject: Subject, support: str) -> Iterator[Result]:
         yield at_most(
             name, difference(name) / size, subject.tolerance_bound(times, "contact at its step", unit)
         )
-    rate, force = (subject.tolerance_bound(times, "means over 60 steps") for times in _SWINGS[support])
+    swings = _GUIDED_SWINGS if support_named(support).guided else _SWINGS
+    rate, force = (subject.tolerance_bound(times, "means over 60 steps") for times in swings)
     yield at_most("rolling_rate", difference("rolling_rate"), rate)
     # without the half window at either end
     yield at_most("contact force", difference("contact_force", slice(2, -2)), force)
@@ -144,7 +146,7 @@ def record(subject: Subject, support: str) -> Iterator[Result]:
 def ring(subject: Subject, support: str) -> Iterator[Result]:
     """A recess with clearance: flat ground until a wall is touched; the walls keep it in its place."""
     case = release_case(0.5, 0.5, 4.0, SQUAT)
-    found, flat = (subject.simulate(case, each) for each in (support, "flat"))
+    found, flat = (subject.simulate(case, each) for each in (support, FLAT))
     before = found.time < found.first("wall_contact")
     same = len(found.time) == len(flat.time)
     apart = largest(found.tilt[before] - flat.tilt[before]) if same else math.nan

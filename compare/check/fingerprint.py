@@ -33,7 +33,7 @@ from rockwobble.models import (
 )
 from rockwobble.models.cylinder import PIER
 from rockwobble.models.members import perturbed
-from rockwobble.models.support import SUPPORTS
+from rockwobble.models.support import FLAT, RECESS, RING, SUPPORTS
 
 from ..runs.progress import ProgressCallback, stages
 from .measurement import FRAME, GRAVITY, SQUAT, release_case
@@ -72,7 +72,7 @@ class ShortCase:
     claim: str
     term: str
     case: Case
-    support: str = "recess"
+    support: str = RECESS
     options: Mapping[str, object] = field(default_factory=dict)
 
 
@@ -92,7 +92,7 @@ def short_cases() -> tuple[ShortCase, ...]:
             _LOW,
             1.5,
             1.0,
-            support="flat",
+            support=FLAT,
         ),
         _shaken("uplift", "uplift (25), (26) and a_r of (18)", [[0.0, 0.0], [1.6, 1.9]], 1.4),
         _shaken("turning-push", "a_t of (19)", [[0.0, 0.0], [2.2, 0.5], [1.0, 1.8]], 0.7),
@@ -115,7 +115,7 @@ def short_cases() -> tuple[ShortCase, ...]:
             claim="walls that are touched keep the cylinder in its place",
             term="walls of a recess with clearance",
             case=release_case(0.5, 0.5, 4.0, SQUAT),
-            support="ring",
+            support=RING,
         ),
     )
 
@@ -134,7 +134,7 @@ def cases_of(subject: Subject, longest: float = math.inf) -> list[ShortCase]:
 
 
 def _release(
-    name: str, term: str, body: Cylinder, spin: float, length: float, *, support: str = "recess"
+    name: str, term: str, body: Cylinder, spin: float, length: float, *, support: str = RECESS
 ) -> ShortCase:
     start = InitialState(0.5 * body.alpha, 0.0, 0.3, spin)
     claim = f"free response {'by (18) and (19)' if SUPPORTS[support].guided else 'on flat ground'}"

@@ -21,6 +21,7 @@ from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import line
+from rockwobble.models.support import MODELLED, RECESS, RING, SUPPORTS
 from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import engine_fault, engine_packages, own_engines, standard_engines
 
@@ -37,8 +38,7 @@ from .subject import TOLERANCE, Subject
 from .suite import SuiteRuns, check_suite
 
 Measure = Callable[[Subject, str], Iterator[Result]]
-BOTH = ("recess", "flat")
-MODELS = ("recess", "flat", "planar")
+MODELS = (*MODELLED, "planar")
 _ENDS = Bound(0.0, "a check must reach its end")
 
 
@@ -69,7 +69,7 @@ class Check:
     """
 
     measure: Measure
-    supports: tuple[str, ...] = BOTH
+    supports: tuple[str, ...] = MODELLED
     knows: tuple[str, ...] = ()
     options: tuple[str, ...] = ()
     reference: bool = False
@@ -109,16 +109,16 @@ class Check:
 
 
 GROUPS: Mapping[str, tuple[Check, ...]] = {
-    "equations": (Check(measure=lagrange.residual, supports=("recess",), options=("rtol",)),),
+    "equations": (Check(measure=lagrange.residual, supports=(RECESS,), options=("rtol",)),),
     "exact": (
-        Check(measure=laws.free_response, supports=("recess",)),
+        Check(measure=laws.free_response, supports=(RECESS,)),
         Check(measure=laws.steady_wobble),
-        Check(measure=laws.vanishing_spin, supports=("recess",), options=("rtol",)),
+        Check(measure=laws.vanishing_spin, supports=(RECESS,), options=("rtol",)),
         Check(measure=laws.planar_rocking, supports=("planar",)),
     ),
     "conserved": (
         Check(measure=lagrange.free_motion, knows=("energy",)),
-        Check(measure=lagrange.rolling_loss, supports=("recess",), options=("rolling_resistance",)),
+        Check(measure=lagrange.rolling_loss, supports=(RECESS,), options=("rolling_resistance",)),
         Check(measure=lagrange.work_of_the_ground, knows=("energy", "centre_of_mass")),
         Check(measure=lagrange.work_of_a_record, supports=MODELS, knows=("energy",), options=("rtol",)),
     ),
@@ -135,26 +135,26 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
         Check(measure=invariance.statement),
     ),
     "tendon": (
-        Check(measure=lagrange.residual_with_tendon, supports=("recess",), options=("rtol",), tendon=True),
-        Check(measure=restraint.releases, supports=("recess",), tendon=True),
+        Check(measure=lagrange.residual_with_tendon, supports=(RECESS,), options=("rtol",), tendon=True),
+        Check(measure=restraint.releases, supports=(RECESS,), tendon=True),
         Check(measure=restraint.rocking, supports=("planar",), tendon=True),
-        Check(measure=restraint.stored_energy, supports=("recess",), knows=("energy",), tendon=True),
-        Check(measure=restraint.second_gap, supports=("recess",), knows=("energy",), tendon=True, slab=True),
-        Check(measure=restraint.load_at_rest, supports=("recess",), knows=("contact_force",), tendon=True),
+        Check(measure=restraint.stored_energy, supports=(RECESS,), knows=("energy",), tendon=True),
+        Check(measure=restraint.second_gap, supports=(RECESS,), knows=("energy",), tendon=True, slab=True),
+        Check(measure=restraint.load_at_rest, supports=(RECESS,), knows=("contact_force",), tendon=True),
         Check(
             measure=restraint.raised_uplift,
-            supports=("recess", "planar"),
+            supports=(RECESS, "planar"),
             knows=("uplift_time",),
             tendon=True,
             from_rest=True,
         ),
-        Check(measure=restraint.balance, supports=("recess",), knows=("outcome",), tendon=True),
-        Check(measure=restraint.size, supports=("recess",), tendon=True),
-        Check(measure=restraint.without_force, supports=("recess", "planar"), tendon=True),
+        Check(measure=restraint.balance, supports=(RECESS,), knows=("outcome",), tendon=True),
+        Check(measure=restraint.size, supports=(RECESS,), tendon=True),
+        Check(measure=restraint.without_force, supports=(RECESS, "planar"), tendon=True),
     ),
     "order": (Check(measure=agreement.order, options=("stepper",), reference=True),),
     "trace": (
-        Check(measure=laws.place, supports=("recess",), knows=("twist", "contact_point", "centre_of_mass")),
+        Check(measure=laws.place, supports=(RECESS,), knows=("twist", "contact_point", "centre_of_mass")),
         Check(measure=laws.slip, options=("stepper",)),
         Check(measure=laws.turning, knows=("extrema", "passes")),
     ),
@@ -162,14 +162,14 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
         Check(measure=agreement.fields, knows=("twist", "centre_of_mass"), reference=True),
         Check(measure=agreement.release, reference=True),
         Check(measure=agreement.frame, reference=True, slab=True),
-        Check(measure=agreement.tendon, supports=("recess",), reference=True, tendon=True),
+        Check(measure=agreement.tendon, supports=(RECESS,), reference=True, tendon=True),
         Check(measure=agreement.ramp, reference=True, from_rest=True),
         Check(measure=agreement.record, reference=True, from_rest=True),
-        Check(measure=agreement.ring, supports=("ring",), options=("stepper",), reference=True),
+        Check(measure=agreement.ring, supports=(RING,), options=("stepper",), reference=True),
         Check(measure=agreement.trajectory, reference=True, files=True),
     ),
     "protocol": tuple(
-        Check(measure=measure, supports=(*BOTH, "ring"), options=("stepper",))
+        Check(measure=measure, supports=tuple(SUPPORTS.values()), options=("stepper",))
         for measure in (
             invariance.description,
             invariance.stepping,
@@ -179,7 +179,7 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
     ),
     "baseline": (
         Check(measure=baseline.same_as_baseline, options=("rtol",)),
-        Check(measure=baseline.same_as_baseline, supports=(*BOTH, "ring"), options=("stepper",)),
+        Check(measure=baseline.same_as_baseline, supports=tuple(SUPPORTS.values()), options=("stepper",)),
     ),
 }
 # of an engine that nobody has named: what a version of it may change, in a few seconds
@@ -323,7 +323,7 @@ def check(
     model: Callable[[Case, str], object] | str | None = None,
     trajectory: Trace | Sequence[Trace] | None = None,
     suite: Suite | str | Path | None = None,
-    support: str = "recess",
+    support: str = RECESS,
     tolerance: float = TOLERANCE,
     time_step: TimeStep | None = None,
     only: Sequence[str] | None = None,
@@ -429,7 +429,7 @@ def with_cause(subject: Subject, results: Sequence[Result]) -> list[Result]:
         own = result.subject == subject.label and result.group in ("exact", "conserved", "rest", "agreement")
         return own and result.failed and not result.cause
 
-    support = next((name for name in BOTH if name in subject.supports), None)
+    support = next((name for name in MODELLED if name in subject.supports), None)
     can_tell = subject.reference is not None and subject.cases is None
     if support is None or not can_tell or not any(map(lacks, results)):
         return list(results)

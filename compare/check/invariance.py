@@ -15,6 +15,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +33,7 @@ from rockwobble.multibody.scene import (
     starting_state,
 )
 
-from ..runs.execution import simulate_run
+from ..runs.execution import simulate, simulate_run
 from .measurement import (
     GRAVITY,
     RELEASE,
@@ -180,15 +181,15 @@ def description(subject: Subject, support: str) -> Iterator[Result]:
     right = bool(backend.version()) and support in backend.supports and isinstance(backend.uplifts, bool)
     yield _holds("description of itself", right and plain, f"settings {settings}")
     released = Case(PIER, initial=_STATE, duration=0.01)
-    refused = {
-        "setting": (released, Run(subject.label, support, no_such_setting=1.0)),
-        "support": (released, Run(subject.label, "no_such_support")),
+    refused: dict[str, tuple[Case, dict[str, Any]]] = {
+        "setting": (released, {"support": support, "no_such_setting": 1.0}),
+        "support": (released, {"support": "no_such_support"}),
     }
     if not subject.uplifts:
-        refused["at rest"] = (Case(PIER, duration=0.01), Run(subject.label, support))
-    for name, (case, run) in refused.items():
+        refused["at rest"] = (Case(PIER, duration=0.01), {"support": support})
+    for name, (case, options) in refused.items():
         try:
-            simulate_run(case, run)
+            simulate(case, engine=subject.label, **options)
             words = ""
         except ValueError as error:
             words = str(error)

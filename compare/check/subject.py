@@ -15,6 +15,7 @@ from rockwobble import reduced
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.case import TimeStep
 from rockwobble.models.shown import Brief
+from rockwobble.models.support import MODELLED, RECESS
 from rockwobble.multibody.engines.registry import engine_facts, find_engine
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 
@@ -140,7 +141,7 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
     return Subject(
         label="reduced model",
         source=_with_memory(source),
-        supports=("recess", "flat", "planar"),
+        supports=(*MODELLED, "planar"),
         knows=FIELDS,
         options=frozenset({"rtol", "rest_tilt", "restitution", "plane", "rolling_resistance"}),
         tolerance=MODEL_TOLERANCE,
@@ -200,7 +201,7 @@ def engine(name: str, time_step: TimeStep | None = None, **settings: object) -> 
 
 
 def external_model(
-    model: Callable[[Case, str], object], *, support: str = "recess", tolerance: float = TOLERANCE
+    model: Callable[[Case, str], object], *, support: str = RECESS, tolerance: float = TOLERANCE
 ) -> Subject:
     """Return a model of somebody else.
 
@@ -246,9 +247,7 @@ def external_model(
     )
 
 
-def trajectories(
-    traces: Sequence[Trace], *, support: str = "recess", tolerance: float = TOLERANCE
-) -> Subject:
+def trajectories(traces: Sequence[Trace], *, support: str = RECESS, tolerance: float = TOLERANCE) -> Subject:
     """Return the motions of files.
 
     Parameters
@@ -316,8 +315,8 @@ def load_model(name: str) -> Callable[[Case, str], object]:
 
 
 def _require(support: str, tolerance: float) -> None:
-    if support not in ("recess", "flat"):
-        raise ValueError(f"support must be 'recess' or 'flat', got {support!r}")
+    if support not in MODELLED:
+        raise ValueError(f"support must be {' or '.join(map(repr, MODELLED))}, got {support!r}")
     if not 0.0 < tolerance < 1.0:
         raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")
 

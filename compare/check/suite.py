@@ -33,7 +33,7 @@ from ..comparison.prediction import (
 )
 from ..comparison.summary import SUMMARY_COLUMNS, summary_row
 from ..metrics.pair import landings, rms
-from ..runs.choice import at_step, own_model, require_runnable, support_of
+from ..runs.choice import at_step, require_runnable
 from ..runs.execution import Job, simulate_all
 from ..runs.progress import ProgressCallback
 from ..storage.provenance import fingerprint
@@ -100,7 +100,7 @@ def check_suite(runs: SuiteRuns, jobs: Sequence[Job], bounds: Bounds | None) -> 
 
 def reference_of(run: Run, bounds: Bounds | None) -> Run:
     """Return the reduced model that a run is compared with."""
-    return own_model(run) if bounds is None or bounds.reference == "own" else Run(None, bounds.reference)
+    return run.own_model if bounds is None or bounds.reference == "own" else Run(None, bounds.reference)
 
 
 def check_run(runs: SuiteRuns, job: Job, trace: Trace, bounds: Bounds | None) -> Iterator[Result]:
@@ -110,7 +110,7 @@ def check_run(runs: SuiteRuns, job: Job, trace: Trace, bounds: Bounds | None) ->
     if trace.outcome == "failed":
         yield at_most(name, math.nan, ENDS, f"contact of {job.run.engine}", why(trace))
         return
-    if support_of(job.run).walls:
+    if job.run.support.walls:
         yield from walls(f"{job.case.name}, {job.label}", job.case, trace)
     model = runs.simulate(job.case, reference)
     if bounds is None:
@@ -194,7 +194,7 @@ def other_step(job: Job, trace: Trace) -> tuple[Job, float]:
 
 def _in_motion(job: Job) -> Job | None:
     # none has a model once its walls are touched
-    case = in_motion(job.case) if support_of(job.run).has_model else None
+    case = in_motion(job.case) if job.run.support.has_model else None
     return None if case is None else Job(case=case, run=job.run, label=job.label)
 
 

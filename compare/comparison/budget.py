@@ -4,7 +4,7 @@
                        =     numerics     +  unexplained  +   model form
 
 limit is the engine extrapolated to a time step of zero, own the reduced model of the engine's support
-(see `own_model`) or, where that goes through upright itself, planar motion with the loss of a base that
+(see `Run.own_model`) or, where that goes through upright itself, planar motion with the loss of a base that
 lands flat. The three are signed traces of the tilt, and add up exactly.
 Tilt itself is never negative, so it folds where a motion goes past upright; as long as two motions agree
 within the tolerance of `tolerance_of` they are on the same side of that fold, which is why the budget ends
@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, Run, Trace
 from rockwobble.models.shown import Brief
+from rockwobble.models.support import RECESS
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.extrapolated_step import EXTRAPOLATED, to_zero_step
 
@@ -40,7 +41,7 @@ from ..metrics.pair import (
     start_of,
     tolerance_of,
 )
-from ..runs.choice import at_step, own_model, references_of
+from ..runs.choice import at_step, references_of
 from ..runs.execution import SAMPLE_STEP, Job
 
 Array = NDArray[np.float64]
@@ -61,7 +62,7 @@ _ALWAYS, _AT_MOST = 2, 3
 # uncertainty of a limit, over the whole difference, that asks for a finer step
 _UNCERTAIN = 0.1
 # planar in the x z plane, with the loss of a base that lands flat
-_IMPACT = Run(None, "recess", plane=0.0, restitution="momentum")
+_IMPACT = Run(None, RECESS, plane=0.0, restitution="momentum")
 Simulate = Callable[[list[Job]], list[Trace]]
 Key = tuple[str, str]
 
@@ -423,7 +424,7 @@ def case_budgets(
     impacts = _impacts(cases, runs, results, simulate)
 
     def own_trace(name: str, label: str) -> Trace:
-        key = name, str(own_model(runs[label]))
+        key = name, str(runs[label].own_model)
         return impacts.get(key, results[key])
 
     return {
@@ -452,7 +453,7 @@ def _impacts(
     """
     keys, jobs = [], []
     for case in cases:
-        for model in dict.fromkeys(str(own_model(run)) for run in runs.values()):
+        for model in dict.fromkeys(str(run.own_model) for run in runs.values()):
             response = results[case.name, model]
             if not len(landings(response)):
                 continue

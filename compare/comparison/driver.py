@@ -10,6 +10,7 @@ import pandas as pd
 
 from rockwobble.models import AGREEMENT, Case, Run, Suite, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
+from rockwobble.models.case import RECESS_MODEL
 
 from ..external.trajectory import External, read_trajectories
 from ..external.verdict import Row
@@ -17,7 +18,6 @@ from ..metrics.pair import tolerance_of
 from ..runs.choice import (
     default_runs,
     labels_beside_references,
-    own_model,
     references_of,
     require_runnable,
 )
@@ -102,12 +102,12 @@ def comparison(
     cases = case_or_suite.cases if isinstance(case_or_suite, Suite) else (case_or_suite,)
     chosen = _runs(case_or_suite, runs, needed=not (external := tuple(external)))
     for case in cases:
-        own = [own_model(run) for run in chosen]
+        own = [run.own_model for run in chosen]
         for run in (*chosen, *own, *(() if reference is None else (reference,))):
             require_runnable(case, run)
     labels, named = labels_beside_references(chosen, reference)
     by_label = dict(zip(labels, chosen, strict=True))
-    compared_with = {named or "recess model": Run(None, "recess") if reference is None else reference}
+    compared_with = {named or str(RECESS_MODEL): reference or RECESS_MODEL}
     jobs = _jobs(cases, by_label, reference, named, also=compared_with if external else {})
     brought = read_trajectories(external, cases, taken={label for _, label in jobs})
     with nullcontext() if resume is None else open_trace_cache(resume, Comparison.kind) as cache:
@@ -129,7 +129,7 @@ def comparison(
                 found[case.name, name],
                 label,
                 found[case.name, label],
-                own=found[case.name, str(own_model(run))],
+                own=found[case.name, str(run.own_model)],
                 simulate=copy_of,
                 budget=budgets.get((case.name, label, name)),
                 until=until,
@@ -171,7 +171,7 @@ def _jobs(
         needed = dict(also)
         for label, run in runs.items():
             needed |= references_of(case, run, label, reference, named=named)
-            needed[str(own_model(run))] = own_model(run)
+            needed[str(run.own_model)] = run.own_model
         jobs |= {(case.name, label): Job(case=case, run=run, label=label) for label, run in needed.items()}
     for case in cases:
         jobs |= {(case.name, label): Job(case=case, run=run, label=label) for label, run in runs.items()}

@@ -14,6 +14,7 @@ import pandas as pd
 from rockwobble.models import Case, Cylinder, Diagnostic, Run, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.shown import Brief
+from rockwobble.models.support import EXTERNAL
 from rockwobble.multibody.passes import TurningPoint, passes_between, turning_points
 
 from ..runs.execution import SAMPLE_STEP
@@ -22,7 +23,6 @@ from .motion import SAME_TIME, Motion, motion_at
 from .pose import Poses, poses_of
 from .table import Array, Table, name_list, read_tables
 
-SUPPORT = "external"
 # the side lies on the ground, as far as a measurement says [rad]
 _FALLEN = 0.5 * math.pi - 0.01
 # tilt by which a file that is read otherwise may be off at the start, in units of alpha
@@ -190,7 +190,7 @@ def trajectory_of(table: Table, given: External, case: Case) -> Trace:
     rests = bool((tilt[-100:] < poses.stands).all())
     return Trace(
         case=case,
-        run=Run(given.label, SUPPORT),
+        run=Run(given.label, EXTERNAL),
         version="",
         time=time,
         tilt=tilt,

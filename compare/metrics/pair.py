@@ -15,8 +15,6 @@ from numpy.typing import ArrayLike, NDArray
 from rockwobble.models import AGREEMENT, Cylinder, GroundMotion, Trace
 from rockwobble.models.shown import Brief
 
-from ..runs.choice import support_of
-
 FloatArray = NDArray[np.float64]
 
 # samples are multiples of one step; two that differ by less are the same [s]
@@ -156,7 +154,7 @@ def outcome_of(trace: Trace) -> str:
     One that leans on a wall beyond its balance at the end of its run counts as overturned: after it the
     ground is still, as where a fall is decided.
     """
-    leans = support_of(trace.run).walls and len(trace.tilt) and trace.tilt[-1] > trace.case.cylinder.alpha
+    leans = trace.run.support.walls and len(trace.tilt) and trace.tilt[-1] > trace.case.cylinder.alpha
     return "overturned" if leans and trace.outcome != "failed" else trace.outcome
 
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from rockwobble.models import Case, InitialState, Run
-from rockwobble.models.case import TimeStep
-from rockwobble.models.support import RECESS, Support
-from rockwobble.models.support import SUPPORTS as SUPPORT_FACTS
+from rockwobble.models.case import REDUCED_MODELS, TimeStep
+from rockwobble.models.support import MODELLED
 from rockwobble.multibody import BrokenEngineError, EngineNotInstalledError, available_engines
 from rockwobble.multibody.engines.registry import (
     engine_fault,
@@ -110,8 +109,7 @@ def labels_beside_references(runs: Sequence[Run], reference: Run | None) -> tupl
     """
     run_labels(runs)  # none of them twice
     others: list[Run] = []
-    models = Run(None, "recess"), Run(None, "flat")
-    for each in (*models, *(() if reference is None else (reference,))):
+    for each in (*REDUCED_MODELS, *(() if reference is None else (reference,))):
         if each not in (*runs, *others):
             others.append(each)
     labels = run_labels((*runs, *others))
@@ -140,9 +138,6 @@ def _step_words(run: Run) -> str:
 
 def _setting_words(run: Run) -> str:
     return " ".join(f"{key}={value}" for key, value in run.settings.items())
-
-
-SUPPORTS = ("recess", "flat")
 
 
 def missing_engines() -> tuple[str, ...]:
@@ -215,7 +210,7 @@ def _reservation(name: str) -> str:
     except BrokenEngineError as error:
         # of another package: what is broken there stops nobody here
         return str(error)
-    lacks = [f"no {support} support" for support in SUPPORTS if support not in engine.supports]
+    lacks = [f"no {support} support" for support in MODELLED if support not in engine.supports]
     lacks += [] if engine.uplifts else ["no uplift"]
     if lacks:
         return f"{name} has {' and '.join(lacks)}"
@@ -288,8 +283,8 @@ def default_runs(
         engines = [name for name in available_engines() if name not in reserved]
     runs = []
     tied = any(case.tendon is not None for case in cases)
-    usual = [each for each in SUPPORTS if SUPPORT_FACTS[each].guided or not tied]
-    for support in SUPPORTS if supports is None else supports:
+    usual = [each for each in MODELLED if each.guided or not tied]
+    for support in MODELLED if supports is None else supports:
         able = [engine for engine in engines if support in find_engine(engine).supports]
         if supports is None and support not in usual:
             # one that is named and has no other is refused for it, not left out
@@ -317,11 +312,11 @@ def all_runs(cases: Sequence[Case], supports: Sequence[str] | None = None) -> tu
         If there is none.
     """
     engines = [name for name in available_engines() if not _unable(name, cases)]
-    asked = default_runs(engines, supports or SUPPORTS)
+    asked = default_runs(engines, supports or MODELLED)
     found = [run for run in asked if run.support in find_engine(run.engine_name).supports]
     if not found:
         raise ValueError(
-            f"no installed engine has the support {' or '.join(supports or SUPPORTS)} for this case"
+            f"no installed engine has the support {' or '.join(supports or MODELLED)} for this case"
         )
     return tuple(found)
 
@@ -354,30 +349,6 @@ def omissions(supports: Sequence[str]) -> tuple[str, ...]:
     return tuple(f"{name} has no {support} support and is left out there" for name, support in lacks)
 
 
-def own_model(run: Run) -> Run:
-    """Return the reduced model of a run's support: what an exact engine would follow, short of walls.
-
-    Parameters
-    ----------
-    run : Run
-
-    Returns
-    -------
-    Run
-
-    Examples
-    --------
-    >>> own_model(Run("mujoco", "flat"))
-    Run(None, 'flat')
-    """
-    return Run(None, support_of(run).own_model)
-
-
-def support_of(run: Run) -> Support:
-    """Return the support of a run; of an external trajectory, which may state none, the recess."""
-    return SUPPORT_FACTS.get(run.support, RECESS)
-
-
 def references_of(
     case: Case, run: Run, label: str, reference: Run | None = None, *, named: str = ""
 ) -> dict[str, Run]:
@@ -388,12 +359,10 @@ def references_of(
     A run is compared with the models that its support names; one between walls also with itself at half its
     step, or, where that is sought, at half the default step.
     """
-    support = support_of(run)
-    models = [Run(None, name) for name in support.compared_with] if reference is None else []
-    chosen = {str(model): model for model in models}
+    chosen = {str(model): model for model in run.compared_with}
     if reference is not None:
         chosen = {named or str(reference): reference}
-    elif support.walls:
+    elif run.support.walls:
         # the step of a run that seeks its own is not known beforehand
         half = "half the default step" if isinstance(run.time_step, str) else "half the step"
         chosen[f"{label}, {half}"] = _finer(case, run)

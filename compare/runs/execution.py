@@ -18,6 +18,7 @@ from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import TimeStep
 from rockwobble.models.parquet_file import pack, read
 from rockwobble.models.shown import Brief
+from rockwobble.models.support import RECESS
 from rockwobble.models.trace import lost_trace
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.extrapolated_step import FINEST
@@ -72,7 +73,7 @@ class Job(Brief):
 def simulate(
     case: Case,
     *,
-    support: str = "recess",
+    support: str = RECESS,
     engine: str | None = None,
     time_step: TimeStep = None,
     sample_step: float = SAMPLE_STEP,

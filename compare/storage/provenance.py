@@ -61,7 +61,9 @@ def _feed(digest: _Hash, value: object) -> None:
     """Feed a value with its kind and length in front, so that no two values feed the same bytes."""
     if isinstance(value, np.generic):
         value = value.item()
-    if value is None or isinstance(value, bool | int | str):
+    if isinstance(value, str):
+        _tag(digest, "str", value.encode())  # a support is text, too
+    elif value is None or isinstance(value, bool | int):
         _tag(digest, type(value).__name__, str(value).encode())
     elif isinstance(value, float):
         _tag(digest, "float", value.hex().encode())

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Tendon, Trace, perturbed_copies
 from rockwobble.models.argument_kinds import with_argument_kinds
+from rockwobble.models.case import REDUCED_MODELS
 from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.number_checks import require_each
@@ -36,7 +37,7 @@ from ..metrics.statistics import (
     quantile_interval,
     value_if_enough,
 )
-from ..runs.choice import default_runs, require_runnable, run_labels, support_of
+from ..runs.choice import default_runs, require_runnable, run_labels
 from ..runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
 from ..runs.progress import ProgressCallback
 from ..storage.manifest import Number
@@ -45,7 +46,6 @@ from ..storage.results import Results
 from .plans import Copies
 
 KIND = "ensemble"
-MODELS = (Run(None, "recess"), Run(None, "flat"))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -111,7 +111,7 @@ def ensemble(
     case_or_members: Case | Suite | Sequence[Case],
     *,
     runs: Iterable[Run] | None = None,
-    models: Sequence[Run] = MODELS,
+    models: Sequence[Run] = REDUCED_MODELS,
     copies: int = 20,
     perturbation: float = 0.01,
     seed: int = 0,
@@ -179,8 +179,9 @@ def ensemble(
         raise ValueError(f"an ensemble has at least 2 members of different names, got {len(members)}")
     stated = case_or_members.runs if isinstance(case_or_members, Suite) else ()
     chosen = (stated or default_runs(cases=members)) if runs is None else tuple(runs)
-    if models is MODELS and any(case.tendon is not None for case in members):
-        models = MODELS[:1]  # on flat ground the base wanders from its anchor
+    if models is REDUCED_MODELS and any(case.tendon is not None for case in members):
+        # on flat ground the base wanders from its anchor
+        models = tuple(model for model in models if model.support.guided)
     for case in members:
         for run in chosen:
             require_runnable(case, run)
@@ -202,7 +203,7 @@ def ensemble(
 
 def _compared_with(run: Run) -> str:
     """Return the label of the model of an engine's own support, or the recess model."""
-    return "" if run.is_model else str(Run(None, support_of(run).compared_with[-1]))
+    return "" if run.is_model else str(run.compared_with[-1])
 
 
 def ensemble_of(members: pd.DataFrame, about: Mapping[str, object]) -> Ensemble:

@@ -35,13 +35,15 @@ import pandas as pd
 
 from rockwobble import reduced
 from rockwobble.models import AGREEMENT, Case, Cylinder, Diagnostic, GroundMotion, InitialState, Run, Trace
+from rockwobble.models.case import REDUCED_MODELS
 from rockwobble.models.diagnostic import FAILURES, cell_of
+from rockwobble.models.support import FLAT
 from rockwobble.multibody.engines.registry import engine_facts, find_engine, own_engines
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP, froude_scale
 
 from ..comparison.prediction import time_scale
 from ..metrics.pair import make_pair
-from ..runs.choice import own_model, require_runnable, support_of
+from ..runs.choice import require_runnable
 from ..runs.execution import run_tables, simulate_run
 from ..runs.progress import ProgressCallback
 from ..storage.manifest import Number
@@ -50,7 +52,7 @@ from ..storage.results import Results
 from .plans import QuickPlan
 
 KIND = "extremes"
-MODELS = (Run(None, "flat", plane=0.0), Run(None, "recess"), Run(None, "flat"))
+MODELS = (Run(None, FLAT, plane=0.0), *REDUCED_MODELS)
 
 FINE = AGREEMENT  # of alpha, or of the angle of turn
 # relative to the energy that balances the cylinder on its rim
@@ -329,7 +331,7 @@ def _model_verdict(condition: Condition, run: Run, trace: Trace) -> Verdict:
     error, begins = (math.inf, 0.0) if tight.outcome == "failed" else _tilt_error(tight, trace)
     errors = {"tight": error}
     turns = trace.passes["angle_of_turn"].to_numpy(float)
-    if support_of(run).guided and case.initial is not None and case.initial.rolling_rate > 0.0 and len(turns):
+    if run.support.guided and case.initial is not None and case.initial.rolling_rate > 0.0 and len(turns):
         exact = reduced.angle_of_turn(case.cylinder, case.initial, gravity=case.gravity)
         errors["exact_turn"] = abs(float(turns[0]) / exact - 1.0)
     if case.motion is None and trace.outcome == "stands" and not trace.rests:
@@ -353,10 +355,10 @@ def _model_verdict(condition: Condition, run: Run, trace: Trace) -> Verdict:
 
 def _engine(condition: Condition, run: Run, trace: Trace) -> Verdict:
     case = condition.case
-    if support_of(run).walls:
+    if run.support.walls:
         name, other = "half_step", Run(run.engine, run.support, 0.5 * _step(condition), **run.settings)
     else:
-        name, other = "model", _tighter(own_model(run), _REFERENCE)
+        name, other = "model", _tighter(run.own_model, _REFERENCE)
     reference = simulate_run(case, other, sample_step=condition.sample_step)
     if reference.outcome == "failed":
         return Verdict(verdict="no reference", reference=name, until=0.0)

@@ -17,12 +17,13 @@ from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import Brief
+from rockwobble.models.support import RECESS
 
 from ..metrics.pair import outcome_of_peak
 from ..storage.provenance import fingerprint, reduced_makers
 from .plans import GridPlan
 
-MODELS = ("recess", "flat", "planar")
+MODELS = tuple(reduced.MODELS)
 MOST_RUNS = 100_000_000  # whose table takes 10 GB
 # The runs of a chunk take about a second together: little is lost with it, and keeping it takes a few
 # thousandths of that.
@@ -147,7 +148,7 @@ class Grid(Brief, GridPlan):
     tan_alphas: Sequence[float]
     scales: Sequence[float]
     motions: Sequence[GroundMotion]
-    models: Sequence[str] = ("recess",)
+    models: Sequence[str] = (RECESS,)
     rtol: float | None = None
     rest_tilt: float | None = None
 

@@ -68,9 +68,9 @@ def variants(engine: str) -> list[Variant]:
     backend = find_engine(engine)
     facts, supports = backend.facts, [support_named(name) for name in backend.supports]
     # what changes is the main support of an engine: the ideal recess, where it has one
-    main = next((support for support in supports if support.guided), supports[0]).name
+    main = next((support for support in supports if support.guided), supports[0])
     return [
-        *(Variant(support=each.name, option="released") for each in supports if each.has_model),
+        *(Variant(support=each, option="released") for each in supports if each.has_model),
         Variant(support=main, option="ground motion x, y", components="xy"),
         Variant(support=main, option="ground motion x, y, z", components="xyz"),
         *(
@@ -79,7 +79,7 @@ def variants(engine: str) -> list[Variant]:
         ),
         *(
             Variant(
-                support=each.name,
+                support=each,
                 option=f"{count} walls",
                 settings={"ring_facets": count, "ring_clearance": 0.1},
             )

@@ -11,7 +11,6 @@ from rockwobble.models import Case, Run, Trace
 from rockwobble.models.plain_json import fields_of, plain
 from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, to_parquet
 
-from ..runs.choice import own_model
 from ..runs.execution import Job, job_fingerprint, simulate_all, simulate_run
 from ..runs.progress import ProgressCallback, stages
 from ..storage.manifest import Number, Stored
@@ -86,7 +85,7 @@ def single_run(
     progress : callable, optional
         Called with a `Progress` at the start and at the end of each stage.
     """
-    model = run if run.is_model else own_model(run)
+    model = run if run.is_model else run.own_model
     plan = AdvicePlan()
     stage = stages(progress, [1.0, 1.0])
     with stage(Job(case=case, run=run).label):

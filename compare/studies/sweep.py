@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from rockwobble.models import Case, GroundMotion, Run, Suite, Trace
+from rockwobble.models import Case, GroundMotion, Suite, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
+from rockwobble.models.case import RECESS_MODEL
 from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.plain_json import fields_of, plain
@@ -72,7 +73,7 @@ def runnable_suite(plan: Suite | Iterable[Case]) -> Suite:
     """
     suite = plan if isinstance(plan, Suite) else Suite(plan, ())
     if not suite.runs:
-        suite = Suite(suite.cases, (Run(None, "recess"),), suite.bounds)
+        suite = Suite(suite.cases, (RECESS_MODEL,), suite.bounds)
     run_labels(suite.runs)
     for run in suite.runs:
         for case in suite.cases:

@@ -33,6 +33,7 @@ from ..bounds import Bounds
 from ..case import WAYS_TO_A_STEP, TimeStep
 from ..records.clocks import LENGTHS
 from ..records.component import UNITS
+from ..support import RECESS
 from ..synthetic import PULSES
 from .errors import KeyedError, brief, nearest
 
@@ -375,7 +376,7 @@ class RunTable(_Table):
     """One method, or as many as its lists make."""
 
     engine: Texts
-    support: Texts = ["recess"]
+    support: Texts = [RECESS]
     time_step: Annotated[tuple[TimeStep, ...] | None, BeforeValidator(_steps)] = None
     settings: dict[str, Any] = Field(default_factory=dict)
 

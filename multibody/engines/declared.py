@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rockwobble.models.support import SUPPORTS
+from rockwobble.models.support import FLAT, RECESS, SUPPORTS
 
 from ..kinematics import about_vertical, turning
 from ..protocol import EngineFacts, SceneCounts, Settings, Stepper, Steps
@@ -41,7 +41,7 @@ class Declared:
     settings_type: ClassVar[type[EngineSettings]]
     stepper_type: ClassVar[type[Any]]
     facts: EngineFacts
-    supports: tuple[str, ...] = ("recess", "flat")
+    supports: tuple[str, ...] = (RECESS, FLAT)
     uplifts: bool = True
 
     def version(self) -> str:

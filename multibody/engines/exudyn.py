@@ -19,6 +19,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
+from rockwobble.models.support import FLAT
+
 from ..kinematics import axis_of
 from ..protocol import EngineFacts, SceneCounts, Settings, Stepper, Steps
 from ..scene import Array, Scene, Start
@@ -74,7 +76,7 @@ class ExudynEngine(Declared):
     """Exudyn: rigid body on Euler parameters, joint of a rolling disc, implicit integration."""
 
     package, settings_type, facts = "exudyn", ExudynSettings, _FACTS  # both rules are of second order
-    supports = ("flat",)  # flat ground only: the joint lets the rim roll out
+    supports = (FLAT,)  # flat ground only: the joint lets the rim roll out
     uplifts = False  # the joint knows the rim only, not the base
 
     @contextlib.contextmanager

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rockwobble.models.support import FLAT, RECESS, RING
+
 from ..protocol import EngineFacts, SceneCounts, Settings, Stepper, Steps, Wall
 from ..ring import RingSettings, check_start, take_ring
 from ..scene import Array, Scene
@@ -67,7 +69,7 @@ class MujocoEngine(Declared):
     """MuJoCo 4: free joint, ground plane, analytic plane-cylinder contact."""
 
     package, settings_type, facts = "mujoco", MujocoSettings, _FACTS
-    supports = ("recess", "flat", "ring")
+    supports = (RECESS, FLAT, RING)
 
     def settings(self, given: Settings, scene: Scene) -> Mapping[str, object]:
         """Return every setting; see `MujocoSettings` and, for the support "ring", `RingSettings`."""

@@ -376,12 +376,13 @@ def sweep(
 
 def _suite(name: str, models: list[str] | None) -> rw.Suite:
     from rockwobble.compare.studies.sweep import runnable_suite
+    from rockwobble.models.support import RECESS
 
     for model in models or ():
         if model not in rw.reduced.MODELS:
             raise ValueError(f"--model must be of {', '.join(rw.reduced.MODELS)}, got {model!r}")
     suite = rw.read_suite(name)
-    chosen = [rw.Run(None, **{"support": "recess", **rw.reduced.MODELS[model]}) for model in models or ()]
+    chosen = [rw.Run(None, **{"support": RECESS, **rw.reduced.MODELS[model]}) for model in models or ()]
     added = suite.runs
     if not added and not models:
         say_what_is_left_out()

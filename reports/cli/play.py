@@ -92,11 +92,12 @@ def explore(
     with interruptible(), user_input():
         from rockwobble.compare.storage.files import replace_files, require_file
         from rockwobble.models.number_checks import require_one_of
+        from rockwobble.models.support import MODELLED
 
         from ..pages.explore import explore_page, plan_in_page
 
         refuse(context, _NOT_OF_PAGE, "is not part of the model in the page")
-        require_one_of("--support", support, ("recess", "flat"))
+        require_one_of("--support", support, MODELLED)
         if plane is not None and "support" in given_options(context):
             raise ValueError("--plane holds the motion on any support, got --support beside it")
         require_file("--out", out)
@@ -167,6 +168,8 @@ def _state(problem: Problem, records: Path | None, support: str, plane: float | 
     ValueError
         If an option is out of range, or two do not go together.
     """
+    from rockwobble.models.support import support_named
+
     from ..pages.explore import State
 
     initial, cylinder = problem.initial(), problem.cylinder()
@@ -183,7 +186,7 @@ def _state(problem: Problem, records: Path | None, support: str, plane: float | 
         rolling_resistance=problem.rolling_resistance,
     )
     tendon = problem.tendon(cylinder, problem.gravity)
-    if tendon is not None and support == "flat":
+    if tendon is not None and not support_named(support).guided:
         raise ValueError("the models have no tendon on --support flat, got both")
     released: dict[str, Any] = {} if initial is None else {
         "record": -1, "tilt": math.degrees(initial.tilt), "lean": math.degrees(initial.rolling_angle),

@@ -251,9 +251,11 @@ class GridOptions(GridPlan, Reading):
         """
         import numpy as np
 
+        from rockwobble.models.support import RECESS
+
         given = {each.name: getattr(self, each.name) for each in fields(GridPlan)}
         given |= {name: np.linspace(*of) for name, of in self.DEFAULTS.items() if given[name] is None}
-        return rw.Grid(**given, motions=self._motions(), models=models or ("recess",))
+        return rw.Grid(**given, motions=self._motions(), models=models or (RECESS,))
 
     def _motions(self) -> list[rw.GroundMotion]:
         x, y, z = self.record_x or [], self.record_y or [], self.record_z or []

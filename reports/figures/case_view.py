@@ -9,10 +9,11 @@ from typing import Protocol, cast
 
 import pandas as pd
 
-from rockwobble.compare import Comparison, ErrorBudget, own_model
+from rockwobble.compare import Comparison, ErrorBudget
 from rockwobble.compare.external.verdict import JudgedRow
 from rockwobble.compare.metrics.pair import start_of
 from rockwobble.models import Case, Diagnostic, Run, Trace
+from rockwobble.models.support import Support
 
 from .palette import Style, label_styles
 
@@ -97,13 +98,13 @@ class CaseView:
         return {**self.runs, **self.references}
 
     @property
-    def supports(self) -> tuple[str, ...]:
+    def supports(self) -> tuple[Support, ...]:
         """The supports of the runs."""
         return tuple(dict.fromkeys(trace.run.support for trace in self.runs.values()))
 
     def partner(self, label: str) -> str:
         """Return the partner of a run in figures: the model of its support, or else its first reference."""
-        own = str(own_model(self.runs[label].run))
+        own = str(self.runs[label].run.own_model)
         return own if own in self.references else next(iter(self.references), label)
 
     def pairs(self) -> Iterator[tuple[SummaryRow, Trace, Trace]]:
@@ -125,7 +126,7 @@ def rows_of(table: pd.DataFrame) -> Iterator[SummaryRow]:
 
 def own_rows(summary: pd.DataFrame) -> pd.DataFrame:
     """Return the row of each run against the model of its support, or else its first row."""
-    own = summary["reference"] == summary["support"].map(lambda support: str(own_model(Run(None, support))))
+    own = summary["reference"] == summary["support"].map(lambda support: str(Run(None, support).own_model))
     keys = summary["case"] + "\n" + summary["run"]
     alone = ~keys.isin(keys[own]) & ~keys.duplicated()
     return summary[own | alone]

@@ -10,7 +10,7 @@ import numpy as np
 from rockwobble.compare import TILTED, Comparison
 from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.models import AGREEMENT, Trace
-from rockwobble.models.support import SUPPORTS
+from rockwobble.models.support import Support
 from rockwobble.reduced import limiting_angle_of_turn
 
 from .case_view import CaseView, case_views
@@ -51,7 +51,7 @@ def tilt_picture(view: CaseView, name: str = "figure") -> Picture:
     )
 
 
-def _tilts(view: CaseView, runs: Sequence[str], support: str) -> Panel:
+def _tilts(view: CaseView, runs: Sequence[str], support: Support) -> Panel:
     shown = dict.fromkeys([*runs, *map(view.partner, runs)])
     traces = view.traces
     layers = [
@@ -69,7 +69,7 @@ def _tilts(view: CaseView, runs: Sequence[str], support: str) -> Panel:
         x=TIME,
         y=y,
         layers=layers,
-        title=SUPPORTS[support].words if support in SUPPORTS else "external trajectory",
+        title=support.words,
         height=_HEIGHT,
     )
 
@@ -134,13 +134,12 @@ def _azimuth(view: CaseView) -> Panel:
     return Panel(x=TIME, y=_TURNS, layers=layers, title="azimuth")
 
 
-def _drift(view: CaseView, support: str) -> Panel:
+def _drift(view: CaseView, support: Support) -> Panel:
     """(|T| - b)/b, where the tilt is so large that a contact point means something."""
     layers = []
     for label, trace in view.traces.items():
         # a guided model keeps to the circle: that line is zero
-        guided = support in SUPPORTS and SUPPORTS[support].guided
-        if trace.run.support != support or (label not in view.runs and guided):
+        if trace.run.support != support or (label not in view.runs and support.guided):
             continue
         tilted = trace.tilt > TILTED * np.nanmax(trace.tilt)
         drift: Array = 100.0 * trace.contact_offset / trace.case.cylinder.base_radius

@@ -19,8 +19,8 @@ from .palette import DARK, GREY, ORDER, Style, mark_styles, pale
 from .picture import Axis, Band, Line, Panel, Picture, Rule
 
 # of a panel: the support, and what it is called
-_PANELS = {"planar": "Planar analysis"} | {each.name: each.words.capitalize() for each in SUPPORTS.values()}
-_GUIDED = tuple(each.name for each in SUPPORTS.values() if each.guided)
+_PANELS = {"planar": "Planar analysis"} | {each: each.words.capitalize() for each in SUPPORTS.values()}
+_GUIDED = tuple(each for each in SUPPORTS.values() if each.guided)
 _COLOURS = (DARK, *ORDER)
 _TICKS = (0.1, 0.2, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0, 50.0)
 _RATIOS = (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0)

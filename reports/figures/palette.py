@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
-from rockwobble.models import Run
+from rockwobble.models.support import FLAT, RECESS
 
 # M. Okabe and K. Ito, Color Universal Design, 2008; without black (the reference) and the pale yellow
 ORDER = ("#0072B2", "#D55E00", "#56B4E9", "#E69F00", "#009E73", "#CC79A7")
@@ -40,8 +40,8 @@ class Style:
 
 
 _MODELS = {
-    str(Run(None, "recess")): Style(colour="#000000"),
-    str(Run(None, "flat")): Style(colour="#666666", dash="dash"),
+    RECESS.model: Style(colour="#000000"),
+    FLAT.model: Style(colour="#666666", dash="dash"),
 }
 _OTHER_MODEL = Style(colour="#000000", dash="dot")
 

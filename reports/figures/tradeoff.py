@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import pandas as pd
 
 from rockwobble.compare.studies.tradeoff.study import Tradeoff
+from rockwobble.models.support import RECESS, SUPPORTS
 
 from .palette import DARK, GREY, Style, mark_styles
 from .picture import Axis, Line, Panel, Picture, Rule, bar_ends
@@ -21,14 +24,15 @@ ERRORS = {
     "peaks": ("distance", "α"),
 }
 # support and panel, in the order of the picture
-_PANELS = {
-    ("recess", "methods"): "recess",
-    ("flat", "methods"): "flat ground",
-    ("ring", "methods"): "recess with clearance, compared with half its finest step",
-    ("recess", "scipy"): "scipy's solvers, recess",
-    ("recess", "rest threshold"): "rest threshold, recess",
-    ("recess", "integrator"): "integrators, recess",
-    ("recess", "contact"): "time constant of contact, recess",
+_PANELS: Mapping[tuple[str, str], str] = {
+    **{
+        (each, "methods"): f"{each.words}, compared with half its finest step" if each.walls else each.words
+        for each in SUPPORTS.values()
+    },
+    (RECESS, "scipy"): "scipy's solvers, recess",
+    (RECESS, "rest threshold"): "rest threshold, recess",
+    (RECESS, "integrator"): "integrators, recess",
+    (RECESS, "contact"): "time constant of contact, recess",
 }
 _BASE = "recess model"
 _OF_MODEL, _OF_ENGINES = ("scipy", "rest threshold"), ("integrator", "contact")  # panels of variants

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 import pandas as pd
@@ -16,9 +16,9 @@ from rockwobble.compare.studies.validity.limits import (
     contrasts,
     models_apart,
 )
-from rockwobble.compare.studies.validity.shaken import FLAT, FREE, INTENSITY, PERTURBED, RECESS, STRONG
+from rockwobble.compare.studies.validity.shaken import FREE, INTENSITY, PERTURBED, STRONG
 from rockwobble.compare.studies.validity.study import Validity
-from rockwobble.models.support import SUPPORTS
+from rockwobble.models.support import FLAT, RECESS, RECESSES_FIRST, RING, SUPPORTS
 
 from .heat import Gap, Heat, Shades, contour, names
 from .palette import DARK, GREY, ORDER, PALE, Style, mark_styles
@@ -178,28 +178,28 @@ def _free(name: str, what: str, table: pd.DataFrame) -> Picture:
 
 
 # of a method, in words
-METHODS = {
-    RECESS: "recess model",
-    "recess": "engine, ideal recess",
-    "ring": "engine, recess with clearance",
-    "flat": "engine, flat ground",
-    FLAT: "flat-ground model",
-    PERTURBED: "recess model, record 1 % stronger",
+METHODS: Mapping[str, str] = {
+    RECESS.model: RECESS.model,
+    **{support: f"engine, {support.words}" for support in RECESSES_FIRST},
+    FLAT.model: FLAT.model,
+    PERTURBED: f"{RECESS.model}, record 1 % stronger",
 }
-_STYLES = {
-    "recess": Style(colour=ORDER[0]),
-    "ring": Style(colour=ORDER[1], dash="dashdot"),
-    "flat": Style(colour=ORDER[4], dash="dash"),
-    FLAT: Style(colour=GREY, dash="dash"),
+_STYLES: Mapping[str, Style] = {
+    RECESS: Style(colour=ORDER[0]),
+    RING: Style(colour=ORDER[1], dash="dashdot"),
+    FLAT: Style(colour=ORDER[4], dash="dash"),
+    FLAT.model: Style(colour=GREY, dash="dash"),
     PERTURBED: Style(colour=DARK, dash="dot"),
 }
-_MEDIANS = {
-    "recess": "circle",
-    "ring": "square",
-    "flat": "triangle-up",
-    FLAT: "triangle-down",
+_OTHER_STYLE = Style(colour=ORDER[3])
+_MEDIANS: Mapping[str, str] = {
+    RECESS: "circle",
+    RING: "square",
+    FLAT: "triangle-up",
+    FLAT.model: "triangle-down",
     PERTURBED: "diamond",
 }
+_OTHER_MEDIAN = "cross"
 _APART = 0.16  # rows of one point
 _RATIO_ENDS = (0.2, 5.0)  # a ratio beyond is drawn at the end
 _LEAST = 1e-9  # what a logarithmic axis shows of nothing
@@ -230,9 +230,9 @@ def _records(table: pd.DataFrame) -> Picture:
     ticks = [(value, f"{value:g}") for value in (0.2, 0.5, 1.0, 2.0, 5.0)]
     label = "peak / peak of the recess model (above 1: the recess model is unsafe)"
     ratio = Axis(label=label, unit="-", log=True, low=low, high=high, ticks=ticks)
-    methods = [method for method, against in CONTRASTS if against == RECESS]
+    methods = [method for method, against in CONTRASTS if against == RECESS.model]
     panels = []
-    for tan_alpha, points in table[table["against"] == RECESS].groupby("tan_alpha", sort=False):
+    for tan_alpha, points in table[table["against"] == RECESS.model].groupby("tan_alpha", sort=False):
         names: list[str] = []
         layers: list[Line | Rule] = [Rule(at=1.0, axis="x", colour=GREY, dash="solid")]
         for place, (_, rows) in enumerate(points.groupby(POINT, sort=False)):
@@ -242,9 +242,9 @@ def _records(table: pd.DataFrame) -> Picture:
                 method = row["method"]
                 y = place + _APART * (methods.index(method) - 0.5 * (len(methods) - 1))
                 spread = np.clip([row[name] for name in ("ratio_05", "ratio", "ratio_95")], *_RATIO_ENDS)
-                colour = _STYLES[method].colour
+                colour = _STYLES.get(method, _OTHER_STYLE).colour
                 layers.append(Line(x=spread[::2], y=np.full(2, y), style=Style(colour=colour), width=1.6))
-                mark = Style(colour=colour, dash="none", symbol=_MEDIANS[method])
+                mark = Style(colour=colour, dash="none", symbol=_MEDIANS.get(method, _OTHER_MEDIAN))
                 layers.append(Line(x=spread[1:2], y=np.array([y]), name=METHODS[method], style=mark))
         title, height = f"tan α = {float(str(tan_alpha)):g}", 0.9 + 0.75 * len(names)
         y_axis = list_axis(names)

@@ -20,7 +20,7 @@ from rockwobble.compare.studies.spectrum.study import CHECK_RTOL, NUDGE
 from rockwobble.models import AGREEMENT, CLOSED_TILT
 from rockwobble.models.diagnostic import CODES, codes_in
 from rockwobble.models.records import p695
-from rockwobble.models.support import support_named
+from rockwobble.models.support import FLAT, RECESS, RING, support_named
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.reduced.body import restitution_from_momentum
@@ -442,8 +442,8 @@ def _steps(found: Advice) -> list[str]:
             "engine": f'rw.advise(case, rw.Run("{DEFAULT_ENGINE}", "{support}"))',
             "spectrum": f"rw.spectrum({found.cylinder.tan_alpha:.6g}, case.motion)",
             "ensemble": "rw.ensemble(case)",
-            "ring": call.format("ring"),
-            "recess": call.format("recess"),
+            "clearance": call.format(RING),
+            "in a recess": call.format(RECESS),
             "vertical": "rw.read_record(x, y, z)",
         }
     else:
@@ -456,8 +456,8 @@ def _steps(found: Advice) -> list[str]:
             "engine": command_line("advise", options | {"engine": DEFAULT_ENGINE}),
             "spectrum": spectrum_line(options | _ratios_of_tendon(found), found.cylinder.tan_alpha),
             "ensemble": command_line("ensemble", problem | {"support": support}),
-            "ring": command_line("advise", options | {"support": "ring"}),
-            "recess": command_line("advise", options | {"support": "recess"}),
+            "clearance": command_line("advise", options | {"support": RING}),
+            "in a recess": command_line("advise", options | {"support": RECESS}),
             "vertical": command_line("advise", options | {"record_z": "Z"}),
         }
     words = {
@@ -469,8 +469,8 @@ def _steps(found: Advice) -> list[str]:
         "engine": "an engine verifies the model",
         "spectrum": "which sizes and intensities overturn; with records of your site",
         "ensemble": "percentiles of engines beside these; do not report one trace",
-        "ring": "a recess as it is built has walls and clearance",
-        "recess": "nothing here keeps the cylinder from rolling out of its place",
+        "clearance": "a recess as it is built has walls and clearance",
+        "in a recess": "nothing here keeps the cylinder from rolling out of its place",
         "vertical": "with the vertical component Z of the record",
         "records": f"the records of FEMA P-695 in place of synthetic motions: `{p695.REMEDY}`",
     }
@@ -575,7 +575,7 @@ def _ratios(found: Advice) -> Iterator[Row]:
     """Rows of the largest tilts of copies by one of two ways over those by the other."""
     facts, vertical = found.facts, found.vertical
     holds = support_named(facts["support"])
-    place = "on flat ground" if holds.guided or holds.walls else "in an ideal recess"
+    place = (FLAT if holds.is_recess else RECESS).place
     other = f"tilt {place} over that here"
     shaken = "tilt with vertical shaking over that without"
     if vertical.source == "other":

@@ -9,9 +9,9 @@ from collections.abc import Iterator, Mapping, Sequence
 import pandas as pd
 
 from rockwobble.compare import SUMMARY_COLUMNS, WORTH_EXPLAINING, Comparison
-from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
 from rockwobble.compare.external.verdict import lists_in_words
 from rockwobble.models import Run
+from rockwobble.models.support import EXTERNAL
 from rockwobble.models.trace import NO_PEAK
 
 from ..figures.budget import all_budgets_picture, budget_picture, parts_picture

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockwobble.models import GroundMotion, el_centro_1940
+from rockwobble.models.support import RECESS
 from rockwobble.models.synthetic import pulse, synthetic_motions
 
 from .sentences import fragment
@@ -77,7 +78,7 @@ class State:
     tilt: float = 5.0
     lean: float = 0.0
     rate: float = 0.5
-    support: str = "recess"
+    support: str = RECESS
     plane: float = 0.0
     loss: float = 0.0
     prestress: float = 0.0

@@ -13,13 +13,12 @@ from rockwobble.compare import findings as unexplained
 from rockwobble.compare.comparison.budget import COVERED
 from rockwobble.compare.comparison.prediction import BEATEN
 from rockwobble.compare.external.loss import ENERGY_LOSS
-from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
 from rockwobble.compare.external.verdict import mistakes_of
 from rockwobble.compare.metrics.pair import make_pair
-from rockwobble.models import AGREEMENT, Run
-from rockwobble.models.case import REDUCED
+from rockwobble.models import AGREEMENT
+from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL, REDUCED
 from rockwobble.models.diagnostic import codes_in
-from rockwobble.models.support import FLAT, RECESS, SUPPORTS
+from rockwobble.models.support import EXTERNAL, SUPPORTS
 
 from ..figures.case_view import CaseView, SummaryRow, own_rows, rows_of
 from .diagnostics import code_counts, failure, remarks
@@ -80,16 +79,16 @@ def cause(row: SummaryRow, length: float, *, touched: bool = False, models_diffe
         "pass", one that contact does not resolve; "near passes", which amplify what small difference there
         is; "method", without a pass, so that it is not chance.
     """
-    support, reference = SUPPORTS.get(row.support), SUPPORTS.get(row.reference_support)
-    guided = reference is not None and reference.guided
-    if support and support.walls:
-        if not (reference and reference.walls) and (guided or touched):
+    support, reference = (SUPPORTS.get(each, EXTERNAL) for each in (row.support, row.reference_support))
+    if support == EXTERNAL:
+        if explains_divergence(row):
+            return "loss" if _loses(row) else "mistake"
+    elif support.walls:
+        if not reference.walls and (reference.guided or touched):
             return "walls"
-    elif support and not support.guided and guided and models_differ:
+    elif not support.guided and reference.guided and models_differ:
         return "support"
-    if row.support == EXTERNAL and explains_divergence(row):
-        return "loss" if _loses(row) else "mistake"
-    by_pass = row.predicted_by == "pass" and row.support != EXTERNAL and row.predicted_until < length
+    by_pass = row.predicted_by == "pass" and support != EXTERNAL and row.predicted_until < length
     start = row.reference_uplift_time
     agreed, predicted = row.within_tolerance_until - start, row.predicted_until - start
     if by_pass and predicted <= agreed <= BEATEN * predicted:  # one that was survived for longer left nothing
@@ -104,7 +103,7 @@ def explains_divergence(row: SummaryRow) -> bool:
 
 def _models_differ(view: CaseView, row: SummaryRow) -> bool:
     """Whether half of what ends an agreement lies between the models of recess and flat ground by then."""
-    recess, flat = (view.traces.get(str(Run(None, support.name))) for support in (RECESS, FLAT))
+    recess, flat = (view.traces.get(str(model)) for model in (RECESS_MODEL, FLAT_MODEL))
     if not row.left_tolerance or row.reference not in view.traces or recess is None or flat is None:
         return True
     pair = make_pair(view.case.cylinder, recess, flat, until=row.within_tolerance_until)
@@ -246,7 +245,8 @@ def headline(rows: pd.DataFrame, length: float) -> str:
 def _agreement(rows: pd.DataFrame, length: float) -> str:
     """Return the headline on the runs of one support, compared with their own model."""
     first = next(iter(rows_of(rows)))
-    external, support = first.support == EXTERNAL, SUPPORTS.get(first.support)
+    support = SUPPORTS.get(first.support, EXTERNAL)
+    external, words = support == EXTERNAL, support.words
     names = {the(row.run, REDUCED) if row.engine == REDUCED else row.engine: None for row in rows_of(rows)}
     ends = rows["within_tolerance_until"]
     begun, last = (seconds(float(end)) for end in (ends.min(), ends.max()))
@@ -256,7 +256,6 @@ def _agreement(rows: pd.DataFrame, length: float) -> str:
         until = f"to {'its' if short else 'the'} end at {last}"
     else:
         until = f"until {last}" if begun == last else f"until {begun} to {last}"
-    words = support.words if support else "external trajectory" if external else str(first.support)
     references = {the(row.reference, row.reference_engine): None for row in rows_of(rows)}
     said = (
         f"{words[0].upper()}{words[1:]}: {enumeration(list(names))} within {agreement_words(first)} of "

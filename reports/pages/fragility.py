@@ -27,7 +27,7 @@ from ..figures.risk import risk_pictures
 from .page import Page
 from .risk import risk_values
 
-_WALLED = tuple(each.name for each in SUPPORTS.values() if each.walls)
+_WALLED = tuple(each for each in SUPPORTS.values() if each.walls)
 _BOUNDED = (NEVER, ALWAYS, EXTRAPOLATED, ONE_MOTION)
 # below this probability the counts do not follow a lognormal curve
 _POOR = 0.05

@@ -7,7 +7,6 @@ import math
 from rockwobble.compare.studies.advice.demands import fall_of
 from rockwobble.compare.studies.single_run import SingleRun
 from rockwobble.models import Diagnostic, Trace
-from rockwobble.models.support import SUPPORTS
 
 from ..figures.trace import pictures
 from .cases import describe
@@ -21,7 +20,6 @@ def page_of(found: SingleRun) -> Page:
     cylinder, engine, falls = trace.case.cylinder, not trace.run.is_model, fall_of(trace)
     held = trace.assumptions_until(falls)  # a fall asks nothing
     part = single.get("copies_part", math.inf)  # of earlier versions nothing is known
-    support = SUPPORTS.get(trace.run.support)
     values = {
         "trace": trace,
         "label": found.facts["run"],
@@ -46,7 +44,7 @@ def page_of(found: SingleRun) -> Page:
         "moment": held.largest_restraining_moment / cylinder.base_radius if held else math.nan,
         "tension": trace.peak_tendon_force,
         "engine": engine,
-        "moves": engine or not (support and support.guided),  # out of its place
+        "moves": engine or not trace.run.support.guided,  # out of its place
         "displacement": trace.residual_displacement / cylinder.base_radius,
         "first_touch": trace.first("wall_contact"),
         "part": part,

@@ -13,7 +13,7 @@ from rockwobble.compare.studies.validity.limits import cells, contrasts, damping
 from rockwobble.compare.studies.validity.plan import LARGEST_PEAK
 from rockwobble.compare.studies.validity.shaken import FREE, INTENSITY
 from rockwobble.compare.studies.validity.study import Validity
-from rockwobble.models.support import SUPPORTS
+from rockwobble.models.support import RECESSES_FIRST, SUPPORTS
 
 from ..figures.validity import METHODS, has_walls, pictures
 from .page import Page
@@ -26,10 +26,8 @@ _NEEDS = {
     "motions": "motions counted",
 }
 
-_PLACES = {
-    "recess": "in an ideal recess",
-    "ring": "in a recess with clearance",
-    "flat": "on flat ground",
+_PLACES: Mapping[str, str] = {
+    **{support: support.place for support in RECESSES_FIRST},
     "copy": "by a record 1 % stronger alone",
 }
 

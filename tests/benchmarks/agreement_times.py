@@ -19,10 +19,10 @@ import numpy as np
 
 from rockwobble.compare.comparison.prediction import estimated_error, predict, verdict
 from rockwobble.compare.metrics.pair import Pair, agreement_time, make_pair
-from rockwobble.compare.runs.choice import SUPPORTS
 from rockwobble.compare.runs.execution import Job, simulate_all, simulate_run
 from rockwobble.compare.runs.progress import ProgressCallback
 from rockwobble.models import Case, Cylinder, Run, Trace, el_centro_1940
+from rockwobble.models.support import MODELLED
 
 from .console import options_of, show, tell
 
@@ -84,14 +84,16 @@ def agreement_times(
     import pandas as pd
 
     chosen = cases() if chosen is None else chosen
-    runs = [Run(each, support) for each in (None, engine) for support in SUPPORTS]
+    runs = [Run(each, support) for each in (None, engine) for support in MODELLED]
     results = simulate_all(
         [Job(case=case, run=run) for case in chosen for run in runs], workers=workers, progress=progress
     )
     rows = []
     for index, case in enumerate(chosen):
         block = results[len(runs) * index : len(runs) * (index + 1)]
-        traces = {(trace.run.engine, trace.run.support): trace for trace in block}
+        traces: dict[tuple[str | None, str], Trace] = {
+            (trace.run.engine, trace.run.support): trace for trace in block
+        }
         rows += [
             _row(case, model, traces[engine, support], traces[None, support], traces[None, model])
             for support, model in PAIRS

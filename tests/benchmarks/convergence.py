@@ -24,10 +24,10 @@ import numpy as np
 
 from rockwobble import multibody, reduced
 from rockwobble.compare.metrics.pair import make_pair
-from rockwobble.compare.runs.choice import SUPPORTS
 from rockwobble.compare.runs.execution import Job, simulate_all
 from rockwobble.compare.runs.progress import ProgressCallback
 from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
+from rockwobble.models.support import MODELLED
 from rockwobble.multibody.engines.registry import find_engine
 
 from .console import options_of, show, tell
@@ -71,7 +71,7 @@ def reference(case: Case, support: str) -> Trace:
 
 def loses_contact(case: Case) -> str:
     """Return which reduced model says that the cylinder leaves the ground, and when; empty if none does."""
-    for support in SUPPORTS:
+    for support in MODELLED:
         lost = reference(case, support).first("tension")
         if math.isfinite(lost):
             return f"{case.name}: the {Run(None, support)} loses contact at {lost:.3g} s"
@@ -109,7 +109,7 @@ def convergence(
     import pandas as pd
 
     engines = engines_here() if engines is None else engines
-    keys = [(case, support, engine) for case in cases for support in SUPPORTS for engine in engines]
+    keys = [(case, support, engine) for case in cases for support in MODELLED for engine in engines]
     jobs = [
         Job(
             case=_frictional(case),
@@ -120,7 +120,7 @@ def convergence(
         for step in steps
     ]
     trials = simulate_all(jobs, workers=workers, progress=progress)
-    references = {(case.name, support): reference(case, support) for case in cases for support in SUPPORTS}
+    references = {(case.name, support): reference(case, support) for case in cases for support in MODELLED}
     rows = []
     for index, (case, support, engine) in enumerate(keys):
         mine = trials[len(steps) * index : len(steps) * (index + 1)]
@@ -190,7 +190,7 @@ def angle_of_turn(
     unit_time = math.sqrt(cylinder.semidiagonal / 6.0)
     keys = [
         (support, engine)
-        for support in SUPPORTS
+        for support in MODELLED
         for engine in engines
         if support in find_engine(engine).supports
     ]

@@ -24,7 +24,6 @@ import numpy as np
 
 from rockwobble import multibody, reduced
 from rockwobble.compare.metrics.pair import make_pair
-from rockwobble.compare.runs.choice import own_model
 from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
 
 from .console import options_of, show
@@ -70,7 +69,7 @@ def run(trial: Trial) -> dict[str, Any]:
     row["diagnostics"] = ", ".join(dict.fromkeys(fact.code for fact in result.facts))
     if result.outcome == "failed":
         return row | {"verdict": "failed"}
-    own = own_model(Run(trial.engine, trial.support))
+    own = Run(trial.engine, trial.support).own_model
     error, begins, whole = _difference(case, reduced.simulate(case, support=own.support, rtol=1e-10), result)
     said = any(not fact.time > begins for fact in result.facts)  # one of the whole run has no time
     agrees = error <= AGREES and (whole or bool(result.facts))

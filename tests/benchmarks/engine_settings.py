@@ -23,10 +23,10 @@ import numpy as np
 
 from rockwobble import multibody
 from rockwobble.compare.metrics.pair import make_pair, tilt_rms_relative
-from rockwobble.compare.runs.choice import SUPPORTS
 from rockwobble.compare.runs.execution import Job, simulate_all
 from rockwobble.compare.runs.progress import ProgressCallback
 from rockwobble.models import Case, Cylinder, InitialState, Run, el_centro_1940
+from rockwobble.models.support import MODELLED
 
 from .console import options_of, show, tell
 
@@ -190,7 +190,7 @@ def measure(
     ratio = [value / base[variant.engine] for variant, value in zip(chosen, cost, strict=True)]
     steps = [STEP * (1.0 if abs(each - 1.0) < 0.1 else each) for each in ratio]
     problems = cases(turns)
-    jobs = [Job(case=case, run=Run(None, support)) for case in problems for support in SUPPORTS]
+    jobs = [Job(case=case, run=Run(None, support)) for case in problems for support in MODELLED]
     for variant, step in zip(chosen, steps, strict=True):
         for case in problems:
             unit_time = math.sqrt(case.cylinder.semidiagonal / 6.0)
@@ -200,7 +200,7 @@ def measure(
                     run=variant.run(support, step, unit_time),
                     label=f"{variant.engine} {variant.what}",
                 )
-                for support in SUPPORTS
+                for support in MODELLED
             ]
     results = simulate_all(jobs, workers=workers, progress=progress)
     count = 2 * len(problems)

@@ -20,9 +20,9 @@ import numpy as np
 from rockwobble import reduced
 from rockwobble.compare.check import FAILED, NOT_RUN
 from rockwobble.compare.check.suite import SuiteRuns, check_suite
-from rockwobble.compare.runs.choice import SUPPORTS
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace, el_centro_1940, p695_far_field
+from rockwobble.models.support import MODELLED
 from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import standard_engines
 
@@ -73,7 +73,7 @@ def case_of(number: int, motions: Sequence[GroundMotion]) -> Case:
 
 def measure(case: Case, *, workers: int | None = None) -> list[dict[str, Any]]:
     """Return a row for each check of one case, with the right models and with those that are not."""
-    runs = [Run(engine, support) for engine in engines_here() for support in SUPPORTS]
+    runs = [Run(engine, support) for engine in engines_here() for support in MODELLED]
     kept: dict[str, Trace] = {}
     rows = []
     for model, reference in (("right", reduced.simulate), ("R 0.5 % off", larger)):

@@ -82,9 +82,33 @@ def test_a_run_knows_what_it_is(run: Run, is_model: bool, is_planar: bool, engin
     assert (run.is_model, run.is_planar, run.engine_name) == (is_model, is_planar, engine_name)
 
 
+@pytest.mark.parametrize("engine", [None, "mujoco"])
+@pytest.mark.parametrize(
+    ("support", "own_model", "compared_with"),
+    [
+        ("recess", "recess", ["recess"]),
+        ("flat", "flat", ["recess", "flat"]),
+        ("ring", "flat", ["recess"]),
+        ("external", "recess", ["recess"]),
+    ],
+)
+def test_a_run_names_the_models_that_it_is_compared_with(
+    engine: str | None, support: str, own_model: str, compared_with: list[str]
+) -> None:
+    run = Run(engine, support)
+    assert run.own_model == Run(None, own_model)
+    assert run.compared_with == tuple(Run(None, each) for each in compared_with)
+
+
+def test_a_run_of_an_unknown_support_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"^support must be one of recess, flat, ring, got 'glued'$"):
+        Run("mujoco", "glued")
+
+
 def test_a_run_travels_to_another_process() -> None:
-    run = Run("mujoco", "recess", 1e-4, cone="elliptic")
+    run = Run("mujoco", "ring", 1e-4, cone="elliptic")
     assert pickle.loads(pickle.dumps(run)) == run
+    assert pickle.loads(pickle.dumps(run)).support.walls
     assert pickle.loads(pickle.dumps(run)) != Run("mujoco", "recess", 1e-4)
 
 

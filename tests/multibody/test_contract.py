@@ -159,7 +159,7 @@ def test_import_loads_no_engine() -> None:
             {"engine": "chrono"},
             f"engine must be one of {', '.join(multibody.engine_names())}, got 'chrono'",
         ),
-        ({"support": "glued"}, "support must be one of recess, flat, ring in mujoco, got 'glued'"),
+        ({"support": "glued"}, "support must be one of recess, flat, ring, got 'glued'"),
         (
             {"time_step": 1e-2},
             "time_step must be at most 0.001 s for contact at this size and gravity, got 0.01",

@@ -112,7 +112,7 @@ BAD = {
     ),
     "unknown support": (
         ["--engine", "mujoco", "--support", "glued"],
-        "support must be one of recess, flat, ring in mujoco, got 'glued'",
+        "support must be one of recess, flat, ring, got 'glued'",
     ),
     "large time step": (["--engine", "mujoco", "--time-step", "0.01"], "time_step must be at most 0.001 s"),
     "folder that is a file": (["--out", "taken"], "the output folder must be a folder, got taken"),

@@ -14,11 +14,12 @@ import pandas as pd
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace, el_centro_1940
 from rockwobble.models.argument_kinds import with_argument_kinds
+from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL
 from rockwobble.models.cylinder import cylinder_of
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.plain_json import plain
 from rockwobble.models.records.units import sources_of
-from rockwobble.models.support import support_named
+from rockwobble.models.support import RECESS, support_named
 from rockwobble.models.trace import NO_PEAK
 
 from ...metrics.pair import overturned, tolerance_of
@@ -353,8 +354,8 @@ class Advice(Results, kind=KIND):
             "engine": self.verification is None,
             "spectrum": grades.get("overturning") != "satisfied" and self.facts["motion"] is not None,
             "ensemble": self.trust.kind == "statistics",
-            "ring": holds.guided and self.facts.get("tendon") is None,
-            "recess": not holds.guided and not holds.walls,
+            "clearance": holds.guided and self.facts.get("tendon") is None,
+            "in a recess": not holds.is_recess,
             "vertical": self.vertical.source == "other",
             "records": self.facts["records"] == "synthetic",
         }
@@ -422,7 +423,7 @@ def advise(
     ('trace', 'not tested')
     """
     plan = AdvicePlan(
-        support=support or ("recess" if run is None else run.support),
+        support=support or (RECESS if run is None else run.support),
         copies=copies,
         perturbation=perturbation,
         seed=seed,
@@ -433,9 +434,9 @@ def advise(
         if run.support != plan.support:
             raise ValueError(f"support must be that of the run, {run.support}, got {plan.support}")
         require_runnable(case, run)
-    model, other = Run(None, support_named(plan.support).compared_with[-1]), Run(None, "flat")
+    model, other = Run(None, plan.support).compared_with[-1], FLAT_MODEL
     if model == other:
-        other = Run(None, "recess")
+        other = RECESS_MODEL
     stage = stages(progress, [1.0] * (5 if run is None else 6))
     inputs = fingerprint(
         [*(job_fingerprint(Job(case=case, run=each)) for each in (model, run) if each), plan]
@@ -531,7 +532,7 @@ def require_judged(case: Case, support: str) -> None:
         If it has a tendon on a support whose reduced model knows none.
     """
     if case.tendon is not None and not support_named(support).guided:
-        raise ValueError(f"an advice on a body with a tendon is for support 'recess', got {support!r}")
+        raise ValueError(f"an advice on a body with a tendon is for support {str(RECESS)!r}, got {support!r}")
 
 
 def _threshold(case: Case, motion: GroundMotion) -> float:

@@ -196,7 +196,7 @@ def demand_table(
     for name, unit in UNITS.items():
         if name in _TOP and not cylinder.slab_mass_ratio > 0.0:
             continue
-        if name in _RECESS and not (facts.guided or facts.walls):
+        if name in _RECESS and not facts.is_recess:
             continue
         if name == _TENDON and name not in members:
             continue

@@ -11,6 +11,7 @@ import pandas as pd
 
 from rockwobble import reduced
 from rockwobble.models import Case
+from rockwobble.models.support import RECESS
 
 from ...metrics.pair import overturned
 from ...metrics.statistics import share_interval
@@ -37,7 +38,7 @@ LARGER = 1.01
 _LOWEST = ["series", "factor", "confirmed", "start"]
 
 
-def scan_scales(case: Case, support: str = "recess") -> tuple[pd.DataFrame, pd.DataFrame]:
+def scan_scales(case: Case, support: str = RECESS) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Run a case over scales of its ground motion; nothing where there is none to scale.
 
     Returns
@@ -102,7 +103,7 @@ def scan_as_strong(case: Case, support: str, peak_tilt: float) -> pd.DataFrame:
     return pd.DataFrame({"factor": factors, "peak_tilt": peaks})
 
 
-def planar_runs(cases: Sequence[Case], support: str = "recess") -> pd.DataFrame:
+def planar_runs(cases: Sequence[Case], support: str = RECESS) -> pd.DataFrame:
     """Run cases from rest at each of `PLANAR_SCALES` in 3D and in the planes of both components.
 
     Columns: member, scale, and the peak tilts 3d, planar_x, planar_y [rad].

@@ -20,7 +20,7 @@ from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 from ...comparison.driver import comparison_row
 from ...comparison.prediction import Prediction, estimated_error, predict, time_scale
 from ...metrics.pair import tolerance_of
-from ...runs.choice import labels_beside_references, own_model
+from ...runs.choice import labels_beside_references
 from ...runs.execution import SAMPLE_STEP, Job, simulate_all, simulate_run
 
 # A trace is lost where the copies are spread over half of the peak tilt. A percent of alpha, the limit of
@@ -171,7 +171,7 @@ def verify_run(case: Case, run: Run, reference: Trace) -> tuple[Verification, Pr
         Response of the reduced model.
     """
     (label,), name = labels_beside_references([run], reference.run)
-    own = own_model(run)
+    own = run.own_model
     # in a process of its own: an engine that crashes leaves the rest of the advice
     (trace,) = simulate_all([Job(case=case, run=run, label=label)], workers=2)
     row = comparison_row(

@@ -14,7 +14,9 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run
+from rockwobble.models.case import REDUCED_MODELS
 from rockwobble.models.number_checks import quoted, require_each, require_increasing, require_one_of
+from rockwobble.models.support import MODELLED, RECESS, SUPPORTS
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody.scene import default_step
 
@@ -32,8 +34,7 @@ Row = dict[str, float | str]  # of a run
 WORSE_PLANE = "worse-plane"
 _PLANES = {"planar-x": 0.0, "planar-y": 0.5 * math.pi}
 MODELS: Mapping[str, str] = {
-    "recess": "recess model",
-    "flat": "flat-ground model",
+    **{support: support.model for support in MODELLED},
     "planar-x": "planar x",
     "planar-y": "planar y",
     WORSE_PLANE: "worse plane",
@@ -42,7 +43,7 @@ MODELS: Mapping[str, str] = {
 
 def models_with_tendon() -> tuple[str, ...]:
     """Return the names of the models with a tendon: on flat ground the base wanders from its anchor."""
-    return tuple(name for name in MODELS if name != "flat")
+    return tuple(name for name in MODELS if name not in MODELLED or SUPPORTS[name].guided)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,8 +97,8 @@ def methods_of(given: Iterable[str | Run], *, restitution: float | str = 1.0) ->
     if restitution != 1.0 and not any(method in _PLANES for method in chosen):
         raise ValueError(f"restitution is of planar models, got {restitution!r} without one")
     loss = {} if restitution == 1.0 else {"restitution": restitution}
-    planar = {name: Run(None, "recess", None, plane=azimuth, **loss) for name, azimuth in _PLANES.items()}
-    models = {"recess": Run(None, "recess"), "flat": Run(None, "flat"), **planar}
+    planar = {name: Run(None, RECESS, None, plane=azimuth, **loss) for name, azimuth in _PLANES.items()}
+    models: dict[str, Run] = {**{model.support: model for model in REDUCED_MODELS}, **planar}
     labels = iter(run_labels([method for method in chosen if isinstance(method, Run)]))
     found = tuple(
         Method(label=next(labels), run=method)

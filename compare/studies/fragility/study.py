@@ -17,6 +17,7 @@ from rockwobble.models.doubts import doubts_about
 from rockwobble.models.number_checks import require_each, require_positive
 from rockwobble.models.plain_json import Facts, fields_of, plain
 from rockwobble.models.records.units import sources_of
+from rockwobble.models.support import RECESS
 from rockwobble.models.trace import NO_PEAK
 
 from ...metrics.statistics import FEWEST
@@ -280,7 +281,7 @@ def _question(methods: Mapping[str, Mapping[str, Any]], method: str, against: st
     one, other = methods[method], methods[against]
     engines, supports = ([each[name] for each in (one, other)] for name in ("engine", "support"))
     if engines[0] == engines[1]:
-        recess = [support == "recess" for support in supports]
+        recess = [support == RECESS for support in supports]
         question = "planar" if engines[0] is None and "planar" in supports else "support"
         return (question, recess[0]) if recess[0] != recess[1] else ("", False)
     if None in engines:

@@ -21,6 +21,7 @@ from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
 from rockwobble.models.plain_json import plain
 from rockwobble.models.records.units import sources_of
+from rockwobble.models.support import RECESS
 
 from ...metrics.pair import overturned
 from ...runs.progress import ProgressCallback
@@ -300,7 +301,7 @@ def spectrum(
     rolling_resistance: float = 0.0,
     tendon_prestress: float = 0.0,
     tendon_stiffness: float = 0.0,
-    support: str = "recess",
+    support: str = RECESS,
     search_step: float = STEP,
     probes: int = PROBES,
     workers: int | None = None,

@@ -22,8 +22,9 @@ from scipy.integrate import solve_ivp
 
 from rockwobble import reduced
 from rockwobble.models import Case, GroundMotion, Run, Trace
+from rockwobble.models.case import RECESS_MODEL, REDUCED_MODELS
 from rockwobble.models.diagnostic import cell_of
-from rockwobble.models.support import SUPPORTS
+from rockwobble.models.support import RECESS, SUPPORTS
 from rockwobble.multibody.engines.registry import engine_facts, find_engine, own_engines
 from rockwobble.reduced.solution import Solution
 
@@ -40,8 +41,7 @@ _SWING = 10.0  # of sqrt(R/g): for which a swing is followed past the end
 _AFTER_UPLIFT = 2e-3  # [s]
 _INSTANT = 1e-9  # of motion, for the momentum of a release [s]
 # the recess model as it comes: every computing time is a multiple of its own
-BASE = Run(None, "recess")
-BASE_LINE = str(BASE)
+BASE_LINE = str(RECESS_MODEL)
 BASE_TOLERANCE = 1e-8
 REST_PANEL = "rest threshold"
 _TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11)
@@ -108,7 +108,7 @@ def _line(
     solved: Mapping[float, Solve],
     *,
     panel: str = "methods",
-    support: str = BASE.support,
+    support: str = RECESS,
     knob: str = "tolerance",
 ) -> Iterator[Method]:
     """Yield the points of a line, of which `solved` has the solution by the value of its knob."""
@@ -120,13 +120,13 @@ def _line(
 
 def _model_methods(problem: Problem, quick: bool) -> Iterator[Method]:
     tolerances = sorted({*(_TOLERANCES[1::2] if quick else _TOLERANCES), BASE_TOLERANCE}, reverse=True)
-    for run in (BASE, Run(None, "flat")):
+    for run in REDUCED_MODELS:
         solve = partial(_by_model, problem, run.support, reduced.REST_TILT)
         solved = {rtol: partial(solve, rtol) for rtol in tolerances}
         yield from _line(str(run), "reduced", solved, support=run.support)
     # on still ground nothing comes to rest
     for rest_tilt in () if problem.name == "turn" else (FINE_REST_TILT, 1e-5, 0.1):
-        solved = {rtol: partial(_by_model, problem, BASE.support, rest_tilt, rtol) for rtol in tolerances}
+        solved = {rtol: partial(_by_model, problem, RECESS, rest_tilt, rtol) for rtol in tolerances}
         yield from _line(rest_line(rest_tilt), "reduced", solved, panel=REST_PANEL)
 
 
@@ -164,11 +164,11 @@ def _engines(problem: Problem, quick: bool) -> Iterator[Method]:
         if known.facts.rounding > _DOUBLE or (problem.name != "turn" and not known.uplifts):
             continue
         for support in SUPPORTS.values():
-            if support.name in known.supports and support.name in problem.references:
+            if support in known.supports and support in problem.references:
                 all_steps = known.facts.step_time < _CHEAP and not support.walls
                 steps = problem.steps if all_steps else problem.few_steps
-                runs = {step: Run(engine, support.name, step) for step in steps}
-                yield from _engine_line(problem, f"{engine} {support.name}", "methods", runs)
+                runs = {step: Run(engine, support, step) for step in steps}
+                yield from _engine_line(problem, f"{engine} {support}", "methods", runs)
         if problem.name != "peaks" and known.facts.contact_time:
             yield from _variants(problem, engine, quick)
 
@@ -179,15 +179,14 @@ def _variants(problem: Problem, engine: str, quick: bool) -> Iterator[Method]:
     for given in facts.alternatives.values():
         name = given.get("integrator")
         if name == "RK4" or (name and not quick):
-            runs = {step: Run(engine, BASE.support, step, **given) for step in steps}
+            runs = {step: Run(engine, RECESS, step, **given) for step in steps}
             yield from _engine_line(problem, str(name), "integrator", runs)
     times = {f"contact time {_FIXED:g} s": dict.fromkeys(steps, _FIXED)}
     for count in (20.0,) if quick else (4.0, 20.0):
         times[f"contact time {count:g} steps"] = {step: count * step for step in steps}
     for line, contact in times.items():
         runs = {
-            step: Run(engine, BASE.support, step, **{facts.contact_time: time})
-            for step, time in contact.items()
+            step: Run(engine, RECESS, step, **{facts.contact_time: time}) for step, time in contact.items()
         }
         yield from _engine_line(problem, line, "contact", runs)
 
@@ -297,7 +296,7 @@ def _by_scipy(
 def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: float) -> Array:
     """Return the answer to a problem by one of `SOLVERS`; nothing where it gave up or jumped over upright."""
     integrate = partial(solve_ivp, rates.function, method=name, rtol=rtol, atol=rtol * TOLERANCE_SCALE)
-    step, reference = problem.sample_step, problem.references[BASE.support].quantities[0]
+    step, reference = problem.sample_step, problem.references[RECESS].quantities[0]
     times = step * np.arange(math.ceil(rates.start / step), math.floor(rates.end / step) + 2)
     times = times[: int(np.searchsorted(times, rates.end + 1e-9))]
     sampled = problem.name == "shaken"

@@ -31,7 +31,7 @@ from rockwobble.models import (
     with_motions,
 )
 from rockwobble.models.cylinder import PIER
-from rockwobble.models.support import SUPPORTS, Support
+from rockwobble.models.support import RECESS, SUPPORTS, Support
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 
 from ...runs.execution import simulate_run
@@ -121,7 +121,9 @@ def turn(*, quick: bool = False) -> Problem:
     release = InitialState(0.5 * PIER.alpha, rolling_rate=0.1)
     exact = math.degrees(reduced.angle_of_turn(PIER, release))
     case = Case(PIER, initial=release, duration=_TURN_LENGTH, name="release at alpha/2")
-    references = {"recess": Reference(quantities=[np.array([exact])], doubt=0.0, source="exact")}
+    references: dict[str, Reference] = {
+        RECESS: Reference(quantities=[np.array([exact])], doubt=0.0, source="exact")
+    }
     return _single("turn", case, _TURN_LENGTH, _angle_of_turn, references, quick=quick)
 
 
@@ -204,9 +206,9 @@ def _reference_runs(support: Support, finest: float) -> list[Run]:
     """The run whose answer is the reference of a support, and one less tight; none where none can be made."""
     if support.has_model:
         tolerances = (TIGHT, 10.0 * TIGHT)
-        return [Run(None, support.name, rtol=rtol, rest_tilt=FINE_REST_TILT) for rtol in tolerances]
-    engines = [engine for engine in own_engines() if support.name in find_engine(engine).supports]
-    return [Run(engine, support.name, step) for engine in engines[-1:] for step in (0.5 * finest, finest)]
+        return [Run(None, support, rtol=rtol, rest_tilt=FINE_REST_TILT) for rtol in tolerances]
+    engines = [engine for engine in own_engines() if support in find_engine(engine).supports]
+    return [Run(engine, support, step) for engine in engines[-1:] for step in (0.5 * finest, finest)]
 
 
 def _answer(problem: Problem, case: Case, run: Run) -> Array:

@@ -11,13 +11,14 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case
+from rockwobble.models.support import RECESS
 
 from ...runs.progress import ProgressCallback, Stage, stages
 from ...storage.manifest import Number
 from ...storage.results import Results
 from ..plans import QuickPlan
 from ..scene_cost import scene_costs
-from .methods import BASE, BASE_LINE, REST_PANEL, Method, MethodResult, methods_for, rest_line
+from .methods import BASE_LINE, REST_PANEL, Method, MethodResult, methods_for, rest_line
 from .problem import FINE_REST_TILT, Problem, problems, sampling_distance
 
 # a run shorter than this is repeated, so that a tick of the clock does not show [s]
@@ -232,7 +233,7 @@ def rest_tilt_price(points: pd.DataFrame) -> pd.DataFrame:
 
     Each line is compared with the one with next to no rule at the same tolerance.
     """
-    reduced = points[(points["family"] == "reduced") & (points["support"] == BASE.support)]
+    reduced = points[(points["family"] == "reduced") & (points["support"] == RECESS)]
     none = reduced["line"] == rest_line(FINE_REST_TILT)
     kept = (reduced["line"] == BASE_LINE) | (reduced["panel"] == REST_PANEL)
     columns = ["problem", "line", "value", "ratio", "error"]
@@ -249,6 +250,6 @@ def engine_factors(points: pd.DataFrame) -> tuple[float, float]:
     In computing times of the recess model at its default tolerance, as everywhere.
     """
     found = costs(points)
-    engines = ~found["family"].isin(("reduced", "scipy")) & (found["support"] == BASE.support)
+    engines = ~found["family"].isin(("reduced", "scipy")) & (found["support"] == RECESS)
     ratios = found.loc[engines, "ratio"]
     return float(ratios.min()), float(ratios.max())

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockwobble.models.support import SUPPORTS
+from rockwobble.models.support import FLAT, RECESS, RECESSES_FIRST, RING, SUPPORTS
 from rockwobble.models.trace import NO_PEAK
 
 from ...comparison.prediction import IN_TIME
@@ -17,7 +17,7 @@ from ...metrics.statistics import MARGIN, log_ratios, quantile_interval
 from ..ensemble import contrast_row, pairs
 from .plan import EL_CENTRO, RELEASE
 from .plan import POINT as POINT_NAMES
-from .shaken import FLAT, FREE, HALVED, PERTURBED, RECESS
+from .shaken import FREE, HALVED, PERTURBED
 
 Tables = Mapping[str, "pd.DataFrame"]
 Array = NDArray[np.float64]
@@ -26,13 +26,11 @@ Numbers = dict[str, float]
 
 POINT = list(POINT_NAMES)
 # two methods that are compared, and the name of their ratio; the last says how far a ring has converged
-_NAMES = {
-    ("recess", RECESS): "recess",
-    ("ring", RECESS): "ring",
-    ("flat", RECESS): "flat",
-    (FLAT, RECESS): "model",
-    (PERTURBED, RECESS): "copy",
-    (HALVED, "ring"): "halved",
+_NAMES: Mapping[tuple[str, str], str] = {
+    **{(support, RECESS.model): support for support in RECESSES_FIRST},
+    (FLAT.model, RECESS.model): "model",
+    (PERTURBED, RECESS.model): "copy",
+    (HALVED, RING): "halved",
 }
 CONTRASTS = tuple(_NAMES)
 _SHARE = 0.9
@@ -157,10 +155,10 @@ def cells(tables: Tables) -> pd.DataFrame:
     for point, members in table[table["motion"] != EL_CENTRO].groupby(POINT, sort=False):
         row = dict(zip(POINT, point, strict=True)) | {
             "members": len(members),
-            "rocked": int((members["recess"] > 0.0).sum()),
-            "overturned": float(_fell(members, "recess").mean()),
+            "rocked": int((members[RECESS] > 0.0).sum()),
+            "overturned": float(_fell(members, RECESS).mean()),
         }
-        for name in ("flat", "copy"):
+        for name in (FLAT, "copy"):
             logarithms = _changes(members, name)
             logarithms = logarithms[~np.isnan(logarithms)]
             median = quantile_interval(logarithms, 0.5).exponential()
@@ -200,9 +198,7 @@ def _fell(table: pd.DataFrame, name: str) -> Flags:
 
 def _changes(table: pd.DataFrame, name: str) -> Array:
     """Return the logarithms of the peaks of a column over those of the recess model, see `log_ratios`."""
-    return log_ratios(
-        column(table, name), column(table, "recess"), _fell(table, name), _fell(table, "recess")
-    )
+    return log_ratios(column(table, name), column(table, RECESS), _fell(table, name), _fell(table, RECESS))
 
 
 def vertical(tables: Tables) -> Numbers:
@@ -213,7 +209,7 @@ def vertical(tables: Tables) -> Numbers:
     """
     table = tables["peaks"]
     table = table[table["vertical"].notna()]
-    fell = _fell(table, "recess")
+    fell = _fell(table, RECESS)
     numbers: Numbers = {"cells": float(len(table)), "fell": float(fell.sum())}
     for name in ("vertical", "copy"):
         theirs, logarithms = _fell(table, name), _changes(table, name)
@@ -372,7 +368,7 @@ def traces(tables: Tables) -> Numbers:
     """
     table = tables["following"]
     numbers: Numbers = {"duration": largest(column(table, "duration")), "comparisons": float(len(table))}
-    compared = {"recess": ("recess", "recess"), "flat": ("flat", "recess"), "own": ("flat", "flat")}
+    compared = {RECESS: (RECESS, RECESS), FLAT: (FLAT, RECESS), "own": (FLAT, FLAT)}
     for name, (support, reference) in compared.items():
         own = table[(table["support"] == support) & (table["reference_support"] == reference)]
         off = np.abs(quotient(own, "peak_tilt", "reference_peak_tilt") - 1.0)
@@ -400,10 +396,10 @@ def rings(tables: Tables) -> Numbers:
         "failed": float(table["outcome"].isin(NO_PEAK).sum()),
         "loss_worst": largest(column(touched, "loss")),
         "rolled": largest(column(shaken, "rolled_out")),
-        "flat_rolled": largest(column(by_support["flat"], "rolled_out")),
+        "flat_rolled": largest(column(by_support[FLAT], "rolled_out")),
         "twist": largest(np.abs(column(shaken, "twist"))),
     }
-    for support in ("recess", "ring", "flat"):
+    for support in RECESSES_FIRST:
         ratio = quotient(by_support[support])
         numbers |= {f"{support}_least": least(ratio), f"{support}_largest": largest(ratio)}
     halved = np.abs(quotient(shaken, "halved_peak", "peak") - 1.0)

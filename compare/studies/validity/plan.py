@@ -22,10 +22,10 @@ from rockwobble.models import (
     synthetic_motions,
 )
 from rockwobble.models.records.p695 import missing_packages
+from rockwobble.models.support import MODELLED, Support
 from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.multibody.ring import RingSettings
 
-from ...runs.choice import SUPPORTS
 from ..plans import tendon_of
 
 # arguments of `Part.measure` by name: numbers, text, tuples of them and a `Structure`
@@ -324,9 +324,9 @@ def release_case(
     return Case(cylinder, initial=initial, duration=periods * period, tendon=tendon)
 
 
-def modelled(structure: Structure) -> tuple[str, ...]:
+def modelled(structure: Structure) -> tuple[Support, ...]:
     """Return the supports of which there is a reduced model of a structure."""
-    return SUPPORTS if structure.tendon is None else ("recess",)
+    return tuple(each for each in MODELLED if structure.tendon is None or each.guided)
 
 
 def record_names(members: int) -> list[str]:

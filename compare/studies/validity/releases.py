@@ -8,10 +8,10 @@ from dataclasses import replace
 
 from rockwobble import multibody, reduced
 from rockwobble.models import Run, Trace
+from rockwobble.models.support import FLAT
 from rockwobble.multibody import DEFAULT_ENGINE
 
 from ...metrics.pair import make_pair, tilt_rms
-from ...runs.choice import own_model
 from ...runs.execution import simulate_run
 from .plan import ALONE, RELEASE, Part, Row, Structure, grid, inputs_at, modelled, needs_of, release_case
 
@@ -39,7 +39,7 @@ def _row(tan_alpha: float, release: float, spin: float, structure: Structure) ->
     exact = reduced.free_response(case.cylinder, case.initial, tendon=case.tendon)
     period = turn = peak = math.nan
     if case.tendon is None:  # which the flat-ground model does not know
-        flat = reduced.simulate(replace(case, duration=_CYCLES * exact.period), support="flat", rtol=_RTOL)
+        flat = reduced.simulate(replace(case, duration=_CYCLES * exact.period), support=FLAT, rtol=_RTOL)
         (period, turn), peak = next_maximum(flat), flat.peak_tilt
     return {
         "release": release,
@@ -89,7 +89,7 @@ def measure_verification(
     rows: list[Row] = []
     for support in modelled(structure):
         trial = Run(DEFAULT_ENGINE, support)
-        own = simulate_run(case, Run(None, own_model(trial).support, rtol=_RTOL))
+        own = simulate_run(case, Run(None, trial.own_model.support, rtol=_RTOL))
         run = simulate_run(case, trial)
         none = {"time": math.nan, "angle_of_turn": math.nan, "resolved": False}
         first, own_first = (next(iter(each.passes.to_dict("records")), none) for each in (run, own))

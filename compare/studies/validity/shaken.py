@@ -11,8 +11,8 @@ import numpy as np
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
-from rockwobble.models.support import SUPPORTS as ALL_SUPPORTS
-from rockwobble.models.support import support_named
+from rockwobble.models.case import RECESS_MODEL, REDUCED_MODELS
+from rockwobble.models.support import FLAT, RECESS, RING, SUPPORTS, support_named
 from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.multibody.ring import clearance_needed, take_ring
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP
@@ -86,16 +86,16 @@ def _row(shaken: Callable[..., Case], intensity: float, vertical: bool) -> Row:
     case, stronger = shaken(intensity), shaken(intensity * (1.0 + COPY))
     recess = reduced.simulate(case, rtol=_RTOL)
     found = {
-        "recess": recess,
+        RECESS: recess,
         "copy": reduced.simulate(stronger, rtol=_RTOL),
     }
     if case.tendon is None:
-        found["flat"] = reduced.simulate(case, support="flat", rtol=_RTOL)
+        found[FLAT] = reduced.simulate(case, support=FLAT, rtol=_RTOL)
     if vertical:
         found["vertical"] = reduced.simulate(shaken(intensity, vertical=True), rtol=_RTOL)
     return {
         "intensity": intensity,
-        **dict.fromkeys(("flat", "vertical"), math.nan),
+        **dict.fromkeys((FLAT, "vertical"), math.nan),
         **{name: trace.peak_tilt / case.cylinder.alpha for name, trace in found.items()},
         **needs_of(recess),
     }
@@ -111,8 +111,8 @@ PEAKS = Part(
 )
 
 
-RECESS, FLAT, PERTURBED = "recess model", "flat-ground model", "perturbed copy"
-HALVED = "ring, half the step"
+PERTURBED = "perturbed copy"
+HALVED = f"{RING}, half the step"
 
 
 def measure_records(
@@ -133,18 +133,17 @@ def measure_records(
     shaken = partial(shaken_case, motion, tan_alpha, semidiagonal, structure=structure)
     case, stronger = shaken(intensity), shaken(intensity * (1.0 + COPY))
     walls = structure.slab_mass_ratio == 0.0
-    runs = {
-        RECESS: (case, Run(None, "recess")),
-        **({FLAT: (case, Run(None, "flat"))} if "flat" in modelled(structure) else {}),
-        PERTURBED: (stronger, Run(None, "recess")),
+    runs: dict[str, tuple[Case, Run]] = {
+        **{str(model): (case, model) for model in REDUCED_MODELS if model.support in modelled(structure)},
+        PERTURBED: (stronger, RECESS_MODEL),
         **{
-            name: (case, Run(DEFAULT_ENGINE, name, time_step))
-            for name, support in ALL_SUPPORTS.items()
+            support: (case, Run(DEFAULT_ENGINE, support, time_step))
+            for support in SUPPORTS.values()
             if walls or not support.walls
         },
     }
     if walls:
-        runs[HALVED] = case, Run(DEFAULT_ENGINE, "ring", 0.5 * time_step)
+        runs[HALVED] = case, Run(DEFAULT_ENGINE, RING, 0.5 * time_step)
     rows: list[Row] = []
     for method, (problem, run) in runs.items():
         trace = simulate_run(problem, run)
@@ -224,7 +223,7 @@ def measure_contact(
     softness, the time constant times the frequency parameter p; loss of energy per pass over the energy of
     the release, passes, peak and recess_peak under El Centro over alpha, free_outcome, outcome.
     """
-    run = Run(DEFAULT_ENGINE, "recess", contact_time_constant=time_constant, contact_damping_ratio=damping)
+    run = Run(DEFAULT_ENGINE, RECESS, contact_time_constant=time_constant, contact_damping_ratio=damping)
     release = release_case(tan_alpha, _RELEASE, _SPIN, _PASSES, structure=structure)
     free = simulate_run(release, run)
     case = shaken_case(
@@ -270,8 +269,8 @@ _WALLS = ("clearance", "inclination", "friction")
 def _rings_tasks(extent: Extent) -> Iterable[Inputs]:
     none = dict.fromkeys(_WALLS, math.nan)
     supports: list[Inputs] = [
-        {"support": support.name, **walls}
-        for support in ALL_SUPPORTS.values()
+        {"support": support, **walls}
+        for support in SUPPORTS.values()
         for walls in (map(dataclasses.asdict, extent.rings) if support.walls else [none])
     ]
     for problem in grid(

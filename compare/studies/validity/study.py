@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pandas as pd
 
+from rockwobble.models.support import RECESSES_FIRST
+
 from ...runs.execution import run_tables
 from ...runs.progress import ProgressCallback
 from ...storage.manifest import Number
@@ -39,7 +41,6 @@ PARTS: Mapping[str, Part] = {
 }
 KIND = "validity"
 Task = tuple[str, Inputs]  # name of a part, and what is measured
-_PLACES = {"recess": "in an ideal recess", "ring": "in a recess with clearance", "flat": "on flat ground"}
 _ENDS = {
     "least": "least median",
     "largest": "largest median",
@@ -73,10 +74,10 @@ class Validity(Results, kind=KIND):
         """Return the ratios of the peaks of the engine to those of the model, over the records."""
         numbers = records(self.tables)
         return {
-            f"peak {where} over that of the model, {what}": numbers[f"{name}_{end}"]
-            for name, where in _PLACES.items()
+            f"peak {support.place} over that of the model, {what}": numbers[f"{support}_{end}"]
+            for support in RECESSES_FIRST
             for end, what in _ENDS.items()
-            if f"{name}_{end}" in numbers  # no recess with clearance takes a slab
+            if f"{support}_{end}" in numbers  # no recess with clearance takes a slab
         }
 
     def _main_facts(self) -> dict[str, str]:

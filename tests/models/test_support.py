@@ -1,0 +1,48 @@
+"""Supports: text that carries its facts."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+
+import pytest
+
+from rockwobble.compare.storage.provenance import fingerprint
+from rockwobble.models.support import EXTERNAL, MODELLED, SUPPORTS, Support, support_named
+
+ALL = [*SUPPORTS.values(), EXTERNAL]
+
+
+@pytest.mark.parametrize("support", ALL)
+def test_a_support_is_its_name_wherever_text_goes(support: Support) -> None:
+    name = str(support)
+    assert type(name) is str
+    assert (support, hash(support), repr(support)) == (name, hash(name), repr(name))
+    assert json.dumps({"support": support}) == json.dumps({"support": name})
+    assert fingerprint([support]) == fingerprint([name])
+
+
+@pytest.mark.parametrize("support", ALL)
+@pytest.mark.parametrize("moved", [copy.deepcopy, lambda each: pickle.loads(pickle.dumps(each))])
+def test_a_copy_keeps_every_fact(support: Support, moved) -> None:
+    other = moved(support)
+    assert [getattr(other, fact) for fact in Support.__slots__] == [
+        getattr(support, fact) for fact in Support.__slots__
+    ]
+
+
+def test_a_fact_does_not_change() -> None:
+    with pytest.raises(AttributeError, match="does not change"):
+        SUPPORTS["ring"].walls = False
+
+
+@pytest.mark.parametrize("support", ALL)
+def test_the_models_of_a_support_exist(support: Support) -> None:
+    assert {support.own_model, *support.compared_with} <= set(MODELLED)
+    assert support.has_model == (support in MODELLED) == (support.own_model == support)
+
+
+def test_an_external_trajectory_is_no_support_that_can_be_asked_for() -> None:
+    with pytest.raises(ValueError, match="support must be one of recess, flat, ring, got 'external'"):
+        support_named("external")
