@@ -9,6 +9,7 @@ import pickle
 import pytest
 
 from rockwobble.compare.storage.provenance import fingerprint
+from rockwobble.models.plain_json import plain
 from rockwobble.models.support import EXTERNAL, MODELLED, SUPPORTS, Support, support_named
 
 ALL = [*SUPPORTS.values(), EXTERNAL]
@@ -20,6 +21,7 @@ def test_a_support_is_its_name_wherever_text_goes(support: Support) -> None:
     assert type(name) is str
     assert (support, hash(support), repr(support)) == (name, hash(name), repr(name))
     assert json.dumps({"support": support}) == json.dumps({"support": name})
+    assert type(plain(support)) is str
     assert fingerprint([support]) == fingerprint([name])
 
 
