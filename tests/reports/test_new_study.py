@@ -1,0 +1,212 @@
+"""A study is added where CONTRIBUTING says, to a temporary copy of the package, and is whole there."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import rockwobble
+
+PACKAGE = Path(rockwobble.__file__).parent
+CONTRIBUTING = Path(__file__).parents[2] / "CONTRIBUTING.md"
+MOST = 8  # places of a new study
+
+# what is new in each place, for the study of a name
+STUDY = {
+    "compare/studies/plans.py": '''
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ThresholdPlan(Plan):
+    """Thresholds of uplift: slendernesses and gravity."""
+
+    tan_alphas: Sequence[float] | None = option(
+        None, "Slendernesses tan alpha: a list or an even range.", form="numbers", flag="--tan-alpha"
+    )
+    gravity: float = option(9.81, "Gravitational acceleration g, in m/s2.", above=0.0)
+''',
+    "compare/studies/NAME.py": '''"""Ground acceleration at which a cylinder uplifts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import pandas as pd
+
+from ..storage.provenance import fingerprint
+from ..storage.results import Results
+from .plans import ThresholdPlan
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Thresholds(Results, kind="thresholds"):
+    """Thresholds of uplift: the table thresholds, tan_alpha and acceleration [m/s^2]."""
+
+    def headline(self) -> dict[str, float]:
+        """Return the lowest threshold."""
+        return {"lowest threshold [m/s2]": float(self.thresholds["acceleration"].min())}
+
+
+def thresholds(*, tan_alphas: Sequence[float] | None = None, gravity: float = 9.81) -> Thresholds:
+    """Return the thresholds of uplift."""
+    plan = ThresholdPlan(tan_alphas=tan_alphas, gravity=gravity)
+    table = pd.DataFrame({"tan_alpha": plan.tan_alphas or [0.1, 0.2]})
+    tables = {"thresholds": table.assign(acceleration=plan.gravity * table["tan_alpha"])}
+    return Thresholds(tables=tables, facts={"gravity": plan.gravity, "inputs": fingerprint(plan)})
+''',
+    "reports/figures/NAME.py": '''"""Thresholds of uplift as a picture."""
+
+from __future__ import annotations
+
+from rockwobble.compare.studies.thresholds import Thresholds
+
+from .picture import Axis, Line, Panel, Picture
+
+
+def pictures(found: Thresholds) -> list[Picture]:
+    """Return the thresholds over the slenderness."""
+    line = Line(x=found.thresholds["tan_alpha"].to_numpy(), y=found.thresholds["acceleration"].to_numpy())
+    x, y = Axis(label="tan α", unit="-"), Axis(label="threshold", unit="m/s²")
+    return [Picture(name="thresholds", title="Uplift", caption="", panels=[Panel(x=x, y=y, layers=[line])])]
+''',
+    "reports/pages/NAME.py": '''"""Values for the page of thresholds of uplift."""
+
+from __future__ import annotations
+
+from rockwobble.compare.studies.thresholds import Thresholds
+
+from ..figures.thresholds import pictures
+from .page import Page
+
+
+def page_of(found: Thresholds) -> Page:
+    """Return the page."""
+    values = {"rows": found.thresholds.to_dict("records"), "about": found.manifest}
+    return Page(name="thresholds", template="thresholds", values=values, pictures=pictures(found))
+''',
+    "reports/pages/templates/NAME.md.j2": """# Thresholds of uplift
+
+{{ table(rows, [["tan_alpha", "tan α"], ["acceleration", "threshold [m/s²]", ".3f"]]) }}
+
+{{ picture("thresholds") }}
+
+{% include "page/origin.md.j2" %}
+""",
+    "reports/cli/many.py": '''
+
+from rockwobble.compare.studies.plans import ThresholdPlan  # noqa: E402
+
+
+@takes_options
+def thresholds(
+    context: typer.Context,
+    plan: ThresholdPlan,
+    out: options.Out = Path("rockwobble-thresholds"),
+    overwrite: options.Overwrite = False,
+) -> None:
+    """Ground acceleration at which cylinders uplift.
+
+    Example: rockwobble thresholds --tan-alpha 0.1,0.2
+    """
+    with interruptible():
+        with user_input():
+            from rockwobble.compare.studies.thresholds import thresholds
+
+            claim_folder(context)
+        show_and_save(thresholds(**dataclasses.asdict(plan)), out)
+''',
+    "reports/registry.py": """
+    Entry(name="thresholds", group="many", results="compare.studies.thresholds.Thresholds"),
+""",
+    "tests/reports/test_NAME.py": """from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from showing import loads_as_it_was, shows_itself
+
+from rockwobble.compare.studies.thresholds import Thresholds, thresholds
+from rockwobble.reports.cli.main import main
+
+
+def call(*arguments: str) -> int:
+    with pytest.raises(SystemExit) as ended:
+        main([*arguments])
+    return int(ended.value.code or 0)
+
+
+def test_the_threshold_is_g_tan_alpha_and_loads_as_it_was(tmp_path: Path) -> None:
+    found = thresholds(tan_alphas=[0.1, 0.5], gravity=10.0)
+    assert found.thresholds["acceleration"].tolist() == [1.0, 5.0]
+    shows_itself(found, "lowest threshold [m/s2] 1")
+    loads_as_it_was(found, tmp_path)
+
+
+def test_the_command_saves_shows_and_draws_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call("--help") == 0
+    assert "uplift" in capsys.readouterr().out.split("thresholds", 1)[1].splitlines()[0]
+    assert call("thresholds", "--tan-alpha", "0.1,0.3", "--gravity", "10", "--out", str(tmp_path)) == 0
+    assert "Thresholds of uplift" in capsys.readouterr().out
+    assert Thresholds.load(tmp_path).thresholds["acceleration"].tolist() == pytest.approx([1.0, 3.0])
+    page = (tmp_path / "thresholds.html").read_text()
+    assert page.count('class="chart"') == 1
+    (tmp_path / "thresholds.html").unlink()
+    assert call("show", str(tmp_path)) == 0
+    assert call("report", str(tmp_path)) == 0
+    assert (tmp_path / "thresholds.html").read_text() == page
+
+
+def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert call("thresholds", "--gravity", "-1", "--out", str(tmp_path)) == 2
+    assert capsys.readouterr().err == "rockwobble: --gravity must be above 0, got -1.0\\n"
+""",
+}
+
+
+def places() -> list[str]:
+    """The places of a new study that CONTRIBUTING lists."""
+    section = CONTRIBUTING.read_text(encoding="utf-8").split("### A new study\n")[1].split("\n### ")[0]
+    return re.findall(r"^\| `(\S+)` \|", section, re.MULTILINE)
+
+
+def test_a_study_has_at_most_eight_places() -> None:
+    assert places() == list(STUDY)
+    assert len(STUDY) <= MOST
+
+
+@pytest.mark.slow
+def test_a_study_in_these_places_runs_saves_loads_and_draws(tmp_path: Path) -> None:
+    def link(source: str, place: str) -> None:
+        Path(place).symlink_to(Path(source).resolve())
+
+    copy = tmp_path / "rockwobble"
+    unused = shutil.ignore_patterns("__pycache__", "published")
+    shutil.copytree(PACKAGE, copy, copy_function=link, ignore=unused)
+    for name, text in STUDY.items():
+        place = (copy.parent if name.startswith("tests/") else copy) / name.replace("NAME", "thresholds")
+        before = place.read_text(encoding="utf-8") if place.exists() else ""
+        head, list_end, tail = (
+            before.partition(")\nCOMMANDS") if name.endswith("registry.py") else (before, "", "")
+        )
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.unlink(missing_ok=True)
+        place.write_text(head + text + list_end + tail, encoding="utf-8")
+    paths = [str(tmp_path), str(Path(__file__).parent), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths)), "PYTEST_ADDOPTS": ""},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "3 passed" in done.stdout
