@@ -28,7 +28,7 @@ from rockwobble.reduced.body import restitution_from_momentum
 from ..figures.advice import pictures
 from .command_line import command_line, spectrum_line
 from .page import Page
-from .table import number
+from .table import NONE, number
 
 # rows of the box of demands
 _DEMANDS = {
@@ -45,7 +45,7 @@ _DEMANDS = {
 }
 # units of a table, and in the box, where W is the weight that its head names
 _UNITS = {"-": "", "weights": " W", "weights × b": " W b"}
-_TOGETHER = {"with_shear": ("V", " W"), "with_force": ("N", " W"), "with_moment": ("M", " W b")}
+_ACTING = {"shear": ("V", " W"), "force": ("N", " W"), "moment": ("M", " W b")}
 _ENDS = {
     "methods": "reduced model and engine diverge",
     "data": "copies are spread over half of the peak tilt",
@@ -377,21 +377,25 @@ def _rounded(value: float) -> str:
 
 
 def _together(found: Advice) -> str:
-    """What acts when shear and moment are reached."""
-    rows = found.demands.set_index("demand")
+    """What acts together where shear, and where moment, is largest and nothing is beyond its demand."""
+    rows = found.demands.set_index("demand").to_dict("index")
+    given = [name for name in _ACTING if name in rows and not math.isnan(rows[name]["value"])]
     parts = []
-    given = {demand for demand in rows.index if not math.isnan(rows["value"][demand])}
-    for demand, symbol in (("shear", "V"), ("moment", "M")):
-        if demand not in given:
+    for name in given:
+        # no moment where the support supplies none, or none is known
+        acting = {part: rows[name][f"with_{part}"] for part in given}
+        if name == "force" or math.isnan(acting["force"]):
             continue
         beside = [
-            f"{other} of {number(rows[column][demand])}{unit}"
-            for column, (other, unit) in _TOGETHER.items()
-            # no moment where the support supplies none, or none is known
-            if not math.isnan(rows[column][demand]) and column.removeprefix("with_") in given
+            f"{_ACTING[part][0]} of {number(value)}{_ACTING[part][1]}"
+            for part, value in acting.items()
+            if part != name
         ]
-        if beside:
-            parts.append(f"{symbol} acts with {' and '.join(beside)}")
+        symbol, unit = _ACTING[name]
+        value, most = number(acting[name]), number(rows[name]["value"])
+        # an earlier version stated none
+        at = "" if value in (most, NONE) else f", at {symbol} of {value}{unit}"
+        parts.append(f"{symbol} acts with {' and '.join(beside)}{at}")
     return f"{'; '.join(parts)}." if parts else ""
 
 

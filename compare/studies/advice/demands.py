@@ -4,9 +4,11 @@ A demand of a run is what it does not exceed in 99 % of its time in motion; wher
 motion up to overturning. A demand of a group is what 95 % of its runs do not exceed, the order statistic of
 that rank. The design demand is the largest of all groups, under the shaking as given and under weaker shaking
 of the same records (`weaker_factors`): weaker shaking may ask more, as where a cylinder rocks for long that
-stronger shaking overturns at once, and a recess meets both. It is no less than what acts together with the
-shear or the moment of any of these groups, which a run may ask beyond the 95 % or the 99 %: who checks each
-demand alone has checked what acts together.
+stronger shaking overturns at once, and a recess meets both.
+
+What acts together is the largest shear, and the largest moment, of any run at a time at which nothing else is
+beyond its demand: at the very time at which a run reaches a demand, another force may be in the hundredth of
+the time, or in the twentieth of the runs, that its own demand leaves out.
 """
 
 from __future__ import annotations
@@ -38,18 +40,21 @@ COVERED = 0.95
 LEVEL_RATIO = 2.0**0.25
 # [alpha] tilt that a run asks of a wall at least if it passes the balance, whether it overturns or comes back
 PASSED = 1.25
+ROUNDING = 1e-12  # relative, of sums and ratios of what acts together
 _FIRST_LEVEL = -4  # steps from the threshold of uplift
 
 _BASE = {"friction": "-", "shear": "weights", "force": "weights"}
 _TOP = {f"top_{name}": unit for name, unit in _BASE.items()}
+_SUMS = ("moment", "shear_and_wall")  # forces on a wall, alone and beside shear
 _RECESS = {"moment": "weights × b", "shear_and_wall": "weights", "tilt": "alpha"}
 # demands of a run with their units
 _TENDON = "tendon"  # tension, in weights of a column alone
 UNITS: Mapping[str, str] = {**_BASE, **_TOP, **_RECESS, _TENDON: "weights"}
 # what else there is of each run
 SHARES = ("slip", "lost")
-# demand: what acts at the time at which a run reaches it
-_TOGETHER = {"shear": ("force", "moment"), "moment": ("shear", "force")}
+# demands of which is said what acts together with them, and what that is
+_LEADING = ("shear", "moment")
+_TOGETHER = ("shear", "force", "moment")
 _NOT_PLANE = "all runs stay in one plane, in which no moment arises: a real motion leaves it"
 
 
@@ -83,8 +88,9 @@ def demands_of(trace: Trace) -> dict[str, float]:
         top_force, under the slab of a frame [weights of the share of the slab]; moment, of the recess about
         the vertical through the contact point, (1 + cos(tilt)) |kappa| [weights times b]; shear_and_wall,
         the sum at one time of shear and of the force on a wall that supplies the moment over the lever arm b
-        [weights]: each not exceeded in 99 % of the moving time. shear_with_force, shear_with_moment,
-        moment_with_shear and moment_with_force: what acts when shear and moment are reached. tilt, the
+        [weights]: each not exceeded in 99 % of the moving time. shear_with_shear, shear_with_force and
+        shear_with_moment: what acts together where the shear is largest of all times at which contact is
+        kept and none of these is exceeded; moment_with_shear and so on, where the moment is. tilt, the
         largest [alpha]: at least `PASSED` of the balance where it passes that. tendon, the largest tension
         [weights of one column], with a tendon. slip and lost, shares of that time
         in which the friction of the case does not suffice and in which contact is lost, at base or top. All
@@ -127,8 +133,11 @@ def demands_of(trace: Trace) -> dict[str, float]:
     series["shear_and_wall"] = series["shear"] + series["moment"]
     places = {name: _usual(values) for name, values in series.items()}
     found = {name: float(series[name][place]) for name, place in places.items()}
+    usual = np.logical_and.reduce([series[name] <= found[name] for name in (*_BASE, *_SUMS)])
+    usual &= series["force"] > 0.0
     for name, part in _pairs():
-        found[f"{name}_with_{part}"] = float(series[part][places[name]])
+        place = int(np.where(usual, series[name], -math.inf).argmax())
+        found[f"{name}_with_{part}"] = float(series[part][place]) if usual.any() else math.nan
     time = max(float(lengths.sum()), 1e-300)
     shares = {"slip": lengths[slips & ~lost].sum() / time, "lost": lengths[lost].sum() / time}
     return found | {"tilt": largest, **pull, **shares}
@@ -181,9 +190,9 @@ def demand_table(
         demand, value, unit; per_tonne, the value for a mass of 1 t of what is carried, the cylinder or, in a
         frame, a column with its share of the slab or, at the top, this share, and for_mass, for that of
         `mass` [kN, kNm]; group and factor, of which it is, with runs, those of them that differ, covered, how
-        many of these do not exceed it, and overturned, how many fall; with_shear, with_force and with_moment,
-        what acts at the same time in the run that reaches it [weights, weights times b]; reason, why a value
-        is NaN.
+        many of these do not exceed it, and overturned, how many fall; with_shear, with_force and with_moment
+        of shear and of moment: what acts together where one of them is largest and none is beyond its value
+        [weights, weights times b]; reason, why a value is NaN.
 
         Demands: those of `demands_of` and, of the tilt, wall_height, at which the rim stands out farthest and
         a wall takes its force, and clearance, by which a vertical wall of this height must stand back [m].
@@ -208,6 +217,10 @@ def demand_table(
         ):
             rows[-1] |= {"value": math.nan, "reason": _NOT_PLANE}
     recess = {row["demand"]: row for row in rows}
+    limits = {name: row["value"] for name, row in recess.items() if not math.isnan(row["value"])}
+    for name in _LEADING:
+        if name in limits:
+            recess[name] |= _together(name, groups, limits)
     if "tilt" in recess:
         if math.isnan(recess["moment"]["value"]):
             lone = {name: recess["moment"][name] for name in ("value", "reason")}
@@ -254,46 +267,41 @@ def all_alike(runs: pd.DataFrame) -> bool:
 
 
 def _largest(name: str, groups: list[tuple[str, float, pd.DataFrame]]) -> dict[str, Any]:
-    """The largest demand of a name of all groups, and what is stated with it."""
+    """The largest demand of a name of all groups, and of which."""
     best: dict[str, Any] = {"value": math.nan, "reason": f"fewer than {FEWEST} runs differ"}
     for group, factor, runs in groups:
-        values = runs[name].to_numpy(float)
-        alone, covered = covering(values, COVERED)
-        loads = _loads(runs)
-        load = max(loads.values(), key=lambda load: load.get(name, -math.inf))
-        value = load.get(name, -math.inf)
-        if value > alone:
-            covered = int(np.count_nonzero(values <= value))
-        else:
-            value, load = alone, loads.get(name, {})
+        value, covered = covering(runs[name].to_numpy(float), COVERED)
         if value <= best["value"]:  # not where the best is none yet, NaN
             continue
         best = {
             **{"value": value, "group": group, "factor": factor, "runs": len(runs), "covered": covered},
             "overturned": int((runs["outcome"] == "overturned").sum()),
-            **{f"with_{part}": load[part] for part in _TOGETHER.get(name, ())},
             "reason": "",
         }
     return best
 
 
-def _loads(runs: pd.DataFrame) -> dict[str, dict[str, float]]:
-    """What acts together when the shear, and when the moment, of a group of runs is reached."""
-    found = {}
-    for name, parts in _TOGETHER.items():
-        values = runs[name].to_numpy(float)
-        value, _ = covering(values, COVERED)
-        place = int(np.flatnonzero(values == value)[0])
-        load = {name: value, **{part: float(runs[f"{name}_with_{part}"].iloc[place]) for part in parts}}
-        load["shear_and_wall"] = load["shear"] + load["moment"]
-        if load["force"] > 0.0:  # contact is lost where it is not, and no friction suffices
-            load["friction"] = load["shear"] / load["force"]
-        found[name] = load
-    return found
+def _together(
+    name: str, groups: list[tuple[str, float, pd.DataFrame]], limits: Mapping[str, float]
+) -> dict[str, float]:
+    """What acts together where the shear, or moment, of a run is largest and nothing is beyond its limit."""
+    runs = pd.concat([each for *_, each in groups])
+    load = pd.DataFrame({part: runs[f"{name}_with_{part}"].astype(float) for part in _TOGETHER})
+    acting = {part: load[part] for part in _TOGETHER}
+    acting["friction"] = load["shear"] / load["force"].where(load["force"] > 0.0)
+    acting["shear_and_wall"] = load["shear"] + load["moment"]
+    within = pd.DataFrame(
+        {part: values <= limits[part] * (1.0 + ROUNDING) for part, values in acting.items() if part in limits}
+    )
+    usual = load[within.all(axis=1)]
+    if not len(usual):
+        return {}
+    place = int(usual[name].to_numpy().argmax())
+    return {f"with_{part}": float(usual[part].iloc[place]) for part in _TOGETHER}
 
 
 def _pairs() -> list[tuple[str, str]]:
-    return [(name, part) for name, parts in _TOGETHER.items() for part in parts]
+    return list(itertools.product(_LEADING, _TOGETHER))
 
 
 def _none_missing() -> dict[str, float]:
