@@ -45,9 +45,9 @@ def pictures(found: Ensemble) -> list[Picture]:
     picture = Picture(
         name="ensemble",
         title="Distributions of peak tilt by method, and ratios of the peaks of each member",
-        caption="Above: share of the members whose peak tilt is at most that of the axis; what a curve lacks "
-        "to 1 at the triangle overturns. Below: ratio of the two peaks of each member (dots; triangles at "
-        "the edges count those that overturn by one method alone), the median with its 95 % interval "
+        caption="Above: share of the members whose peak tilt is at most that of the axis; curves end below "
+        "1 where members overturn (triangle). Below: ratio of the two peaks of each member (dots; triangles "
+        "at the edges count those that overturn by one method alone), the median with its 95 % interval "
         "(diamond, thick bar), 5 to 95 % of the members (thin bar), and the margin of "
         f"{100.0 * MARGIN:g} % (shaded).",
         panels=panels,

@@ -53,7 +53,7 @@ def _ratios(found: Fragility) -> Picture | None:
     reach = min(1.15 * max([*known, 2.0 * math.log1p(margin)]), math.log(4.0))
     low, high = math.exp(-reach), math.exp(reach)
     names = [f"{method}\n/ {against}" for method, against in pairs]
-    x_axis, y_axis = ratio_axes("ratio of medians, unsafe above 1", low, high, _RATIOS, names)
+    x_axis, y_axis = ratio_axes("ratio of medians", low, high, _RATIOS, names)
     panels = []
     for cylinder in cylinders:
         own = {
@@ -80,7 +80,7 @@ def _ratios(found: Fragility) -> Picture | None:
         panels.append(Panel(x=x_axis, y=y_axis, layers=layers, title=title, height=height))
     return Picture(
         name="fragility-ratios",
-        title="Median overturning intensity of each method over that of another",
+        title="Ratios of the median overturning intensities of two methods",
         caption="Above 1 the median overturning intensity of the first method is higher: it is "
         "unconservative. Bars: 95 % intervals by resampling the motions, the same for both methods. "
         f"Shaded: the margin of {100.0 * margin:g} %.",
@@ -108,7 +108,7 @@ def _curves(found: Fragility, cylinder: str, place: int) -> Picture:
     )
     return Picture(
         name=f"fragility-{place}",
-        title=f"Fragility of {cylinder}: share of the motions that overturn it",
+        title=f"Fragility of {cylinder}: probability of overturning",
         caption=f"Over the intensity, {measure.title}. {lines}",
         panels=panels,
         columns=2,
@@ -131,7 +131,7 @@ def _panel(found: Fragility, cylinder: str, labels: Sequence[str], title: str) -
             x = own["intensity"].to_numpy(float)
             low, high = (own[end].to_numpy(float) for end in ("low", "high"))
             shade = "#d9d9d9" if colour == DARK else pale(pale(colour))
-            backs.append(Band(x=x, low=low, high=high, colour=shade))
+            backs.append(Band(x=x, low=low, high=high, colour=shade, name="95 % bands"))
             fronts.append(
                 Line(
                     x=x,

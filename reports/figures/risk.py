@@ -51,14 +51,14 @@ def _picture(found: Fragility, cylinder: str, place: int) -> Picture:
     panels = [
         Panel(
             x=axis,
-            y=Axis(label="exceeded", unit="1/year", log=True),
+            y=Axis(label="exceedance", unit="1/year", log=True),
             layers=[curve],
             title="Hazard",
             height=2.6,
         ),
         Panel(
             x=axis,
-            y=Axis(label="overturn", unit="-", low=-0.02, high=1.02),
+            y=Axis(label="probability of overturning", unit="-", low=-0.02, high=1.02),
             layers=shares,
             title="Fragility",
             height=2.6,
@@ -67,17 +67,17 @@ def _picture(found: Fragility, cylinder: str, place: int) -> Picture:
             x=axis,
             y=Axis(label="contribution", unit="1e-4/year", low=0.0),
             layers=products,
-            title="Their product",
+            title="Contribution to the annual frequency",
             height=2.6,
         ),
     ]
     return Picture(
         name=f"risk-{place}",
-        title=f"Which intensities overturn {cylinder}",
-        caption="Annual frequency with which an intensity is exceeded; share of the motions that overturn "
-        "there, without a fitted curve; and their product per unit of the logarithm of the intensity, the "
-        "area below which is the annual frequency of overturning."
-        + (" The first methods are drawn." if len(set(table["method"])) > _MOST else ""),
+        title=f"Hazard, fragility and their product: {cylinder}",
+        caption="Annual frequency of exceedance; share of the motions that overturn at an intensity, "
+        "without a fitted curve; and their product per unit of the logarithm of the intensity, "
+        "whose area is the annual frequency of overturning."
+        + (" Only the first methods are drawn." if len(set(table["method"])) > _MOST else ""),
         panels=panels,
         columns=2,
         legend="panels",

@@ -60,8 +60,8 @@ def picture_of(spectrum: TiltMaps) -> Picture:
         name="spectrum",
         title=f"Peak tilt of sizes under intensities, {spectrum.motion.name or 'record'}, "
         f"tan α = {spectrum.tan_alpha:g}",
-        caption="Each cell is a run. What overturns has a colour of its own, what does not uplift none. "
-        f"The overturning boundary is as found by the search, in steps down to {spectrum.search_step:g}"
+        caption="Each cell is a run; runs that overturn, and runs that do not uplift, have colours of their "
+        "own. The overturning boundary is as found by the search, in steps down to "
         + (f" and of {spectrum.probes} random intensities below." if spectrum.probes else "."),
         panels=[*maps, curves],
         columns=2,

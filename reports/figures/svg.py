@@ -30,6 +30,7 @@ WIDTH = 8.6
 _POINTS = 1600
 _BELOW = -0.48  # of a legend, from its panel [inch]
 _GRID = "#dddddd"
+_FRAME = "#888888"  # of an entry in a legend, which may be white
 # no text is smaller than 8 pt at the width at which it is shown
 _STYLE: Any = {
     "svg.hashsalt": "rockwobble",
@@ -111,7 +112,8 @@ def figure(picture: Picture, *, titled: bool = False) -> Figure:
         if picture.legend == "below" and picture.entries():
             _legend(drawn, list(places.flat[: len(picture.panels)]))
         _settle(drawn)
-        drawn.align_ylabels()  # now, since each label asks all others for their place
+        # now, since each label asks all others for their place; one beside long names has its own room
+        drawn.align_ylabels([axes for axes in drawn.axes if axes.get_ylabel()])
     return drawn
 
 
@@ -270,7 +272,9 @@ def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
         if gap.cells.any():
             layer = np.ma.masked_where(~gap.cells, np.zeros(gap.cells.shape))
             axes.pcolormesh(*edges, layer, cmap=ListedColormap([gap.colour]), linewidth=0.0, **drawn)
-            axes.fill_between([], [], [], color=gap.colour, label=gap.name)
+            axes.fill_between(
+                [], [], [], facecolor=gap.colour, edgecolor=_FRAME, linewidth=0.6, label=gap.name
+            )
     if heat.written and heat.values.size <= _MOST_WRITTEN:
         sided = shades.centre is not None
         for (row, column), value in np.ndenumerate(heat.values):

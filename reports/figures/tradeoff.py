@@ -14,12 +14,12 @@ from .palette import DARK, GREY, Style, mark_styles
 from .picture import Axis, Line, Panel, Picture, Rule, bar_ends
 
 TITLES = {
-    "turn": "Angle of turn in free response",
+    "turn": "Azimuth change in free response",
     "shaken": "Tilt under 2 × El Centro",
     "peaks": "Distribution of peak tilt",
 }
 ERRORS = {
-    "turn": ("error of turn", "deg"),
+    "turn": ("error of azimuth change", "deg"),
     "shaken": ("error of tilt", "α"),
     "peaks": ("distance", "α"),
 }
@@ -45,7 +45,7 @@ def pictures(found: Tradeoff) -> list[Picture]:
 
 def _picture(found: Tradeoff, problem: str) -> Picture:
     points = found.points[(found.points["problem"] == problem) & (found.points["error"] > 0.0)]
-    time = _axis("time / that of the recess model", "-", points["ratio"])
+    time = _axis("computing time / recess model's", "-", points["ratio"])
     error = _axis(*ERRORS[problem], points["error"])
     panels = []
     for (support, name), title in _PANELS.items():
@@ -68,9 +68,10 @@ def _picture(found: Tradeoff, problem: str) -> Picture:
         name=f"tradeoff-{problem}",
         title=TITLES[problem],
         caption="Lower left is better. Along a line only the tolerance or the time step changes, from coarse "
-        "on the left to fine on the right; bars are quartiles of the times."
+        "on the left to fine on the right; bars: quartiles of the times. A recess with clearance is compared "
+        "with itself at half the finest step."
         + (
-            " Below “chance” another set of motions changes more than the method."
+            " Below “chance” another set of motions changes the distribution more than the method does."
             if problem == "peaks"
             else ""
         ),

@@ -47,47 +47,47 @@ _MAPS = (
     (
         "bias",
         "Where rolling out changes the peak: bias",
-        "Median over the records of the peak on flat ground over that in an ideal recess, both of the "
-        "reduced models: red, higher on flat ground; blue, lower.",
+        "Median over the records of the ratio of the peaks on flat ground and in an ideal recess, minus "
+        "1, by the reduced models: red, higher on flat ground; blue, lower.",
         "flat_percent",
-        Shades(label="flat over recess, median", unit="%", low=-50.0, high=50.0, centre=0.0),
+        Shades(label="flat ground / recess − 1, median", unit="%", low=-50.0, high=50.0, centre=0.0),
     ),
     (
         "spread",
         "Where rolling out changes the peak: spread",
-        "The factor by which nine in ten records differ at most, to either side, on flat ground; darkest: 10 "
-        "and more, or it overturns in one of the two alone.",
+        "90th percentile over the records of the ratio of the peaks on flat ground and in the recess, or its "
+        "inverse; darkest: 10 and more, or it overturns on one of the two supports alone.",
         "flat_90",
-        Shades(label="factor of nine in ten", unit="-", low=1.0, high=10.0, log=True),
+        Shades(label="90th percentile of the ratio", unit="-", low=1.0, high=10.0, log=True),
     ),
     (
         "sensitivity",
-        "What sensitivity alone does",
-        "The same of the recess model and itself under a record 1 % stronger: where it is no less, "
-        "neither model can be asked for the peak of one record.",
+        "Sensitivity: the recess model under a record 1 % stronger",
+        "The same ratio between the recess model and itself under a record 1 % stronger: where it is as "
+        "large, neither model predicts the peak under one record.",
         "copy_90",
-        Shades(label="factor of nine in ten", unit="-", low=1.0, high=10.0, log=True),
+        Shades(label="90th percentile of the ratio", unit="-", low=1.0, high=10.0, log=True),
     ),
     (
         "need-friction",
-        "Friction that the recess model needs",
-        "Friction that nine in ten of the records that rock without overturning need at most.",
+        "Friction demand of the recess model",
+        "90th percentile of the friction demand over the records that rock without overturning.",
         "friction_90",
-        Shades(label="friction / tan α", unit="-", low=1.0, high=10.0, log=True),
+        Shades(label="friction demand / tan α", unit="-", low=1.0, high=3.0),
     ),
     (
         "need-contact",
         "Least normal force",
-        "Normal force that nine in ten of the records that rock without overturning keep at least; below "
-        "zero the ground would have to pull.",
+        "10th percentile of the least normal force over the records that rock without overturning; "
+        "below zero the ground would have to pull.",
         "normal_10",
         Shades(label="normal force / weight", unit="-", low=-1.0, high=1.0, centre=0.0),
     ),
     (
         "need-moment",
-        "Moment that the recess must supply",
-        "κ of the restraining moment κ (vertical + axis) that nine in ten of the records that rock without "
-        "overturning need at most.",
+        "Restraining moment of the recess",
+        "90th percentile of κ, of the restraining moment κ (vertical + axis), over the records that rock "
+        "without overturning.",
         "moment_90",
         Shades(label="κ / (weight × b)", unit="-", low=0.01, high=1.0, log=True),
     ),
@@ -100,7 +100,7 @@ def map_pictures(tables: Tables) -> list[Picture]:
     table = table.assign(flat_percent=100.0 * (table["flat_ratio"] - 1.0))
     found = [_shaken(table, *given) for given in _MAPS if table[given[3]].notna().any()]
     two = free["flat_turn"].notna().any()  # models of free response, which are compared
-    for name, what in (("turn", "Angle of turn"), ("period", "Period")) if two else ():
+    for name, what in (("turn", "Azimuth change"), ("period", "Period")) if two else ():
         off = 100.0 * (free[f"flat_{name}"] / free[name] - 1.0)
         found.append(_free(f"free-{name}", what, free.assign(off=off)))
     return found
@@ -170,10 +170,10 @@ def _free(name: str, what: str, table: pd.DataFrame) -> Picture:
     return Picture(
         name=name,
         title=f"{what} from tilt maximum to next maximum",
-        caption="Free response, by the reduced models: on flat ground over that in an ideal recess.",
+        caption="Free response by the reduced models: value on flat ground / in an ideal recess − 1.",
         panels=panels,
         columns=2,
-        shades=Shades(label="flat over recess", unit="%", low=-reach, high=reach, centre=0.0),
+        shades=Shades(label="flat ground / recess − 1", unit="%", low=-reach, high=reach, centre=0.0),
     )
 
 
@@ -228,7 +228,7 @@ def pictures(found: Validity) -> list[Picture]:
 def _records(table: pd.DataFrame) -> Picture:
     low, high = _RATIO_ENDS
     ticks = [(value, f"{value:g}") for value in (0.2, 0.5, 1.0, 2.0, 5.0)]
-    label = "peak / peak of the recess model (above 1: the recess model is unsafe)"
+    label = "peak / recess model's peak"
     ratio = Axis(label=label, unit="-", log=True, low=low, high=high, ticks=ticks)
     methods = [method for method, against in CONTRASTS if against == RECESS.model]
     panels = []
@@ -253,8 +253,9 @@ def _records(table: pd.DataFrame) -> Picture:
         name="records",
         title="Peak tilt over records, compared with the recess model",
         caption="Marks: the median over the records of the ratio of the two peaks; bars: nine in ten "
-        "records. What overturns by one of the two alone is at an end. Beside them the recess model under a "
-        "record 1 % stronger: a scatter no wider is sensitivity, and no error of a method.",
+        "records. What overturns by one of the two alone is at an end. Beside them the recess "
+        "model under a record 1 % stronger: a scatter no wider is sensitivity, not an error of "
+        "a method. Above 1 the recess model is unconservative.",
         panels=panels,
         columns=min(2, len(panels)),
     )
@@ -262,8 +263,8 @@ def _records(table: pd.DataFrame) -> Picture:
 
 def _agreement(table: pd.DataFrame) -> Picture:
     end = float(table["duration"].max())
-    predicted = Axis(label="predicted", unit="s", low=0.0, high=1.03 * end)
-    measured = Axis(label="measured", unit="s", low=0.0, high=1.03 * end)
+    predicted = Axis(label="predicted agreement time", unit="s", low=0.0, high=1.03 * end)
+    measured = Axis(label="agreement time", unit="s", low=0.0, high=1.03 * end)
     groups = {
         f"{support}, {reference} model": rows
         for (support, reference), rows in table.groupby(["support", "reference_support"], sort=False)
@@ -274,7 +275,7 @@ def _agreement(table: pd.DataFrame) -> Picture:
     ]
     return Picture(
         name="agreement",
-        title="How long traces agree",
+        title="Agreement time of traces, measured against predicted",
         caption="Time from uplift until the tilts of engine and model differ by more than 1 % of α, against "
         "the time that the reduced models predict. Open marks: runs that agree to their end.",
         panels=[Panel(x=predicted, y=measured, layers=layers, height=3.2)],
@@ -290,14 +291,14 @@ def _verification(table: pd.DataFrame) -> Picture:
     layers.append(Line(x=ends, y=ends, name="difference of the models", width=0.8))
     return Picture(
         name="verification",
-        title="The engine tells the models apart",
-        caption="Each mark is a release: how far the engine's angle of turn is off that of its own model, "
-        "over how far the two models are apart. Below the line it decides between them. Open marks: passes "
-        "that its contact does not resolve.",
+        title="The engine distinguishes the models of recess and flat ground",
+        caption="Each mark is a release: error of the azimuth change in the engine, against the "
+        "difference of the two models. Below the line the engine decides between them. Open "
+        "marks: near-upright passes that its contact does not resolve.",
         panels=[
             Panel(
                 x=Axis(label="recess − flat model", unit="deg", log=True),
-                y=Axis(label="engine − its model", unit="deg", log=True),
+                y=Axis(label="engine − model of its support", unit="deg", log=True),
                 layers=layers,
                 height=3.2,
             )
@@ -308,7 +309,7 @@ def _verification(table: pd.DataFrame) -> Picture:
 def _slip(table: pd.DataFrame) -> Picture:
     table = table.assign(shown=np.maximum(table["slip"], _LEAST))
     groups = {
-        f"tan α = {tan_alpha:g}, needs {rows['needed'].iloc[0] / rows['tan_alpha'].iloc[0]:.2f} tan α": rows
+        f"tan α = {tan_alpha:g}, demand {rows['needed'].iloc[0] / rows['tan_alpha'].iloc[0]:.2f} tan α": rows
         for tan_alpha, rows in table.sort_values("share").groupby("tan_alpha")
     }
     layers: list[Layer] = [
@@ -317,12 +318,12 @@ def _slip(table: pd.DataFrame) -> Picture:
     ]
     return Picture(
         name="slip",
-        title="Slip of the engine where friction is short",
-        caption="Distance over which the contact slips in one period of free response, over the friction as "
-        "a share of what the recess model says is needed.",
+        title="Slip in the engine where friction is insufficient",
+        caption="Distance over which the contact slips in one period of free response, against friction / "
+        "friction demand of the recess model.",
         panels=[
             Panel(
-                x=Axis(label="friction / friction needed", unit="-"),
+                x=Axis(label="friction / friction demand", unit="-"),
                 y=Axis(label="slip / b", unit="-", log=True),
                 layers=layers,
             )
@@ -351,26 +352,26 @@ def _rings(table: pd.DataFrame, uplift: float) -> Picture:
     shaken, touched = plain[plain["motion"] != FREE], plain[plain["contact_time"] > 0.0]
     return Picture(
         name="rings",
-        title="A recess with clearance and the ideal recess",
+        title="A recess with clearance, compared with the ideal recess",
         caption=f"Recesses whose walls lean by α, under El Centro at {INTENSITY * uplift:.3g} g tan α and in "
-        "free response; bars: over the azimuths by which the problem is turned. Energy: where the walls are "
-        "touched.",
+        "free response; bars: range over the azimuths of the ground motion. Energy: runs that touch the "
+        "walls.",
         panels=[
             Panel(
                 x=clearance,
-                y=Axis(label="peak ratio", unit="-"),
+                y=Axis(label="peak / recess model's peak", unit="-"),
                 layers=[_ONE, *lines("ratio", shaken, 1e-3)],
                 title="peak tilt",
             ),
             Panel(
                 x=clearance,
-                y=Axis(label="rolled out / b", unit="-", log=True),
+                y=Axis(label="roll-out / b", unit="-", log=True),
                 layers=list(lines("rolled_out", shaken, 1e-6)),
-                title="leaving its place",
+                title="roll-out",
             ),
             Panel(
                 x=clearance,
-                y=Axis(label="energy lost / largest", unit="-", log=True),
+                y=Axis(label="energy lost / largest energy", unit="-", log=True),
                 layers=list(lines("loss", touched, 1e-6)),
                 title="energy lost",
             ),
@@ -399,18 +400,18 @@ def _contact(table: pd.DataFrame, uplift: float) -> Picture:
     )
     return Picture(
         name="contact",
-        title="Contact that gives",
+        title="Compliant contact",
         caption=f"Peak tilt under El Centro at {STRONG * uplift:.3g} g tan α, and energy lost in a pass of "
         "free response over that of the release, by the softness of contact and its damping ratio.",
         panels=[
             Panel(
                 x=softness,
-                y=Axis(label="peak ratio", unit="-"),
+                y=Axis(label="peak / recess model's peak", unit="-"),
                 layers=[_ONE, *group_lines(groups, "softness", "ratio", lines=False), crosses],
             ),
             Panel(
                 x=softness,
-                y=Axis(label="lost in a pass", unit="-", log=True),
+                y=Axis(label="energy lost in a pass", unit="-", log=True),
                 layers=group_lines(groups, "softness", "lost", lines=False),
             ),
         ],

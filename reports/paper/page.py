@@ -135,7 +135,8 @@ def period_picture(table: pd.DataFrame) -> Picture:
     for tan_alpha, dash in zip(_ROCKING, ("dash", "dashdot"), strict=True):
         x, y = free.curve(table, "rocking", tan_alpha)
         colour = _SHADES[free.TAN_ALPHAS.index(tan_alpha)]
-        layers.append(Line(x=x, y=y, style=Style(colour=colour, dash=dash), width=1.1))
+        name = f"planar, tan α = {tan_alpha:g}" + (" (disc)" if tan_alpha == free.DISC else "")
+        layers.append(Line(x=x, y=y, name=name, style=Style(colour=colour, dash=dash), width=1.1))
     x, y = free.curve(table, "housner")
     layers.append(Line(x=x, y=y, name="planar, Housner", style=Style(colour=ORDER[1], dash="dot"), width=2.0))
     panel = Panel(
@@ -147,10 +148,10 @@ def period_picture(table: pd.DataFrame) -> Picture:
     return Picture(
         name="figure-3",
         title="Periods over the tilt",
-        caption="Time in which the contact point goes once round the rim at constant tilt, times p, for "
-        "bodies from slender to flat; and the full period of planar rocking released at that tilt: "
-        "linearised after Housner (dotted), which does not depend on α, and exact for tan α = 1 (dashed) and "
-        "for the disc (dash-dotted).",
+        caption="p times the time in which the contact point goes once round the rim at constant tilt, for "
+        "bodies from slender to flat; and p times the full period of planar rocking released at that "
+        "tilt: linearised after Housner (dotted), which does not depend on α, and exact for tan α = 1 "
+        "(dashed) and for the disc (dash-dotted).",
         panels=[panel],
     )
 
@@ -175,7 +176,7 @@ def free_picture(table: pd.DataFrame) -> Picture:
     return Picture(
         name="figure-4",
         title="Paths and time histories of the modes",
-        caption="Above, the path of the centre of mass seen from above, from the dot on.",
+        caption="Top row: path of the centre of mass, seen from above; it starts at the dot.",
         panels=[*orbits, *panels],
         columns=len(modes),
     )
@@ -249,7 +250,7 @@ def _signed_log(values: Array) -> Array:
 
 
 def overturning_picture(spectrum: TiltMaps) -> Picture:
-    """Return figure 6: the maps, and the lowest intensities on the axes of the paper and on equal shaking."""
+    """Return figure 6: the maps, and the overturning boundaries on two axes."""
     whole = picture_of(spectrum)
     styles = series_styles(str(Run(None, spectrum.support)))
     curves = []
@@ -259,15 +260,16 @@ def overturning_picture(spectrum: TiltMaps) -> Picture:
             Line(x=spectrum.semidiagonals, y=lowest[name], name=NAMES[name], style=styles[name], width=1.6)
             for name in SERIES
         ]
-        title = "lowest found to overturn, " + ("as the paper draws it" if own else "on equal shaking")
+        title = "overturning boundary, " + ("axis of the paper" if own else "equal ground motion")
         y = Axis(label=label, unit="-", low=0.0)
         curves.append(Panel(x=Axis(label="R", unit="m"), y=y, layers=lines, title=title, height=3.2))
     return replace(
         whole,
         name="figure-6",
-        title="Peak tilts, and the lowest intensities found to overturn",
-        caption="Peak tilt of sizes under intensities, in 3D and of each component alone, undamped; the line "
-        "is the lowest intensity found to overturn. The three runs of a cell share one factor on the record; "
-        "the scale on the right of a planar map is the peak of its own component, the axis of the paper.",
+        title="Peak tilts and overturning boundaries",
+        caption="Peak tilt of sizes under intensities, in 3D and of each component alone, undamped; the "
+        "line is the overturning boundary as found by the search. The three runs of a cell "
+        "share one factor on the record; the scale on the right of a planar map is the peak of "
+        "its own component, the axis of the paper.",
         panels=[*whole.panels[:3], *curves],
     )

@@ -136,14 +136,20 @@ def picture(table: pd.DataFrame, title: str) -> Picture:
     lines, bands = [], []
     for method in methods:
         own = table[table["method"] == method]
-        x = np.arange(len(own), dtype=float)
+        x = own["slab_mass_ratio"].to_numpy(float)
         columns = (own[name].to_numpy(float) for name in ("median", "median_low", "median_high"))
         y, low, high = columns
-        bands.append(Band(x=x, low=low, high=high, colour="#e8e8e8"))
+        bands.append(Band(x=x, low=low, high=high, name="95 % intervals", colour="#e8e8e8"))
         lines.append(Line(x=x, y=y, name=method, style=styles[method]))
-    ticks = [(float(place), f"{ratio:g}") for place, ratio in enumerate(RATIOS)]
+    ticks = [(ratio, f"{ratio:g}") for ratio in RATIOS]
     panel = Panel(
-        x=Axis(label="mass of the deck / mass of the piers", unit="-", low=-0.1, high=2.1, ticks=ticks),
+        x=Axis(
+            label="mass of the deck / mass of the piers",
+            unit="-",
+            low=-0.1,
+            high=RATIOS[-1] + 0.1,
+            ticks=ticks,
+        ),
         y=Axis(label="median overturning intensity", unit="g tan α", low=0.0),
         layers=[*bands, *lines],
         height=3.2,

@@ -12,7 +12,6 @@ from browser import complaints_of_all, needs_chromium
 
 import rockwobble as rw
 import rockwobble.compare as rc
-import rockwobble.compare.runs as rr
 from rockwobble.compare.runs import execution
 from rockwobble.compare.studies.single_run import single_run_of
 from rockwobble.reports import pages as registry
@@ -188,8 +187,9 @@ def test_a_path_is_parted_where_it_jumps_and_nowhere_else(support: str):
     ],
 )
 def test_a_stored_folder_draws_its_pages_again(tmp_path, monkeypatch, capsys, command, names):
+    run_tasks = execution.run_tasks
     monkeypatch.setattr(
-        execution, "run_tasks", lambda *given, **options: rr.run_tasks(*given, **options | {"workers": 1})
+        execution, "run_tasks", lambda *given, **options: run_tasks(*given, **options | {"workers": 1})
     )
     for arguments in ([*command, "--out", str(tmp_path / "made")], ["report", str(tmp_path / "made")]):
         before = {path.name: path.read_bytes() for path in (tmp_path / "made").glob("*.*")}

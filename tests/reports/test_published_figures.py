@@ -1,0 +1,47 @@
+"""Published figures, drawn at their size: no words are cut at an edge, and no titles collide."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from rockwobble.compare.storage.manifest import read_manifests
+from rockwobble.reports.figures.svg import figure
+from rockwobble.reports.pages import stored_page
+
+PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
+
+
+def words_of(drawn: Figure) -> Iterator[Text]:
+    """Yield titles, labels, and the words of the ticks within the limits of their axis."""
+    for axes in (each for each in drawn.axes if each.axison):
+        yield from (axes.title, axes.xaxis.label, axes.yaxis.label)
+        for axis in (axes.xaxis, axes.yaxis):
+            low, high = sorted(axis.get_view_interval())
+            yield from (tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high)
+    for legend in drawn.legends:
+        yield from legend.get_texts()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["ensemble/p695-2", "fragility/p695", "risk/p695", "tradeoff", "validity"])
+def test_no_words_are_cut_and_no_titles_collide(name: str) -> None:
+    kind = read_manifests(PUBLISHED / name)[0].kind
+    for picture in stored_page(kind, PUBLISHED / name).pictures:
+        drawn = figure(picture)
+        canvas = FigureCanvasAgg(drawn)
+        canvas.draw()
+        shown = [text for text in words_of(drawn) if text.get_visible() and text.get_text().strip()]
+        boxes = [(text.get_text(), text.get_window_extent(canvas.get_renderer())) for text in shown]
+        whole = drawn.bbox.padded(2.0)  # a letter may be rounded beyond the edge
+        cut = [text for text, box in boxes if not (whole.contains(*box.min) and whole.contains(*box.max))]
+        assert cut == [], picture.name
+        names = {axes.get_title() for axes in drawn.axes}
+        titles = [box for text, box in boxes if text in names]
+        for place, one in enumerate(titles):
+            assert not any(one.padded(6.0).overlaps(other) for other in titles[place + 1 :]), picture.name
