@@ -36,7 +36,7 @@ def pictures(found: Advice) -> list[Picture]:
     picture = Picture(
         name="advice",
         title=f"{found.facts['case']}: largest tilts, the trace, other scales and friction demand",
-        caption="Largest tilts: share of the runs that tilt no more; what a curve lacks to 1 overturns "
+        caption="Largest tilts: share of the runs that tilt no more; curves end below 1 where runs overturn "
         "(triangle), the diamond is the case as given. Tilt: as given over the band of 90 % of the copies.",
         panels=panels,
         columns=2,

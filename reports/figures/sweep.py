@@ -88,6 +88,6 @@ def _distributions(table: pd.DataFrame) -> Picture:
         name="sweep",
         title="Distributions of peak tilt over the cases, by run",
         caption="Share of the cases whose peak tilt is at most that of the axis"
-        + ("; what a curve lacks to 1 at the triangle overturns." if overturned else "."),
+        + ("; curves end below 1 where runs overturn (triangle)." if overturned else "."),
         panels=[distributions(members, list(models), "cases")],
     )

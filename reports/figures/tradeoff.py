@@ -25,10 +25,7 @@ ERRORS = {
 }
 # support and panel, in the order of the picture
 _PANELS: Mapping[tuple[str, str], str] = {
-    **{
-        (each, "methods"): f"{each.words}, compared with half its finest step" if each.walls else each.words
-        for each in SUPPORTS.values()
-    },
+    **{(each, "methods"): each.words for each in SUPPORTS.values()},
     (RECESS, "scipy"): "scipy's solvers, recess",
     (RECESS, "rest threshold"): "rest threshold, recess",
     (RECESS, "integrator"): "integrators, recess",
