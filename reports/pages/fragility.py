@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from rockwobble.compare import Fragility
 from rockwobble.compare.metrics.statistics import FEWEST
@@ -48,9 +48,11 @@ def fragility_values(found: Fragility) -> dict[str, object]:
     cylinders = found.facts["cylinders"]
     whole = ALL if len(cylinders) > 1 else next(iter(cylinders))
     answers = main_contrasts(found)
-    fits = found.fits.to_dict("records")
+    fits: list[Row] = [
+        {str(name): value for name, value in row.items()} for row in found.fits.to_dict("records")
+    ]
     fallen = [
-        {**row, "median": found.median_or_bound(row["cylinder"], row["median"])}
+        {**_with_known_spread(row, fits), "median": found.median_or_bound(row["cylinder"], row["median"])}
         for row in fits
         if row["limit"] == OVERTURNED
     ]
@@ -67,7 +69,11 @@ def fragility_values(found: Fragility) -> dict[str, object]:
             for question, rows in answers.items()
         },
         "contrasts": _by_cylinder(
-            [{**row, "ratio": known_ratio(row["ratio"])} for rows in answers.values() for row in rows],
+            [
+                {**_with_known_spread(row, fits), "ratio": known_ratio(row["ratio"])}
+                for rows in answers.values()
+                for row in rows
+            ],
             [*cylinders, ALL],
         ),
         "several": len(cylinders) > 1,
@@ -77,8 +83,7 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "overturns": any(row["exceeded"] for row in fallen),
         "curved": [row for row in fallen if row["kind"] == FITTED],
         "bounded": [row for row in fallen if row["kind"] in _BOUNDED],
-        "one_motion": [row for row in fits if row["kind"] == ONE_MOTION],
-        "curveless": [row for row in fits if row["kind"] in (SEPARATED, FALLING)],
+        "curveless": list(_curveless(fits, several=len(cylinders) > 1)),
         "few": any(row["kind"] == TOO_FEW for row in fits),
         "fewest": {"motions": FEWEST, "levels": FEWEST_LEVELS},
         **_counts(found),
@@ -91,6 +96,47 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "failed": [{"median_if_not": math.nan, **row} for row in fallen if row["failed"]],
         "efficiency": efficiency,
         "gaps": _gaps(found),
+    }
+
+
+# why a limit has no curve, though some runs exceed it and some do not
+_CURVELESS = {
+    ONE_MOTION: "all runs beyond the limit, or all below, are of one motion",
+    SEPARATED: "all runs above an intensity exceed the limit and none below does (separated)",
+    FALLING: "runs that exceed the limit do not increase with the intensity",
+}
+
+
+def _curveless(fits: Iterable[Row], *, several: bool) -> Iterator[str]:
+    """One sentence on each reason, with the limits and methods that have no curve for it."""
+    for kind, words in _CURVELESS.items():
+        methods: dict[str, list[str]] = {}
+        for row in fits:
+            # what bounds the median of overturning stands above the tables
+            if row["kind"] == kind and not (kind == ONE_MOTION and row["limit"] == OVERTURNED):
+                name = f"{row['method']} of {row['cylinder']}" if several else str(row["method"])
+                methods.setdefault(str(row["limit"]).replace("_", " "), []).append(name)
+        limits: dict[tuple[str, ...], list[str]] = {}
+        for limit, names in methods.items():
+            limits.setdefault(tuple(names), []).append(limit)
+        if limits:
+            each = (f"{' and '.join(same)} by {', '.join(names)}" for names, same in limits.items())
+            yield f"No curve, since {words}: {'; '.join(each)}."
+
+
+def _with_known_spread(row: Row, fits: Iterable[Row]) -> Row:
+    """Return a row without dispersions where a curve is not fitted: that of a step is 0 by convention."""
+    methods = {row["method"], row.get("against", row["method"])}
+    steps = (
+        each["kind"] == SEPARATED
+        for each in fits
+        if each["method"] in methods
+        and each["limit"] == row["limit"]
+        and row["cylinder"] in (ALL, each["cylinder"])
+    )
+    unknown = any(steps)
+    return {
+        name: math.nan if unknown and name.startswith("dispersion") else value for name, value in row.items()
     }
 
 

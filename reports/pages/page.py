@@ -175,6 +175,8 @@ class Page:
                 if place and isinstance(parts[place - 1], Table):
                     console.print()
                 console.print(part.rich(console.width))
+                if isinstance(after, str) and after.startswith("#"):
+                    console.print()
             elif isinstance(part, Command):
                 # a word that is longer than the line runs on: a break in it would be copied, too
                 for line in command_lines(part.line, console.width):

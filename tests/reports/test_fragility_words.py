@@ -17,6 +17,7 @@ from rockwobble.compare.studies.fragility.study import fragility_of, main_contra
 from rockwobble.compare.studies.fragility.tables import margin_of
 from rockwobble.reports.figures.fragility import pictures
 from rockwobble.reports.pages import page_of
+from rockwobble.reports.pages.fragility import fragility_values
 
 
 @pytest.fixture(scope="module")
@@ -113,3 +114,37 @@ def test_one_method_is_not_asked_whether_it_agrees(found):
 def test_without_overturning_no_curve_is_spoken_of(found):
     words = by_one_method(found, outcome="stands", peak_tilt=0.5)
     assert "**Nothing overturns at these intensities.**" in words
+
+
+@pytest.mark.parametrize("cylinders", [("pier",), ("pier", "tower")])
+def test_each_reason_for_no_curve_is_one_line_with_all_limits_of_it(cylinders):
+    found = made_up(cylinders)
+    kinds = {0: "separated", 1: "not increasing", 2: "one motion", 3: "fitted"}
+    fits = found.fits.assign(kind=[kinds[place % 4] for place in range(len(found.fits))])
+    values: Any = fragility_values(dataclasses.replace(found, tables={**found.tables, "fits": fits}))
+    lines = values["curveless"]
+    assert len(lines) == 3
+    for kind, words in (
+        ("separated", "(separated)"),
+        ("not increasing", "not increase"),
+        ("one motion", "of one motion"),
+    ):
+        (line,) = [each for each in lines if words in each.split(":")[0]]
+        for row in fits[fits["kind"] == kind].to_dict("records"):
+            name = f"{row['method']} of {row['cylinder']}" if len(cylinders) > 1 else row["method"]
+            if (kind, row["limit"]) != (
+                "one motion",
+                "overturned",
+            ):  # whose median is a bound above the tables
+                assert any(
+                    row["limit"] in part and name in part for part in line.split(": ", 1)[1].split(";")
+                )
+    # a step has no dispersion that is known, nor has a difference from it
+    steps = {(row["cylinder"], row["method"]) for row in values["fallen"] if row["kind"] == "separated"}
+    assert steps
+    for row in values["fallen"]:
+        assert np.isnan(row["dispersion"]) == (row["kind"] == "separated")
+    for row in values["contrasts"]:
+        bodies = cylinders if row["cylinder"] == "all" else (row["cylinder"],)
+        of_step = {(body, row[name]) for body in bodies for name in ("method", "against")} & steps
+        assert np.isnan(row["dispersion_difference"]) == bool(of_step)
