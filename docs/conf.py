@@ -30,10 +30,11 @@ extensions = [
     "numpydoc",
     "myst_nb",
     "sphinx_design",
-    "gallery",  # these five are in _extensions
+    "gallery",  # these six are in _extensions
     "mathml",
     "mapping_table",
     "command_help",
+    "studies",
     "first_use",
 ]
 exclude_patterns = ["_build", "_extensions", "figures", "scenes", "**.ipynb_checkpoints"]
