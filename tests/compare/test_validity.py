@@ -43,9 +43,10 @@ from rockwobble.compare.studies.validity.plan import (
     shaken_case,
     source_of,
 )
-from rockwobble.compare.studies.validity.shaken import FREE, HALVED, RECESS
+from rockwobble.compare.studies.validity.shaken import FREE, HALVED
 from rockwobble.compare.studies.validity.study import PARTS, measure_all, measure_validity, validity_of
 from rockwobble.models import Cylinder, InitialState, Run, Tendon, WobblingFrame
+from rockwobble.models.support import RECESS
 from rockwobble.reduced import body, free_response, problem, simulate, steady_wobble_rate
 from rockwobble.reduced.body import Body
 from rockwobble.reduced.exact import _shape
@@ -109,7 +110,7 @@ def test_every_limit_rests_on_the_reduced_model_and_the_engine_does_not(
     right, wrong = limits_of(tables), limits_of(heavier)
     assert {name for name in right if right[name] != wrong[name]} == set(LIMITS) - {"tendon"}
     ours, theirs = (found["records"] for found in (tables, heavier))
-    engine = ~ours["method"].isin((RECESS, "flat-ground model", "perturbed copy"))
+    engine = ~ours["method"].isin((RECESS.model, "flat-ground model", "perturbed copy"))
     np.testing.assert_array_equal(ours[engine]["peak"], theirs[engine]["peak"])
     assert (ours[~engine]["peak"].to_numpy() != theirs[~engine]["peak"].to_numpy()).all()
     case, run = shaken_case(EL_CENTRO, 0.2, 6.0, 2.0, duration=3.0), Run("mujoco", "recess", 1e-3)
@@ -151,14 +152,16 @@ def test_over_records_agreement_is_said_where_the_interval_shows_it(
     rows = [
         {"motion": f"record {i}", "tan_alpha": 0.2, "semidiagonal": 6.0, "intensity": 2.0, "method": method,
          "peak": peak, "outcome": "stands", "contact_time": 0.0, "loss": 0.0}
-        for method, values in ((RECESS, peaks), ("recess", scattered), ("ring", 2.0 * peaks), (HALVED, peaks))
+        for method, values in (
+            (RECESS.model, peaks), ("recess", scattered), ("ring", 2.0 * peaks), (HALVED, peaks)
+        )
         for i, peak in enumerate(values)
     ]  # fmt: skip
     members = {**tables, "records": pd.DataFrame(rows)}
     found = contrasts(members).set_index(["method", "against"])
-    assert found.loc[("recess", RECESS), "verdict"] == verdict
+    assert found.loc[("recess", RECESS.model), "verdict"] == verdict
     # a ring is another system, and is compared with itself for how far it has converged
-    assert found.loc[("ring", RECESS), "ratio"] == pytest.approx(2.0)
+    assert found.loc[("ring", RECESS.model), "ratio"] == pytest.approx(2.0)
     assert found.loc[(HALVED, "ring"), "ratio"] == pytest.approx(0.5)
     numbers = limits_of(members)["records"]
     found_at = numbers["recess_within"], numbers["recess_beyond"]

@@ -13,8 +13,8 @@ from tiny_validity import TINY, tiny_validity
 from typer.testing import CliRunner
 
 from rockwobble.compare.studies.validity import study
-from rockwobble.compare.studies.validity.shaken import RECESS
 from rockwobble.compare.studies.validity.study import Validity, validity_of
+from rockwobble.models.support import RECESS
 from rockwobble.reports.cli.main import app, main
 from rockwobble.reports.pages import page as page_module
 from rockwobble.reports.pages import page_of
@@ -62,7 +62,7 @@ def test_the_headline_says_what_the_records_show(found: Validity) -> None:
     many = pd.concat(
         [records.assign(motion=[f"{name} {n}" for name in records["motion"]]) for n in range(20)]
     )
-    model = many[many["method"] == RECESS].set_index("motion")["peak"]
+    model = many[many["method"] == RECESS.model].set_index("motion")["peak"]
     same = many.assign(peak=many["peak"].where(many["method"] != "recess", many["motion"].map(model)))
     document = changed(found, "records", same)
     assert "**In an ideal recess the engine has the model's peak tilt: over 40 records" in document
