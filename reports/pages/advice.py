@@ -241,7 +241,9 @@ def _reason_of_engine(found: Advice) -> str:
         return "not run"
     if verification.outcome in NO_PEAK:
         return f"it {_NO_PEAK[verification.outcome]}: {_failure(verification)}"
-    agrees = f"agrees until {_agreed_until(verification)}, predicted until {_predicted_until(found)}"
+    # copies part earlier: they are shaken by a little more or less
+    until, predicted = _agreed_until(verification), _predicted_until(found)
+    agrees = f"shaken the same, it agrees until {until}, predicted until {predicted}"
     if verification.divergence == "earlier":
         return f"{agrees}: less than half as long"
     if not verification.moves:
@@ -249,8 +251,10 @@ def _reason_of_engine(found: Advice) -> str:
     if (verification.outcome == "overturned") != found.overturned:
         return "it stands, the model overturns" if found.overturned else "it overturns, the model stands"
     if verification.divergence == "too little motion":
-        return "the model's tilt hardly changes, which tests nothing"
-    return f"{agrees}, which tests nothing" if verification.divergence in UNTESTED else agrees
+        return f"it agrees until {until}, in which the model's tilt hardly changes: that tests nothing"
+    if verification.divergence in UNTESTED:
+        return f"{agrees}: more than ten times as long from uplift on, which tests nothing"
+    return agrees
 
 
 def _groups(found: Advice) -> list[dict[str, Any]]:

@@ -120,7 +120,7 @@ def _curveless(fits: Iterable[Row], *, several: bool) -> Iterator[str]:
         for limit, names in methods.items():
             limits.setdefault(tuple(names), []).append(limit)
         if limits:
-            each = (f"{' and '.join(same)} by {', '.join(names)}" for names, same in limits.items())
+            each = (f"{', '.join(same)} by {', '.join(names)}" for names, same in limits.items())
             yield f"No curve, since {words}: {'; '.join(each)}."
 
 
