@@ -1,0 +1,109 @@
+"""The numbers of guides and of the README of a folder of results are those of the published tables."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+CHECKOUT = Path(__file__).parents[2]
+PUBLISHED = CHECKOUT / "reports" / "published"
+ENSEMBLES = PUBLISHED / "ensemble"
+COMMAND = r"\[(\S+)\]\(\S+\) \| `(rockwobble ensemble [^`]*)`"
+
+
+def words(path: str | Path) -> str:
+    return " ".join((CHECKOUT / path).read_text(encoding="utf-8").split())
+
+
+def contrasts(name: str) -> pd.DataFrame:
+    table = pd.read_parquet(ENSEMBLES / name / "contrasts.parquet")
+    return table.set_index(["method", "against"])
+
+
+def test_the_commands_of_the_ensembles_are_those_of_their_manifests() -> None:
+    stated = dict(re.findall(COMMAND, words(ENSEMBLES / "README.md")))
+    assert sorted(stated) == sorted(path.parent.name for path in ENSEMBLES.glob("*/manifest.json"))
+    for name, command in stated.items():
+        made = json.loads((ENSEMBLES / name / "manifest.json").read_text(encoding="utf-8"))["command"]
+        assert f"{command} --out ensemble/{name}" == made
+
+
+@pytest.mark.parametrize(("name", "support"), [("p695-2", "flat"), ("p695-3.5", "flat"), ("copies", "")])
+def test_the_intervals_of_the_ensembles_are_those_of_their_tables(name: str, support: str) -> None:
+    (line,) = (row for row in words(ENSEMBLES / "README.md").split(" | [") if row.startswith(f"{name}]"))
+    table = contrasts(name).reset_index()
+    for each, own in (("recess", "recess model"), ("flat", "flat-ground model")):
+        if each == "flat" and not support:
+            continue
+        rows = table[(table["against"] == own) & table["method"].str.endswith(f" {each}")]
+        assert (rows["verdict"] == "within").all()
+        ends = f"{rows['ratio_low'].min():.3f} to {rows['ratio_high'].max():.3f}"
+        assert ends in line
+
+
+def test_the_findings_of_the_ensembles_are_those_of_their_tables() -> None:
+    text = words(ENSEMBLES / "README.md")
+    two = contrasts("p695-2")
+    higher = [two.loc[(f"{engine} recess", "recess model")] for engine in ("mujoco", "pybullet")]
+    assert [(row["higher"], row["compared"]) for row in higher] == [(16, 20), (16, 20)]
+    assert "each higher in 16 of 20" in text
+    assert "(p = {:.3f} and {:.3f};".format(*(row["ratio_p"] for row in higher)) in text
+    assert all(row["ratio"] < 1.002 and row["ratio_p_adjusted"] > 0.05 for row in higher)
+    support = ("flat-ground model", "recess model")
+    copies = contrasts("copies").loc[support]
+    numbers = "{:.2f} ({:.2f} to {:.2f})".format(*(copies[f"ratio{end}"] for end in ("", "_low", "_high")))
+    assert f"has {numbers} of the recess model's peak" in text
+    ends = [contrasts(name).loc[support] for name in ("p695-2", "p695-3.5")]
+    stated = [f"from {row['ratio_low']:.2f} to {row['ratio_high']:.2f} at" for row in ends]
+    assert f"{stated[0]} 2 g tan α, {stated[1]} 3.5" in text
+
+
+def test_the_limits_on_one_screen_are_the_published_ones() -> None:
+    table = pd.read_parquet(PUBLISHED / "validity" / "limits.parquet")
+    number = table.set_index(["limit", "number"])["value"]
+    text = words("docs/guide/limits.md")
+
+    def ends(limit: str, low: str, high: str, form: str) -> str:
+        return f"{number[limit, low]:{form}} to {number[limit, high]:{form}}"
+
+    assert f"is {ends('records', 'ring_95_least', 'ring_95_largest', '.2g')}, by case" in text
+    assert f"{ends('traces', 'recess', 'recess_longest', '.0f')} s in a recess" in text
+    flat = f"{number['traces', 'flat']:.1f} to {number['traces', 'flat_longest']:.1f} s by the recess model"
+    assert (
+        f"on flat ground {flat}, {ends('traces', 'own', 'own_longest', '.0f')} s by the flat-ground" in text
+    )
+    page = (PUBLISHED / "validity" / "validity.md").read_text(encoding="utf-8")
+    rows = re.findall(r"\| engine, flat ground \| 22 \| \S+ \| (\S+) \| (\S+) \|", page)
+    assert len(rows) == 12
+    low, high = min(float(each) for each, _ in rows), max(float(each) for _, each in rows)
+    assert f"interval of the median ratio of the peaks extends from {low:.1f} to {high:.1f}" in text
+    # the same peak within a thousandth in the median
+    medians = [number["records", name] for name in ("recess_least", "recess_largest")]
+    assert max(abs(each - 1.0) for each in medians) < 1e-3
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/start.md", "docs/index.md"])
+def test_for_how_long_traces_agree(page: str) -> None:
+    rows = pd.read_csv(PUBLISHED / "compare" / "summary.csv")
+    recess = rows[(rows["support"] == "recess") & (rows["reference"] == "recess model")]
+    (time,) = set(re.findall(r"for (\d+) s after uplift", words(page)))
+    assert int(time) <= recess["agreement_time"].min() < int(time) + 1
+
+
+@pytest.mark.parametrize("page", ["docs/guide/frames.md", "docs/published/frames.md"])
+def test_a_deck_is_a_larger_cylinder_by_what_the_guide_says(page: str) -> None:
+    from benchmarks.decks import PIER, equivalent
+
+    text = words(page)
+    for ratio in (1.0, 4.0):
+        size = equivalent(ratio).semidiagonal / PIER.semidiagonal
+        assert re.search(rf"{size:.2f} times (?:at|\()\s?γ = {ratio:g}", text)
+    most = equivalent(1e6).semidiagonal / PIER.semidiagonal
+    assert f"{most:.2f}" in text
+    medians = pd.read_csv(PUBLISHED / "decks" / "medians-300.csv")
+    planes = medians[medians["method"] == "worse plane"].set_index("slab_mass_ratio")["over_3d"]
+    assert "{:.0f} %, {:.0f} % and {:.0f} %".format(*(100.0 * (planes - 1.0))) in text
