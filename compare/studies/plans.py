@@ -17,6 +17,8 @@ MASS = (
     "Mass of the cylinder, or of one column without its slab, in t. With it forces are in kN and moments in "
     "kNm."
 )
+# of each support that an engine may have, the name and the words; written out, as help loads no models
+SUPPORT_WORDS = "recess (ideal recess), flat (flat ground) or ring (recess with clearance)"
 _PLANE = "Azimuth of the plane of a planar motion, in rad. Default: motion in three dimensions."
 _RESTITUTION = (
     "Ratio of tilt rates after and before an impact of planar motion. momentum: by conservation of "
@@ -61,7 +63,7 @@ class AdvicePlan(Copies):
     seed: int = option(1, "Random seed of the perturbations.", group="Members", least=0)
     support: str = option(
         "recess",
-        "Support: recess (ideal recess), flat (flat ground) or ring (recess with clearance).",
+        f"Support: {SUPPORT_WORDS}.",
         group="Method",
     )
     mass: float | None = option(

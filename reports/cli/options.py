@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from rockwobble.compare.studies.plans import SUPPORT_WORDS
+
 if TYPE_CHECKING:
     from rockwobble.models.case import TimeStep as Step
 
@@ -179,7 +181,7 @@ def engine_names(names: list[str] | None) -> list[str] | None:
 
 
 ENGINES = "Engine: mujoco, pybullet, dart, drake, exudyn, rapier or another that is installed"
-_SUPPORTS = "Support: recess (ideal recess), flat (flat ground) or ring (recess with clearance; engines only)"
+_SUPPORTS = f"Support: {SUPPORT_WORDS}; those with walls by engines alone"
 _DEFAULT = "Default: MuJoCo and PyBullet (DART where PyBullet is missing)"
 Engines = Annotated[
     list[str] | None, method(f"{ENGINES}; may be repeated. {_DEFAULT}.", callback=engine_names)

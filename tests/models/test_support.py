@@ -9,6 +9,7 @@ import pickle
 import pytest
 
 from rockwobble.compare.storage.provenance import fingerprint
+from rockwobble.compare.studies.plans import SUPPORT_WORDS
 from rockwobble.models.plain_json import plain
 from rockwobble.models.support import EXTERNAL, MODELLED, SUPPORTS, Support, support_named
 
@@ -46,5 +47,10 @@ def test_the_models_of_a_support_exist(support: Support) -> None:
 
 
 def test_an_external_trajectory_is_no_support_that_can_be_asked_for() -> None:
-    with pytest.raises(ValueError, match="support must be one of recess, flat, ring, got 'external'"):
+    with pytest.raises(ValueError, match=f"support must be one of {', '.join(SUPPORTS)}, got 'external'"):
         support_named("external")
+
+
+@pytest.mark.parametrize("support", SUPPORTS.values())
+def test_the_help_of_every_command_has_the_words_of_a_support(support: Support) -> None:
+    assert f"{support} ({support.words})" in SUPPORT_WORDS

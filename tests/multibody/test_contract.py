@@ -16,6 +16,7 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models.support import SUPPORTS
 from rockwobble.multibody.engines.mujoco import MujocoEngine
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -159,7 +160,7 @@ def test_import_loads_no_engine() -> None:
             {"engine": "chrono"},
             f"engine must be one of {', '.join(multibody.engine_names())}, got 'chrono'",
         ),
-        ({"support": "glued"}, "support must be one of recess, flat, ring, got 'glued'"),
+        ({"support": "glued"}, f"support must be one of {', '.join(SUPPORTS)}, got 'glued'"),
         (
             {"time_step": 1e-2},
             "time_step must be at most 0.001 s for contact at this size and gravity, got 0.01",

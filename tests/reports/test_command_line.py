@@ -17,6 +17,7 @@ import pytest
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Trace
+from rockwobble.models.support import SUPPORTS
 from rockwobble.models.trace import lost_trace
 from rockwobble.multibody import available_engines, engine_names
 from rockwobble.multibody.engines.registry import engine_packages, standard_engines
@@ -112,7 +113,7 @@ BAD = {
     ),
     "unknown support": (
         ["--engine", "mujoco", "--support", "glued"],
-        "support must be one of recess, flat, ring, got 'glued'",
+        f"support must be one of {', '.join(SUPPORTS)}, got 'glued'",
     ),
     "large time step": (["--engine", "mujoco", "--time-step", "0.01"], "time_step must be at most 0.001 s"),
     "folder that is a file": (["--out", "taken"], "the output folder must be a folder, got taken"),

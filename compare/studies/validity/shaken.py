@@ -12,8 +12,9 @@ import numpy as np
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
 from rockwobble.models.case import RECESS_MODEL, REDUCED_MODELS
-from rockwobble.models.support import FLAT, RECESS, RING, SUPPORTS, support_named
+from rockwobble.models.support import FLAT, RECESS, RING, SUPPORTS, Support, support_named
 from rockwobble.multibody import DEFAULT_ENGINE
+from rockwobble.multibody.engines.registry import find_engine
 from rockwobble.multibody.ring import clearance_needed, take_ring
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 from rockwobble.reduced.body import body_of
@@ -111,6 +112,12 @@ PEAKS = Part(
 )
 
 
+def _supports() -> list[Support]:
+    """The supports that the engine of these measurements has."""
+    known = find_engine(DEFAULT_ENGINE).supports
+    return [support for support in SUPPORTS.values() if support in known]
+
+
 PERTURBED = "perturbed copy"
 HALVED = f"{RING}, half the step"
 
@@ -138,7 +145,7 @@ def measure_records(
         PERTURBED: (stronger, RECESS_MODEL),
         **{
             support: (case, Run(DEFAULT_ENGINE, support, time_step))
-            for support in SUPPORTS.values()
+            for support in _supports()
             if walls or not support.walls
         },
     }
@@ -270,7 +277,7 @@ def _rings_tasks(extent: Extent) -> Iterable[Inputs]:
     none = dict.fromkeys(_WALLS, math.nan)
     supports: list[Inputs] = [
         {"support": support, **walls}
-        for support in SUPPORTS.values()
+        for support in _supports()
         for walls in (map(dataclasses.asdict, extent.rings) if support.walls else [none])
     ]
     for problem in grid(
