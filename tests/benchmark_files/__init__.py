@@ -1,1 +1,1 @@
-"""What writes reports/published/benchmark: definitions of the ten cases, and their certified references."""
+"""What writes reports/published/benchmark: eleven cases and their certified references."""

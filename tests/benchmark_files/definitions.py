@@ -1,4 +1,4 @@
-"""The ten cases: bodies, starts, motions, and what is asked of a trajectory.
+"""The eleven cases: bodies, starts, motions, and what is asked of a trajectory.
 
 The bounds mean the same everywhere: a body 1 % too large fails in every free motion; "good" is a tenth of
 "pass", and "exact" what only a converged solution of the same equations reaches. Under shaking the bound is
@@ -15,7 +15,7 @@ from typing import Any, Literal
 import numpy as np
 from shaken_problems import noise
 
-from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Cylinder, GroundMotion, InitialState, Tendon, el_centro_1940
 from rockwobble.reduced.exact import steady_wobble_rate
 
 G = 9.81
@@ -40,6 +40,7 @@ class BenchmarkRun:
     motion : GroundMotion, optional
     friction : float
         Coefficient of the pair.
+    tendon : Tendon, optional
     turned : float
         What is added to the azimuth of the reference that the runs of a case share [rad].
     time_unit : float
@@ -55,6 +56,7 @@ class BenchmarkRun:
     initial: InitialState | None = None
     motion: GroundMotion | None = None
     friction: float = 1.0
+    tendon: Tendon | None = None
     turned: float = 0.0
     time_unit: float = 1.0
     levels: dict[str, float] = field(default_factory=dict)
@@ -349,8 +351,56 @@ def energy() -> Definition:
     )
 
 
+def tendon() -> Definition:
+    """Return releases with tendons, one from beyond alpha, and the uplift that a prestress raises."""
+    # slope of the couple at uplift over m g b: stiffness less h/b, which is 2
+    tendons = {
+        "prestressed": (0.5, Tendon(prestress=0.5)),
+        "falling": (0.5, Tendon(prestress=0.5, stiffness=1.0)),
+        "growing": (1.2, Tendon(prestress=0.25, stiffness=4.0)),
+    }
+    length = 4.0
+    runs = [
+        BenchmarkRun(
+            name=name,
+            cylinder=SQUAT,
+            support="recess",
+            duration=length,
+            initial=InitialState(share * SQUAT.alpha, 0.0, AZIMUTH, 0.3),
+            tendon=held,
+        )
+        for name, (share, held) in tendons.items()
+    ]
+    # it lifts off at four fifths of the length, where without a tendon it would at a little more than half
+    push = 1.5 * G * SQUAT.tan_alpha / 0.8 * np.array([math.cos(AZIMUTH), math.sin(AZIMUTH)])
+    lifts = BenchmarkRun(
+        name="uplift",
+        cylinder=SQUAT,
+        support="recess",
+        duration=length,
+        motion=GroundMotion(np.vstack([np.zeros(2), push]), length),
+        tendon=Tendon(prestress=0.5),
+        levels={"lean_level": 0.01},
+    )
+    released, lifted = list(tendons), [lifts.name]
+    return Definition(
+        name="tendon",
+        title="A column with a tendon: turn, period and uplift",
+        runs=(*runs, lifts),
+        step=0.002,
+        criteria=(
+            quantity("turn_1", "rad", 0.01, 1e-6, runs=released),
+            quantity("period_1", "relative", 0.002, 1e-6, runs=released),
+            *lean_and_tilt(2.5, 1e-5, runs=released),
+            quantity("lean_time", "s", 0.01, 1e-5, runs=lifted),
+            *lean_and_tilt(3.9, 1e-5, start=3.2, runs=lifted),
+        ),
+        needed=("turn_1", "period_1", "tilt"),
+    )
+
+
 def definitions() -> tuple[Definition, ...]:
-    """Return the ten cases, in the order of the page."""
+    """Return the eleven cases, in the order of the page."""
     return (
         turns("turn-flat", "flat", "on flat ground"),
         turns("turn-recess", "recess", "in a recess"),
@@ -362,4 +412,5 @@ def definitions() -> tuple[Definition, ...]:
         el_centro(),
         records(),
         energy(),
+        tendon(),
     )

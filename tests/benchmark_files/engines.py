@@ -78,7 +78,8 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
             "version": version,
             "settings": words,
             "time_step": _step_in_words(variant) if engine != REDUCED else "of its tolerance, 1e-8 relative",
-            "seconds_a_step": statistics.median(costs) if costs else old.get("seconds_a_step"),
+            # of all cases: one alone does not stand for them
+            "seconds_a_step": old.get("seconds_a_step") or (statistics.median(costs) if costs else None),
             "cannot": cannot,
             "left_out": left_out,
             "extrapolated_until": until,

@@ -43,7 +43,7 @@ class Reference(NamedTuple):
 
 def first(run: BenchmarkRun, spacing: float, end: float) -> Sampled:
     """Return samples of the reduced model."""
-    case = Case(run.cylinder, run.motion, initial=run.initial, duration=end, gravity=G)
+    case = Case(run.cylinder, run.motion, initial=run.initial, duration=end, gravity=G, tendon=run.tendon)
     trace = reduced.simulate(case, support=run.model, rtol=RTOL, rest_tilt=REST, sample_step=spacing)
     count = round(end / spacing) + 1
     return Sampled(
@@ -133,7 +133,7 @@ def _closed(name: str, run: BenchmarkRun) -> dict[str, float]:
         rate = float(steady_wobble_rate(run.cylinder, run.initial.tilt, gravity=G))
         return {"closed form": 200.0 * math.pi / rate}
     if run.support == "recess" and run.initial is not None:
-        exact = free_response(run.cylinder, run.initial, gravity=G)
+        exact = free_response(run.cylinder, run.initial, gravity=G, tendon=run.tendon)
         known = {"turn": exact.angle_of_turn, "period": exact.period}
         known["maximum"] = exact.maximum_tilt / run.cylinder.alpha
         return {"quadrature": known[kind]}

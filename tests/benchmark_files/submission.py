@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Tendon, Trace
 
 Array = NDArray[np.float64]
 Simulate = Callable[[Case, str], Trace]  # of a case, on "recess" or "flat"
@@ -34,6 +34,7 @@ def cases_of(folder: Path) -> dict[str, tuple[Case, str]]:
         initial = None
         if start["tilt"]:
             initial = InitialState(start["tilt"], start["tilt_rate"], start["azimuth"], start["azimuth_rate"])
+        held = run.get("tendon")
         case = Case(
             body,
             motion_of(run["motion"], folder),
@@ -41,6 +42,7 @@ def cases_of(folder: Path) -> dict[str, tuple[Case, str]]:
             duration=run["duration"],
             gravity=given["gravity"],
             friction=run["friction"],
+            tendon=Tendon(**held["dimensionless"]) if held else None,
             name=run["name"],
         )
         found[run["name"]] = case, "recess" if run["support"] == "recess" else "flat"

@@ -21,7 +21,7 @@ from benchmark_files.submission import (
 )
 from benchmark_files.write import PUBLISHED
 from rockwobble import reduced
-from rockwobble.models import Trace
+from rockwobble.models import Tendon, Trace
 
 CASES = sorted(path.name for path in (PUBLISHED / "cases").iterdir())
 SLIDING = "onset-of-slip"
@@ -119,6 +119,24 @@ def test_a_body_one_percent_too_large_fails_and_is_recognised(judge: Judge, name
     assert 1.0 <= 100.0 * (judged.mistakes["time_scale"] ** 2 - 1.0) <= 1.2
     # times go with the root of the size
     assert 0.95 < judged.errors["period_1"] / (np.sqrt(1.01) - 1.0) < 1.3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("prestress", "stiffness"), [(1.02, 1.0), (1.0, 1.02), (0.0, 0.0)])
+def test_another_tendon_fails_and_no_mistake_explains_it(
+    judge: Judge, prestress: float, stiffness: float
+) -> None:
+    found = {}
+    for run, (case, support) in cases_of(PUBLISHED / "cases" / "tendon").items():
+        assert case.tendon is not None
+        held = Tendon(
+            prestress=prestress * case.tendon.prestress, stiffness=stiffness * case.tendon.stiffness
+        )
+        other = dataclasses.replace(case, tendon=held)
+        found[run] = tilt_and_azimuth(reduced.simulate(other, support=support, rtol=1e-9, sample_step=2e-3))
+    judged = judge("tendon", found)
+    assert judged.verdict == "fail"
+    assert not judged.mistakes
 
 
 @pytest.mark.slow

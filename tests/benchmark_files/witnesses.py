@@ -17,7 +17,7 @@ from .definitions import BenchmarkRun, Definition, G
 from .references import measured
 from .second import Sampled
 
-WITNESSED = {"turn-flat": ("dart", "exudyn"), "turn-recess": ("dart",)}
+WITNESSED = {"turn-flat": ("dart", "exudyn"), "turn-recess": ("dart",), "tendon": ("dart",)}
 FINEST_STEP = 1e-5  # of the three runs [s]
 
 
@@ -41,7 +41,15 @@ def with_witnesses(definition: Definition, quantities: list[dict[str, Any]]) -> 
 
 def _sampled(engine: str, run: BenchmarkRun, spacing: float) -> Sampled | None:
     """Return the samples; None where its runs do not tend to a limit up to the end."""
-    case = Case(run.cylinder, run.motion, initial=run.initial, duration=run.duration, gravity=G)
+    case = Case(
+        run.cylinder,
+        run.motion,
+        initial=run.initial,
+        duration=run.duration,
+        gravity=G,
+        friction=run.friction,
+        tendon=run.tendon,
+    )
     given: dict[str, Any] = {"time_step": "extrapolated", "finest_step": FINEST_STEP, "sample_step": spacing}
     trace = multibody.simulate(case, engine=engine, support=run.model, **given)
     if not math.isclose(trace.settled_until, trace.time[-1]):

@@ -114,6 +114,13 @@ def _run(definition: Definition, run: BenchmarkRun) -> dict[str, Any]:
         },
         **run.levels,
     }
+    if run.tendon is not None:
+        prestress, stiffness = run.tendon.prestress, run.tendon.stiffness
+        found["tendon"] = {
+            "prestress": prestress * G,
+            "stiffness": stiffness * G / body.b,
+            "dimensionless": {"prestress": prestress, "stiffness": stiffness},
+        }
     if run.turned:
         found["turned"] = run.turned
     if run.time_unit != 1.0:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from typing import Any
 
 import pandas as pd
 import pytest
 
-from benchmarks.tendons import BODIES, PRESTRESS, PUBLISHED, main, neutral_stiffness
+from benchmarks.tendons import BODIES, PRESTRESS, PUBLISHED, main, medians_of_many, neutral_stiffness
 from rockwobble import reduced
-from rockwobble.models import Case, Tendon
+from rockwobble.models import Case, Tendon, synthetic_motions
 
 RATIO = re.compile(r"(\d+\.\d+) \((\d+\.\d+) to (\d+\.\d+)")
 # body, prestress, stiffness, method and column of each ratio of the page, in their order
@@ -24,20 +25,37 @@ SAID: list[Any] = [
         for prestress, stiffness in ((0.0, 0.0), (0.5, 0.0), (0.0, 0.5))
     ),
 ]
+SAID_OF_2000: list[Any] = [
+    *(
+        (body, prestress, stiffness, "recess model", "over_without")
+        for prestress, stiffness in ((1.0, 0.0), (0.5, 0.0), (0.0, 0.5), (0.0, 1.0))
+        for body in _ORDER
+    ),
+    *(
+        ("pier", prestress, stiffness, method, "over_3d")
+        for method in ("planar x", "worse plane")
+        for prestress, stiffness in ((0.0, 0.0), (0.5, 0.0), (0.0, 0.5), (0.0, 1.0))
+    ),
+]
 
 
 @pytest.fixture(scope="module")
 def medians() -> pd.DataFrame:
-    table = pd.read_csv(PUBLISHED / "medians-p695.csv")
+    return _medians("p695")
+
+
+def _medians(motions: str) -> pd.DataFrame:
+    table = pd.read_csv(PUBLISHED / f"medians-{motions}.csv")
     return table.set_index(["body", "prestress", "stiffness", "method"])
 
 
 def test_each_ratio_of_the_page_is_that_of_its_table(medians: pd.DataFrame) -> None:
     page = " ".join((PUBLISHED / "README.md").read_text(encoding="utf-8").split())
-    of_key = medians.to_dict("index")
     numbers = [
         tuple(f"{of_key[tuple(key)][f'{name}{end}']:.2f}" for end in ("", "_low", "_high"))
-        for *key, name in SAID
+        for table, said in ((medians, SAID), (_medians("2000"), SAID_OF_2000))
+        for of_key in [table.to_dict("index")]
+        for *key, name in said
     ]
     assert [match.groups() for match in RATIO.finditer(page[: page.index("On flat ground")])] == numbers
     for match in RATIO.finditer(page):
@@ -76,6 +94,35 @@ def test_more_prestress_takes_more_to_overturn(medians: pd.DataFrame) -> None:
     for (_, stiffness, method), rows in medians.groupby(level=["body", "stiffness", "method"]):
         if method == "recess model" and stiffness == 0.0:
             assert rows["median"].is_monotonic_increasing
+
+
+@pytest.mark.slow
+def test_many_motions_are_counted_at_levels_about_the_median() -> None:
+    motions = synthetic_motions(3, peak=1.0, seed=3)
+    rows = itertools.islice(medians_of_many(motions), 8)  # without a tendon, and with half a weight
+    found = pd.DataFrame(rows)
+    assert list(found["prestress"]) == [0.0] * 4 + [0.5] * 4
+    assert found["highest_level"].to_list() == pytest.approx([3.8 * 3.2] * 4 + [1.5 * 3.8 * 3.2] * 4)
+    own = [
+        reduced.simulate(
+            Case(
+                BODIES["pier"],
+                motion.scaled(1.5 * 3.8 * 3.2 * 9.81 * 0.2 / motion.peak),
+                tendon=Tendon(prestress=0.5),
+            ),
+            rtol=1e-7,
+        ).outcome
+        == "overturned"
+        for motion in motions
+    ]
+    assert found["overturned_there"][4] == sum(own) / 3.0
+
+
+def test_what_the_page_says_of_the_highest_levels_of_many_motions_is_in_its_table() -> None:
+    page = " ".join((PUBLISHED / "README.md").read_text(encoding="utf-8").split())
+    rows = _medians("2000")["median"]
+    of_g = [rows[body, 0.0, 1.0, "recess model"] * BODIES[body].tan_alpha for body in _ORDER]
+    assert "peaks of {:.1f}, {:.1f}, {:.1f} and {:.1f} g".format(*of_g) in page
 
 
 def test_the_tables_are_printed(capsys: pytest.CaptureFixture[str]) -> None:

@@ -173,7 +173,7 @@ def test_notebooks_are_short_ask_a_question_and_keep_small_outputs(notebook: Pat
 
 
 def test_notebooks_are_numbered_in_the_order_in_which_they_are_read() -> None:
-    assert [path.name[:2] for path in NOTEBOOKS] == ["01", "02", "03", "04", "05", "06", "07"]
+    assert [path.name[:2] for path in NOTEBOOKS] == ["01", "02", "03", "04", "05", "06", "07", "08"]
 
 
 def test_one_version_is_said_everywhere() -> None:

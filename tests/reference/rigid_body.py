@@ -2,7 +2,8 @@
 
 The state is that of a rigid body in space, its axis and its angular velocity, and the equations are those of
 Newton and Euler in vectors. The base touches the ground at the lowest point of its rim, which does not slip;
-in the recess a moment along z_world + z_body keeps the angular velocity across that direction. Pair of order
+in the recess a moment along z_world + z_body keeps the angular velocity across that direction, and a tendon
+may pull the centre of the base to its place on the ground; inside the column its forces cancel. Pair of order
 8 of Dormand and Prince. Rules of the contract: uplift at f >= 0 towards the inertia force, rest threshold,
 still ground after the record, over which a run in motion is followed to its next maximum.
 """
@@ -48,9 +49,20 @@ def arm_of(P: Array, n: Array) -> Array:
 
 
 @jit
+def lifted_base(P: Array, n: Array) -> Array:
+    """From its place on the ground to the centre of the base, in the recess."""
+    s = math.sqrt(n[0] * n[0] + n[1] * n[1])
+    fall = s * s / (1.0 + n[2])
+    return P[0] * np.array([fall * n[0] / s, fall * n[1] / s, s])
+
+
+@jit
 def rates(P: Array, y: Array, a: Array) -> Array:
-    """Derivative of axis (3), angular velocity (3) and azimuth; P is b, h, I1, I2, g and 1 in the recess."""
-    b, h, I1, I2, g, recess = P
+    """Derivative of axis (3), angular velocity (3) and azimuth.
+
+    P is b, h, I1, I2, g, 1 in the recess, and prestress [m/s^2] and stiffness [1/s^2] of a tendon.
+    """
+    b, h, I1, I2, g, recess, prestress, stiffness = P
     n, w = y[:3], y[3:6]
     turn = cross(w, n)
     s = math.sqrt(n[0] * n[0] + n[1] * n[1])
@@ -64,6 +76,10 @@ def rates(P: Array, y: Array, a: Array) -> Array:
     momentum = I1 * w + (I2 - I1) * np.dot(w, n) * n
     right, matrix = np.zeros(4), np.zeros((4, 4))
     right[:3] = -cross(w, momentum) - cross(arm, force)
+    if prestress + stiffness > 0.0:
+        base = lifted_base(P, n)
+        length = math.sqrt(np.dot(base, base))
+        right[:3] -= cross(arm - h * n, (prestress + stiffness * length) / length * base)
     matrix[3, 3] = 1.0
     for i in range(3):
         for j in range(3):
@@ -90,17 +106,19 @@ def tilt_of(y: Array) -> tuple[float, float]:
 
 @jit
 def energy(P: Array, y: Array) -> float:
-    b, h, I1, I2, g, _ = P
+    b, h, I1, I2, g, _, prestress, stiffness = P
     n, w = y[:3], y[3:6]
     v = cross(w, arm_of(P, n))
     s = math.sqrt(n[0] * n[0] + n[1] * n[1])
     kinetic = np.dot(v, v) + I1 * np.dot(w, w) + (I2 - I1) * np.dot(w, n) ** 2
-    return 0.5 * kinetic + g * (b * s - h * s * s / (1.0 + n[2]))
+    length = b * s * math.sqrt(2.0 / (1.0 + n[2]))
+    stored = g * (b * s - h * s * s / (1.0 + n[2])) + (prestress + 0.5 * stiffness * length) * length
+    return 0.5 * kinetic + stored
 
 
 @jit
 def excess(P: Array, a: Array) -> float:
-    return math.hypot(a[0], a[1]) - (P[4] + a[2]) * P[0] / P[1]
+    return math.hypot(a[0], a[1]) - (P[4] + a[2] + P[6]) * P[0] / P[1]
 
 
 @jit
@@ -167,7 +185,7 @@ def integrate_arrays(
     P: Array, alpha: float, record: Array, dt: float, duration: float, y: Array, rest: float, rtol: float
 ) -> tuple[int, float, float, int]:
     """Return 0 at rest, 1 in motion, 2 overturned, 3 too many steps; peak, uplift time, number of rests."""
-    b, h, I1, _, g, _ = P
+    b, h, I1, _, g = P[:5]
     p2 = g * math.hypot(b, h) / (I1 + h * h + b * b)
     p, least = math.sqrt(p2), g * (b * math.sin(rest * alpha) - 2.0 * h * math.sin(0.5 * rest * alpha) ** 2)
     moving = y[2] < 1.0
@@ -236,7 +254,7 @@ def integrate_arrays(
 def integrate(given: Problem, *, rtol: float = 1e-12, rest: float = 1e-8) -> Result:
     """Integrate a problem of the recess or the flat-ground model."""
     body = body_of(given.cylinder, G)
-    P = np.array([body.b, body.h, body.I1, body.I2, G, float(given.model == "recess")])
+    P = np.array([body.b, body.h, body.I1, body.I2, G, float(given.model == "recess"), 0.0, 0.0])
     record = np.zeros((len(given.motion.acceleration), 3))
     record[:, : given.motion.acceleration.shape[1]] = given.motion.acceleration
     y = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
