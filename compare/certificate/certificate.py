@@ -142,6 +142,8 @@ def read_certificate(path: Path) -> Certificate:
     ValueError
         If the file cannot be read, is no certificate, or one of a later format.
     """
+    if path.is_file() and path.read_bytes().lstrip()[:1] != b"{":
+        raise ValueError(f"{path} is not a certificate (JSON, written by rockwobble certify)")
     found = read(path)
     if found["format"] != FORMAT:
         raise ValueError(f"{path} has format {found['format']}, this version reads {FORMAT}")

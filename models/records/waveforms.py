@@ -61,9 +61,7 @@ def read_waveforms(file: RecordFile, name: str, obspy_format: str) -> list[Wavef
             warnings.simplefilter("ignore")  # it asks for its plugins in a way that Python deprecates
             from obspy import read
     except ImportError:
-        raise ValueError(
-            f"{file.name} is {name}, which needs obspy: pip install 'rockwobble[formats]'"
-        ) from None
+        raise ValueError(f"{file.name} is {name}, which needs obspy: pip install obspy") from None
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

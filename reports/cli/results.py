@@ -132,6 +132,8 @@ def report(
 
         for form in forms or ():
             require_one_of("--format", form, ("pdf", "png", "tex"))
+        if not folder.is_dir():
+            raise ValueError(f"{folder} is not a folder of results")
         require_writable(place)
         kinds = [made.kind for made in read_manifests(folder) if made.kind in KINDS]
         if not kinds:

@@ -392,7 +392,7 @@ class TestWaveforms:
             "a.sac": networks.sac(PARTS["x"]),
             "a.mseed": networks.miniseed(PARTS["x"]),
         }.items():
-            assert "pip install 'rockwobble[formats]'" in refusal(tmp_path, name, content)
+            assert "which needs obspy: pip install obspy" in refusal(tmp_path, name, content)
 
 
 @pytest.mark.slow

@@ -189,3 +189,12 @@ def test_a_trajectory_of_somebody_else_is_checked(
     assert run("check", "--trajectory", "mine.csv", "--suite", "one.suite.toml") == 0
     assert "one motion does not tell" in capsys.readouterr().out
     assert run("check", "--trajectory", "mine.csv") == 2  # of the suite that ships, which case?
+
+
+def test_a_file_of_another_kind_is_named_as_no_certificate(tmp_path, capsys):
+    record = tmp_path / "EW.AT2"
+    record.write_text("a record")
+    with pytest.raises(SystemExit) as ended:
+        main(["verify", str(record)])
+    assert ended.value.code == 2
+    assert f"{record} is not a certificate (JSON, written by rockwobble certify)" in capsys.readouterr().err

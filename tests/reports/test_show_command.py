@@ -107,6 +107,13 @@ def test_show_says_how_far_it_is_and_nothing_when_it_is_done(tmp_path, capsys):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("nothing_runs")
+def test_report_of_a_file_says_that_it_is_no_folder_of_results(tmp_path, capsys):
+    record = tmp_path / "EW.AT2"
+    record.write_text("a record")
+    assert call("report", str(record)) == 2
+    assert f"{record} is not a folder of results" in capsys.readouterr().err
+
+
 def test_report_draws_again_here_or_elsewhere_and_leaves_the_results_as_they_are(stored, tmp_path, capsys):
     before = {path.name: path.read_bytes() for path in stored.iterdir()}
     assert call("report", str(stored), "--out", str(tmp_path)) == 0
