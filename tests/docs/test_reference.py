@@ -25,7 +25,7 @@ API = DOCS / "reference" / "api"
 PACKAGES = ["models", "reduced", "multibody", "compare", "compare.check"]
 PARTS = {"models", "reduced", "multibody", "compare", "reports"}
 # full names of function and results, by the name at the top
-STUDIES = runpy.run_path(str(DOCS / "_extensions" / "studies.py"))["studies"]()
+STUDIES = runpy.run_path(str(DOCS / "_extensions" / "public_studies.py"))["public_studies"]()
 NOTEBOOKS = sorted((DOCS / "notebooks").glob("*.ipynb"))
 
 
