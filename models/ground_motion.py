@@ -130,7 +130,7 @@ class GroundMotion:
         Parameters
         ----------
         factor : float
-            Of all components [-].
+            Factor of all components [-].
 
         Returns
         -------

@@ -53,9 +53,9 @@ class HazardCurve(Brief):
         What the intensity is: "pga", "pgv" and "sa_mean" are geometric means of both horizontal components,
         "pga_resultant", "pgv_resultant" and "sa" are of the horizontal resultant.
     period : float, optional
-        Of the oscillator, for "sa" and "sa_mean" alone [s].
+        Period of the oscillator, for "sa" and "sa_mean" alone [s].
     name : str, optional
-        Of site and source.
+        Name of site and source.
 
     Raises
     ------
@@ -168,7 +168,7 @@ def read_hazard(
     period : float, optional
         For "sa" and "sa_mean" [s]; chooses among several curves of a file.
     units : {"g", "m/s2", "cm/s2", "m/s", "cm/s"}, optional
-        Of the intensity. Default: g, and m/s for velocities.
+        Units of the intensity. Default: g, and m/s for velocities.
     years : float, optional
         The second column is the probability p of exceedance in so many years: -ln(1 - p)/years is taken.
     site : int, optional

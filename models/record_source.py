@@ -30,11 +30,11 @@ class ComponentSource:
     label : str
         Column or channel, as the file names it.
     unit : str
-        Of the numbers in the file.
+        Unit of the numbers in the file.
     peak, mean : float
         As read [g].
     azimuth : float or None
-        Of the positive sense, where the file gives it [deg, clockwise from north].
+        Azimuth of the positive sense, where the file gives it [deg, clockwise from north].
     """
 
     axis: str
@@ -53,7 +53,7 @@ class RecordSource:
     Attributes
     ----------
     format : str
-        Of the file, or of the files, as "PEER AT2".
+        Format of the file, or of the files, as "PEER AT2".
     time_step : float
         As read [s].
     samples : int
@@ -129,7 +129,7 @@ def source_of_samples(
     time_step : float
         [s]
     labels : sequence of str
-        Of the components.
+        Labels of the components.
     """
     values = acceleration / STANDARD_GRAVITY
     parts = [

@@ -35,7 +35,7 @@ def pulse(
     period : float
         [s]
     azimuth : float, optional
-        Of the first acceleration, counter-clockwise from east [rad].
+        Azimuth of the first acceleration, counter-clockwise from east [rad].
     start : float, optional
         Still ground before it [s].
 

@@ -63,7 +63,7 @@ class Trace(Shown):
     run : Run
         The method: an engine, or None for a reduced model; support and settings.
     version : str
-        Of the engine, or of rockwobble for a reduced model.
+        Version of the engine, or of rockwobble for a reduced model.
     time : ndarray, shape (n,)
         Multiples of the sample step and the exact end [s]; the end of a fall may be later than the run.
     tilt, tilt_rate : ndarray, shape (n,)
@@ -80,8 +80,8 @@ class Trace(Shown):
         Relative to the ground, per unit mass, zero standing [m^2/s^2]; in a frame per unit of the mass of a
         column and twice its share of the slab, which rises twice as far.
     contact_force : ndarray, shape (n, 3)
-        Of the ground, and of walls, on the cylinder, in weights, world axes; in a frame the weight of a
-        column and its share of the slab.
+        Contact force of the ground, and of walls, on the cylinder, in weights, world axes; in a frame the
+        weight of a column and its share of the slab.
     top_contact_force : ndarray, shape (n, 3)
         In a frame with a slab, of a column on the slab, in weights of its share of the slab, world axes.
     friction_needed, top_friction_needed : ndarray, shape (n,)
@@ -93,7 +93,8 @@ class Trace(Shown):
         Where demands on ground and recess are taken [bool]: in motion, from a tilt of `CLOSED_TILT` alpha on.
         Force, friction demand and moment of the other samples are those of a rigid edge as well.
     elongation, tendon_force : ndarray, shape (n,)
-        Of a tendon, since rest [m], and its tension over the weight of one column [-].
+        Elongation of a tendon since rest [m], and its tension over the weight of one
+        column [-].
     peak_tendon_force : float
         Largest tension of the continuous motion over the same [-].
     restraining_moment : ndarray, shape (n,)
@@ -133,7 +134,7 @@ class Trace(Shown):
     settings : mapping
         Every setting of the method, given or default.
     time_step : float
-        Of the engine, or between samples of a file [s].
+        Time step of the engine, or between samples of a file [s].
     wall_time : float
         Computing time without compilation [s].
     step_count : int
@@ -308,7 +309,7 @@ class Trace(Shown):
         Parameters
         ----------
         *codes : str
-            Of `rockwobble.models.diagnostic.CODES`.
+            Codes, from `rockwobble.models.diagnostic.CODES`.
 
         Examples
         --------

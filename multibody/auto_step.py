@@ -136,7 +136,7 @@ def find_step(
     unit_time : float
         User seconds in one second of the reference scene.
     alpha : float
-        Of the cylinder [rad].
+        Slenderness angle of the cylinder [rad].
     tolerance : float
         In alpha.
     progress : callable, optional

@@ -75,7 +75,7 @@ def extrapolate(attempt: Attempt, finest: float, alpha: float, progress: Progres
     finest : float
         The smallest of the steps [s].
     alpha : float
-        Of the cylinder [rad].
+        Slenderness angle of the cylinder [rad].
     progress : callable, optional
         Called with the fraction done.
     """

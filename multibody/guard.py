@@ -119,7 +119,7 @@ def couple_power(poses: Steps, after: Steps, forces: Sequence[tuple[float, Array
         For each end that rolls, the mass whose weight the force is in, over the driven mass, times gravity
         [m/s^2], and the force on it (3, n) [weights].
     length : float
-        Of the couple [m].
+        Length of the couple [m].
 
     Returns
     -------

@@ -31,11 +31,11 @@ class Kinematics:
         Kinetic and potential, that of a tendon included, per unit of the driven mass, zero standing
         [m^2/s^2].
     depth : ndarray
-        Of the lowest point of the rim below the ground [m].
+        Depth of the lowest point of the rim below the ground [m].
     slip_rate : ndarray
         Horizontal speed of the material point there [m/s].
     elongation : ndarray, optional
-        Of the tendon since rest [m]; None without one.
+        Elongation of the tendon since rest [m]; None without one.
     """
 
     tilt: Array

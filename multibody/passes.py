@@ -137,7 +137,7 @@ class RestWatch:
     Parameters
     ----------
     level : float
-        Of the tilt [rad].
+        Level of the tilt [rad].
     """
 
     def __init__(self, level: float) -> None:

@@ -67,7 +67,7 @@ class EngineFacts(Brief):
     step_time : float
         Computing time of a step on one core of a two-core machine [s].
     order : float
-        Of the error in the time step.
+        Order of the error in the time step.
     release_error : float
         Root mean square error of the tilt in the first second after a release, over alpha tan^2(alpha), at
         the default step; see `compare.comparison.prediction`.
@@ -121,7 +121,7 @@ class Wall:
     force : ndarray, shape (n,)
         Size of the sum of all forces of walls on the cylinder, per unit mass [m/s^2].
     depth : ndarray, shape (n,)
-        Of the deepest contact [m].
+        Depth of the deepest contact [m].
     """
 
     touching: NDArray[np.bool_]
@@ -136,7 +136,7 @@ class Steps:
     Attributes
     ----------
     position : ndarray, shape (n, 3)
-        Of the mass centre [m].
+        Position of the mass centre [m].
     quaternion : ndarray, shape (n, 4)
         Scalar first.
     velocity, angular_velocity : ndarray, shape (n, 3)

@@ -70,7 +70,8 @@ class RingSettings(EngineSettings):
         slender cylinder in free response (tan alpha 0.2, half of alpha); a tighter ring takes energy from
         it and holds it no better.
     ring_inclination : float
-        Of the walls, outward from the vertical [rad]. Default alpha: the side of a cylinder that leans less
+        Ring inclination of the walls, outward from the vertical [rad]. Default alpha: the side of a cylinder
+        that leans less
         than to its balance does not meet such a wall. Steeper walls hold better: under El Centro a slender
         cylinder rolls out by 0.005 b at 0.1 rad, 0.02 b at 0.5 and 0.1 b at 1.1.
     ring_facets : int
@@ -124,7 +125,7 @@ def clearance_needed(cylinder: Cylinder, tilt: float, inclination: float) -> flo
     tilt : float
         The largest, from 0 to pi/2 [rad].
     inclination : float
-        Of the walls, outward from the vertical, from 0 to below pi/2 [rad].
+        Inclination of the walls, outward from the vertical, from 0 to below pi/2 [rad].
 
     Raises
     ------

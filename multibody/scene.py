@@ -95,7 +95,7 @@ class Start:
     standing : bool
         Upright at rest; otherwise the cylinder leans on its rim.
     position, velocity : ndarray, shape (3,)
-        Of the mass centre [m], [m/s].
+        Position and velocity of the mass centre [m], [m/s].
     quaternion : ndarray, shape (4,)
         Orientation, scalar first.
     angular_velocity : ndarray, shape (3,)

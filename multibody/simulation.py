@@ -79,7 +79,7 @@ def simulate(
         that it costs as much as one run at that), and gives what
         they tend to, as far as they agree: see `extrapolated_step`.
     sample_step : float
-        Of the result [s]; at most 10 million samples.
+        Sample step of the result [s]; at most 10 million samples.
     progress : callable, optional
         Called now and then with the fraction done.
     **settings

@@ -52,9 +52,9 @@ class SceneTendon(Brief):
         kt [1/s^2].
     gaps : int
     depth : float
-        Of the anchor below the ground, and above the underside of a slab [m].
+        Depth of the anchor below the ground, and above the underside of a slab [m].
     yield_elongation : float
-        At which it yields [m]; infinite where it does not.
+        Yield elongation at which it yields [m]; infinite where it does not.
     """
 
     prestress: float

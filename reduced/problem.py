@@ -266,7 +266,7 @@ def balance_tilt_of_case(case: Case) -> float:
     Parameters
     ----------
     case : Case
-        Of a cylinder or frame, with or without a tendon.
+        Case of a cylinder or frame, with or without a tendon.
 
     Returns
     -------

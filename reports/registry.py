@@ -34,7 +34,7 @@ class Entry:
     Attributes
     ----------
     name : str
-        Of the page and the figures.
+        Name of the page and the figures.
     group : str
         Module of `cli` with the command, a key of `HEADINGS`; empty without a command.
     results : str

@@ -65,7 +65,7 @@ class ShortCase:
     case : Case
     support : {"recess", "flat"}
     options : mapping
-        Of the reduced models alone.
+        Options of the reduced models only.
     """
 
     name: str

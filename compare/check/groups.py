@@ -341,7 +341,7 @@ def check(
     model : callable or str, optional
         Model of somebody else, or its name as "module:function"; see `external_model`.
     trajectory : Trace or sequence of Trace, optional
-        Of `rockwobble.compare.read_trajectory`.
+        Trajectory, from `rockwobble.compare.read_trajectory`.
     suite : Suite, str or path, optional
         Suite whose engine runs are compared with the reduced models: by the bounds that it states, or by
         what the time step of each run leaves.
@@ -350,7 +350,7 @@ def check(
     tolerance : float, optional
         How exact the model or the trajectory claims to be.
     time_step : float, "auto" or "extrapolated", optional
-        Of the engine [s].
+        Time step of the engine [s].
     only : sequence of str, optional
         Some of `rockwobble.compare.check.GROUPS`. Default: all.
     workers : int, optional

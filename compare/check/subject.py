@@ -253,7 +253,7 @@ def trajectories(traces: Sequence[Trace], *, support: str = RECESS, tolerance: f
     Parameters
     ----------
     traces : sequence of Trace
-        Of `rockwobble.compare.read_trajectory`, each of the case that it answers.
+        Traces, from `rockwobble.compare.read_trajectory`, each of the case that it answers.
     support : {"recess", "flat"}, optional
         What they are of.
     tolerance : float, optional

@@ -82,7 +82,7 @@ class FingerprintVerdict:
     ----------
     word : {"same", "chaotic", "changed"}
     case, claim, term : str
-        Of the case that decides; empty where all are the same.
+        Case, claim and term of the case that decides; empty where all are the same.
     quantity : str
         What differs there.
     time : float

@@ -108,7 +108,7 @@ class ErrorBudget(Brief):
     covered : float
         End of the stretch that the RMS values cover, 80 % of the agreement [s].
     steps, order : tuple of float, float
-        Of the `Limit` that the numerics rest on.
+        Steps and order of the `Limit` that the numerics rest on.
     unresolved : float
         First pass of the engine that is closer to upright than its contact resolves [s]; infinite if none.
     """
@@ -277,7 +277,7 @@ class Refined:
     run : Run
     label : str
     trajectory : Trace
-        Of the engine.
+        Trajectory of the engine.
     end : float
         Until when the limit is needed [s].
     difference : ndarray
@@ -484,7 +484,7 @@ def findings(summary: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     summary : DataFrame
-        Of a comparison with budgets.
+        Summary of a comparison with budgets.
 
     Returns
     -------

@@ -55,11 +55,11 @@ def losses(
     Parameters
     ----------
     motion : Motion
-        Of the external trajectory.
+        Motion of the external trajectory.
     reference : Reference
         The model, whose motion that of `trace` is.
     trace : Trace
-        Of the model, of which the run says how it is simulated.
+        Trace of the model, of which the run says how it is simulated.
     case : Case
     """
     before = reference.difference(motion)

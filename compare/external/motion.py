@@ -250,8 +250,8 @@ class Difference:
     Attributes
     ----------
     start, end, covered : float
-        Of the agreement of the tilts, and up to when azimuth and path are compared, in the time of the
-        run [s].
+        Start and end of the agreement of the tilts, and the time up to which azimuth and path are compared,
+        in the time of the run [s].
     compared : float
         End of what both have in common [s].
     agreed_motion, agreed_peak : float

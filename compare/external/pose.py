@@ -56,7 +56,7 @@ class Poses:
     twist : ndarray or None
         [rad]; None without quaternions.
     position : ndarray, shape (n, 3), or None
-        Of the mass centre from O [m].
+        Position of the mass centre from O [m].
     stands : float
         Tilt below which the cylinder stands [rad].
     noise, position_noise : float

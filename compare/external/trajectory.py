@@ -40,7 +40,7 @@ class External(Brief):
     label : str, optional
         For tables and figures. Default: the name of the file without its ending.
     angle_unit : {"rad", "deg"}, optional
-        Of tilt and azimuth where the header does not say.
+        Angle unit of tilt and azimuth where the header does not say.
     time_offset : float, optional
         Added to the times of the file [s], so that the run starts at 0 with the ground motion or the release.
     noise : float, optional

@@ -82,7 +82,7 @@ def quantile_interval(values: Array, share: float) -> Interval:
     values : ndarray, shape (n,)
         In any order, infinite ones included; in the unit of the result.
     share : float
-        Of what is drawn, at most the quantile; between 0 and 1.
+        Share of what is drawn, at most the quantile; between 0 and 1.
 
     Returns
     -------
@@ -209,7 +209,8 @@ class Contrast:
     ratio_05, ratio_95 : Interval
         Ratios that 5 % and 95 % of the members do not exceed.
     ratio_p : float
-        Of Wilcoxon's signed ranks of the logarithms: probability of a difference as large if both methods
+        P value of Wilcoxon's signed ranks of the logarithms: probability of a difference as large if both
+        methods
         could be exchanged in every member. Infinite ratios have the largest ranks; ratios of 1 have none.
     within_reach : float
         The least ratio above 1 for which, and for its inverse, the interval of the median of as many members,
@@ -219,7 +220,7 @@ class Contrast:
     both_overturned : int
         Members that overturn by both methods.
     overturned_p : float
-        Of McNemar's exact test: of the members that overturn by one method alone.
+        P value of McNemar's exact test: of the members that overturn by one method alone.
     overturned_difference : Interval
         Share of the members that overturn, less that of the second method [-].
     """
@@ -362,7 +363,7 @@ def ratio_within_reach(logarithms: Array) -> float:
     Parameters
     ----------
     logarithms : ndarray, shape (n,)
-        Of the ratios, see `log_ratios`, without those that have none.
+        Logarithms of the ratios, see `log_ratios`, without those that have none.
     """
     count = len(logarithms)
     index = end_index(count, 0.5, 0.5 * (1.0 - CONFIDENCE)) if count else None

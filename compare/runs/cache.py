@@ -34,7 +34,7 @@ class Cache(Generic[T, R]):
     folder : Path
         That of the files, which exists.
     kind : str
-        Of the results.
+        Kind of the results.
     name : callable
         Returns the hash of all that the result of a task depends on: inputs, versions and code. What a task
         is called is no part of it: renaming it repeats nothing.

@@ -88,7 +88,7 @@ def simulate(
     engine : str, optional
         Such as "mujoco" or "pybullet". Default: the reduced model.
     time_step : float, "auto" or "extrapolated", optional
-        Of an engine [s].
+        Time step of an engine [s].
     sample_step : float, optional
         Spacing of the samples [s].
     **settings
@@ -210,7 +210,7 @@ def open_trace_cache(
     ----------
     folder : str or Path
     kind : str
-        Of the results.
+        Kind of the results.
     samples : bool, optional
         Whether all samples are kept, or only the last of them beside the numbers and passes of a run.
     """
@@ -305,7 +305,7 @@ def run_tables(
         Returns the table of a task; importable by name.
     tasks : sequence
     kind : str
-        Of the results.
+        Kind of the results.
     key : callable
         Returns the hash of all that the table of a task depends on.
     folder : str or Path, optional

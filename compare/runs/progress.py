@@ -37,7 +37,7 @@ class Progress(Brief):
     found : int
         Tasks found finished: they did not run.
     share : float
-        Of the computing time of those that run, from 0 to 1, as far as it is known beforehand.
+        Share of the computing time of those that run, from 0 to 1, as far as it is known beforehand.
     left : float
         Seconds to go if the rest is as fast as what ran so far; NaN before anything has.
     damaged : sequence of str
@@ -65,7 +65,7 @@ class Clock:
     ----------
     tell : callable or None
     costs : sequence of float
-        Of the tasks that run, in any unit.
+        Costs of the tasks that run, in any unit.
     found : int
         Tasks found finished.
     damaged : sequence of str
@@ -113,7 +113,7 @@ def stages(tell: ProgressCallback | None, costs: Sequence[float]) -> Stage:
     ----------
     tell : callable or None
     costs : sequence of float
-        Of the stages in their order, in any unit.
+        Costs of the stages in their order, in any unit.
     """
     clock, following = Clock(tell, costs), iter(costs)
 

@@ -35,7 +35,7 @@ class Manifest(Brief):
     Attributes
     ----------
     kind : str
-        Of the results, such as "comparison".
+        Kind of the results, such as "comparison".
     inputs : str
         Hash of all that they depend on, see `fingerprint`.
     command : str
@@ -43,14 +43,14 @@ class Manifest(Brief):
     plan : str
         Hash of the plan that the command stated, see `claimed`; empty where it was a program.
     date : str
-        Of the day on which they were complete (UTC).
+        Date on which they were complete (UTC).
     commit : str
-        Of the checkout that made them, with "+" where it had changes; empty for an installed package.
+        Commit of the checkout that made them, with "+" where it had changes; empty for an installed package.
     processor : str
     versions, code : mapping
-        Of packages and engines, and hashes of the folders of the code, by name.
+        Versions of packages and engines, and hashes of the folders of the code, by name.
     seeds : mapping
-        Of whatever random numbers the inputs were drawn with.
+        Seeds of the random numbers of the inputs.
     headline : mapping
         The main numbers, by what they are.
     about : mapping

@@ -138,7 +138,7 @@ def ensemble(
         Relative standard deviation of the copies: of tilt and rolling rate at release, or of both components
         of the ground motion.
     seed : int, optional
-        Of the perturbations.
+        Seed of the perturbations.
     workers, progress, resume
         As in `compare`.
     source : str, optional

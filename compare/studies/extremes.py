@@ -94,7 +94,7 @@ class Condition:
     contact : float
         Contact time constant over the step; NaN is the default.
     sample_step : float
-        At which the run is sampled [s].
+        Time between samples of the run [s].
     only_engines : bool
         Whether a reduced model has nothing of the kind.
     """

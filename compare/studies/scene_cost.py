@@ -45,9 +45,9 @@ class Variant:
     standing : bool
         Upright at rest, or released at half of alpha.
     components : str
-        Of the ground acceleration: "", "xy" or "xyz".
+        Components of the ground acceleration: "", "xy" or "xyz".
     settings : mapping
-        Of the engine.
+        Settings of the engine.
     """
 
     support: str

@@ -54,7 +54,7 @@ class ReadingOptions:
     columns : tuple of str
         Names or numbers of the columns of time, x, y and z, in this order; for files of columns.
     time_step : float or None
-        Of a file that gives none [s]; one that gives another is refused, see `settled_step`.
+        Time step of a file that gives none [s]; one that gives another is refused, see `settled_step`.
     """
 
     units: str | None = None
@@ -67,7 +67,7 @@ class ReadingOptions:
         Parameters
         ----------
         name : str
-            Of the file, for messages.
+            Name of the file, for messages.
         stated : float or None
             Time step that the file states [s].
 
@@ -249,7 +249,7 @@ class Component:
     direction : "x", "y", "z" or None
         East, north or up, where the file says so.
     azimuth : float or None
-        Of the positive sense, where the file gives one [deg, clockwise from north].
+        Azimuth of the positive sense, where the file gives one [deg, clockwise from north].
     notes : tuple of str
         How the file was read where that is not plain, such as "mean of 12 gal removed by the network".
 

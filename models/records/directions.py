@@ -28,7 +28,7 @@ def in_order(components: Sequence[Component], name: str) -> list[Component]:
         All of a file or folder; those that state azimuths alone are x and y by the one that is nearer to
         east and west.
     name : str
-        Of the file or folder, for messages.
+        Name of the file or folder, for messages.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def turned_to_north(
     ----------
     acceleration : ndarray, shape (n, 2) or (n, 3)
     azimuths : sequence of float or None
-        Of the first two columns [deg, clockwise from north].
+        Azimuths of the first two columns [deg, clockwise from north].
 
     Raises
     ------

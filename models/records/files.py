@@ -64,7 +64,7 @@ def read_record(
         [1, 4, 3, 2]; the words "time,x,y,z" (and "-" for a column to leave out) name those of a file without
         names, in the order of the file. "values": all numbers are one component, row by row.
     time_step : float, optional
-        Of files that give no times [s].
+        Time step of files that give no times [s].
     lengths : {"pad", "cut"}, optional
         Where components differ in length: fill the shorter with zeros, or cut the longer. Default: cut to the
         shortest where the others are as good as over by then.

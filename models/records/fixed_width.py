@@ -22,7 +22,7 @@ def stated_format(line: str, default: tuple[int, int]) -> tuple[int, int]:
     ----------
     line : str
     default : tuple of int
-        Of a header that is silent.
+        Default of a header that states none.
     """
     match = _FORMAT.search(line[:_LONGEST_LINE])
     return (int(match[1]), int(match[2])) if match and int(match[1]) * int(match[2]) else default

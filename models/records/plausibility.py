@@ -66,7 +66,7 @@ def doubts_as_read(
     time_step : float
         [s]
     components : sequence of Component
-        Of x, y and z.
+        Components of x, y and z.
     units : sequence of str
         In which their numbers were read.
 

@@ -47,7 +47,7 @@ def read_waveforms(file: RecordFile, name: str, obspy_format: str) -> list[Wavef
     ----------
     file : RecordFile
     name : str
-        Of the format, for messages.
+        Name of the format, for messages.
     obspy_format : str
         As obspy calls it.
 

@@ -91,7 +91,7 @@ def read_suite(path: str | Path) -> Suite:
     Parameters
     ----------
     path : str or Path
-        Of a file, or the name of a suite that ships with the package.
+        Path of a file, or the name of a suite that ships with the package.
 
     Returns
     -------

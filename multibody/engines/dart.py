@@ -51,7 +51,8 @@ class DartSettings(EngineSettings):
     guide_stiffness : float
         As for MuJoCo [1/s^2].
     depth : float
-        At which the rim is kept, at the reference size [m]: so much that where the detector finds the rim
+        Depth at which the rim is kept, at the reference size [m]: so much that where the detector finds the
+        rim
         instead of corners, from a lean of depth/b on, its radius is off by 1e-4 b only. It is taken off the
         poses.
     depth_gain : float
@@ -64,8 +65,8 @@ class DartSettings(EngineSettings):
         that at 1, and under twice El Centro on flat ground (R = 6 m, tan alpha 0.2, to 22 s) it is 7e-3 alpha
         and not 7e-2, for a fifth more time a step.
     tolerance, iterations : float, int
-        Of the Gauss-Seidel method; one contact takes a single sweep, the four of a base that is about to open
-        some hundreds, and fewer leave it a velocity.
+        Tolerance and iterations of the Gauss-Seidel method; one contact takes a single sweep, the four of a
+        base that is about to open some hundreds, and fewer leave it a velocity.
     """
 
     guide_stiffness: Positive

@@ -72,7 +72,7 @@ class Leapfrog:
     guide_stiffness : float
         In the time of the user [1/s^2].
     depth : float
-        At which the rim is kept, taken off the poses [m].
+        Depth at which the rim is kept, taken off the poses [m].
     """
 
     hold_centre = 0.0

@@ -51,12 +51,14 @@ class DrakeSettings(EngineSettings):
     guide_stiffness : float
         As for MuJoCo [1/s^2].
     approximation : {"lagged", "similar", "tamsi", "sap"}
-        Of contact. "lagged" is Drake's default and convex; SAP loses a hundred times more energy.
+        Approximation of contact. "lagged" is Drake's default and convex; SAP loses a hundred times more
+        energy.
     contact_stiffness : float
         For each unit of mass, at the reference size [1/s^2]; the weight sinks in by 1e-9 m. It is solved
         for implicitly, so the step does not limit it.
     dissipation : float
-        Of Hunt and Crossley, at the reference size [s/m]. Contact pushes apart by 1/dissipation at most
+        Dissipation of Hunt and Crossley, at the reference size [s/m]. Contact pushes apart by 1/dissipation
+        at most
         [m/s]: without it a base that lands, by then as deep as it fell in a step, is thrown back by all of
         that. At 1000 it holds a rim that a near pass moves up.
     stiction_tolerance : float

@@ -47,11 +47,13 @@ class ExudynSettings(EngineSettings):
         the first holds what rolling is, a rim whose velocity is zero at the contact. Exudyn's explicit
         integrators, though of high order, do not take constraints.
     spectral_radius : float
-        Of the generalized alpha method at infinite frequency. An ideal rim has no high frequency that
+        Spectral radius of the generalized alpha method at infinite frequency. An ideal rim has no high
+        frequency that
         would have to be damped: 0.5 makes the error of the tilt larger by half at 1e-4 s, and by 27 times
         at 2e-5 s; 0.9, the engine's default, by 2 %.
     relative_tolerance, absolute_tolerance : float
-        At which Newton's iteration stops. The engine's own, 1e-8 and 1e-10, show as a fiftieth of the
+        Relative tolerance and absolute tolerance at which Newton's iteration stops. The engine's own, 1e-8
+        and 1e-10, show as a fiftieth of the
         error of the tilt at 1e-4 s and as a fifth at 2e-5 s; these cost a quarter more there.
     iterations : int
         At most. With three, no step reaches these tolerances.

@@ -51,7 +51,8 @@ class MujocoSettings(EngineSettings):
         first order in h: from tan alpha 0.2 to 3 a release in the recess errs by 5e-6 alpha instead of
         1.3e-4. A cylinder that slides hops: friction of this kind lifts it, the more the stiffer it is.
     guide_stiffness : float
-        Of each half of the guide, over the axial inertia [1/s^2]. (0.2/h)^2/4: the twist stays below 1e-6
+        Guide stiffness of each half of the guide, over the axial inertia [1/s^2]. (0.2/h)^2/4: the twist
+        stays below 1e-6
         rad, and a period has 40 steps. In free response the stiffness makes no difference. Under El Centro
         (relative RMS on (10 m, 0.1) and (6 m, 0.2) doubled, at h = 2e-4 s) the error is 3.4e-4 and 8.3e-4 at
         (0.05/h)^2/4, 1.6e-4 and 3.6e-4 at (0.1/h)^2/4, and 1.2e-4 and 3.0e-4 here: as small as with the
@@ -65,7 +66,8 @@ class MujocoSettings(EngineSettings):
     cone : str
         The elliptic cone is Coulomb's; the friction damping above exists for it only.
     tolerance, iterations : float, int
-        Of the Newton solver. One contact needs two iterations, so a tight tolerance costs nothing.
+        Tolerance and iterations of the Newton solver. One contact needs two iterations, so a tight tolerance
+        costs nothing.
     standing_corners : int
         Corners of the inscribed prisms that carry a standing cylinder, a multiple of four up to 48. They
         turn until one of them is under the load, and once the base opens under its lean: fixed ones uplift

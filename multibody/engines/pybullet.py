@@ -40,7 +40,8 @@ class PybulletSettings(EngineSettings):
         is made up for by a velocity of the ground, a plane that may move along itself unseen. At 1.8 the
         error of a free response is a tenth to a seventieth of that at 1, for a quarter more time a step.
     solver_residual : float
-        At which an iteration stops. Bullet's own 1e-7 leaves an error fifty times that of the step.
+        Solver residual at which an iteration stops. Bullet's own 1e-7 leaves an error fifty times that of
+        the step.
     iterations : int
         At most. One contact takes a few; four contacts of a standing cylinder take all, and with fewer
         it creeps and uplifts early.

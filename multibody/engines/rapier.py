@@ -62,11 +62,12 @@ class RapierSettings(EngineSettings):
     contact_damping_ratio : float
         1 is critical, and lets a base under 0.98 of its uplift lean by twice as much as 10, Rapier's own.
     depth : float
-        At which the rim is kept, at the reference size [m].
+        Depth at which the rim is kept, at the reference size [m].
     depth_gain : float
         Share of a change of depth that one step takes back.
     substeps, iterations : int
-        Of a step. A rim needs one of each, since what is left of an iteration starts the next step; with four
+        Substeps and iterations of a step. A rim needs one of each, since what is left of an iteration starts
+        the next step; with four
         iterations the horizontal force on a standing base scatters by 1.7e-3 weights, with one by 3.1e-3.
     """
 

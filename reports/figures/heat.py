@@ -59,7 +59,7 @@ class Shades:
         What is beyond is drawn as these.
     log : bool
     centre : float, optional
-        Of a scale with two sides, for signed values: low and high as far from it.
+        Centre of a scale with two sides, for signed values: low and high as far from it.
     steps : int
         Number of colours; 0: a continuous scale.
     """

@@ -85,12 +85,12 @@ class Line:
     name : str
         In the legend, once for all lines of this name; empty: not there.
     style : Style
-        Of dash "none": marks alone. Without a symbol: no marks.
+        Style of dash "none": marks alone. Without a symbol: no marks.
     width, size : float
-        Of line and marks [pt].
+        Width and size of line and marks [pt].
     opacity : float
     filled : bool or ndarray, shape (n,)
-        Of the marks.
+        Filled of the marks.
     steps : bool
         Whether y holds until the next x.
     clip : bool
@@ -210,13 +210,13 @@ class Picture:
     Attributes
     ----------
     name : str
-        Of its file.
+        Name of its file.
     title, caption : str
     panels : sequence of Panel
     columns : int
-        Of panels, in a document; a page has as many as fit.
+        Columns of panels, in a document; a page has as many as fit.
     shades : Shades, optional
-        Of the maps.
+        Shades of the maps.
     legend : {"below", "panels"}
         One for all panels, or one in each.
     link_x : bool

@@ -63,9 +63,9 @@ def cause(row: SummaryRow, length: float, *, touched: bool = False, models_diffe
     Parameters
     ----------
     row : namedtuple
-        Of the summary.
+        Row of the summary.
     length : float
-        Of the run [s].
+        Length of the run [s].
     touched : bool, optional
         Whether the run met a wall.
     models_differ : bool, optional

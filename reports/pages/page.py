@@ -71,7 +71,7 @@ class Page:
     Attributes
     ----------
     name : str
-        Of its files.
+        Name of its files.
     template : str
         In the folder templates, without its ending.
     values : mapping

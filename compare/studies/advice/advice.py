@@ -139,7 +139,7 @@ class Advice(Results, kind=KIND):
     groups, demands : DataFrame
         Percentiles of the groups, see `group_table`, and the design demands, see `demand_table`.
     band : DataFrame
-        Of the tilts of the copies, see `band_of`.
+        Band of the tilts of the copies, see `band_of`.
     weaker : DataFrame
         Rows of `member_rows` under weaker shaking by the same records, see `weaker_factors`.
     scales, lowest, planar : DataFrame
@@ -385,7 +385,7 @@ def advise(
     Parameters
     ----------
     case : Case
-        Of a cylinder or of a frame.
+        Case of a cylinder or of a frame.
     run : Run, optional
         Engine that verifies the prediction; without one it stays unverified.
     support : {"recess", "flat", "ring"}, optional
@@ -396,9 +396,9 @@ def advise(
         Relative standard deviation of the copies: of tilt and rolling rate at release, or of both components
         of the ground motion.
     seed : int, optional
-        Of the perturbations.
+        Seed of the perturbations.
     mass : float, optional
-        Of the cylinder, or of one column without a slab [t]: forces in kN and moments in kNm.
+        Mass of the cylinder, or of one column without a slab [t]: forces in kN and moments in kNm.
     friction_given : bool, optional
         Whether the friction of the case is known, not a default.
     progress : callable, optional

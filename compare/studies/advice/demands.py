@@ -182,7 +182,7 @@ def demand_table(
     support : str
         That is built.
     mass : float, optional
-        Of one cylinder or column [t].
+        Mass of one cylinder or column [t].
 
     Returns
     -------

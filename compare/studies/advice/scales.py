@@ -47,7 +47,8 @@ def scan_scales(case: Case, support: str = RECESS) -> tuple[pd.DataFrame, pd.Dat
         series, factor [-], peak_tilt [rad]: "3d", and "planar_x" and "planar_y" unless the case is a release,
         of which a planar analysis knows nothing.
     lowest : DataFrame
-        Of each series the lowest factor that was found to overturn, NaN where none does; confirmed, whether
+        Lowest factor found to overturn, by series, NaN where none does; confirmed,
+        whether
         it does so to a tighter tolerance and under a record that differs by `NUDGE`, too; and start, the
         factor at which it uplifts and from which was searched: 0 for a release, inf where it never uplifts.
     """

@@ -66,7 +66,7 @@ def intensity(
     gravity : float, optional
         g [m/s^2].
     period : float, optional
-        Of the oscillator of "sa" and "sa_mean" [s].
+        Period of the oscillator of "sa" and "sa_mean" [s].
 
     Raises
     ------

@@ -244,7 +244,7 @@ class Resampled:
     ----------
     value : float
     drawn : ndarray, shape (B,)
-        Of each resample.
+        Draws of each resample.
     errors : ndarray, shape (1 + B,) or None
         Standard errors of the logarithm of the value and of each that is drawn; None of stripes, whose levels
         have motions of their own.
@@ -462,7 +462,7 @@ def measure_factor(hazard: HazardCurve, body: Mapping[str, float], period: float
     body : mapping
         Facts of a cylinder: tan_alpha, velocity_unit (g tan alpha / p [m/s]).
     period : float
-        Of Sa in the fragility [s].
+        Period of Sa in the fragility [s].
 
     Raises
     ------
@@ -495,7 +495,7 @@ def exposures_of(
     ----------
     blocks : Blocks
     points : DataFrame
-        Of the same fragility.
+        Points of the same fragility.
     of_hazard : mapping of str to (str, float)
         By cylinder: a measure of the points, and the factor on it that gives that of the hazard.
     dispersion : float or None

@@ -77,7 +77,7 @@ def methods_of(given: Iterable[str | Run], *, restitution: float | str = 1.0) ->
     given : iterable of str or Run
         Names in `MODELS`, and runs of engines or of reduced models with settings.
     restitution : float or "momentum", optional
-        Of the planar models, see `reduced.simulate`.
+        Restitution of the planar models, see `reduced.simulate`.
 
     Raises
     ------
@@ -147,7 +147,7 @@ class Task:
     Attributes
     ----------
     name, label : str
-        Of the cylinder and of the method.
+        Name and label of the cylinder and of the method.
     run : Run
     shakings : tuple of Shaking
     contact : bool
@@ -477,7 +477,7 @@ def run_plan(
     ----------
     plan : RunPlan
     kind : str
-        Of the results, for the folder of finished tasks.
+        Kind of the results, for the folder of finished tasks.
     folder : str or Path, optional
         Keeps each finished task: a second call, after whatever ended the first, repeats none.
     workers, scheduler, progress : optional

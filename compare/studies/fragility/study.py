@@ -143,7 +143,7 @@ class Fragility(Results, kind=KIND):
         Parameters
         ----------
         hazard : HazardCurve
-            Of a measure that the motions of this fragility have.
+            Hazard of a measure that the motions of this fragility have.
         years : float, optional
             For the probability [years].
         total_dispersion : float, optional
@@ -363,15 +363,15 @@ def fragility(
     scales : sequence of float, optional
         Factors on the motions as they are (a cloud), in the place of levels.
     period : float, optional
-        Of "sa" and "sa_mean" [s].
+        Period of "sa" and "sa_mean" [s].
     limits : sequence of str, optional
-        Of `LIMITS`. Default: all but contact_lost.
+        Limits, from `LIMITS`. Default: all but contact_lost.
     margin : float, optional
         Relative difference within which two medians are equivalent.
     resamples, seed : int, optional
-        Of the bootstrap.
+        Number of resamples, and seed, of the bootstrap.
     restitution : float or "momentum", optional
-        Of the planar models.
+        Restitution of the planar models.
     step_factor : float, optional
         On the default time step of engines.
     friction : float, optional
@@ -379,7 +379,8 @@ def fragility(
     rolling_resistance : float, optional
         Length of the couple against rolling [m].
     tendon_prestress, tendon_stiffness : float, optional
-        Of a tendon in each body [weights of one column, and these per base radius].
+        Tendon prestress and tendon stiffness of a tendon in each body [weights of one column, and these per
+        base radius].
     gravity : float, optional
         g [m/s^2].
     workers, scheduler, progress : optional

@@ -122,7 +122,7 @@ class TiltMaps:
     gravity : float
         [m/s^2]
     support : str
-        Of the model in three dimensions, "recess" or "flat".
+        Support of the model in three dimensions, "recess" or "flat".
     semidiagonals : ndarray, shape (n_R,)
         Sizes R [m].
     intensities : ndarray, shape (n_I,)
@@ -149,7 +149,7 @@ class TiltMaps:
     rolling_resistance : float
         [m]
     tendon_prestress, tendon_stiffness : float
-        Of a tendon [weights of one column, and these per base radius].
+        Tendon prestress and tendon stiffness of a tendon [weights of one column, and these per base radius].
     """
 
     tan_alpha: float
@@ -356,7 +356,7 @@ def tilt_maps(
     resume : str or Path, optional
         Folder that keeps each finished part: a second call, after whatever ended the first, repeats none.
     kind : str, optional
-        Of the results that keep them.
+        Kind of the results that keep them.
 
     Returns
     -------

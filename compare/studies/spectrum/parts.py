@@ -61,7 +61,7 @@ class SpectrumPart:
     series : str
         One of `SERIES`.
     places : sequence of int
-        Of its sizes among all of the spectrum.
+        Places of its sizes among all of the spectrum.
     semidiagonals : ndarray, shape (n,)
         [m]
     levels : ndarray, shape (n_I,)

@@ -326,9 +326,9 @@ def spectrum(
     rolling_resistance : float, optional
         Length of the couple against rolling [m].
     tendon_prestress, tendon_stiffness : float, optional
-        Of a tendon [weights of one column, and these per base radius].
+        Tendon prestress and tendon stiffness of a tendon [weights of one column, and these per base radius].
     support : {"recess", "flat"}, optional
-        Of the model in three dimensions.
+        Support of the model in three dimensions.
     search_step : float, optional
         Finest step of the search for the lowest intensity that overturns [g tan alpha].
     probes : int, optional

@@ -78,7 +78,7 @@ class Method:
         What is the same at all its points.
     knob : {"tolerance", "time step"}
     value : float
-        Of the knob; the smaller the more accurate.
+        Value of the knob; the smaller the more accurate.
     solve : callable
         (case) -> MethodResult. This is what is timed.
     """

@@ -61,7 +61,7 @@ class Reference:
     Attributes
     ----------
     quantities : sequence of ndarray
-        Of all cases.
+        Quantities of all cases.
     doubt : float
         Its own error, from an answer ten times less tight or of twice the step; 0 where it is exact.
     source : {"exact", "tight", "half_step"}
@@ -82,7 +82,7 @@ class Problem:
     cases : sequence of Case
         More than one are an ensemble.
     sample_step : float
-        At which a run is sampled [s].
+        Time between samples of a run [s].
     steps, few_steps : sequence of float
         Time steps of the engines [s], all and those of what costs more.
     quantity : callable

@@ -55,7 +55,7 @@ class Structure:
     slab_mass_ratio : float
         Mass of a slab that only translates over that of the column under it; 0 is a cylinder alone.
     tendon_prestress, tendon_stiffness : float
-        Of a tendon, see `Tendon`; both 0 are none.
+        Tendon prestress and tendon stiffness of a tendon, see `Tendon`; both 0 are none.
     """
 
     slab_mass_ratio: float = 0.0
@@ -88,7 +88,7 @@ class Part:
     Attributes
     ----------
     name : str
-        Of its table.
+        Name of its table.
     tasks : callable
         Returns the inputs of each task of an extent.
     measure : callable
@@ -142,13 +142,13 @@ class Extent:
     ----------
     name : str
     tan_alphas, releases, spins : tuple of float
-        Of the maps of free response: slenderness, tilt over alpha, and rolling rate over that of steady
-        wobble at the tilt.
+        Tan alphas, releases and spins of the maps of free response: slenderness, tilt over alpha, and
+        rolling rate over that of steady wobble at the tilt.
     members : int
         Records.
     shaken_tan_alphas, sizes, intensities : tuple of float
-        Of the maps under these records: slenderness, semidiagonal [m], and peak resultant over g tan(alpha),
-        as far as an earthquake reaches it: see `LARGEST_PEAK`.
+        Shaken tan alphas, sizes and intensities of the maps under these records: slenderness, semidiagonal
+        [m], and peak resultant over g tan(alpha), as far as an earthquake reaches it: see `LARGEST_PEAK`.
     engine_points : tuple
         (tan(alpha), release, spin) at which engines verify the maps of free response.
     record_points : tuple
@@ -163,9 +163,10 @@ class Extent:
     ring_tan_alphas, rings, ring_turns, ring_length : tuple of float, tuple of Ring, tuple of float, float
         Slenderness; walls; azimuth by which the problem is turned [rad]; [s].
     contact_tan_alphas, time_constants, dampings : tuple of float
-        Of soft contact: slenderness, time constant at R = 6 m [s], damping ratio.
+        Contact tan alphas, time constants and dampings of soft contact: slenderness, time constant at R = 6
+        m [s], damping ratio.
     structure : Structure, optional
-        Of every column.
+        Structure of every column.
     """
 
     name: str
