@@ -70,10 +70,9 @@ class RingSettings(EngineSettings):
         slender cylinder in free response (tan alpha 0.2, half of alpha); a tighter ring takes energy from
         it and holds it no better.
     ring_inclination : float
-        Ring inclination of the walls, outward from the vertical [rad]. Default alpha: the side of a cylinder
-        that leans less
-        than to its balance does not meet such a wall. Steeper walls hold better: under El Centro a slender
-        cylinder rolls out by 0.005 b at 0.1 rad, 0.02 b at 0.5 and 0.1 b at 1.1.
+        Inclination of the walls, outward from the vertical [rad]. Default alpha: the side of a cylinder
+        that leans less than to its balance does not meet such a wall. Steeper walls hold better: under El
+        Centro a slender cylinder rolls out by 0.005 b at 0.1 rad, 0.02 b at 0.5 and 0.1 b at 1.1.
     ring_facets : int
         Number of walls. The rim of a squat cylinder bumps from wall to wall: in free response at tan alpha
         1 it loses 34, 14, 7 and 5 % of its energy with 32, 64, 128 and 256; a slender one sees no

@@ -54,7 +54,7 @@ class SceneTendon(Brief):
     depth : float
         Depth of the anchor below the ground, and above the underside of a slab [m].
     yield_elongation : float
-        Yield elongation at which it yields [m]; infinite where it does not.
+        Elongation at which the tendon yields [m]; infinite where it does not.
     """
 
     prestress: float

@@ -210,8 +210,8 @@ class Contrast:
         Ratios that 5 % and 95 % of the members do not exceed.
     ratio_p : float
         P value of Wilcoxon's signed ranks of the logarithms: probability of a difference as large if both
-        methods
-        could be exchanged in every member. Infinite ratios have the largest ranks; ratios of 1 have none.
+        methods could be exchanged in every member. Infinite ratios have the largest ranks; ratios of 1 have
+        none.
     within_reach : float
         The least ratio above 1 for which, and for its inverse, the interval of the median of as many members,
         scattered as these are, leaves 1 out with a probability of `POWER`; infinite where there is none.

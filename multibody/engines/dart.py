@@ -52,9 +52,8 @@ class DartSettings(EngineSettings):
         As for MuJoCo [1/s^2].
     depth : float
         Depth at which the rim is kept, at the reference size [m]: so much that where the detector finds the
-        rim
-        instead of corners, from a lean of depth/b on, its radius is off by 1e-4 b only. It is taken off the
-        poses.
+        rim instead of corners, from a lean of depth/b on, its radius is off by 1e-4 b only. It is taken off
+        the poses.
     depth_gain : float
         Share of a change of depth that one step takes back. At 0.3 what two steps extrapolate to is 4e-9,
         1e-8 and 2e-7 alpha off after a release at tan alpha 0.35, 1 and 3; at 0.05 it is 7e-8, 5e-7 and 3e-6.

@@ -58,9 +58,8 @@ class DrakeSettings(EngineSettings):
         for implicitly, so the step does not limit it.
     dissipation : float
         Dissipation of Hunt and Crossley, at the reference size [s/m]. Contact pushes apart by 1/dissipation
-        at most
-        [m/s]: without it a base that lands, by then as deep as it fell in a step, is thrown back by all of
-        that. At 1000 it holds a rim that a near pass moves up.
+        at most [m/s]: without it a base that lands, by then as deep as it fell in a step, is thrown back by
+        all of that. At 1000 it holds a rim that a near pass moves up.
     stiction_tolerance : float
         Speed at which what sticks creeps at the limit of friction, at the reference size [m/s]. At Drake's
         1e-4 a base under 0.8 of that creeps by 1.5e-4 m in a second. SAP's own limit, a thousandth of what a

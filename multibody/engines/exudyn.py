@@ -48,9 +48,8 @@ class ExudynSettings(EngineSettings):
         integrators, though of high order, do not take constraints.
     spectral_radius : float
         Spectral radius of the generalized alpha method at infinite frequency. An ideal rim has no high
-        frequency that
-        would have to be damped: 0.5 makes the error of the tilt larger by half at 1e-4 s, and by 27 times
-        at 2e-5 s; 0.9, the engine's default, by 2 %.
+        frequency that would have to be damped: 0.5 makes the error of the tilt larger by half at 1e-4 s, and
+        by 27 times at 2e-5 s; 0.9, the engine's default, by 2 %.
     relative_tolerance, absolute_tolerance : float
         Relative tolerance and absolute tolerance at which Newton's iteration stops. The engine's own, 1e-8
         and 1e-10, show as a fiftieth of the

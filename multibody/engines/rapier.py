@@ -67,8 +67,8 @@ class RapierSettings(EngineSettings):
         Share of a change of depth that one step takes back.
     substeps, iterations : int
         Substeps and iterations of a step. A rim needs one of each, since what is left of an iteration starts
-        the next step; with four
-        iterations the horizontal force on a standing base scatters by 1.7e-3 weights, with one by 3.1e-3.
+        the next step; with four iterations the horizontal force on a standing base scatters by 1.7e-3
+        weights, with one by 3.1e-3.
     """
 
     guide_stiffness: Positive

@@ -15,7 +15,7 @@ from rockwobble.reduced import limiting_angle_of_turn
 
 from .case_view import CaseView, case_views
 from .heat import names
-from .palette import GREY, SYMBOLS, Style
+from .palette import DARK, GREY, SYMBOLS, Style
 from .picture import TIME, Array, Axis, Bars, Layer, Line, Panel, Picture, Rule, tilt_axis
 from .thinning import envelope
 
@@ -273,23 +273,22 @@ _AXES = (("x, east-west", "#0072B2"), ("y, north-south", "#D55E00"), ("z, up", "
 
 
 def excitation_picture(view: CaseView, name: str) -> Picture | None:
-    """Return the components of the ground acceleration, None where the ground is still."""
+    """Return the ground acceleration and its horizontal resultant, None where the ground is still."""
     motion, gravity = view.case.motion, view.case.gravity
     if motion is None:
         return None
     time = np.arange(len(motion.acceleration), dtype=np.float64) * motion.time_step
     threshold = view.case.cylinder.tan_alpha
-    peak = max(1.15 * threshold, 1.05 * float(np.abs(motion.acceleration).max()) / gravity)
-    lines = [
+    resultant = np.hypot(*motion.acceleration.T[:2]) / gravity
+    largest = max(float(resultant.max()), float(np.abs(motion.acceleration).max()) / gravity)
+    peak = max(1.15 * threshold, 1.05 * largest)
+    lines = [Line(x=time, y=resultant, name="horizontal resultant", style=Style(colour=DARK), width=1.1)]
+    lines += [
         Line(x=time, y=component / gravity, name=words, style=Style(colour=colour), width=0.9)
         for component, (words, colour) in zip(motion.acceleration.T, _AXES, strict=False)
     ]
-    words = f"uplift where |a| exceeds tan α = {threshold:g}"
-    layers: list[Layer] = [
-        *lines,
-        Rule(at=threshold, axis="y", text=words, side="right"),
-        Rule(at=-threshold, axis="y"),
-    ]
+    words = f"uplift where the resultant exceeds tan α = {threshold:g}"
+    layers: list[Layer] = [*lines, Rule(at=threshold, axis="y", text=words, side="right")]
     y = Axis(label="ground acceleration / g", unit="-", low=-peak, high=peak)
     return Picture(
         name=name,
