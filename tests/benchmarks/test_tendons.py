@@ -125,6 +125,7 @@ def test_what_the_page_says_of_the_highest_levels_of_many_motions_is_in_its_tabl
     assert "peaks of {:.1f}, {:.1f}, {:.1f} and {:.1f} g".format(*of_g) in page
 
 
+@pytest.mark.slow
 def test_the_tables_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([]) == 0
     assert "medians-p695" in capsys.readouterr().out
