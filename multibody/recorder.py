@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models.plain_json import fields_of
-from rockwobble.models.support import SUPPORTS
 
 from .guard import EnergyWatch, couple_power, energy_scale, first_breach
 from .kinematics import (
@@ -332,7 +331,7 @@ class Recorder:
             rate = max(float(state.tilt_rate[stop]), 1e-3)
             self.end_time = float(time[stop] + max(0.5 * math.pi - state.tilt[stop], 0.0) / rate)
         breach = first_breach(
-            state, gained, self._scene.body, self._scene.gravity, SUPPORTS[self._scene.support].guided, wall,
+            state, gained, self._scene.body, self._scene.gravity, self._scene.support.guided, wall,
             self.energy.largest,
         )  # fmt: skip
         if breach is not None and breach.index < stop:

@@ -48,7 +48,7 @@ from typing import Annotated
 import numpy as np
 
 from rockwobble.models import Cylinder
-from rockwobble.models.support import SUPPORTS
+from rockwobble.models.support import Support
 
 from .kinematics import axis_of
 from .protocol import Settings
@@ -93,7 +93,7 @@ class RingSettings(EngineSettings):
     ring_friction: Annotated[float, positive(most=100.0, or_zero=True)] = 0.5
 
 
-def take_ring(given: Settings, support: str, tan_alpha: float) -> tuple[Settings, RingSettings | None]:
+def take_ring(given: Settings, support: Support, tan_alpha: float) -> tuple[Settings, RingSettings | None]:
     """Return the settings that are not of the ring, and the ring; None for every other support.
 
     The inclination is arctan(tan_alpha) unless given.
@@ -106,7 +106,7 @@ def take_ring(given: Settings, support: str, tan_alpha: float) -> tuple[Settings
     names = {field.name for field in fields(RingSettings)}
     others = {name: value for name, value in given.items() if name not in names}
     walls = {name: value for name, value in given.items() if name in names}
-    if SUPPORTS[support].walls:
+    if support.walls:
         return others, RingSettings(**{"ring_inclination": min(math.atan(tan_alpha), STEEPEST), **walls})
     if walls:
         raise ValueError(f"{', '.join(walls)} is for support 'ring' only, got support {support!r}")

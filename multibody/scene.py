@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, InitialState
+from rockwobble.models.support import Support
 
 from .tendon import SceneTendon
 
@@ -193,7 +194,7 @@ class Scene:
     ----------
     body : Body
     start : Start
-    support : str
+    support : Support
         What holds the cylinder in its place.
     friction : float
         Coefficient of the pair cylinder and ground [-].
@@ -213,7 +214,7 @@ class Scene:
 
     body: Body
     start: Start
-    support: str
+    support: Support
     friction: float
     time_step: float
     gravity: float

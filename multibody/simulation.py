@@ -13,7 +13,7 @@ import numpy as np
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace, WobblingFrame
 from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_positive, require_sample_step
-from rockwobble.models.support import RECESS, SUPPORTS
+from rockwobble.models.support import RECESS, support_named
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.models.trace_source import Known
 
@@ -199,7 +199,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         "wall_contact": table["wall_contact"] * scale.time,
         "wall_impulse": table["wall_impulse"] * scale.length / scale.time,
     }
-    if scene.tendon is not None and not SUPPORTS[scene.support].guided:
+    if scene.tendon is not None and not scene.support.guided:
         # the base wanders from the anchor, and the tilt alone does not tell it
         sampled["elongation"] = table["elongation"] * scale.length
     if scene.rolling_resistance > 0.0:
@@ -346,7 +346,7 @@ def _statement(
     scene = Scene(
         body=body,
         start=starting_state(body, case.initial, scale.time),
-        support=support,
+        support=support_named(support),
         friction=case.friction,
         time_step=step / scale.time,
         gravity=REFERENCE_GRAVITY,

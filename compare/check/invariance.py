@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 from rockwobble.models.cylinder import PIER
+from rockwobble.models.support import support_named
 from rockwobble.multibody.engines.registry import find_engine
 from rockwobble.multibody.protocol import Engine, Settings
 from rockwobble.multibody.scene import (
@@ -266,7 +267,7 @@ def _open_stepper(subject: Subject, support: str) -> tuple[Engine, Scene, Settin
     scene = Scene(
         body=body,
         start=starting_state(body, RELEASE.initial, unit.time),
-        support=support,
+        support=support_named(support),
         friction=RELEASE.friction,
         time_step=REFERENCE_TIME_STEP,
         gravity=REFERENCE_GRAVITY,

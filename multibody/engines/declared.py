@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rockwobble.models.support import FLAT, RECESS, SUPPORTS
+from rockwobble.models.support import FLAT, RECESS
 
 from ..kinematics import about_vertical, turning
 from ..protocol import EngineFacts, SceneCounts, Settings, Stepper, Steps
@@ -81,7 +81,7 @@ class Leapfrog:
         self._scene, self._step, self._depth = scene, scene.time_step, depth
         # of both halves of the guide, torque for each twist
         stiffness = guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
-        self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
+        self._stiffness = stiffness if scene.support.guided else 0.0
         self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
         self._position, self._quaternion = scene.start.position, scene.start.quaternion
 

@@ -8,6 +8,7 @@ import pytest
 
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, Diagnostic, GroundMotion
+from rockwobble.models.support import FLAT
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.protocol import Steps
 from rockwobble.multibody.reaction import EARLY, sure_tilt
@@ -48,7 +49,7 @@ def opening(share: float, rise: float) -> list[Diagnostic]:
     scene = Scene(
         body=BODY,
         start=start,
-        support="flat",
+        support=FLAT,
         friction=1.0,
         time_step=STEP,
         gravity=GRAVITY,

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from rockwobble.models import Cylinder, InitialState
+from rockwobble.models.support import FLAT, RECESS, Support
 from rockwobble.multibody.engines.mujoco import MujocoEngine
 from rockwobble.multibody.engines.mujoco_scene import MujocoSettings, compile_scene
 from rockwobble.multibody.reaction import HALF_WINDOW, ForceSamples, force_of_steps
@@ -16,8 +17,8 @@ from rockwobble.multibody.scene import Scene, scaled_body, starting_state
 STEP = 1e-4
 
 
-@pytest.mark.parametrize("support", ["recess", "flat"])
-def test_force_of_a_step_is_that_of_the_engines_own_contacts(support: str) -> None:
+@pytest.mark.parametrize("support", [RECESS, FLAT])
+def test_force_of_a_step_is_that_of_the_engines_own_contacts(support: Support) -> None:
     # pushed sideways as by the ground, so that friction has work to do
     body = scaled_body(Cylinder(semidiagonal=6.0, tan_alpha=0.5), 1.0)
     initial = InitialState(0.2, tilt_rate=0.1, rolling_angle=0.7, rolling_rate=0.5)

@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.models.support import FLAT
 from rockwobble.multibody.engines.mujoco import MujocoEngine
 from rockwobble.multibody.excitation import StepMeans
 from rockwobble.multibody.kinematics import axis_of, unwrap_twist
@@ -29,7 +30,7 @@ def scene_of(start: Start) -> Scene:
     return Scene(
         body=BODY,
         start=start,
-        support="flat",
+        support=FLAT,
         friction=1.0,
         time_step=STEP,
         gravity=9.81,

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from rockwobble.models import Cylinder, InitialState
+from rockwobble.models.support import RING
 from rockwobble.multibody.engines.mujoco_scene import MujocoSettings, compile_scene
 from rockwobble.multibody.kinematics import axis_of
 from rockwobble.multibody.ring import (
@@ -151,7 +152,7 @@ def _wall_contacts(
     scene = Scene(
         body=body,
         start=starts[0],
-        support="ring",
+        support=RING,
         friction=1.0,
         time_step=1e-4,
         gravity=9.81,

@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 
 import rockwobble.models
 from rockwobble.models import Cylinder, InitialState
+from rockwobble.models.support import RING, SUPPORTS
 from rockwobble.multibody.engines.mujoco import MujocoEngine
 from rockwobble.multibody.engines.mujoco_scene import MujocoSettings, _rim_acceleration, compile_scene
 from rockwobble.multibody.ring import RingSettings, take_ring, wall_feet, wall_orientations
@@ -148,7 +149,7 @@ def _compiled(
     scene = Scene(
         body=body,
         start=starting_state(body, None if standing else InitialState(0.1), 1.0),
-        support=support,
+        support=SUPPORTS[support],
         friction=1.0,
         time_step=1e-4,
         gravity=9.81,
@@ -157,7 +158,7 @@ def _compiled(
     )
     settings = MujocoSettings.resolve({"standing_corners": standing_corners}, 1e-4)
     if support == "ring" and ring is None:
-        _, ring = take_ring({}, "ring", cylinder.tan_alpha)
+        _, ring = take_ring({}, RING, cylinder.tan_alpha)
     return compile_scene(scene, settings, standing=standing, ring=ring)
 
 

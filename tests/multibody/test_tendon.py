@@ -21,6 +21,7 @@ from rockwobble.models import (
     WobblingFrame,
     el_centro_1940,
 )
+from rockwobble.models.support import SUPPORTS
 from rockwobble.multibody.engines.mujoco import MujocoEngine
 from rockwobble.multibody.engines.registry import engine_facts, find_engine
 from rockwobble.multibody.scene import Scene, scaled_body, starting_state
@@ -259,7 +260,7 @@ def test_beyond_the_balance_of_weight_and_tendon_it_falls_and_short_of_it_it_doe
     scene = Scene(
         body=shape,
         start=starting_state(shape, None, 1.0),
-        support="recess",
+        support=SUPPORTS["recess"],
         friction=1.0,
         time_step=1e-4,
         gravity=G,
