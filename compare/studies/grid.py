@@ -160,7 +160,7 @@ class Grid(Brief, GridPlan):
             require_one_of("a model of a grid", model, MODELS)
         planar = [name for name in ("plane", "restitution") if name in self.options]
         if planar and tuple(self.models) != ("planar",):
-            raise ValueError(f"{planar[0]} is of planar motion, got models {', '.join(self.models)}")
+            raise ValueError(f"{planar[0]} belongs to planar motion, got models {', '.join(self.models)}")
         for name in ("semidiagonals", "tan_alphas", "scales"):
             object.__setattr__(self, name, _axis(name, getattr(self, name), zero=name == "scales"))
         if self.rows > MOST_RUNS:

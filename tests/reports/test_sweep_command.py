@@ -35,7 +35,7 @@ def call(*arguments: str) -> int:
         (["no-such-suite"], "no-such-suite"),
         (["quick", "--units", "g"], "--units does not go with a suite, got quick"),
         (["quick", "--semidiagonal", "3"], "--semidiagonal does not go with a suite, got quick"),
-        (["--plane", "1"], "plane is of planar motion, got models recess"),
+        (["--plane", "1"], "plane belongs to planar motion, got models recess"),
         (["--workers", "0"], "'--workers': must be at least 1, got 0"),
         (["--chunk", "0"], "'--chunk': must be at least 1, got 0"),
         (["--gravity", "-1"], "gravity must be above 0, got -1"),

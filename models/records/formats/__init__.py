@@ -118,4 +118,4 @@ def read_components(file: RecordFile, options: ReadingOptions) -> list[Component
                 options.settled_step(component.path.name, component.time_step)
             return [without_filled_end(component) for component in components]
     file.text  # noqa: B018 - says that the file is binary where it is
-    raise ValueError(f"{file.name} is of no format that is read here")
+    raise ValueError(f"{file.name} has no format that can be read")

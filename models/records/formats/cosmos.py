@@ -89,9 +89,7 @@ def _component(
     if "accel" not in kind:
         return None
     if "raw" in kind or code in (50, 51):
-        raise ValueError(
-            f"{where}: holds raw counts (V0), which no factor here turns: give the V1 or V2 file"
-        )
+        raise ValueError(f"{where}: holds raw counts (V0), which cannot be converted: give the V1 or V2 file")
     if code not in _UNITS:
         raise ValueError(f"{where}: the unit {unit!r} ({code}) is no unit of acceleration that is read here")
     if len(integers) <= _AZIMUTH or len(reals) <= _PEAK:
