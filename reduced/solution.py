@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -38,6 +39,13 @@ class Demands(NamedTuple):
     friction: Array  # (n,) horizontal over normal force; inf where the normal force is not positive
     moment: Array  # (n,) the restraining one, over the weight [m]
     open_base: NDArray[np.bool_]  # (n,) moving, at a tilt of CLOSED_TILT alpha or more
+
+
+@cache
+def _pass_columns() -> pd.Index:
+    import pandas as pd
+
+    return pd.Index(["time", "minimum_tilt", "angle_of_turn", "resolved"])
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -134,15 +142,16 @@ class Solution(Brief):
             & (motion[:-2] == motion[2:])
             & (np.minimum(tilt[:-2], tilt[2:]) > tilt[1:-1] * (1.0 + 100.0 * self.problem.rtol))
         )
-        # made at once: a table put together in two steps takes longer than many a run
-        return pd.DataFrame(
-            {
-                "time": time[1:-1][found],
-                "minimum_tilt": tilt[1:-1][found],
-                "angle_of_turn": (angle[2:] - angle[:-2])[found],
-                "resolved": np.ones(np.count_nonzero(found), dtype=bool),
-            }
+        columns = (
+            time[1:-1][found],
+            tilt[1:-1][found],
+            (angle[2:] - angle[:-2])[found],
+            np.ones(np.count_nonzero(found), dtype=bool),
         )
+        # made at once and named after: names take longer than many a run
+        table = pd.DataFrame(dict(enumerate(columns)))
+        table.columns = _pass_columns()
+        return table
 
     def assumptions(self, until: float) -> Assumptions:
         """Return whether contact and friction held until a time [s]; solved again, between its steps too.

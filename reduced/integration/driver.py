@@ -89,19 +89,22 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         while run.status == COMPLETED:
             jumps = False
             if now >= end:
+                stays = False  # no `continue` here, after which references would be counted in each step
                 if following and not run.resting and departs(body, run.y[0], momenta(run.y)[0]):
                     longest, since, _ = turn_since(log, still, now)
-                    if longest <= longest_stay(body) and not (grows and has_turned(log, still)):
+                    stays = longest <= longest_stay(body) and not (grows and has_turned(log, still))
+                    if stays:
                         end = since + 1.01 * longest_stay(body)
-                        continue
-                if following or run.resting:
-                    break
-                if has_turned(log, still) and not (grows and may_rise_above(body, momenta, run.y, run.peak)):
-                    break
-                if resists and hold(body, options.rtol, run.y, _STILL_GROUND, _STILL_GROUND) == inf:
-                    break
-                end, following, mark = now + _LONGEST / body.p, True, mark_of(run.y, log)
-                index, jumps = len(record), True
+                if not stays:
+                    if following or run.resting:
+                        break
+                    rises = grows and may_rise_above(body, momenta, run.y, run.peak)
+                    if has_turned(log, still) and not rises:
+                        break
+                    if resists and hold(body, options.rtol, run.y, _STILL_GROUND, _STILL_GROUND) == inf:
+                        break
+                    end, following, mark = now + _LONGEST / body.p, True, mark_of(run.y, log)
+                    index, jumps = len(record), True
             piece = piece_of_record(record, time_step, index, now, end)
             if now == 0.0 and not resting and initial[1] == 0.0:  # a release at rest is a turning point
                 back = turns_back(body, derivative(body, initial, piece.a)[1])

@@ -77,7 +77,7 @@ _SERIES, _LONGEST_SERIES = 0.5, 1e-3
 _FIRST_STEP = 1e-6
 
 
-@jit
+@inlined  # a call finds code of another rounding in the process that compiles it than where it is loaded
 def _planar_derivative(body: Body, y: State, a: Vector) -> State:
     free = planar_rhs(body, y[0], sin_cos(y[2])[1], a[0], a[2])
     s, c = sin_cos(y[0])
