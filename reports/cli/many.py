@@ -135,7 +135,11 @@ def spectrum(
     record: Record,
     plan: SpectrumPlan,
     steel: Steel,
-    tan_alpha: Annotated[float, options.body(options.SLENDERNESS)] = 0.1,
+    tan_alpha: Annotated[float | None, options.body(f"{options.SLENDERNESS} Default: 0.1.")] = None,
+    diameter: Annotated[
+        float | None, options.body("Diameter 2b, in m; with --height, instead of --tan-alpha.")
+    ] = None,
+    height: Annotated[float | None, options.body("Height 2h, in m: a slenderness, for all sizes.")] = None,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-spectrum"),
     overwrite: options.Overwrite = False,
@@ -164,6 +168,7 @@ def spectrum(
 
             from rockwobble.compare.studies.spectrum.maps import intensity_unit, require_cases
 
+            tan_alpha = _slenderness(tan_alpha, diameter, height)
             motion = record.motion()
             assert motion is not None  # without a release there always is one
             intensity_unit(tan_alpha, motion, plan.gravity)
@@ -189,6 +194,17 @@ def spectrum(
                 **dataclasses.asdict(plan),
             )
         show_and_save(found, out)
+
+
+def _slenderness(tan_alpha: float | None, diameter: float | None, height: float | None) -> float:
+    """Return the slenderness that options state, or that of figure 6 of the paper."""
+    if diameter is None and height is None:
+        return 0.1 if tan_alpha is None else tan_alpha
+    if diameter is None or height is None:
+        raise ValueError("--diameter and --height go together, got one without the other")
+    if tan_alpha is not None:
+        raise ValueError("--diameter and --height stand in place of --tan-alpha")
+    return rw.Cylinder.from_dimensions(base_radius=0.5 * diameter, height=height).tan_alpha
 
 
 _COPIES = {"copies", "perturbation"}

@@ -66,6 +66,7 @@ from rockwobble.compare.studies.plans import AdvicePlan, SpectrumPlan
 from rockwobble.compare.studies.single_run import single_run
 from rockwobble.compare.studies.spectrum.maps import intensity_unit, tilt_maps, uplift_factor
 from rockwobble.models import (
+    CLOSED_TILT,
     Case,
     Cylinder,
     GroundMotion,
@@ -402,6 +403,22 @@ def test_no_demand_falls_where_the_record_is_scaled_up(motion, body, monkeypatch
         largest |= {name: value for name, value in demands.items() if value > 0.0}
     assert largest["tilt"] >= PASSED  # it overturns at the end
     assert largest["moment"] > 0.0
+
+
+@pytest.mark.slow
+def test_what_never_opens_its_base_is_compared_with_no_other_support(monkeypatch):
+    """There is nothing to compare, and the chatter of its rim takes the flat-ground model minutes."""
+    monkeypatch.setattr(study, "other_records", lambda _: ({}, ""))
+    nothing = scan_scales(Case(PIER, GroundMotion(np.zeros((9, 2)), 0.1)))
+    monkeypatch.setattr(study, "scan_scales", lambda *_: nothing)
+    monkeypatch.setattr(study, "scan_as_strong", lambda *_: pd.DataFrame(columns=["factor", "peak_tilt"]))
+    threshold = uplift_factor(SHORT, PIER.tan_alpha, 9.81)
+    for factor, opens in ((1.03, False), (1.1, True)):
+        found = advise(Case(PIER, SHORT.scaled(factor * threshold)), copies=20)
+        assert found.moves
+        assert (found.peak > CLOSED_TILT) == opens
+        assert (found.facts["other_support"] is not None) == opens
+        assert ("other support" in set(found.members["group"])) == opens
 
 
 def test_weaker_shaking_of_a_stronger_record_contains_that_of_a_weaker():
