@@ -54,8 +54,13 @@ def test_a_base_that_every_contact_keeps_closed_is_no_error_of_the_model() -> No
     # the model chatters at 1e-7 rad for a fifth of a second, and the engines stand still: by steps alone,
     # which both stand still, the bound was 0.023 for 0.026
     case = dataclasses.replace(case_of(11, records()), duration=5.5)
-    as_it_is, met = found(case, Run("pybullet", "recess"))
+    if "rapier" not in available_engines():
+        pytest.skip("rapier is an extra")
+    as_it_is, met, by_chance, met_there = found(case, Run("rapier", "recess"), Run("pybullet", "recess"))
     assert (as_it_is.outcome, met.outcome) == ("passed", "passed")
+    # which says itself that its contact resolved the first opening of the base by chance
+    assert (by_chance.outcome, met_there.outcome) == ("not run", "passed")
+    assert "there is nothing to compare" in by_chance.note
     assert as_it_is.value < 0.5 * as_it_is.bound
     # [s], where the copy that closes as the contact does is 1 % of alpha apart, to two samples: machine code
     # without multiply-add, tolerances of 1e-7 to 1e-11 and 1e-15 of gravity move it by none
