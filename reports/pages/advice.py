@@ -217,6 +217,8 @@ def _reason_of_trace(found: Advice) -> str:
     if math.isfinite(found.copies_part):
         off = number(found.facts["perturbation"], "percent")
         ends.append(f"copies {off} off spread over half of it from {number(found.copies_part, '.4g')} s on")
+    if found.peak <= CLOSED_TILT:
+        return f"the base hardly opens, by {number(found.peak)} α: trust statistics"
     what = "it falls" if found.overturned else "largest tilt"
     reason = f"{what} at {number(found.response['peak_time'])} s, {', '.join(ends)}"
     return f"{reason}: trust statistics" if trust.kind == "statistics" else reason
@@ -230,9 +232,12 @@ def _reason_of_intensity(found: Advice) -> str:
     if math.isinf(high):
         fell = int(overturned(found.as_strong["peak_tilt"]).sum())
         return f"at {fell} of {len(found.as_strong)} scales, {_STRONG}, it overturns"
+    if high <= CLOSED_TILT:
+        return f"the base hardly opens, by at most {number(high)} α {which}"
     if low == 0.0:
         return f"it stays at rest at some of {which.removeprefix('at ')}"
-    return f"the tilt changes up to {number(max(high / found.peak, found.peak / low))} times {which}"
+    low, peak = max(low, CLOSED_TILT), max(found.peak, CLOSED_TILT)
+    return f"the tilt changes up to {number(max(high / peak, peak / low))} times {which}"
 
 
 def _reason_of_engine(found: Advice) -> str:

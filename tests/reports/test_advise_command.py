@@ -254,6 +254,20 @@ def test_the_first_screen_states_the_columns_and_their_limit(found):
     assert "| one column |" in page_of(mass).markdown()
 
 
+def test_chatter_of_a_closed_base_is_no_change_of_the_response(found):
+    """Of a tilt of 1e-6 alpha and one of 5e-6 alpha neither opens the base: it is not five times as much."""
+    strong = found.as_strong.assign(peak_tilt=np.geomspace(1e-6, 5e-6, len(found.as_strong)))
+    response = {**found.facts["response"], "peak_tilt": 1e-5}
+    tables = {**found.tables, "as_strong": strong}
+    still = dataclasses.replace(changed(found, response=response), tables=tables)
+    assert still.grades["intensity"] == "satisfied"
+    assert "the base hardly opens, by at most 2.53e-5 α" in reasons_of(still)["intensity"]
+    trust = {"kind": "statistics", "until": 3.0, "because": "methods"}
+    assert "the base hardly opens, by 1e-5 α" in reasons_of(changed(still, trust=trust))["trace"]
+    opens = dataclasses.replace(still, tables={**tables, "as_strong": strong.assign(peak_tilt=0.1)})
+    assert opens.grades["intensity"] == "caution"
+
+
 def test_what_stays_at_rest_is_told_from_what_others_do_to_it(found):
     still = changed(found, response={**found.facts["response"], "uplift_time": math.inf, "peak_tilt": 0.0})
     assert not still.moves

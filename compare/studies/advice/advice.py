@@ -303,7 +303,7 @@ class Advice(Results, kind=KIND):
             )
         if shaken and not self.overturned:
             low, high = self.range_as_strong
-            found["intensity"] = grade_intensity(low, self.peak, high)
+            found["intensity"] = grade_intensity(*map(_opened, (low, self.peak, high)))
         found["engine"] = "not tested"
         if verification is not None:
             differs = (verification.outcome == "overturned") != self.overturned or not verification.moves
@@ -574,6 +574,11 @@ def advice_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, object]) -
     return dataclasses.replace(
         found, tables={**tables, "groups": group_table(found.members), "demands": demands}
     )
+
+
+def _opened(tilt: float) -> float:
+    """Return a tilt [alpha], at least that at which a base counts as open: chatter below is no response."""
+    return max(tilt, CLOSED_TILT)  # in this order NaN stays NaN
 
 
 def _moves(outcome: str, uplift_time: float) -> bool:
