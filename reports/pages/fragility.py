@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from rockwobble.compare import Fragility
 from rockwobble.compare.metrics.statistics import FEWEST
@@ -26,9 +26,18 @@ from ..figures.fragility import pictures
 from ..figures.risk import risk_pictures
 from .page import Page
 from .risk import risk_values
+from .table import number
 
 _WALLED = tuple(each for each in SUPPORTS.values() if each.walls)
-_BOUNDED = (NEVER, ALWAYS, EXTRAPOLATED, ONE_MOTION)
+# why a median of overturning is only bounded
+_BOUNDED = {
+    NEVER: "nothing overturns",
+    ALWAYS: "everything overturns",
+    EXTRAPOLATED: "outside the intensities that were run",
+    ONE_MOTION: "all runs that stand are of one motion",
+}
+_QUESTIONS = {"planar": "Planar analysis:", "support": "Support:", "engine": "Engine:"}
+_MOST_WITHIN = 10.0  # margin above which an interval bounds nothing
 # below this probability the counts do not follow a lognormal curve
 _POOR = 0.05
 
@@ -59,44 +68,129 @@ def fragility_values(found: Fragility) -> dict[str, object]:
     efficiency = [
         {**row, "title": MEASURES[str(row["measure"])].title} for row in found.efficiency.to_dict("records")
     ]
+    contrasts = _by_cylinder(
+        [
+            {**_with_known_spread(row, fits), "ratio": known_ratio(row["ratio"])}
+            for rows in answers.values()
+            for row in rows
+        ],
+        [*cylinders, ALL],
+    )
+    several, few = len(cylinders) > 1, any(row["kind"] == TOO_FEW for row in fits)
+    margin = float(found.facts["margin"])
     return {
         "facts": found.facts,
         "risk": risk_values(found),
         "measure": measure,
-        "cylinders": [{"name": name, "slab_mass_ratio": 0.0, **body} for name, body in cylinders.items()],
-        "answers": {
-            question: [{"ratio_most": math.nan, **row} for row in rows if row["cylinder"] == whole]
+        "bodies": list(_bodies(found)),
+        "headline": _headline(fallen, measure.unit, several=several, few=few, compares=bool(contrasts)),
+        "undetermined": [] if few else list(_undetermined(fallen, measure.unit, several=several)),
+        "questions": {
+            _QUESTIONS[question]: [_answer(row, margin) for row in rows if row["cylinder"] == whole]
             for question, rows in answers.items()
+            if any(row["cylinder"] == whole for row in rows)
         },
-        "contrasts": _by_cylinder(
-            [
-                {**_with_known_spread(row, fits), "ratio": known_ratio(row["ratio"])}
-                for rows in answers.values()
-                for row in rows
-            ],
-            [*cylinders, ALL],
-        ),
-        "several": len(cylinders) > 1,
-        "engine_runs": any(each["engine"] is not None for each in found.facts["methods"].values()),
+        "contrasts": contrasts,
         "scaling": _scaling(found, measure.title),
         "fallen": fallen,
-        "overturns": any(row["exceeded"] for row in fallen),
-        "curved": [row for row in fallen if row["kind"] == FITTED],
-        "bounded": [row for row in fallen if row["kind"] in _BOUNDED],
-        "curveless": list(_curveless(fits, several=len(cylinders) > 1)),
-        "few": any(row["kind"] == TOO_FEW for row in fits),
-        "fewest": {"motions": FEWEST, "levels": FEWEST_LEVELS},
+        "remarks": [*_remarks(fallen), *_curveless(fits, several=several)],
+        "few": few,
         **_counts(found),
-        "poor": [row for row in fallen if row["p"] < _POOR],
-        "poor_below": _POOR,
         "states": _states(found),
         "state_columns": [["method", "method", "words"]]
         + [[limit, limit.replace("_", " "), ".3g"] for limit in found.facts["limits"]],
         "walls": any(each["support"] in _WALLED for each in found.facts["methods"].values()),
-        "failed": [{"median_if_not": math.nan, **row} for row in fallen if row["failed"]],
         "efficiency": efficiency,
         "gaps": _gaps(found),
     }
+
+
+def _bodies(found: Fragility) -> Iterator[str]:
+    """One line on each cylinder: its size where there are several, and its slab."""
+    cylinders, methods = found.facts["cylinders"], found.facts["methods"].values()
+    for name, body in cylinders.items():
+        size = f": R = {number(body['semidiagonal'])} m, tan α = {number(body['tan_alpha'])}"
+        line = name + size if len(cylinders) > 1 else name
+        if slab := body.get("slab_mass_ratio", 0.0):
+            line += f", under a slab of {number(slab)} times the mass of its columns"
+            if any(each["engine"] for each in methods):
+                line += ", in an engine one column under a slab that only translates"
+        yield line
+
+
+def _headline(fallen: Sequence[Row], unit: str, *, several: bool, few: bool, compares: bool) -> str:
+    """What the page answers: ratios, medians, that nothing overturns, or that motions are too few."""
+    if few:
+        fewest = f"{FEWEST} motions and {FEWEST_LEVELS} levels"
+        return f"Too few for a curve: a median takes at least {fewest}. Counts only."
+    if compares:
+        mean = ", mean of the cylinders" if several else ""
+        return (
+            f"Ratios of the median overturning intensity (95 % interval){mean}: "
+            "above 1 the first method is unconservative."
+        )
+    if curved := [row for row in fallen if row["kind"] == FITTED]:
+        medians = (f"{_interval(row, 'median', '.3g')} by {_method(row, several)}" for row in curved)
+        return f"Median overturning intensity [{unit}] (95 % interval): {'; '.join(medians)}."
+    if fallen and not any(row["exceeded"] for row in fallen):
+        return "Nothing overturns at these intensities."
+    return ""
+
+
+def _undetermined(fallen: Sequence[Row], unit: str, *, several: bool) -> Iterator[str]:
+    """One sentence on each median of overturning that is only bounded, where something overturns."""
+    for row in fallen if any(row["exceeded"] for row in fallen) else ():
+        if row["kind"] in _BOUNDED:
+            median = f"{number(row['median'])}{'' if unit == '-' else f' {unit}'}"
+            why = _BOUNDED[row["kind"]]
+            if row["kind"] == ONE_MOTION and row["exceeded"] < row["runs"] / 2:
+                why = "all overturning runs are of one motion"
+            yield f"The median of {_method(row, several)} is not determined: {median}, {why}."
+
+
+def _answer(row: Row, margin: float) -> str:
+    """Return a ratio of two medians in words: its interval, whether it is within the margin, its bounds."""
+    line = f"{row['method']} against {row['against']}: "
+    if not math.isfinite(row["ratio"]):
+        return f"{line}no ratio."
+    line += f"{_interval(row, 'ratio')}, {_equivalence(row, margin)}"
+    least, most = row.get("ratio_least", math.nan), row.get("ratio_most", math.nan)
+    if math.isfinite(most) and most > least:
+        line += f"; {number(least, '.2f')} to {number(most, '.2f')} for any outcome of the failed runs"
+    return f"{line}."
+
+
+def _equivalence(row: Row, margin: float) -> str:
+    if row["verdict"] == "beyond":
+        return "not equivalent"
+    within = number(row["within"], "percent")
+    if row["verdict"] == "within":
+        return f"equivalent within {within}"
+    reach = f"up to {within}" if row["within"] < _MOST_WITHIN else "unbounded"
+    return f"inconclusive: interval wider than ±{number(margin, 'percent')} ({reach})"
+
+
+def _remarks(fallen: Sequence[Row]) -> Iterator[str]:
+    """Sentences on curves that the counts do not follow, and on runs that failed."""
+    if poor := [_method(row, True) for row in fallen if row["p"] < _POOR]:
+        yield f"The counts do not follow a lognormal curve (p below {number(_POOR)}): {', '.join(poor)}."
+    for row in fallen:
+        if row["failed"]:
+            runs = row["failed"] + row["runs"]
+            line = f"{_method(row, True)} failed in {row['failed']} of {runs} runs, which are left out"
+            if math.isfinite(row.get("median_if_not", math.nan)):
+                exceeded, stands = number(row["median_if_exceeded"]), number(row["median_if_not"])
+                line += f": the median is {exceeded} if they all overturn, {stands} if none does"
+            yield f"{line}."
+
+
+def _method(row: Row, several: bool) -> str:
+    return f"{row['method']} of {row['cylinder']}" if several else str(row["method"])
+
+
+def _interval(row: Row, name: str, form: str = ".2f") -> str:
+    value, low, high = (number(row[f"{name}{end}"], form) for end in ("", "_low", "_high"))
+    return f"{value} ({low} to {high})"
 
 
 # why a limit has no curve, though some runs exceed it and some do not
@@ -114,8 +208,8 @@ def _curveless(fits: Iterable[Row], *, several: bool) -> Iterator[str]:
         for row in fits:
             # what bounds the median of overturning stands above the tables
             if row["kind"] == kind and not (kind == ONE_MOTION and row["limit"] == OVERTURNED):
-                name = f"{row['method']} of {row['cylinder']}" if several else str(row["method"])
-                methods.setdefault(str(row["limit"]).replace("_", " "), []).append(name)
+                limit = str(row["limit"]).replace("_", " ")
+                methods.setdefault(limit, []).append(_method(row, several))
         limits: dict[tuple[str, ...], list[str]] = {}
         for limit, names in methods.items():
             limits.setdefault(tuple(names), []).append(limit)

@@ -122,7 +122,7 @@ def test_each_reason_for_no_curve_is_one_line_with_all_limits_of_it(cylinders):
     kinds = {0: "separated", 1: "not increasing", 2: "one motion", 3: "fitted"}
     fits = found.fits.assign(kind=[kinds[place % 4] for place in range(len(found.fits))])
     values: Any = fragility_values(dataclasses.replace(found, tables={**found.tables, "fits": fits}))
-    lines = values["curveless"]
+    lines = [line for line in values["remarks"] if line.startswith("No curve")]
     assert len(lines) == 3
     for kind, words in (
         ("separated", "(separated)"),
