@@ -184,7 +184,11 @@ class Page:
                 if after is not None and not str(after).startswith("- "):
                     console.print()
             else:
-                console.print(Markdown(part), highlight=False)
+                with console.capture() as shown:
+                    console.print(Markdown(part), highlight=False)
+                # a list begins with an empty line, which would part its items where one has a command
+                within = place and isinstance(parts[place - 1], Command) and part.startswith("- ")
+                console.out(shown.get().lstrip("\n") if within else shown.get(), end="", highlight=False)
                 if after is not None and not isinstance(after, Command):
                     console.print()
 

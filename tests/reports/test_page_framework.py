@@ -219,5 +219,6 @@ def test_a_command_of_a_page_is_copied_whole(columns, width):
         assert shlex.split("\n".join(copied).replace("\\\n", "")) == shlex.split(command)
         # one option alone may be longer than the line
         assert all(len(line) <= width or line.split()[0].startswith("--") for line in copied)
+    assert "" not in [line.strip() for line in lines[begins[0] : begins[1]]]  # one list
     for words in ("Title", "An engine:", "Another:", "Words", "b/h", "c d"):
         assert words in printed
