@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
 
 from .number_checks import require_one_of, require_positive
@@ -13,6 +14,8 @@ AGREEMENT = 0.01
 # tilt below which the base counts as closed: no demand is taken there [alpha]. The rim has lifted by two
 # thousandths of alpha b or less, to which ground and joint give way before they feel the edge of a rigid body
 CLOSED_TILT = 1e-3
+# tilt at which the side lies on the ground: the end and the peak of a run that overturns [rad]
+OVERTURNED_TILT = 0.5 * math.pi
 REFERENCES = ("own", *MODELLED)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -10,7 +9,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from .argument_kinds import with_argument_kinds
-from .bounds import Bounds
+from .bounds import OVERTURNED_TILT, Bounds
 from .cylinder import Cylinder, WobblingFrame
 from .ground_motion import GroundMotion
 from .number_checks import quoted, require_finite, require_positive
@@ -56,7 +55,7 @@ class InitialState(Brief):
     def __post_init__(self) -> None:
         for name, unit in _UNITS.items():
             object.__setattr__(self, name, require_finite(name, getattr(self, name), unit))
-        if not 0.0 <= self.tilt < 0.5 * math.pi:
+        if not 0.0 <= self.tilt < OVERTURNED_TILT:
             raise ValueError(f"tilt must be at least 0 and below pi/2 [rad], got {self.tilt!r}")
         if self.tilt == 0.0 and (self.tilt_rate or self.rolling_rate):
             raise ValueError("tilt must be above 0 where tilt_rate or rolling_rate is given, got 0")

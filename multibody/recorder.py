@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.plain_json import fields_of
 
 from .guard import EnergyWatch, couple_power, energy_scale, first_breach
@@ -36,7 +37,7 @@ from .scene import Array, Scene, Start
 Indices = NDArray[np.intp]
 T = TypeVar("T", Steps, Kinematics, Wall)
 
-OVERTURNED = 0.5 * math.pi - 1e-3  # [rad] contact of the side may stop the fall a little before pi/2
+_SIDE_TOUCHES = OVERTURNED_TILT - 1e-3  # [rad] contact of the side may stop the fall a little before
 
 FLIGHT = 1e-3  # of b, height that is flight: a rim that slides may hover below it in MuJoCo
 SLIP = 0.01  # of b, slip that is more than the creep of a rim that rolls
@@ -324,12 +325,12 @@ class Recorder:
     def _stop(self, time: Array, state: Kinematics, gained: Array, wall: Wall | None) -> int:
         """Number of steps of this chunk that belong to the result."""
         stop = len(time)
-        over = np.flatnonzero(state.tilt >= OVERTURNED)
+        over = np.flatnonzero(state.tilt >= _SIDE_TOUCHES)
         if len(over):
             stop = int(over[0])
             self.ended = "overturned"
             rate = max(float(state.tilt_rate[stop]), 1e-3)
-            self.end_time = float(time[stop] + max(0.5 * math.pi - state.tilt[stop], 0.0) / rate)
+            self.end_time = float(time[stop] + max(OVERTURNED_TILT - state.tilt[stop], 0.0) / rate)
         breach = first_breach(
             state, gained, self._scene.body, self._scene.gravity, self._scene.support.guided, wall,
             self.energy.largest,

@@ -48,6 +48,7 @@ from typing import Annotated
 import numpy as np
 
 from rockwobble.models import Cylinder
+from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.support import Support
 
 from .kinematics import axis_of
@@ -139,7 +140,7 @@ def clearance_needed(cylinder: Cylinder, tilt: float, inclination: float) -> flo
     >>> round(clearance_needed(pier, tilt=0.1, inclination=0.0), 3)  # 2h/b sin(0.1)
     0.998
     """
-    if not 0.0 <= tilt <= 0.5 * math.pi:
+    if not 0.0 <= tilt <= OVERTURNED_TILT:
         raise ValueError(f"tilt must be from 0 to pi/2 [rad], got {tilt!r}")
     if not 0.0 <= inclination < 0.5 * math.pi:
         raise ValueError(f"inclination must be from 0 to below pi/2 [rad], got {inclination!r}")

@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, InitialState
+from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.support import Support
 
 from .tendon import SceneTendon
@@ -247,7 +248,7 @@ class Scene:
         alpha = math.atan(self.body.tan_alpha)
         if self.tendon is None:
             return alpha
-        low, high = alpha, 0.5 * math.pi
+        low, high = alpha, OVERTURNED_TILT
         if self._couple(high) >= 0.0:
             return math.inf
         while low < (middle := 0.5 * (low + high)) < high:

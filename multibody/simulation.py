@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace, WobblingFrame
+from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_positive, require_sample_step
 from rockwobble.models.support import RECESS, support_named
@@ -272,7 +273,7 @@ def _rows_to_end(recorder: Recorder) -> Array:
         return rows
     last = recorder.last_row.copy()
     if recorder.ended == "overturned":
-        last[0], last[1] = recorder.end_time, 0.5 * math.pi
+        last[0], last[1] = recorder.end_time, OVERTURNED_TILT
     rows = rows[rows[:, 0] < last[0]]
     return np.vstack([rows, last])
 
@@ -281,7 +282,7 @@ def _peak(recorder: Recorder, outcome: str, rows: Array) -> float:
     if outcome in NO_PEAK:
         return math.nan
     if outcome == "overturned":
-        return 0.5 * math.pi
+        return OVERTURNED_TILT
     maxima = [point.tilt for point in recorder.points if point.is_maximum and point.time <= recorder.end]
     # a tilt that still rises at the end is largest in its last sample
     return max([recorder.peak, float(rows[-1, 1]), *maxima])

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Tendon, WobblingFrame
+from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.cpus import in_threads, usable_cpus
 from rockwobble.models.number_checks import quoted
 from rockwobble.models.support import RECESS
@@ -181,7 +182,7 @@ def peak_tilts_of_case(
 
 def _peak(result: IntegrationResult) -> float:
     if result.status == OVERTURNED:
-        return 0.5 * math.pi
+        return OVERTURNED_TILT
     return result.peak if result.status < OVERTURNED else math.nan
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Diagnostic, Run, Trace
+from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.number_checks import require_sample_step
 from rockwobble.models.support import RECESS
 from rockwobble.models.trace import NO_PEAK
@@ -135,7 +136,7 @@ def _trace(
         moving = np.append(moving, True)
     full = six_columns(states, azimuth)
     if overturned:
-        full[-1, 0] = 0.5 * math.pi  # the last of a Newton iteration
+        full[-1, 0] = OVERTURNED_TILT  # the last of a Newton iteration
     outcome = _OUTCOMES.get(result.status, "failed")
     extrema = result.extrema
     extrema[:, 2] += azimuth
@@ -160,7 +161,7 @@ def _trace(
         twist=full[:, 4],
         contact_point=solution.contact_point(moving),
         centre_of_mass=solution.centre_of_mass(),
-        peak_tilt=0.5 * math.pi if overturned else math.nan if outcome in NO_PEAK else result.peak,
+        peak_tilt=OVERTURNED_TILT if overturned else math.nan if outcome in NO_PEAK else result.peak,
         outcome=outcome,
         uplift_time=result.uplift_time,
         uplift_direction=result.uplift_direction + azimuth,
@@ -207,7 +208,7 @@ def _yield(problem: Problem, result: IntegrationResult) -> Iterator[Diagnostic]:
     tendon = case.tendon
     if tendon is None or tendon.yield_force is None or result.status not in _OUTCOMES:
         return
-    largest = tendon.tension(case.cylinder, 0.5 * math.pi if result.status == OVERTURNED else result.peak)
+    largest = tendon.tension(case.cylinder, OVERTURNED_TILT if result.status == OVERTURNED else result.peak)
     if largest <= tendon.yield_force:
         return
     turns = result.extrema[result.extrema[:, 1] > 0.0]

@@ -19,6 +19,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from rockwobble.models import Case, GroundMotion, InitialState
+from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.cylinder import PIER
 
 from . import lagrange
@@ -229,7 +230,7 @@ def falls(subject: Subject, support: str) -> Iterator[Result]:
     """A release beyond the balance ends with the side on the ground, as an outcome."""
     start = InitialState(1.5 * PIER.alpha, rolling_rate=0.1)
     found = subject.simulate(Case(PIER, initial=start, duration=4.0, friction=5.0), support)
-    ends = found.outcome == "overturned" and found.tilt[-1] == found.peak_tilt == 0.5 * math.pi
+    ends = found.outcome == "overturned" and found.tilt[-1] == found.peak_tilt == OVERTURNED_TILT
     right = ends and bool((np.diff(found.time) > 0.0).all())
     yield at_most(
         "end of a fall", float(not right), subject.tolerance_bound(0.0, "at pi/2"), note=found.outcome

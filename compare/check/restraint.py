@@ -14,6 +14,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Tendon, Trace
+from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.cylinder import PIER
 
 from .lagrange import TENDON, Shape, energy, potential, shape_of, slope
@@ -143,7 +144,7 @@ def _couple(shape: Shape, tilt: float) -> float:
 def balance(subject: Subject, support: str) -> Iterator[Result]:
     """A release within the tilt at which the static couple vanishes comes back, one beyond it falls."""
     shape = shape_of(PIER, TENDON)
-    low, high = PIER.alpha, 0.5 * math.pi
+    low, high = PIER.alpha, OVERTURNED_TILT
     for _ in range(60):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if _couple(shape, middle) > 0.0 else (low, middle)

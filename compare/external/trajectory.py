@@ -13,6 +13,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Cylinder, Diagnostic, Run, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
+from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.shown import Brief
 from rockwobble.models.support import EXTERNAL
 from rockwobble.multibody.passes import TurningPoint, passes_between, turning_points
@@ -23,8 +24,8 @@ from .motion import SAME_TIME, Motion, motion_at
 from .pose import Poses, poses_of
 from .table import Array, Table, name_list, read_tables
 
-# the side lies on the ground, as far as a measurement says [rad]
-_FALLEN = 0.5 * math.pi - 0.01
+# a measurement of a cylinder on its side may be off by this [rad]
+_FALLEN = OVERTURNED_TILT - 0.01
 # tilt by which a file that is read otherwise may be off at the start, in units of alpha
 _SAME_START = 0.1
 
@@ -200,7 +201,7 @@ def trajectory_of(table: Table, given: External, case: Case) -> Trace:
         contact_point=contact,
         centre_of_mass=centre,
         passes=_passes(poses, begin.time),
-        peak_tilt=0.5 * math.pi if fell else _peak(poses),
+        peak_tilt=OVERTURNED_TILT if fell else _peak(poses),
         outcome="overturned" if fell else "stands",
         rests=not fell and rests,
         facts=tuple(_facts(poses)),

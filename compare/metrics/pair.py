@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import AGREEMENT, Cylinder, GroundMotion, Trace
+from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.shown import Brief
 
 FloatArray = NDArray[np.float64]
@@ -140,7 +141,7 @@ def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
 
     The models decide, also where a run ends in the middle of a fall, and then give pi/2 and no less.
     """
-    return np.asarray(peak_tilts, dtype=np.float64) >= 0.5 * math.pi
+    return np.asarray(peak_tilts, dtype=np.float64) >= OVERTURNED_TILT
 
 
 def outcome_of_peak(peak: float) -> str:

@@ -22,6 +22,8 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
+from rockwobble.models.bounds import OVERTURNED_TILT
+
 from ..body import Body
 from ..restoring import balance, couple, couple_slope, sigma
 from ._shape import T, base_inertia, beta, inertia_growth
@@ -115,7 +117,7 @@ def highest_without_spin(body: Body, R: float, tilt: float, tilt_rate: float) ->
 
 def _edge(body: Body) -> float:
     """Return the tilt beyond which nothing comes back [rad]: the balance, or where the side is down."""
-    return min(balance(body), 0.5 * math.pi)
+    return min(balance(body), OVERTURNED_TILT)
 
 
 def _barrier(body: Body, R: float, t0: float, rolling_rate: float) -> float | None:

@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import Cylinder, Tendon
+from rockwobble.models.bounds import OVERTURNED_TILT
 
 from ..body import Body, TiedBody
 from ..restoring import balance, couple
@@ -63,8 +64,8 @@ def _of_tilts(function: Callable[..., Array]) -> _OfTilts:
     ) -> float | Array:
         theta, largest, name = np.asarray(tilt, dtype=float), cylinder.alpha, "alpha"
         if tendon is not None:
-            largest = min(balance(body_under(cylinder, gravity, tendon)), 0.5 * np.pi)
-            name = "the balance tilt" if largest < 0.5 * np.pi else "pi/2"
+            largest = min(balance(body_under(cylinder, gravity, tendon)), OVERTURNED_TILT)
+            name = "the balance tilt" if largest < OVERTURNED_TILT else "pi/2"
         outside = ~((theta > 0.0) & (theta < largest))  # also where it is not a number
         if np.any(outside):
             first = float(np.extract(outside, theta)[0])

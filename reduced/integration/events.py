@@ -11,11 +11,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.models.bounds import OVERTURNED_TILT
+
 from .._compile import inlined, jit
 from ..body import Body
 from ..rolling import PIVOTS
 from .record import Vector, ground
-from .result import HALF_PI, MAXIMUM, MINIMUM, State
+from .result import MAXIMUM, MINIMUM, State
 from .stepping import Stepper
 from .systems import System, make_is_flat
 
@@ -236,14 +238,14 @@ def make_events(system: System, stepper: Stepper) -> Events:
         turns = turn.kind != NO_TURN
         # with spin the tilt stays positive; without it the base meets the ground
         lands = trial.flat and (y_new[0] <= 0.0 or (turns and turn.tilt <= 0.0))
-        overturns = y_new[0] >= HALF_PI
+        overturns = y_new[0] >= OVERTURNED_TILT
         if not (lands or overturns):
             return Ending(h, y_new, lands, overturns, turns)
         # a hop within one step lands after its highest point, a dip before its lowest
         hops = lands and turns and turn.tilt > 0.0
         first = turn.at if hops else 0.0
         last = turn.at if lands and turns and not hops else h
-        h, y_new = crossing(body, work, trial.path, y, first, last, HALF_PI if overturns else 0.0)
+        h, y_new = crossing(body, work, trial.path, y, first, last, OVERTURNED_TILT if overturns else 0.0)
         return Ending(h, y_new, lands, overturns, hops)
 
     return Events(attempt, ending_of)

@@ -13,6 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.models.bounds import OVERTURNED_TILT
+
 from .._compile import inlined, jit
 from ..body import Body
 from ..equations import base_inertia, energy
@@ -24,7 +26,6 @@ from .events import NONE, REPEATED, Turn, make_events
 from .record import Piece, Vector, ground
 from .result import (
     COMPLETED,
-    HALF_PI,
     MAXIMUM,
     MINIMUM,
     OVER_BUDGET,
@@ -332,7 +333,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
             restart = trial.h > 0.0
             status = STALLED if h_next < _LEAST_STEP and not restart else COMPLETED
         elif falls(body, trial.y, later, index):
-            peak, status = HALF_PI, OVERTURNED
+            peak, status = OVERTURNED_TILT, OVERTURNED
         else:
             ending = ending_of(body, work, y, trial)
             begin = time_in(piece, elapsed)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import pi
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +17,6 @@ REST, COMPLETED, OVERTURNED, OVER_BUDGET, STALLED = range(5)  # how a time integ
 UNDECIDED = 6  # rounding decides whether it falls (`balance`)
 TURNED = 5  # while it runs: the tilt has reached its first maximum after the duration
 MAXIMUM, MINIMUM = 1.0, -1.0
-HALF_PI = 0.5 * pi  # the tilt at which the side lies on the ground
 
 
 class Options(NamedTuple):

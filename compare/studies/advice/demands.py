@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, Trace
+from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.support import support_named
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody.ring import rim_overhang
@@ -73,7 +74,7 @@ def balance_of(case: Case) -> float:
     """Return the balance tilt, at most pi/2 [rad]."""
     if case.tendon is None:
         return case.cylinder.alpha
-    return min(reduced.balance_tilt_of_case(case), 0.5 * math.pi)
+    return min(reduced.balance_tilt_of_case(case), OVERTURNED_TILT)
 
 
 def demands_of(trace: Trace) -> dict[str, float]:
@@ -111,7 +112,7 @@ def demands_of(trace: Trace) -> dict[str, float]:
     tendon = trace.case.tendon
     pull = {}
     if tendon is not None:
-        pull = {_TENDON: tendon.tension(cylinder, min(largest * cylinder.alpha, 0.5 * math.pi))}
+        pull = {_TENDON: tendon.tension(cylinder, min(largest * cylinder.alpha, OVERTURNED_TILT))}
     if not moving.any():
         for names, *_ in ends:
             found |= dict(zip(names, (0.0, 0.0, 1.0), strict=True))

@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run
+from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.case import REDUCED_MODELS
 from rockwobble.models.number_checks import quoted, require_each, require_increasing, require_one_of
 from rockwobble.models.support import MODELLED, RECESS, SUPPORTS
@@ -442,7 +443,7 @@ def _hold_of(body: Cylinder, asked: FragilityPlan) -> tuple[float, float]:
     if tendon is None:
         return 1.0, 1.0
     balance = reduced.balance_tilt_of_case(Case(body, duration=1.0, gravity=asked.gravity, tendon=tendon))
-    return tendon.uplift_factor(body), math.sqrt(min(balance, 0.5 * math.pi) / body.alpha)
+    return tendon.uplift_factor(body), math.sqrt(min(balance, OVERTURNED_TILT) / body.alpha)
 
 
 def _together(singles: Sequence[Task]) -> Iterator[Task]:

@@ -22,6 +22,7 @@ from scipy.integrate import solve_ivp
 
 from rockwobble import reduced
 from rockwobble.models import Case, GroundMotion, Run, Trace
+from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.case import RECESS_MODEL, REDUCED_MODELS
 from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.support import RECESS, SUPPORTS
@@ -305,7 +306,7 @@ def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: fl
         return float(y[1])
 
     def overturns(t: float, y: Array) -> float:
-        return float(y[0]) - 0.5 * math.pi
+        return float(y[0]) - OVERTURNED_TILT
 
     turns_back.direction, overturns.terminal = -1.0, True  # type: ignore[attr-defined]
     with np.errstate(all="ignore"):

@@ -13,6 +13,7 @@ from rockwobble.models.support import FLAT, RECESS, RECESSES_FIRST, RING, SUPPOR
 from rockwobble.models.trace import NO_PEAK
 
 from ...comparison.prediction import IN_TIME
+from ...metrics.pair import overturned
 from ...metrics.statistics import MARGIN, log_ratios, quantile_interval
 from ..ensemble import contrast_row, pairs
 from .plan import EL_CENTRO, RELEASE
@@ -45,6 +46,7 @@ SMALL = 0.05  # of the peak tilt: less cannot be told from chance
 _CONFIRMS = 0.5
 # and contradicts it where turn or period is off by more than this; the step of an engine errs by less
 _CONTRADICTS = 1e-3
+_ROUNDING = 1e-9  # relative, of a peak that was stored over alpha
 
 
 def column(table: pd.DataFrame, name: str) -> Array:
@@ -191,9 +193,9 @@ def _nine_in_ten(values: Array) -> float:
 
 
 def _fell(table: pd.DataFrame, name: str) -> Flags:
-    """Whether the peaks of a column, over alpha, are those of overturned runs, which end at pi/2."""
+    """Whether the peaks of a column, over alpha, are those of overturned runs."""
     tilts = column(table, name) * np.arctan(column(table, "tan_alpha"))
-    return np.asarray(tilts >= 0.5 * math.pi * (1.0 - 1e-9))
+    return overturned(tilts * (1.0 + _ROUNDING))
 
 
 def _changes(table: pd.DataFrame, name: str) -> Array:
