@@ -62,9 +62,9 @@ app = typer.Typer(
     name="rockwobble",
     help=_help(
         "Does a free-standing cylinder overturn in an earthquake, and is the model that says so reliable?",
-        "rockwobble advise --record-x EW.AT2 --record-y NS.AT2    verdict, reliability, design demands",
-        "rockwobble compare --record-x EW.AT2 --record-y NS.AT2   time of agreement of model and engines",
-        "rockwobble fragility --p695                              probability of overturning",
+        "rockwobble advise --record-x EW.AT2 --record-y NS.AT2    verdict and demands",
+        "rockwobble compare --record-x EW.AT2 --record-y NS.AT2   time of agreement",
+        "rockwobble fragility --p695                              fragility curves",
     ),
     context_settings={"help_option_names": ["-h", "--help"]},
     rich_markup_mode="rich",

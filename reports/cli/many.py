@@ -139,7 +139,9 @@ def spectrum(
     diameter: Annotated[
         float | None, options.body("Diameter 2b, in m; with --height, instead of --tan-alpha.")
     ] = None,
-    height: Annotated[float | None, options.body("Height 2h, in m: a slenderness, for all sizes.")] = None,
+    height: Annotated[
+        float | None, options.body("Height 2h, in m; with --diameter, only their ratio counts.")
+    ] = None,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-spectrum"),
     overwrite: options.Overwrite = False,

@@ -181,7 +181,7 @@ def engine_names(names: list[str] | None) -> list[str] | None:
 
 
 ENGINES = "Engine: mujoco, pybullet, dart, drake, exudyn, rapier or another that is installed"
-_SUPPORTS = f"Support: {SUPPORT_WORDS}; those with walls by engines alone"
+_SUPPORTS = f"Support: {SUPPORT_WORDS}; a support with walls needs an engine"
 _DEFAULT = "Default: MuJoCo and PyBullet (DART where PyBullet is missing)"
 Engines = Annotated[
     list[str] | None, method(f"{ENGINES}; may be repeated. {_DEFAULT}.", callback=engine_names)

@@ -38,7 +38,8 @@ def documented() -> set[str]:
             if found := re.match(r"\.\. currentmodule:: (\S+)", line):
                 module = found.group(1)
             elif found := re.match(r"\.\. auto(?:class|function|exception|data):: (\S+)", line):
-                names.add(f"{module}.{found.group(1)}")
+                name = found.group(1)
+                names.add(name if name.startswith("rockwobble.") else f"{module}.{name}")
             elif line == ".. rockwobble-studies::":
                 names |= {name for both in STUDIES.values() for name in both}
     return names
