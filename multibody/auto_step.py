@@ -24,11 +24,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rockwobble.models import Diagnostic, Trace
+from rockwobble.models import AGREEMENT, Diagnostic, Trace
 
 from .guard import LARGEST_STEP
 
-_DIVERGED = 0.01  # of alpha
 _SAME_TIME = 1e-9  # of the length of a run
 
 Progress = Callable[[float], None]
@@ -59,7 +58,7 @@ def closeness(coarse: Trace, fine: Trace, alpha: float) -> Closeness:
     """Return the closeness of two traces in tilt, by their samples."""
     count = common_count([coarse, fine])
     distance = np.abs(coarse.tilt[:count] - fine.tilt[:count])
-    beyond = np.flatnonzero(distance > _DIVERGED * alpha)
+    beyond = np.flatnonzero(distance > AGREEMENT * alpha)
     if not len(beyond):
         ends_alike = coarse.outcome == fine.outcome or "overturned" not in (coarse.outcome, fine.outcome)
         end = float(fine.time[count - 1])

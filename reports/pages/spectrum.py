@@ -12,9 +12,9 @@ from rockwobble.compare.studies.spectrum.maps import TiltMaps
 from rockwobble.compare.studies.spectrum.parts import SPATIAL
 from rockwobble.compare.studies.spectrum.search import gap_bound
 from rockwobble.compare.studies.spectrum.study import (
-    AGREEMENT,
     CHECK_RTOL,
     NUDGE,
+    SAME_PEAK,
     OverturningSpectrum,
     unconservative_from,
 )
@@ -56,7 +56,7 @@ def spectrum_values(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> d
         },
         "tolerance": CHECK_RTOL,
         "nudge": NUDGE,
-        "agreement": AGREEMENT,
+        "agreement": SAME_PEAK,
     }
 
 

@@ -141,7 +141,7 @@ CHECK_RTOL = 1e-9
 # Relative change of the record. A cell that it changes as much as the tolerance of the grid does is a
 # matter of chance and says nothing of accuracy.
 NUDGE = 1e-9
-AGREEMENT = 0.02  # of the peak tilt
+SAME_PEAK = 0.02  # of the peak tilt, by which two runs of a cell may differ
 CELLS = 60  # enough to find one wrong cell in twenty almost surely, in half a second
 
 
@@ -232,7 +232,7 @@ def _single(spectrum: TiltMaps, series: str, i: int, scale: float) -> float:
 
 
 def _agree(peak: float, other: float) -> bool:
-    return math.isnan(peak) == math.isnan(other) and not abs(peak - other) > AGREEMENT * other
+    return math.isnan(peak) == math.isnan(other) and not abs(peak - other) > SAME_PEAK * other
 
 
 def tables_of(spectrum: TiltMaps) -> dict[str, pd.DataFrame]:
