@@ -27,6 +27,7 @@ import numpy as np
 from rockwobble.models import AGREEMENT, Diagnostic, Trace
 
 from .guard import LARGEST_STEP
+from .scene import Array
 
 _SAME_TIME = 1e-9  # of the length of a run
 
@@ -56,7 +57,7 @@ class Closeness:
 
 def closeness(coarse: Trace, fine: Trace, alpha: float) -> Closeness:
     """Return the closeness of two traces in tilt, by their samples."""
-    count = common_count([coarse, fine])
+    count = common_count([coarse.time, fine.time])
     distance = np.abs(coarse.tilt[:count] - fine.tilt[:count])
     beyond = np.flatnonzero(distance > AGREEMENT * alpha)
     if not len(beyond):
@@ -84,14 +85,13 @@ def unknown_from(trace: Trace) -> tuple[float, str]:
     return min((float(landing), "unresolved_pass"), (trace.first("energy"), "energy"))
 
 
-def common_count(traces: Sequence[Trace]) -> int:
-    """Return up to which sample all traces have the same times."""
-    count = min(len(trace.time) for trace in traces)
-    first = traces[0].time[:count]
+def common_count(times: Sequence[Array]) -> int:
+    """Return up to which sample the times of all traces are the same."""
+    count = min(map(len, times))
     # the last sample of a run that overturned stands at its own time
-    near = _SAME_TIME * max(*(trace.time[-1] for trace in traces), 1.0)
+    near = _SAME_TIME * max(1.0, *(float(time[-1]) for time in times if len(time)))
     different = np.flatnonzero(
-        np.any([np.abs(trace.time[:count] - first) > near for trace in traces], axis=0)
+        np.any([np.abs(time[:count] - times[0][:count]) > near for time in times], axis=0)
     )
     return int(different[0]) if len(different) else count
 

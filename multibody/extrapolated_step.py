@@ -98,9 +98,9 @@ def extrapolation(runs: Sequence[Trace], alpha: float) -> Trace:
     agree = min(closeness(coarse, fine, alpha).until for coarse, fine in pairwise(runs))
     unknown, code = unknown_from(finest)
     until = min(agree, unknown)
-    count = int(np.searchsorted(finest.time[: common_count(runs)], until, side="right"))
+    count = int(np.searchsorted(finest.time[: common_count([run.time for run in runs])], until, side="right"))
     tilts = [run.tilt[:count] for run in runs]
-    order = _order(tilts)
+    order = 2 if measured_order(tilts) >= _FIRST_OR_SECOND else 1
     moved = np.abs(to_zero_step(tilts[1:], order) - to_zero_step(tilts[:-1], order))
     good = _meaningful(moved, np.maximum(np.abs(tilts[-1] - tilts[-2]), _OF_NO_ACCOUNT * alpha))
     whole = good == len(finest.time)
@@ -121,9 +121,15 @@ def to_zero_step(values: Sequence[Array], order: int) -> Array:
     return np.asarray(fine + (fine - coarse) / (2.0**order - 1.0))
 
 
-def _order(tilts: Sequence[Array]) -> int:
-    first, second = (float(np.linalg.norm(coarse - fine)) for coarse, fine in pairwise(tilts))
-    return 1 if first < 2.0**_FIRST_OR_SECOND * second or second == 0.0 else 2
+def measured_order(values: Sequence[Array]) -> float:
+    """Return the order in the step of the last three of `values`, at steps that halve.
+
+    NaN of fewer than three, and where two of them are equal.
+    """
+    if len(values) < 3:
+        return math.nan
+    first, second = (float(np.linalg.norm(coarse - fine)) for coarse, fine in pairwise(values[-3:]))
+    return math.log2(first / second) if first > 0.0 and second > 0.0 else math.nan
 
 
 def _meaningful(moved: Array, difference: Array) -> int:

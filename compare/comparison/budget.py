@@ -28,8 +28,9 @@ from numpy.typing import NDArray
 from rockwobble.models import Case, Cylinder, Run, Trace
 from rockwobble.models.shown import Brief
 from rockwobble.models.support import RECESS
+from rockwobble.multibody.auto_step import common_count
 from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.extrapolated_step import EXTRAPOLATED, to_zero_step
+from rockwobble.multibody.extrapolated_step import EXTRAPOLATED, measured_order, to_zero_step
 
 from ..metrics.pair import (
     Agreement,
@@ -234,7 +235,9 @@ def extrapolated(time: Array, tilts: Sequence[Array], steps: Sequence[float], *,
         raise ValueError(f"an extrapolation needs runs at two steps or more, got {len(tilts)}")
     now = _intercept(tilts, smooth=smooth)
     before = _intercept(tilts[:-1], smooth=smooth) if len(tilts) > 2 else tilts[-1]
-    return Limit(time=time, tilt=now, error=np.abs(now - before), steps=tuple(steps), order=_order(tilts))
+    return Limit(
+        time=time, tilt=now, error=np.abs(now - before), steps=tuple(steps), order=measured_order(tilts)
+    )
 
 
 def _intercept(tilts: Sequence[Array], *, smooth: bool) -> Array:
@@ -249,22 +252,6 @@ def _intercept(tilts: Sequence[Array], *, smooth: bool) -> Array:
     design = np.column_stack([np.ones_like(steps), steps]) / steps[:, None]  # scatter goes with the step
     weights = np.linalg.pinv(design)[0] / steps
     return np.asarray(np.tensordot(weights, np.stack(tilts), axes=1))
-
-
-def _order(tilts: Sequence[Array]) -> float:
-    if len(tilts) < 3:
-        return math.nan
-    coarse, middle, fine = tilts[-3:]
-    first, second = rms(coarse - middle), rms(middle - fine)
-    return math.log2(first / second) if first > 0.0 and second > 0.0 else math.nan
-
-
-def common_count(times: Sequence[Array]) -> int:
-    """Return up to which sample all have the same times."""
-    count = min(map(len, times))
-    same = np.all([np.abs(time[:count] - times[0][:count]) < _SAME_TIME for time in times], axis=0)
-    different = np.flatnonzero(~same)
-    return int(different[0]) if len(different) else count
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
