@@ -74,7 +74,7 @@ def read_waveforms(file: RecordFile, name: str, obspy_format: str) -> list[Wavef
     channels: dict[str, list[Waveform]] = {}
     for trace in stream:
         part = Waveform(
-            values=np.ma.filled(trace.data, np.nan) if np.ma.isMaskedArray(trace.data) else trace.data,
+            values=np.asarray(trace.data),  # no mask: a gap begins another trace
             time_step=float(trace.stats.delta),
             start=float(trace.stats.starttime.timestamp),
             channel=str(trace.id),

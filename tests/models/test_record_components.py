@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,6 +10,8 @@ import numpy as np
 import pytest
 
 from rockwobble.models import read_record
+from rockwobble.models.records.component import Component, Direction
+from rockwobble.models.records.directions import in_order
 
 Write = Callable[..., Path]
 
@@ -181,3 +184,28 @@ def test_resampling_refuses_steps_without_a_common_one(write: Write) -> None:
     x, y = write(columns(0.01, 900), "x"), write(columns(0.0137, 900), "y")
     with pytest.raises(ValueError, match=r"at least 1/20 of the smallest: 0.01 s in x and 0.0137 s in y"):
         read_record(x, y, resample=True)
+
+
+def component(direction: Direction | None, azimuth: float | None = None) -> Component:
+    return Component(
+        path=Path("record"),
+        values=np.arange(3.0),
+        time_step=0.01,
+        unit="g",
+        start=None,
+        format="a",
+        direction=direction,
+        azimuth=azimuth,
+    )
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 75.0, 90.0, 200.0, 359.0])
+@pytest.mark.parametrize(("stated", "left"), [("x", "y"), ("y", "x")])
+def test_a_component_of_an_azimuth_takes_the_direction_that_is_left(
+    stated: Direction, left: Direction, azimuth: float
+) -> None:
+    parts = [component("z"), component(None, azimuth), component(stated)]
+    for given in itertools.permutations(parts):
+        found = in_order(given, "record")
+        assert [part.direction for part in found] == ["x", "y", "z"]
+        assert {part.azimuth: part.direction for part in found}[azimuth] == left

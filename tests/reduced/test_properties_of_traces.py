@@ -9,7 +9,8 @@ import pytest
 from shaken_problems import problem
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState, Tendon, Trace, WobblingFrame
+from rockwobble.models.trace import Late
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 SAME = 1e-8  # of the peak: another end of the last step, at an rtol of 1e-9
@@ -29,6 +30,22 @@ def test_the_peak_is_no_less_than_any_sample_and_is_attained():
             longer = given.simulate(duration=response.followed_until + 1e-6)
             attained = max(attained, longer.extrema[-1, 1])
         assert response.peak_tilt == pytest.approx(attained, rel=SAME), seed
+
+
+def test_every_sampled_quantity_has_a_value_at_each_time():
+    quantities = [name for name, kind in vars(Trace).items() if isinstance(kind, property | Late)]
+    for body, tendon in itertools.product(
+        (PIER, WobblingFrame(PIER)), (None, Tendon(prestress=0.1, stiffness=2.0))
+    ):
+        initial = InitialState(0.4 * PIER.alpha, rolling_rate=0.5)
+        trace = reduced.simulate(Case(body, initial=initial, duration=0.5, tendon=tendon))
+        values = {name: getattr(trace, name) for name in quantities}
+        sampled = {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
+        assert len(sampled) > 12
+        assert {len(value) for value in sampled.values()} == {len(trace.time)}, sampled.keys()
+        # what is of a tendon is known with one, at the start, too
+        assert np.isfinite(trace.elongation).all() == (tendon is not None)
+        assert np.isfinite(trace.tendon_force).all() == (tendon is not None)
 
 
 def test_turning_points_take_turns_within_a_motion():
