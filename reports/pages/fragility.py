@@ -84,7 +84,7 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "measure": measure,
         "bodies": list(_bodies(found)),
         "headline": _headline(fallen, measure.unit, several=several, few=few, compares=bool(contrasts)),
-        "undetermined": [] if few else list(_undetermined(fallen, measure.unit, several=several)),
+        "undetermined": [] if few else list(_bounds_of_medians(fallen, measure.unit, several=several)),
         "questions": {
             _QUESTIONS[question]: [_answer(row, margin) for row in rows if row["cylinder"] == whole]
             for question, rows in answers.items()
@@ -137,7 +137,7 @@ def _headline(fallen: Sequence[Row], unit: str, *, several: bool, few: bool, com
     return ""
 
 
-def _undetermined(fallen: Sequence[Row], unit: str, *, several: bool) -> Iterator[str]:
+def _bounds_of_medians(fallen: Sequence[Row], unit: str, *, several: bool) -> Iterator[str]:
     """One sentence on each median of overturning that is only bounded, where something overturns."""
     for row in fallen if any(row["exceeded"] for row in fallen) else ():
         if row["kind"] in _BOUNDED:
