@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from numbers import Integral, Real
 from typing import cast
 
 import numpy as np
@@ -33,6 +34,43 @@ def require_finite(name: str, value: object, unit: str) -> float:
     if not math.isfinite(number):
         raise ValueError(f"{name} must be a finite number{_in(unit)}, got {quoted(value)}")
     return number
+
+
+def require_in_range(
+    name: str,
+    value: object,
+    kind: type | tuple[type, ...] = Real,
+    *,
+    least: float = -math.inf,
+    most: float = math.inf,
+    above: float = -math.inf,
+    below: float = math.inf,
+) -> None:
+    """Raise ValueError unless `value` is a finite number of a kind and in its range.
+
+    Parameters
+    ----------
+    name : str
+    value : object
+    kind : type or tuple of type
+        int or `numbers.Integral` for a whole number. A truth value is none.
+    least, most : float
+        Ends of the range that belong to it.
+    above, below : float
+        Ends that do not.
+    """
+    number = isinstance(value, kind) and not isinstance(value, bool)
+    if number and least <= (given := cast("float", value)) <= most and above < given < below:
+        return
+    whole = kind in (int, Integral)
+    if -math.inf < least and most < math.inf:
+        allowed = f"{'a whole number ' if whole else ''}from {least:g} to {most:g}"
+    else:
+        low = f"at least {least:g}" if least > -math.inf else f"above {above:g}" if above > -math.inf else ""
+        high = f"at most {most:g}" if most < math.inf else f"below {below:g}" if below < math.inf else ""
+        ends = " and ".join(part for part in (low, high) if part) or "finite"
+        allowed = f"{'a whole number, ' if whole else ''}{ends}"
+    raise ValueError(f"{name} must be {allowed}, got {quoted(value)}")
 
 
 def require_sample_step(sample_step: float, duration: float) -> float:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from functools import cache
 from typing import Annotated, Self, get_type_hints
 
-from rockwobble.models.number_checks import quoted
+from rockwobble.models.number_checks import quoted, require_in_range
 
 GUIDE = 0.2  # 2 h sqrt(stiffness of the guide): see `MujocoSettings.guide_stiffness`
 
@@ -20,12 +20,10 @@ def positive(*, most: float = math.inf, or_zero: bool = False) -> Check:
     """Return the check of a positive number of at most `most`; `or_zero` allows 0, too."""
 
     def check(name: str, value: object) -> None:
-        number = value if isinstance(value, int | float) and not isinstance(value, bool) else math.nan
-        if not (math.isfinite(number) and number <= most and (number > 0.0 or (or_zero and number == 0.0))):
-            wanted = "at least 0" if or_zero else "above 0"
-            if most < math.inf:
-                wanted = f"from 0 to {most:g}" if or_zero else f"above 0 and at most {most:g}"
-            raise ValueError(f"{name} must be {wanted}, got {quoted(value)}")
+        if or_zero:
+            require_in_range(name, value, (int, float), least=0.0, most=most)
+        else:
+            require_in_range(name, value, (int, float), above=0.0, most=most)
 
     return check
 
@@ -40,13 +38,11 @@ def one_of(*allowed: object) -> Check:
     return check
 
 
-def whole(*, least: int = 1, most: int | None = None) -> Check:
+def whole(*, least: int = 1, most: float = math.inf) -> Check:
     """Return the check of a whole number."""
-    wanted = "a positive whole number" if most is None else f"a whole number from {least} to {most}"
 
     def check(name: str, value: object) -> None:
-        if type(value) is not int or value < least or (most is not None and value > most):
-            raise ValueError(f"{name} must be {wanted}, got {quoted(value)}")
+        require_in_range(name, value, int, least=least, most=most)
 
     return check
 

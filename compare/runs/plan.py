@@ -44,14 +44,6 @@ class Option:
     form: str = ""
     flag: str = ""
 
-    def range_words(self) -> str:
-        """Return the range in words."""
-        low = f"at least {self.least:g}" if self.least > -math.inf else ""
-        low = f"above {self.above:g}" if self.above > -math.inf else low
-        high = f"at most {self.most:g}" if self.most < math.inf else ""
-        high = f"below {self.below:g}" if self.below < math.inf else high
-        return " and ".join(part for part in (low, high) if part) or "finite"
-
 
 @dataclass(frozen=True, slots=True)
 class OptionsIn:
@@ -101,24 +93,26 @@ class Plan:
     """
 
     def __post_init__(self) -> None:
-        from rockwobble.models.number_checks import quoted  # with numpy, which help can do without
+        # with numpy, which help can do without
+        from rockwobble.models.number_checks import require_in_range, require_one_of
 
         kinds = get_type_hints(type(self))
         for name, stated in options_of(type(self)).items():
             kind, value = kinds[name], getattr(self, name)
             if stated.choices and value is not None:
-                words = [value] if isinstance(value, str) else value
-                wrong = [word for word in words if word not in stated.choices]
-                if wrong:
-                    allowed = ", ".join(stated.choices)
-                    raise ValueError(f"{name} must be one of {allowed}, got {quoted(wrong[0])}")
+                for word in [value] if isinstance(value, str) else value:
+                    require_one_of(name, word, stated.choices)
             whole = kind in (int, int | None)
-            if value is None or not (whole or kind in (float, float | None)):
-                continue
-            number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)
-            if not (number and stated.least <= value <= stated.most and stated.above < value < stated.below):
-                what = "a whole number, " if whole else ""
-                raise ValueError(f"{name} must be {what}{stated.range_words()}, got {quoted(value)}")
+            if value is not None and (whole or kind in (float, float | None)):
+                require_in_range(
+                    name,
+                    value,
+                    Integral if whole else Real,
+                    least=stated.least,
+                    most=stated.most,
+                    above=stated.above,
+                    below=stated.below,
+                )
 
 
 def options_of(plan: type) -> dict[str, Option]:

@@ -179,7 +179,7 @@ def test_import_loads_no_engine() -> None:
         ({"impedance": 1.0}, "impedance must be above 0 and at most 0.9999, got 1.0"),
         ({"friction_damping": float("nan")}, "friction_damping must be above 0 and at most 2, got nan"),
         ({"contact_time_constant": "soft"}, "contact_time_constant must be above 0, got 'soft'"),
-        ({"iterations": 0}, "iterations must be a positive whole number, got 0"),
+        ({"iterations": 0}, "iterations must be a whole number, at least 1, got 0"),
         ({"standing_corners": 7}, "standing_corners must be one of 0, 4, 8, "),
         ({"engine": "pybullet", "impedance": 0.9}, "'impedance' is not a setting of pybullet; allowed are "),
         (

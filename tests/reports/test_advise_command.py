@@ -296,7 +296,7 @@ def test_the_page_of_a_release_is_the_golden_one():
     ("arguments", "words"),
     [
         (["--friction", "-1"], "friction must not be negative"),
-        (["--copies", "5"], "copies must be a whole number, at least 20 and at most 10000, got 5"),
+        (["--copies", "5"], "copies must be a whole number from 20 to 10000, got 5"),
         (["--seed", "-1"], "seed must be a whole number, at least 0, got -1"),
         (["--engine", "none", "--time-step", "1e-4"], "--time-step belongs to an engine"),
         (["--engine", "none", "--support", "glued"], "support must be one of recess, flat, ring"),

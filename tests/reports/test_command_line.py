@@ -139,7 +139,7 @@ def test_bad_input_gets_one_clear_line_before_anything_runs(folder, monkeypatch,
 
 def test_a_plane_in_degrees_is_refused(folder, capsys):
     assert call("simulate", "--plane", "90") == 2
-    assert "--plane must be at least -6.28319 and at most 6.28319, got 90" in capsys.readouterr().err
+    assert "--plane must be from -6.28319 to 6.28319, got 90" in capsys.readouterr().err
 
 
 def test_time_step_of_a_reduced_model_is_refused(folder, capsys):
