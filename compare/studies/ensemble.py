@@ -268,7 +268,7 @@ class Pairs:
         return np.isnan(self.peaks) | np.isnan(self.against)
 
     def log_ratios(self) -> Array:
-        """Return the logarithms of the ratios of the members, see `distributions.log_ratios`."""
+        """Return the logarithms of the ratios of the members, see `statistics.log_ratios`."""
         return log_ratios(self.peaks, self.against, self.overturned, self.against_overturned)
 
     def ratio_bounds(self) -> tuple[float, float]:

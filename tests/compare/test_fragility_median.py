@@ -18,7 +18,7 @@ from rockwobble.compare.studies.fragility.fit import (
     fit_curves,
     resamples,
 )
-from rockwobble.compare.studies.fragility.tables import _bounds_of_failed, _differences, contrast_row
+from rockwobble.compare.studies.fragility.tables import _bounds_of_failed, _differences, curve_contrast
 
 X = np.log([2.0, 4.0, 16.0])
 MOTIONS = 12
@@ -34,7 +34,7 @@ def contrast(first: tuple[int, ...], second: tuple[int, ...]) -> dict[str, Any]:
     samples = [Sample(x=np.tile(X, (MOTIONS, 1)), y=y) for y in exceeded]
     weights = resamples(MOTIONS, 200, 0)
     one, many = ([sample.curves(each) for sample in samples] for each in (None, weights))
-    return contrast_row(_differences(one), _differences(many), MOTIONS, 0.1)
+    return curve_contrast(_differences(one), _differences(many), MOTIONS, 0.1)
 
 
 @pytest.mark.parametrize(

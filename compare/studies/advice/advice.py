@@ -23,13 +23,14 @@ from rockwobble.models.support import RECESS, support_named
 from rockwobble.models.trace import NO_PEAK
 
 from ...metrics.pair import overturned, tolerance_of
-from ...metrics.statistics import Contrast, contrast
+from ...metrics.statistics import Contrast
 from ...runs.choice import require_runnable
 from ...runs.execution import Job, job_fingerprint, simulate_run
 from ...runs.progress import ProgressCallback, stages
 from ...storage.manifest import Number
 from ...storage.provenance import fingerprint
 from ...storage.results import Results
+from ..ensemble import Pairs
 from ..plans import AdvicePlan
 from ..spectrum.maps import uplift_factor
 from ..spectrum.parts import SPATIAL
@@ -699,9 +700,14 @@ def weaker_rows(case: Case, groups: Mapping[str, Sequence[Case]], model: Run) ->
 
 
 def _contrast(traces: Sequence[Trace], against: Sequence[Trace]) -> Contrast | None:
-    both = (traces, against)
-    peaks = [np.array([trace.peak_tilt for trace in part]) for part in both]
-    fell = [np.array([trace.outcome == "overturned" for trace in part]) for part in both]
-    if np.count_nonzero(np.isfinite(peaks).all(axis=0)) < 2:
-        return None
-    return contrast(*peaks, *fell)
+    peaks, peaks_against = (np.array([trace.peak_tilt for trace in part]) for part in (traces, against))
+    fell, fell_against = (
+        np.array([trace.outcome == "overturned" for trace in part]) for part in (traces, against)
+    )
+    return Pairs(
+        members=np.array([trace.case.name for trace in traces]),
+        peaks=peaks,
+        against=peaks_against,
+        overturned=fell,
+        against_overturned=fell_against,
+    ).contrast()

@@ -329,12 +329,12 @@ def contrast_table(
                 pair = [Sample(x=each.x, y=np.where(unknown, np.nan, each.y)) for each in pair]
                 own, many = [each.curves() for each in pair], [each.curves(weights) for each in pair]
             found.append((_differences(own), _differences(many)))
-            row = contrast_row(*found[-1], blocks.fewest, margin)
+            row = curve_contrast(*found[-1], blocks.fewest, margin)
             rows.append({"cylinder": cylinder, **about, **row, **_ends(ends[-1:])})
         if len(found) == len(blocks.cylinders) > 1:
             with np.errstate(invalid="ignore"):  # of one beyond all levels and one below there is none
                 mean, means = (np.mean(each, axis=0) for each in zip(*found, strict=True))
-            row = contrast_row(mean, means, blocks.fewest, margin)
+            row = curve_contrast(mean, means, blocks.fewest, margin)
             rows.append({"cylinder": ALL, **about, **row, **_ends(ends)})
     return pd.DataFrame(rows)
 
@@ -362,7 +362,7 @@ def _differences(pair: Sequence[Curves]) -> Array:
         )
 
 
-def contrast_row(found: Array, drawn: Array, motions: int, margin: float) -> dict[str, float | str]:
+def curve_contrast(found: Array, drawn: Array, motions: int, margin: float) -> dict[str, float | str]:
     """Return the contrast of two curves.
 
     Parameters
