@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 import rockwobble as rw
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody import available_engines
-from rockwobble.reduced import free_response
+from rockwobble.reduced import free_response, planar_quarter_period
 
 FloatArray = NDArray[np.float64]
 
@@ -82,6 +82,25 @@ def test_the_can_as_data_is_the_can_of_the_scene(monkeypatch: pytest.MonkeyPatch
         [0.4862568516, 0, 2.1762508995, 0.9932897335, 0, 0.1156525195, 0], abs=1e-9
     )
     assert start.qvel[:3] == pytest.approx([0.0, 0.0486256857, 0.0], abs=1e-9)
+
+
+def test_the_tendon_brings_the_can_back_when_it_must(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(SCENES))
+    scene = importlib.import_module("mujoco_tendon")
+    tendon = rw.Tendon(prestress=scene.PRESTRESS / 9.81, stiffness=scene.STIFFNESS / 9.81)
+    exact = planar_quarter_period(CAN, scene.TILT, tendon=tendon)
+    stated = 0.9008  # of docs/guide/scenes/tendon.md, with its tolerance
+    assert exact == pytest.approx(stated, abs=5e-5)
+    assert scene.time_to_upright() == pytest.approx(stated, abs=3e-4)
+    assert scene.time_to_upright(scene.SCENE) == math.inf
+    # straight from the anchor to the top it stretches less
+    straight = scene.scene().replace('<site site="base"/>', "")
+    assert scene.time_to_upright(straight) > stated + 3e-3
+    s, c = math.sin(scene.TILT), math.cos(scene.TILT)
+    centre = [1.0 - c + 2.0 * s, 0.0, s + 2.0 * c]
+    assert centre == pytest.approx([1.2070524837, 0.0, 2.2264611537], abs=1e-9)
+    half = 0.5 * scene.TILT
+    assert [math.cos(half), math.sin(half)] == pytest.approx([0.9615544615, 0.2746143070], abs=1e-9)
 
 
 def close_passes(share: float = 0.0, end: float = 40.0, **how: Any) -> FloatArray:
