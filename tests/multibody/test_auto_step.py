@@ -12,7 +12,7 @@ import pytest
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace
 from rockwobble.models.trace_source import Known
-from rockwobble.multibody.auto_step import COARSEST, SMALLEST, Closeness, closeness, find_step
+from rockwobble.multibody.auto_step import COARSEST, SMALLEST, Closeness, closeness, common_count, find_step
 
 ALPHA = 0.2
 # Richardson with a measured order is good for a factor; three is what it misses by at the bounds of the order
@@ -96,6 +96,20 @@ def search(
         return replace(run, time_step=step)
 
     return find_step(attempt, 1.0, ALPHA, tolerance, None), steps
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_times_are_common_until_one_differs(seed: int) -> None:
+    chance = np.random.default_rng(seed)
+    time = 0.01 * np.arange(60)
+    ended, moved = time[:50], time.copy()
+    first = int(chance.integers(2, 49))
+    moved[first] += 0.004
+    others = [moved, *(time[: int(chance.integers(51, 60))] for _ in range(3))]
+    chance.shuffle(others)  # type: ignore[arg-type]  # a list of arrays
+    assert common_count([time, ended, *others]) == common_count([*others, time]) == first
+    assert common_count([time, ended]) == len(ended)
+    assert common_count([time, time + 1e-12]) == len(time)
 
 
 @pytest.mark.parametrize("code", ["unresolved_pass", "energy"])

@@ -9,7 +9,7 @@ import pytest
 from shaken_problems import problem
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, InitialState, Tendon, Trace, WobblingFrame
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Tendon, Trace, WobblingFrame
 from rockwobble.models.trace import Late
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -46,6 +46,32 @@ def test_every_sampled_quantity_has_a_value_at_each_time():
         # what is of a tendon is known with one, at the start, too
         assert np.isfinite(trace.elongation).all() == (tendon is not None)
         assert np.isfinite(trace.tendon_force).all() == (tendon is not None)
+
+
+@pytest.mark.parametrize("support", ["recess", "flat"])
+def test_a_shaken_release_at_rest_turns_to_where_the_tilt_goes(support):
+    rises = 0
+    for seed in range(60):
+        chance = np.random.default_rng(seed)
+        heading, azimuth = chance.uniform(-math.pi, math.pi, 2)
+        push = (
+            chance.uniform(0.3, 2.0)
+            * 9.81
+            * PIER.tan_alpha
+            * np.array([math.cos(heading), math.sin(heading)])
+        )
+        initial = InitialState(
+            chance.uniform(0.1, 0.9) * PIER.alpha,
+            rolling_angle=azimuth,
+            rolling_rate=chance.uniform(-1.0, 1.0),
+        )
+        case = Case(PIER, GroundMotion([push, push], 0.1), initial=initial, duration=0.1)
+        response = reduced.simulate(case, support=support, sample_step=1e-3)
+        time, tilt, _, kind = response.extrema[0]
+        assert (time, tilt) == (0.0, initial.tilt), seed
+        assert (kind < 0.0) == (response.tilt[1] > initial.tilt), seed
+        rises += kind < 0.0
+    assert 10 < rises < 50
 
 
 def test_turning_points_take_turns_within_a_motion():
