@@ -252,7 +252,8 @@ class Run:
         elif time_step is not None:
             time_step = require_positive("time_step", time_step, "s")
         if not isinstance(support, Support):
-            support = EXTERNAL if support == EXTERNAL else support_named(support)
+            external = isinstance(support, str) and support == EXTERNAL
+            support = EXTERNAL if external else support_named(support)
         object.__setattr__(self, "engine", engine)
         object.__setattr__(self, "support", support)
         object.__setattr__(self, "time_step", time_step)
