@@ -238,13 +238,13 @@
       const top = body.tilt.map((tilt) => (tilt < 1.3 * body.alpha ? at.height * Math.sin(tilt) + b * (1 - Math.cos(tilt)) : NaN));  // not the fall
       body.thin = Math.ceil(body.tilt.length / 2500);
       const own = body === main ? [ORANGE, "top of the column"] : [GREY, "beside it"];
-      paths.push(path(body, body.contact_x, body.contact_y, b, body === main ? main.colour : GREY, "contact point"));
+      paths.push(path(body, body.contact_x, body.contact_y, b, body === main ? BLUE : GREY, "contact point"));
       paths.push(path(body, top.map((r, i) => body.x[i] + r * Math.cos(body.angle[i])), top.map((r, i) => body.y[i] + r * Math.sin(body.angle[i])), Infinity, ...own));
     }
     redraw(graphs.path, [line([circle.map((angle) => b * Math.cos(angle)), circle.map((angle) => b * Math.sin(angle))], "#bbb", "base at rest", { width: 1 }), ...paths]);
   }
   const outcome = ({ outcome: end, endTime, upliftTime, peak, alpha }) => {
-    const words = { overturned: `Overturns at ${number(endTime, 4)} s`, undecided: "Not decided: rounding, not the shaking, says how it ends" }[end]
+    const words = { overturned: `Overturns, lies on the ground at ${number(endTime, 4)} s`, undecided: "Not decided: rounding, not the shaking, says how it ends" }[end]
       || (Number.isNaN(upliftTime) ? "Stands, and does not uplift" : peak > alpha ? "Stands, after a tilt beyond α" : "Stands");
     if (find("outcome").textContent !== words) find("outcome").textContent = words;
     find("outcome").className = end;
@@ -257,11 +257,11 @@
       least = Math.min(least, normal[i] / GRAVITY);
     }
     const ends = o.gaps, topShift = ends * at.diameter / 2 * (1 - Math.cos(peak)) + at.height * Math.sin(peak), rows = [
-      ["peak tilt", fell ? "falls" : moved ? `${number(peak * DEG)}° = ${number(peak / alpha)} α` : "0"],
-      [ends > 1 ? "displacement of the slab" : "displacement of the top", fell ? "falls" : moved ? `${number(topShift)} m` : "0 m"],
-      [motion ? "uplift" : "released", moved ? motion ? `at ${number(body.upliftTime, 4)} s` : "at 0 s" : "none"],
-      ["peak of the ground", motion ? `${number(at.intensity * peaks[at.record])} g` : "still"],
-      ["uplifts from", `${number(o.slope * (1 + o.q / GRAVITY))} g`],
+      ["peak tilt", fell ? "overturns" : moved ? `${number(peak * DEG)}° = ${number(peak / alpha)} α` : "0"],
+      [ends > 1 ? "displacement of the slab" : "displacement of the top", fell ? "overturns" : moved ? `${number(topShift)} m` : "0 m"],
+      [motion ? "time of uplift" : "released", moved ? motion ? `${number(body.upliftTime, 4)} s` : "at 0 s" : "none"],
+      ["peak ground acceleration", motion ? `${number(at.intensity * peaks[at.record])} g` : "still"],
+      ["acceleration at uplift", `${number(o.slope * (1 + o.q / GRAVITY))} g`],
       ["friction demand", Number.isFinite(least) ? friction === Infinity ? "contact is lost" : number(friction) : "none"],
       ["least normal force", Number.isFinite(least) ? `${number(least)} weights` : "1 weight"],
     ];
@@ -281,7 +281,7 @@
     let i = 0;
     while (i < n && Math.abs(main.tilt[i] - beside.tilt[i]) <= AGREEMENT * main.alpha) i++;
     const end = { overturned: "overturns", stands: "stands", undecided: "is not decided" }[beside.outcome];
-    place.textContent = `It ${end}${beside.outcome === "stands" ? `, peak ${number(beside.peak / beside.alpha)} α` : ""}; ${i < n ? `they part at ${number(main.time[i], 4)} s` : "they do not part"}.`;
+    place.textContent = `The gray column ${end}${beside.outcome === "stands" ? `, peak ${number(beside.peak / beside.alpha)} α` : ""}; ${i < n ? `the tilts diverge at ${number(main.time[i], 4)} s` : "the tilts do not diverge"}.`;
   };
 
   // -- the view and its clock

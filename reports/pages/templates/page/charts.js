@@ -70,7 +70,7 @@ function ticksOf(axis, ends, count) {
   const step = decade * [1, 2, 5, 10].find((factor) => factor * decade >= rough);
   const found = [];
   for (let n = Math.ceil(first / step - 1e-6); n * step <= last + 1e-6 * step; n++) found.push([n * step, said(n * step, 6)]);
-  return found;
+  return found.length > 1 || count > 16 ? found : ticksOf(axis, ends, 2 * count);  // one mark shows no scale
 }
 
 function power(n) {

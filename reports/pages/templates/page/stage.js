@@ -55,7 +55,7 @@ function rockwobbleStage(plot, shape, changed) {
     path(points.map(project));
     pen.stroke();
   };
-  const ground = () => {
+  const ground = (factor) => {
     for (let n = -edge; n <= edge + 1e-9; n += step) {
       stroke([[n, -edge, 0], [n, edge, 0]], "#ddd", 1);
       stroke([[-edge, n, 0], [edge, n, 0]], "#ddd", 1);
@@ -66,7 +66,7 @@ function rockwobbleStage(plot, shape, changed) {
       pen.fillText(name, u, v + 4);
     }
     pen.textAlign = "left";
-    pen.fillText(`grid: ${step} m`, 8, plot.clientHeight - 8);
+    pen.fillText(`grid: ${step} m${factor > 1 ? `, tilt drawn ${factor} ×` : ""}`, 8, plot.clientHeight - 8);
     stroke(circle, "#888", 1.5, [6, 4]);
   };
   // a line that is broken where the cylinder stands
@@ -142,7 +142,7 @@ function rockwobbleStage(plot, shape, changed) {
   return (bodies, factor) => {
     measure();
     look();
-    ground();
+    ground(factor);
     for (const { body, first, last } of bodies) trail(body, first, last);
     for (const { body, at } of bodies) {
       cylinder(body, at, factor);
