@@ -11,13 +11,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import cos, inf, log, sin
 
-from rockwobble.models.bounds import OVERTURNED_TILT
-
 from .._compile import inlined, jit
 from ..body import Body
 from ..equations import energy
 from ..restoring import acceleration_back, balance
-from .result import COMPLETED, MAXIMUM, UNDECIDED, IntegrationResult, Log, State
+from .result import COMPLETED, MAXIMUM, OVERTURNED_TILT, UNDECIDED, IntegrationResult, Log, State
 
 LONGEST = 34.0  # of 1/p, between the balance and the tilt alpha on either side of it: log(2e14) and a little
 # of p^2 alpha, tilt acceleration of a release at rest that is rounding: it neither falls nor turns back

@@ -11,13 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models.bounds import OVERTURNED_TILT
-
 from .._compile import inlined, jit
 from ..body import Body
 from ..rolling import PIVOTS
 from .record import Vector, ground
-from .result import MAXIMUM, MINIMUM, State
+from .result import MAXIMUM, MINIMUM, OVERTURNED_TILT, State
 from .stepping import Stepper
 from .systems import System, make_is_flat
 

@@ -13,8 +13,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models.bounds import OVERTURNED_TILT
-
 from .._compile import inlined, jit
 from ..body import Body
 from ..equations import base_inertia, energy
@@ -30,6 +28,7 @@ from .result import (
     MINIMUM,
     OVER_BUDGET,
     OVERTURNED,
+    OVERTURNED_TILT,
     STALLED,
     TURNED,
     Options,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import pi
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,8 @@ REST, COMPLETED, OVERTURNED, OVER_BUDGET, STALLED = range(5)  # how a time integ
 UNDECIDED = 6  # rounding decides whether it falls (`balance`)
 TURNED = 5  # while it runs: the tilt has reached its first maximum after the duration
 MAXIMUM, MINIMUM = 1.0, -1.0
+# that of `models.bounds`: machine code is kept by the content of this folder, which must hold all its numbers
+OVERTURNED_TILT = 0.5 * pi
 
 
 class Options(NamedTuple):

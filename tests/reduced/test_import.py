@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -10,9 +11,10 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, el_centro_1940
+from rockwobble.models import Case, Cylinder, bounds, el_centro_1940
 from rockwobble.reduced import _compile
 from rockwobble.reduced._compile import _is_ours
+from rockwobble.reduced.integration import result
 
 pytestmark = pytest.mark.slow
 
@@ -53,6 +55,26 @@ def test_compiled_code_goes_to_a_folder_of_ours_where_it_has_no_other_place(tmp_
     folder.chmod(0o777)  # anybody may have put code there
     other, _ = start()
     assert (other.parent, other != folder) == (tmp_path, True)
+
+
+@pytest.mark.parametrize(
+    ("mode", "ours"), [(0o700, True), (0o755, True), (0o711, True), (0o720, False), (0o702, False)]
+)
+def test_a_folder_is_ours_where_nobody_else_writes(tmp_path, mode, ours):
+    tmp_path.chmod(mode)
+    assert _is_ours(tmp_path) == ours
+
+
+def test_what_is_compiled_has_all_its_numbers_from_its_own_folder():
+    folder = Path(_compile.__file__).parent
+    files = [folder / name for name in ("body.py", "equations.py", "restoring.py", "rolling.py")]
+    files += sorted((folder / "integration").glob("*.py"))
+    for file in files:
+        for names in re.findall(
+            r"^from rockwobble\S* import (.*)", file.read_text(encoding="utf-8"), re.MULTILINE
+        ):
+            assert names in ("Cylinder", "Tendon"), file  # whose numbers a kernel is called with
+    assert result.OVERTURNED_TILT == bounds.OVERTURNED_TILT
 
 
 # a package of one kernel, of which the file imported last holds a coefficient
