@@ -107,3 +107,16 @@ def test_a_deck_is_a_larger_cylinder_by_what_the_guide_says(page: str) -> None:
     medians = pd.read_csv(PUBLISHED / "decks" / "medians-300.csv")
     planes = medians[medians["method"] == "worse plane"].set_index("slab_mass_ratio")["over_3d"]
     assert "{:.0f} %, {:.0f} % and {:.0f} %".format(*(100.0 * (planes - 1.0))) in text
+
+
+def test_the_page_of_certificates_counts_their_cases() -> None:
+    made = {
+        name: json.loads((PUBLISHED / "certificates" / f"{name}.json").read_text(encoding="utf-8"))
+        for name in ("reduced", "mujoco")
+    }
+    low, high = (len(each["fingerprint"]) for each in made.values())
+    page = words("docs/published/certificates.md")
+    assert f"a fingerprint of {low} or {high} short cases" in page
+    compared = pd.read_csv(PUBLISHED / "certificates" / "releases.csv")
+    assert set(compared.groupby(["engine", "verified", "python"]).size()) == {12}
+    assert "of twelve cases, before frames, tendons and rings had theirs" in page
