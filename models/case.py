@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from types import MappingProxyType
 from typing import Any, Literal
+
+import numpy as np
 
 from .argument_kinds import with_argument_kinds
 from .bounds import OVERTURNED_TILT, Bounds
@@ -158,6 +161,23 @@ class Case:
     def length(self) -> float:
         """Length of the run [s]: `duration`, or that of the motion."""
         return run_duration(self.motion, self.duration)
+
+    @property
+    def friction_at_rest(self) -> float:
+        """Largest friction demand at the base while it stays closed [-]; inf where it carries no weight.
+
+        |a_xy| / (g + a_z), with the prestress of a tendon. Exact: between samples it is quasi-convex.
+        """
+        if self.motion is None:
+            return 0.0
+        acceleration = self.motion.until(self.length)
+        ratio = 0.0 if self.tendon is None else self.tendon.prestress / (1.0 + self.cylinder.slab_mass_ratio)
+        vertical = acceleration[:, 2] if self.motion.has_vertical else 0.0
+        pressed = self.gravity * (1.0 + ratio) + vertical * np.ones(len(acceleration))
+        pushed = np.hypot(acceleration[:, 0], acceleration[:, 1])
+        if (pressed[pushed > 0.0] <= 0.0).any():
+            return math.inf
+        return float((pushed[pushed > 0.0] / pressed[pushed > 0.0]).max(initial=0.0))
 
     @property
     def is_release(self) -> bool:

@@ -124,6 +124,20 @@ class GroundMotion:
         """Whether there is a vertical component."""
         return int(self.acceleration.shape[1]) == 3
 
+    def until(self, end: float) -> NDArray[np.float64]:
+        """Return the accelerations of its samples up to a time, and at that time [m/s^2], shape (n, 2 or 3).
+
+        Parameters
+        ----------
+        end : float
+            [s]
+        """
+        times = np.arange(len(self.acceleration)) * self.time_step
+        if end >= self.duration:
+            return self.acceleration
+        last = [np.interp(end, times, column) for column in self.acceleration.T]
+        return np.vstack([self.acceleration[times <= end], last])
+
     def scaled(self, factor: float) -> GroundMotion:
         """Return the motion with all components multiplied by `factor` [-].
 

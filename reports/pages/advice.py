@@ -7,10 +7,9 @@ from collections.abc import Hashable, Iterator, Mapping
 from typing import Any
 
 from rockwobble.compare.comparison.prediction import UNTESTED
-from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.metrics.statistics import FEWEST
-from rockwobble.compare.studies.advice.advice import Advice
-from rockwobble.compare.studies.advice.demands import SPIKES
+from rockwobble.compare.studies.advice.advice import WEAKER_COUNT, Advice
+from rockwobble.compare.studies.advice.demands import PASSED, SPIKES
 from rockwobble.compare.studies.advice.grades import CRITERIA, NEAR
 from rockwobble.compare.studies.advice.members import ACCELERATION, COPIES, HORIZONTAL, VELOCITY, VERTICAL
 from rockwobble.compare.studies.advice.scales import AS_STRONG, planar_shares
@@ -46,10 +45,6 @@ _DEMANDS = {
 # units of a table, and in the box, where W is the weight that its head names
 _UNITS = {"-": "", "weights": " W", "weights × b": " W b"}
 _ACTING = {"shear": ("V", " W"), "force": ("N", " W"), "moment": ("M", " W b")}
-_ENDS = {
-    "methods": "reduced model and engine diverge",
-    "data": "copies are spread over half of the peak tilt",
-}
 _PREDICTED = {
     "": "nothing ends it before",
     "pass": "a pass comes closer to upright than contact resolves",
@@ -67,6 +62,8 @@ _DIVERGENCE = {
 _STRONG = f"{100.0 * (1.0 - AS_STRONG[0]):.0f} % weaker to {100.0 * (AS_STRONG[1] - 1.0):.0f} % stronger"
 # options of an advice that other commands do not have
 PLAN = ("mass", "copies", "perturbation", "seed")
+# share of a demand below which what acts beside another is none
+_NOTHING = 1e-3
 Row = dict[str, object]
 
 _NO_PEAK = {"failed": "failed", "undecided": "is undecided"}  # of a run without a peak
@@ -107,6 +104,8 @@ def page_of(found: Advice) -> Page:
         "closed": CLOSED_TILT,
         "strong": _STRONG,
         "strong_scales": len(found.as_strong),
+        "passed": PASSED,
+        "weaker_count": WEAKER_COUNT,
         "weaker": sorted(set(found.weaker["factor"])) if len(found.weaker) else [],
         **dict(zip(("slips", "lost"), found.missing, strict=True)),
     }
@@ -117,6 +116,8 @@ def _reasons(found: Advice) -> dict[str, str]:
     """What the grade of each topic rests on in this case."""
     if found.response["outcome"] in NO_PEAK:
         return {"trace": f"the run {_NO_PEAK[found.response['outcome']]}"}
+    if not found.moves:
+        return {"friction": _reason_at_rest(found)}
     slip, lost = found.missing
     few = f"fewer than {FEWEST} runs differ"
     contact = "never lost in 95 % of all runs" if found.grades["contact"] == "satisfied" else few
@@ -152,6 +153,11 @@ def _reason_of_overturning(found: Advice) -> str:
     if math.isnan(lowest):
         return f"no run overturns, nor up to {number(found.scales['factor'].max())} times this shaking"
     return f"no run overturns; {number(lowest)} times this shaking does"
+
+
+def _reason_at_rest(found: Advice) -> str:
+    demand = number(found.facts["motion"]["friction_at_rest"])
+    return f"{number(found.facts['friction'])} is below the demand at rest, {demand}: it slides"
 
 
 def _reason_of_friction(found: Advice, slip: float, few: str) -> str:
@@ -230,8 +236,11 @@ def _reason_of_intensity(found: Advice) -> str:
         return "no other scales of this shaking were run"
     which = f"at {len(found.as_strong)} scales, {_STRONG}"
     if math.isinf(high):
-        fell = int(overturned(found.as_strong["peak_tilt"]).sum())
-        return f"at {fell} of {len(found.as_strong)} scales, {_STRONG}, it overturns"
+        lowest, share = found.overturning_as_strong
+        return (
+            f"{_STRONG} it overturns in {number(share, 'percent')} of the range, "
+            f"first at {number(lowest)} times this shaking"
+        )
     if high <= CLOSED_TILT:
         return f"the base hardly opens, by at most {number(high)} α {which}"
     if low == 0.0:
@@ -320,7 +329,7 @@ def _vertical_words(found: Advice) -> str:
     if not vertical.source:
         return ""
     if vertical.source == "other":
-        return "No vertical component was given: its effect was not looked at."
+        return "No vertical component of this record was given: its effect was not looked at."
     if vertical.ratios is None:
         return ""
     ratios = vertical.ratios
@@ -396,7 +405,8 @@ def _together(found: Advice) -> str:
         if name == "force" or math.isnan(acting["force"]):
             continue
         beside = [
-            f"{_ACTING[part][0]} of {number(value)}{_ACTING[part][1]}"
+            f"{_ACTING[part][0]} of {number(value if value > _NOTHING * rows[part]['value'] else 0.0)}"
+            f"{_ACTING[part][1]}"
             for part, value in acting.items()
             if part != name
         ]
@@ -521,7 +531,11 @@ def _agreement(found: Advice) -> Iterator[Row]:
     trust, verification = found.trust, found.verification
     until, note = "its end", ""
     if trust.kind != "trace":
-        until, note = f"{number(trust.until, '.4g')} s", f"then {_ENDS[trust.because]}"
+        ends = "copies are spread over half of the peak tilt"
+        if trust.because == "methods":
+            ran = verification is not None and verification.outcome not in NO_PEAK
+            ends = f"reduced model and engine {'' if ran else 'are predicted to '}diverge"
+        until, note = f"{number(trust.until, '.4g')} s", f"then {ends}"
     yield _check("the trace can be trusted until", until, note)
     name = f"shaken the same, model and engine agree within {number(_tolerance(found))} α, predicted, until"
     yield _check(name, _predicted_until(found), _PREDICTED[found.facts["prediction"]["reason"]])

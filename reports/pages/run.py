@@ -20,8 +20,11 @@ def page_of(found: SingleRun) -> Page:
     cylinder, engine, falls = trace.case.cylinder, not trace.run.is_model, fall_of(trace)
     held = trace.assumptions_until(falls)  # a fall asks nothing
     part = single.get("copies_part", math.inf)  # of earlier versions nothing is known
+    at_rest = 0.0 if engine or trace.peak_tilt else trace.case.friction_at_rest
     values = {
         "trace": trace,
+        "at_rest": at_rest,
+        "slides": at_rest > trace.case.friction,
         "label": found.facts["run"],
         "lines": describe(trace.case),
         "said": remarks(_limits(trace, falls)),
@@ -37,7 +40,7 @@ def page_of(found: SingleRun) -> Page:
         "towards": math.remainder(trace.uplift_direction, math.tau),
         "closest": float(trace.passes["minimum_tilt"].min()) / cylinder.alpha,
         "held": held,
-        "friction": held.largest_friction_needed if held else math.nan,
+        "friction": max(at_rest, held.largest_friction_needed) if held else math.nan,
         "lost": min((fact.time for fact in held.breaches if fact.code == "tension"), default=math.nan)
         if held
         else math.nan,

@@ -504,6 +504,7 @@ def test_a_cylinder_at_rest_needs_nothing():
     assert demands["force"] == 1.0  # its weight
     assert not demands.drop("force").any()
     assert found.facts["motion"]["uplift_factor"] == pytest.approx(uplift_factor(SHORT, 0.2, 9.81) / 0.3)
+    assert found.facts["motion"]["friction_at_rest"] == pytest.approx(0.3 * SHORT.peak / 9.81)
 
 
 def test_advice_is_loaded_as_it_was_saved(advice, tmp_path):
@@ -538,6 +539,22 @@ def test_shaking_as_strong_is_scanned_finely_and_holds_single_runs(advice):
     assert grade_overturning(False, found.lowest_factor, [0.0], tested=True) == "caution"
     assert found.lowest_factor == factors[factors > 1.1].min()
     assert not len(scan_as_strong(Case(PIER, SHORT), "recess", 0.5 * math.pi))
+
+
+def test_the_share_that_overturns_does_not_grow_with_the_scales_that_are_run(advice):
+    """Most scales are run about the largest tilts: nine tenths of them may be of a tenth of the range."""
+    low, high = AS_STRONG
+    coarse = np.geomspace(low, high, 101)
+    fine = np.unique([*coarse, *np.geomspace(high / 1.02, high, 900)])
+    for factors in (coarse, fine):
+        tilts = np.where(factors > high / 1.024, 0.5 * math.pi, 0.1)
+        found = with_table(advice, as_strong=pd.DataFrame({"factor": factors, "peak_tilt": tilts}))
+        lowest, share = found.overturning_as_strong
+        assert share == pytest.approx(math.log(1.024) / math.log(high / low), abs=0.01)
+        assert lowest == factors[factors > high / 1.024].min()
+    assert (
+        with_table(advice, as_strong=advice.as_strong.assign(peak_tilt=0.1)).overturning_as_strong[1] == 0.0
+    )
 
 
 def test_copies_that_are_one_run_are_one(advice):

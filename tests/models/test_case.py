@@ -8,7 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, run_duration
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    GroundMotion,
+    InitialState,
+    Run,
+    Suite,
+    Tendon,
+    run_duration,
+)
 from rockwobble.models.support import SUPPORTS
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -150,3 +159,25 @@ def test_the_name_of_a_case_is_one_line(name: str) -> None:
 def test_a_part_of_another_kind_is_refused_by_name(given: Any, said: str) -> None:
     with pytest.raises(ValueError, match=said):
         Case(given[0], given[1], initial=(*given, None)[2])
+
+
+def test_friction_at_rest_is_the_slenderness_that_would_just_uplift():
+    """A base of b/h = mu uplifts under a_xy = mu (g + a_z), at which a friction of mu gives way."""
+    samples = np.random.default_rng(3).normal(scale=0.5, size=(40, 3))
+    motion = GroundMotion(samples, 0.01)
+    case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), motion)
+    ratio = np.hypot(samples[:, 0], samples[:, 1]) / (9.81 + samples[:, 2])
+    assert case.friction_at_rest == pytest.approx(ratio.max(), rel=1e-14)
+    between = np.linspace(0.0, 39.0, 3901)
+    fine = np.array([np.interp(between, np.arange(40), column) for column in samples.T])
+    assert (np.hypot(fine[0], fine[1]) / (9.81 + fine[2])).max() <= case.friction_at_rest * (1.0 + 1e-12)
+    held = dataclasses.replace(case, tendon=Tendon(prestress=1.0, stiffness=0.0))
+    assert held.friction_at_rest < 0.55 * case.friction_at_rest
+
+
+def test_friction_at_rest_ends_with_the_run_and_with_the_weight():
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    rising = GroundMotion([[0.1 * i, 0.0] for i in range(11)], 0.1)
+    assert Case(pier, rising, duration=0.55).friction_at_rest == pytest.approx(0.55 / 9.81, rel=1e-12)
+    assert Case(pier, duration=1.0).friction_at_rest == 0.0
+    assert Case(pier, GroundMotion([[0.0, 0.0, -20.0], [1.0, 0.0, -20.0]], 0.1)).friction_at_rest == math.inf

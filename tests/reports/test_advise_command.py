@@ -277,6 +277,44 @@ def test_what_stays_at_rest_is_told_from_what_others_do_to_it(found):
     assert f"scaled to its PGV {moved} uplift it and {fell} overturn it" in " ".join(words.split())
 
 
+def test_what_slides_at_rest_is_not_said_to_stay_there(found):
+    at_rest = {**found.facts["response"], "uplift_time": math.inf, "peak_tilt": 0.0}
+    motion = {**found.facts["motion"], "friction_at_rest": 0.0859}
+    still = changed(found, response=at_rest, motion=motion)
+    for friction, slides in ((None, False), (0.0859, False), (0.05, True)):
+        given = changed(still, friction=friction)
+        assert given.grades == ({"friction": "not satisfied"} if slides else {})
+        assert ("stays at rest" in given.verdict) == (not slides)
+        words = " ".join(page_of(given).markdown().split())
+        assert "At rest the friction demand is 0.0859" in words
+        assert ("more than the 0.05 given: it slides" in words) == slides
+        assert ("0.05 is below the demand at rest, 0.0859: it slides" in words) == slides
+    del motion["friction_at_rest"]  # of an earlier version
+    assert changed(still, friction=0.05).verdict == "the cylinder stays at rest"
+
+
+def test_the_part_of_the_range_that_overturns_is_stated_with_its_lowest_scale(found):
+    factors = found.as_strong["factor"].to_numpy()
+    falls = found.as_strong.assign(peak_tilt=np.where(factors > 1.08, 0.5 * np.pi, 0.1))
+    words = reasons_of(dataclasses.replace(found, tables={**found.tables, "as_strong": falls}))["intensity"]
+    share = 100.0 * np.log(factors[-1] / 1.08) / np.log(factors[-1] / factors[0])
+    lowest = factors[factors > 1.08].min()
+    assert numbers_in(words) == [
+        11.0,
+        12.0,
+        pytest.approx(share, abs=0.6),
+        pytest.approx(lowest, rel=PRINTED),
+    ]
+
+
+def test_an_engine_that_was_not_run_is_not_said_to_diverge(found):
+    trust = {"kind": "statistics", "until": 3.0, "because": "methods"}
+    for verification, word in ((None, "are predicted to diverge"), (ENGINE, "engine diverge")):
+        text = page_of(changed(found, trust=trust, verification=verification)).markdown()
+        (row,) = [line for line in text.splitlines() if line.startswith("| the trace can be trusted")]
+        assert word in row
+
+
 def test_a_failed_run_gets_no_advice(found, tmp_path):
     failed = {**found.facts["response"], "outcome": "failed", "diagnostics": ["step_budget"]}
     again = changed(found, response=failed)

@@ -70,6 +70,15 @@ def test_a_run_says_what_its_method_gives_and_no_more():
     assert not {"wall contact", "friction demand", "restraining moment", "closest pass"} & set(engine)
 
 
+def test_a_model_at_rest_says_where_its_base_slides():
+    weak = rw.el_centro_1940().scaled(0.3)
+    for friction, slides in ((0.5, False), (0.05, True)):
+        page = page_of_run(rw.Case(PIER, weak, friction=friction, duration=15.0), rw.Run(None, "recess"))
+        assert facts(page)["friction demand"] == "0.086"
+        assert "has not uplifted" in page.markdown()
+        assert ("It slides: the friction demand at rest is 0.0859, and 0.05" in page.markdown()) == slides
+
+
 def test_a_planar_run_says_in_which_plane_and_with_what_loss():
     shaken = rw.Case(PIER, rw.el_centro_1940(), duration=6.0)
     said = facts(page_of_run(shaken, rw.Run(None, "recess", plane=-4.0, restitution=0.95)))

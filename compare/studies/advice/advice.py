@@ -207,6 +207,15 @@ class Advice(Results, kind=KIND):
         return _moves(self.response["outcome"], self.response["uplift_time"])
 
     @property
+    def slides_at_rest(self) -> bool:
+        """Whether the friction given does not keep a base in its place that stays closed."""
+        motion, friction = self.facts["motion"], self.facts["friction"]
+        if self.moves or self.response["outcome"] in NO_PEAK or motion is None or friction is None:
+            return False
+        # an earlier version stated none
+        return bool(friction < motion.get("friction_at_rest", 0.0))
+
+    @property
     def overturned(self) -> bool:
         """Whether it overturns as given."""
         return self.response["outcome"] == "overturned"
@@ -236,6 +245,20 @@ class Advice(Results, kind=KIND):
         searched = self.lowest["factor"][self.lowest["series"] == SPATIAL].max()
         beside = self.as_strong
         return float(np.fmin(searched, beside["factor"][overturned(beside["peak_tilt"])].min()))
+
+    @property
+    def overturning_as_strong(self) -> tuple[float, float]:
+        """Lowest factor of shaking as strong at which it overturns, and the share of the range that does.
+
+        The share is of the logarithm of the factor, each scale standing for what is nearer to it than to
+        another: counts would say too much, since most scales are run about the largest tilts.
+        """
+        factors = self.as_strong["factor"].to_numpy(float)
+        fell = overturned(self.as_strong["peak_tilt"].to_numpy(float))
+        if not fell.any():
+            return math.nan, 0.0
+        share = np.trapezoid(fell.astype(float), np.log(factors)) / np.log(factors[-1] / factors[0])
+        return float(factors[fell].min()), float(share)
 
     @property
     def range_as_strong(self) -> tuple[float, float]:
@@ -275,7 +298,7 @@ class Advice(Results, kind=KIND):
         if response["outcome"] in NO_PEAK:
             return {"trace": "not satisfied"}
         if not self.moves:
-            return {}
+            return {"friction": "not satisfied"} if self.slides_at_rest else {}
         shaken, friction = facts["motion"] is not None, facts["friction"]
         (slip, lost), spread = (
             self.missing,
@@ -326,6 +349,8 @@ class Advice(Results, kind=KIND):
             return f"no advice, the {model} failed"
         if self.response["outcome"] in NO_PEAK:
             return f"no advice, the {model} is undecided: it stays by its balance"
+        if self.slides_at_rest:
+            return f"the cylinder does not uplift, it slides; {USE['not satisfied'].format(model)}"
         if not self.moves:
             return "the cylinder stays at rest"
         ends = "it overturns as given" if self.overturned else STABILITY[self.grades["overturning"]]
@@ -605,6 +630,7 @@ def _problem(case: Case) -> dict[str, object]:
         "time_step": motion.time_step,
         "peak": motion.peak,
         "has_vertical": motion.has_vertical,
+        "friction_at_rest": case.friction_at_rest,
         "uplift_factor": held_by(case)
         * uplift_factor(motion, cylinder.tan_alpha, case.gravity, until=case.length),
     }

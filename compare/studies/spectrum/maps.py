@@ -81,10 +81,7 @@ def uplift_factor(
     until : float, optional
         End of the run [s].
     """
-    samples, times = motion.acceleration, np.arange(len(motion.acceleration)) * motion.time_step
-    if until < motion.duration:
-        last = [np.interp(until, times, column) for column in samples.T]
-        samples = np.vstack([samples[times <= until], last])
+    samples = motion.until(until)
     x, y = samples[:, 0], samples[:, 1]
     drive = np.hypot(x, y) if plane is None else np.abs(x * math.cos(plane) + y * math.sin(plane))
     if motion.has_vertical:
