@@ -18,7 +18,7 @@ from rockwobble.reduced.body import Body, body_of
 from rockwobble.reduced.equations import energy, flat_rhs, planar_rhs, recess_rhs
 from rockwobble.reduced.forces import contact_force, derived_quantities, top_force
 from rockwobble.reduced.integration.resisted import RESISTED_FLAT, RESISTED_PLANAR, RESISTED_RECESS
-from rockwobble.reduced.rolling import across_inertia, needed_to_stand, pivot
+from rockwobble.reduced.rolling import across_inertia, needed_to_stand, pivot, rolling_momentum
 
 AGREEMENT = 1e-12  # relative to the terms of each sum; measured 4e-14, and 4e-16 without twist
 DIGITS = 40
@@ -226,6 +226,17 @@ def test_rolling(seed: int) -> None:
             (*(part / carried(given) for part in polar(motion.force, given.phi)), mp.mpf(0)),
             (scale.force, scale.force, scale.force, scale.moment),
         )
+
+
+@pytest.mark.parametrize("seed", range(100, 140))
+def test_the_momentum_of_the_rolling_angle(seed: int) -> None:
+    given = sample(seed, twisting=True)
+    with mp.workdps(DIGITS):
+        state = state_of(given)
+        B, G, _ = quadratic_form(given.column, given.slab.share, state.theta)
+        scale = abs(given.Lambda) + abs(G * (state.phi_rate + state.psi_rate))
+        found = rolling_momentum(given.body, given.theta, given.Lambda, given.S)
+        assert_close((found,), (B * state.phi_rate,), (scale,))
 
 
 @pytest.mark.slow
