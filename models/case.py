@@ -301,7 +301,7 @@ class Run:
 
     @property
     def own_model(self) -> Run:
-        """The reduced model of its support: what an exact engine would follow, short of walls."""
+        """The reduced model of its support, without walls."""
         return Run(None, self.support.own_model)
 
     @property

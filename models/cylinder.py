@@ -164,7 +164,7 @@ class Cylinder(Brief):
 
     @property
     def slab_mass_ratio(self) -> float:
-        """Mass of the slab over that of the columns under it: none."""
+        """Mass of the slab over that of the columns under it [-]: 0, since there is none."""
         return 0.0
 
 

@@ -86,7 +86,7 @@ def gravity_doubts(gravity: float) -> Iterator[Diagnostic]:
 
 
 def likely_unit(number: float, units: Mapping[str, float], usual: float) -> str:
-    """Return the unit in which a number comes next to what is usual."""
+    """Return the unit in which a number is closest to usual values."""
     return min(units, key=lambda unit: abs(math.log(number * units[unit] / usual)))
 
 

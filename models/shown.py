@@ -29,7 +29,7 @@ def line(name: str, facts: Iterable[str]) -> str:
 
 
 class Brief:
-    """A dataclass whose repr is a line: of what is long it says how much there is, of defaults nothing."""
+    """A dataclass whose repr is one line: long values by their size, defaults left out."""
 
     __slots__ = ()
 

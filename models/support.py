@@ -1,4 +1,4 @@
-"""What holds a cylinder in its place: the supports, and what is to be known of each."""
+"""Supports of a cylinder, and the properties of each."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ NO_PEAK = ("failed", "undecided")  # outcomes of runs of which nobody knows whet
 
 
 class Late:
-    """A sampled quantity that may cost something: the source computes it when it is first asked for."""
+    """A sampled quantity that the source computes when it is first asked for."""
 
     def __init__(self, width: int) -> None:
         self._width = width
@@ -270,7 +270,7 @@ class Trace(Shown):
 
     @property
     def peak_time(self) -> float:
-        """Time of the largest tilt, to a sample, or of the swing after the end that is larger [s]."""
+        """Time of the peak tilt, to the sample [s]; after the end if the peak is there."""
         later = self.peak_tilt > self.peak_within_run
         return self.followed_until if later else float(self.time[self.tilt.argmax()])
 
@@ -361,7 +361,7 @@ class Trace(Shown):
 
     @classmethod
     def from_plain(cls, facts: plain_json.Facts, samples: pd.DataFrame, case: Case) -> Trace:
-        """Return the trace of what `to_plain` and `to_frame` gave, and its case."""
+        """Rebuild a trace from `to_plain`, `to_frame` and its case."""
         given, names = trace_file.trace_arguments(facts, samples), {field.name for field in fields(cls)}
         return cls(case=case, **{name: value for name, value in given.items() if name in names})
 
@@ -421,7 +421,7 @@ class Trace(Shown):
 
     @cached_property
     def late(self) -> Mapping[str, Array]:
-        """The sampled quantities that its source gave beyond the fields."""
+        """Lazily computed samples that are already evaluated."""
         return self.source.quantities()
 
 

@@ -20,10 +20,10 @@ Array = NDArray[np.float64]
 
 
 class Source(Protocol):
-    """The maker of a trace: gives what costs something, when it is first asked for."""
+    """Source of the lazily computed quantities of a trace."""
 
     def quantities(self) -> Mapping[str, Array]:
-        """Return the sampled quantities that it knows beyond those that are fields, (n,) or (n, 3)."""
+        """Return the sampled quantities beyond the fields of a trace, (n,) or (n, 3)."""
         ...
 
     def assumptions(self, until: float) -> Assumptions | None:

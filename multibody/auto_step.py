@@ -73,7 +73,7 @@ def closeness(coarse: Trace, fine: Trace, alpha: float) -> Closeness:
 
 
 def unknown_from(trace: Trace) -> tuple[float, str]:
-    """Return from when on no estimate of the error of a trace is known [s], and the code that says so.
+    """Return the time after which the error of a trace cannot be estimated [s], and the code of the reason.
 
     A pass nearer to upright than contact resolves is left to chance; a base that comes down to less lands,
     with every step alike, where the motion may go on: after the last maximum before that the runs agree, and
@@ -173,7 +173,7 @@ def find_step(
 
 
 def _judge(found: list[Closeness], tolerance: float) -> tuple[str | None, bool]:
-    """Return why to stop, "" where the tilt has settled and None to go on, and whether the last is a gain."""
+    """Return why to stop ("": tilt has settled, None: go on), and whether the last run is better."""
     last = found[-1]
     close = last.difference <= tolerance
     if math.isinf(last.divergence) and close:

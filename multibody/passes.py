@@ -174,7 +174,7 @@ class RestWatch:
         return [*self._over, (self._since, self._last)]
 
     def after_motion(self) -> list[tuple[float, float]]:
-        """Return the same without the stand before the first motion; NaN ends one that lasts."""
+        """Return the rests without the stand before the first motion; NaN ends a rest that lasts."""
         later = [rest for rest in self.rests() if rest[0] > 0.0]
         if later and self.resting:
             later[-1] = (later[-1][0], math.nan)

@@ -60,7 +60,7 @@ def first_pull(time: Array, force: Array) -> float:
 
 
 def first_grip(time: Array, force: Array, friction: float) -> float:
-    """Return when more than friction first held the rim [s], from `force` (3, n) [weights]; NaN if never.
+    """Return when `force` (3, n) [weights] on the rim first exceeded friction [s]; NaN if never.
 
     Contact slides there, but a joint in its place does not.
     """

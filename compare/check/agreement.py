@@ -67,7 +67,7 @@ _LEVEL = 1e-3  # of alpha: tilt at which an uplift is seen
 
 
 def fields(subject: Subject, support: str) -> Iterator[Result]:
-    """Every field of a trace, where the model of the support knows it, too, and the balance of energy."""
+    """Every field of a trace that the model of the support also has, and the balance of energy."""
     found, model = _both(subject, SHAKEN, support, _SAMPLE)
     whole = len(found.time) == len(model.time)
 
@@ -136,7 +136,7 @@ def ramp(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def record(subject: Subject, support: str) -> Iterator[Result]:
-    """Tilt and azimuth under El Centro, of a case that shows a size that is 0.1 % wrong."""
+    """Tilt and azimuth under El Centro, of a case that reveals an error of 0.1 % in the size."""
     found, model = _both(subject, RECORD, support)
     times = 1.0 if subject.run is None else 10.0  # an engine errs at uplift, and passes magnify that
     bound = subject.tolerance_bound(times, "its accuracy, and what passes make of it", "alpha")

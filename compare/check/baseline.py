@@ -49,7 +49,7 @@ class Baseline:
 
     @property
     def version(self) -> str:
-        """The version of the engine that it was made with; empty of the reduced models, or of none."""
+        """The version of the engine that made it; empty for the reduced models and for an empty baseline."""
         return str(self.reasons[-1]["version"]) if self.reasons else ""
 
     @property
@@ -67,7 +67,7 @@ def baseline_path(subject: Subject) -> Path:
 
 
 def read_baseline(subject: Subject) -> Baseline:
-    """Return the baseline that is kept of a subject; an empty one of none."""
+    """Return the stored baseline of a subject; an empty one where there is none."""
     path = baseline_path(subject)
     if not path.exists():
         return Baseline()
@@ -76,13 +76,13 @@ def read_baseline(subject: Subject) -> Baseline:
 
 
 def new_fingerprint(subject: Subject, progress: ProgressCallback | None = None) -> tuple[Entry, ...]:
-    """Return the fingerprint that is kept of a subject."""
+    """Return the new fingerprint of a subject, as a baseline stores it."""
     longest = math.inf if subject.run is None else _LONGEST
     return tuple(fingerprint(subject, progress, longest=longest))
 
 
 def same_as_baseline(subject: Subject, support: str) -> Iterator[Result]:
-    """A few short motions are those that are kept."""
+    """A few short motions equal those of the baseline."""
     if subject.run is not None and (subject.run.time_step is not None or subject.run.settings):
         yield not_run("baseline", "kept at the default time step and settings")
         return
@@ -139,7 +139,7 @@ def _version(subject: Subject) -> str:
 
 
 def _share(verdict: FingerprintVerdict, old: Entry, new: Sample) -> float:
-    """Return by how much a case differs over what is allowed; NaN where something is there or not."""
+    """Return the difference of a case over the allowed one; NaN where a quantity is in one of both only."""
     if verdict.word != SAME:
         return verdict.difference / verdict.allowed
     apart = [

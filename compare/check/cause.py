@@ -103,7 +103,7 @@ def likely_cause(subject: Subject, support: str, cases: Sequence[Case]) -> str:
 
 
 def _lowest(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:
-    """Return where a function is lowest, and how low: on a grid, then about its best point."""
+    """Return place and value of the minimum of a function: on a grid, then about its best point."""
     from scipy.optimize import minimize_scalar
 
     grid = np.linspace(low, high, 13)

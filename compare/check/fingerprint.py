@@ -166,7 +166,7 @@ def _with_tendon() -> ShortCase:
 
 
 def _record(name: str, term: str, strength: float, length: float) -> ShortCase:
-    """Return a case under El Centro, so many times as strong as what lifts the pier."""
+    """Return a case under El Centro, scaled to a multiple of the uplift intensity of the pier."""
     record = el_centro_1940()
     motion = record.scaled(strength * GRAVITY * PIER.tan_alpha / record.peak)
     case = Case(PIER, motion, duration=length)

@@ -79,7 +79,7 @@ class Check:
     tendon: bool = False
 
     def applies(self, subject: Subject) -> bool:
-        """Return whether it is a question to this subject at all."""
+        """Return whether the check applies to a subject."""
         return (
             set(self.options) <= subject.options
             and self.files == (subject.cases is not None)

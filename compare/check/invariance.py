@@ -198,7 +198,7 @@ def description(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def stepping(subject: Subject, support: str) -> Iterator[Result]:
-    """A step is a step, however many one call takes, and two open scenes do not disturb each other."""
+    """Steps do not depend on how many one call takes, nor on another open scene."""
     backend, scene, given = _open_stepper(subject, support)
     settings, still = backend.settings(given, scene), np.zeros((60, 3))
     with backend.open(scene, settings) as whole, backend.open(scene, settings) as separated:

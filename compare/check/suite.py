@@ -135,7 +135,7 @@ def check_run(runs: SuiteRuns, job: Job, trace: Trace, bounds: Bounds | None) ->
 def results_without_bounds(
     runs: SuiteRuns, job: Job, name: str, model: Trace, trace: Trace
 ) -> Iterator[Result]:
-    """Yield the findings on a run of a suite that states no bounds."""
+    """Yield the results on a run of a suite that states no bounds."""
     yield _result_by_step(runs, job, name, model, trace, clean=False)
     if (other := _in_motion(job)) is not None:
         (trace,) = runs.traces([other])
@@ -178,7 +178,7 @@ def in_motion(case: Case) -> Case | None:
 
 
 def other_step(job: Job, trace: Trace) -> tuple[Job, float]:
-    """Return the run at twice its step, or at half of it, and what their difference is to be taken times."""
+    """Return the run at twice or half its step, and the factor from the difference of both to the error."""
     case, step = job.case, trace.time_step
     if not math.isfinite(step):  # of several steps: that of the engine by default
         step = default_step(case.cylinder.semidiagonal, case.gravity)
@@ -242,7 +242,7 @@ def _by_step(runs: SuiteRuns, job: Job, trace: Trace) -> Array | None:
 
 
 def _tilt_difference(one: Trace, other: Trace) -> Array:
-    """Difference of the tilts at the samples that both have [alpha]; a fall ends at a time of its own."""
+    """Difference of the tilts at the samples that both runs have [alpha]; falls end at different times."""
     count = max(min(len(one.time), len(other.time)) - 1, 0)
     return np.asarray(other.tilt[:count] - one.tilt[:count]) / one.case.cylinder.alpha
 

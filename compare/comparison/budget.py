@@ -280,7 +280,7 @@ class Refined:
 
     @property
     def smooth(self) -> bool:
-        """Whether the error of the run is a power series in the step: from rest not in every engine."""
+        """Whether the error of the run is a power series in the step; from rest it is not in every engine."""
         return self.case.is_release or engine_facts(self.run.engine_name).smooth_uplift
 
     @property
@@ -290,7 +290,7 @@ class Refined:
 
     @property
     def extrapolated(self) -> bool:
-        """Whether the run is itself what others tend to."""
+        """Whether the run is extrapolated itself."""
         return self.run.time_step == EXTRAPOLATED
 
 
@@ -320,7 +320,7 @@ def limits(refined: Sequence[Refined], simulate: Simulate) -> Mapping[Key, Limit
 
 
 def _job(refined: Refined, times: int) -> Job:
-    """Return the run with its step halved so many times, as long as its limit is needed."""
+    """Return the run with its step halved several times, up to the time to which its limit is needed."""
     case = refined.case
     end = min(case.length, math.ceil(refined.end / SAMPLE_STEP - 1e-6) * SAMPLE_STEP)
     return Job(

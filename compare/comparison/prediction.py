@@ -173,7 +173,7 @@ def early_rms(case: Case, time: FloatArray, difference: FloatArray, start: float
 
 
 def time_scale(case: Case) -> float:
-    """Return the time of a cylinder over that of one of 6 m at 9.81 m/s^2."""
+    """Return the time scale of a cylinder over that of one with R = 6 m at 9.81 m/s^2."""
     return froude_scale(case.cylinder.semidiagonal, case.gravity).time
 
 

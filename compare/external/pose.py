@@ -153,7 +153,7 @@ def poses_of(table: Table, case: Case, *, noise: float | None = None, time_offse
 
 
 def unwrapped(axis: Array, leans: Mask) -> tuple[Array, Mask]:
-    """Return the azimuth (n,) of the axis (n, 3) without jumps, and whether each change is no guess.
+    """Return the azimuth (n,) of the axis (n, 3) without jumps, and whether each change is certain.
 
     It means something where the axis `leans` (n,); elsewhere the angle waits. Between two samples it takes
     the shorter way round, unless that is more than a quarter turn: then upright was passed between them, and

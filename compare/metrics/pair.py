@@ -150,7 +150,7 @@ def outcome_of_peak(peak: float) -> str:
 
 
 def outcome_of(trace: Trace) -> str:
-    """Return the outcome of a run for a study: the walls of a ring have no top, and hold what has overturned.
+    """Return the outcome of a run for a study; rest on a wall beyond balance counts as overturned.
 
     One that leans on a wall beyond its balance at the end of its run counts as overturned: after it the
     ground is still, as where a fall is decided.

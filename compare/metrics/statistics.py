@@ -133,7 +133,7 @@ def covering(values: Array, share: float) -> tuple[float, int]:
 
 
 def share_interval(count: int, total: int) -> Interval:
-    """Return the share of what is drawn that a sample has `count` of `total` of, and its interval.
+    """Return the share `count` / `total` of a sample, and its interval.
 
     Exact, of C. J. Clopper and E. S. Pearson, Biometrika 26, 404-413, 1934: it contains the share with 95 %
     or more. Without a sample nothing is known, and the value is NaN.
@@ -316,7 +316,7 @@ def signed_rank_p(logarithms: Array) -> float:
 
 
 def mcnemar_p(only: int, only_there: int) -> float:
-    """Return the exact probability of so unequal counts of members that overturn by one method alone."""
+    """Return the p-value of McNemar's exact test on members that overturn by one method alone."""
     return float(binomtest(only, only + only_there).pvalue) if only + only_there else 1.0
 
 
@@ -353,7 +353,7 @@ def largest_share_unseen(count: int) -> float:
 
 
 def ratio_within_reach(logarithms: Array) -> float:
-    """Return the ratio above 1 that as many members, scattered as these, tell from 1; infinite without one.
+    """Return the smallest detectable ratio above 1, for as many members with this scatter; infinite if none.
 
     Told is a ratio that the interval of the median leaves 1 out for. Its lower end, the order statistic of
     index k, is above 1 with the wanted power where a member is with the share q: I_q(n + 1 - k, k) is the
@@ -377,7 +377,7 @@ def ratio_within_reach(logarithms: Array) -> float:
 
 
 def adjusted(probabilities: Array) -> Array:
-    """Return probabilities of several tests, each for the least of all to be below a level by chance.
+    """Return the p-values of several tests, adjusted for their number.
 
     S. Holm, Scand. J. Stat. 6, 65-70, 1979.
     """

@@ -101,7 +101,7 @@ class Cache(Generic[T, R]):
         self._used.add(path)
 
     def expect(self, count: int) -> None:
-        """Note how many tasks there will be, at least: what is finished can then be told from what is not."""
+        """Note the number of tasks to come, at least, from which the share that is finished follows."""
         if count > self._expected:
             self._expected = count
             plan = {"kind": self._kind, "total": count}

@@ -98,7 +98,7 @@ def _setting_names(case: Case, run: Run) -> tuple[str, ...]:
 
 
 def step_settings(run: Run) -> tuple[str, ...]:
-    """Return the settings of the way to a time step that the run takes."""
+    """Return the settings of the search for the time step of a run."""
     return tuple(name for name, way in STEP_SETTINGS.items() if way == run.time_step)
 
 

@@ -246,7 +246,7 @@ def makers_of(run: Run) -> dict[str, str]:
 
 
 def all_makers(runs: Iterable[Run]) -> dict[str, str]:
-    """Return versions and code on which any of the runs depends; of none, those of the reduced models."""
+    """Return versions and code that any of the runs depends on; without runs, those of the reduced models."""
     engines = sorted({run.engine_name for run in runs if not run.is_model})
     return reduced_makers() | (engine_makers(*engines) if engines else {})
 

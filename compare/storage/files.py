@@ -184,7 +184,7 @@ def _is_stream(target: Path) -> bool:
 
 
 def _temporary_path(target: Path) -> Path:
-    """Path at which the content of a file waits until it is whole."""
+    """Path of the temporary file that holds the content until it is whole."""
     return target.with_name(f".{target.name}.{os.getpid()}{_PART}")
 
 

@@ -307,7 +307,7 @@ def pairs(
         If a member has two runs of one method.
     """
     if runs.duplicated([member, "method"]).any():
-        raise ValueError("a member has one run by each method, got more")
+        raise ValueError("each member must have one run by each method, got more")
     names = list(runs[member].unique())
     ours, theirs = (
         runs[runs["method"] == name].set_index(member).reindex(names) for name in (method, against)

@@ -35,7 +35,7 @@ _PUSH = 0.1  # [m/s^2] of each component that a scene has; far from uplift
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variant:
-    """A scene, and the one thing that it has and its neighbours in the table have not.
+    """A scene, and the one feature that distinguishes it from the others in the table.
 
     Attributes
     ----------
@@ -149,7 +149,7 @@ def scene_costs(
 
 
 def step_cost(engine: str, variant: Variant, steps: int) -> tuple[float, SceneCounts]:
-    """Return the processor time of one step [s], a mean over `steps`, and what the step solved."""
+    """Return the mean processor time of one step [s], and the size of the problem that it solves."""
     initial = None if variant.standing else InitialState(0.5 * PIER.alpha, rolling_rate=0.5)
     motion = None
     if variant.components:

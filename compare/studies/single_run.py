@@ -1,4 +1,4 @@
-"""Single run: the trace of one reduced model or engine, and from when on copies of it part."""
+"""Single run: the trace of one reduced model or engine, and from when on perturbed copies diverge."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class SingleRun(Results, kind="run"):
 def single_run(
     case: Case, run: Run, *, answer: str = "", progress: ProgressCallback | None = None
 ) -> SingleRun:
-    """Return a run, and from when on copies of its reduced model part, by the rule of an advice.
+    """Return a run, and from when on copies of its reduced model diverge, by the rule of an advice.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def single_run(
 def single_run_of(
     trace: Trace, part: float = math.inf, answer: str = "", perturbation: float = AdvicePlan().perturbation
 ) -> SingleRun:
-    """Return the results of a trace of which copies, off by a perturbation, part at a time of the run [s]."""
+    """Return the results of a trace, and from when on perturbed copies of it diverge [s]."""
     job = Job(case=trace.case, run=trace.run)
     case, motion = fields_of(trace.case), trace.case.motion
     left_out = ("rest_intervals", "extrema", "passes")

@@ -342,7 +342,7 @@ _GERMAN = ("zeit", "beschl")  # words beside which "O" is Ost; in French, Spanis
 
 
 def settle(names: Sequence[ColumnName]) -> list[ColumnName]:
-    """Return names of which some say something else beside others than alone.
+    """Return names, with those corrected whose meaning depends on the others.
 
     "T" beside "Time" is no time but a transverse component, "O" beside "N" and German words is east, and "aT"
     beside x, y and z is their resultant.

@@ -1,4 +1,4 @@
-"""Doubts about a record as it was read: units, offsets, gravity, time steps, ends that cannot be right."""
+"""Doubts about a record as read: improbable units, offsets, gravity, time steps and ends."""
 
 from __future__ import annotations
 

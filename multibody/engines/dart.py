@@ -198,7 +198,7 @@ class _DartStepper(Leapfrog):
         return self._steps_to(rows[:, 3:6], quaternions(rows[:, :3], _SPIN), rows[:, 6])
 
     def warnings(self) -> str:
-        """Say that it went out of reach: DART does not warn, and would end the process."""
+        """Return a warning of a cylinder out of reach, where DART would end the process."""
         return "the cylinder is out of reach" if self._lost else ""
 
     def counts(self) -> SceneCounts:
@@ -314,7 +314,7 @@ class _DartStepper(Leapfrog):
         body.addExtForce(force)
 
     def _step_on(self, beyond: list[float]) -> None:
-        """Take a step, in which the slab has a velocity beyond its own; it keeps what the step changed."""
+        """Take a step with an added velocity of the slab, and subtract it again afterwards."""
         slab = self._slab
         if slab is None:
             self._world.step()

@@ -301,7 +301,7 @@ class _DrakeStepper(Leapfrog):
         return [math.nan] * (len(self._place) + 2)
 
     def _one(self, ax: float, ay: float, az: float) -> list[float]:
-        """Take one step; return quaternion, positions, heading of the scene, and what it has spun."""
+        """Take one step; return quaternion, positions, heading of the scene, and spin so far."""
         if self._rim.lean < _FLAT:
             self._turn_point_below(ax, ay, az)
         before, step = self._rim, self._step
@@ -385,7 +385,7 @@ class _DrakeStepper(Leapfrog):
         self._place = [*(each / length for each in turned), *moved]
 
     def _turn_point_below(self, ax: float, ay: float, az: float) -> None:
-        """Turn a point of the rim below the lean of a base that is nearly flat, or below its load."""
+        """Turn a point of the rim to the lowest place of a nearly flat base, or to where it is loaded."""
         rim, body = self._rim, self._scene.body
         if rim.lean > _LEANS:
             self._turn(self._heading + math.atan2(rim.axis_y, rim.axis_x))

@@ -348,7 +348,7 @@ class Problem(Release, Record, Restraint, Body):
     )
     rolling_resistance: float = _ground(
         0.0,
-        "Rolling resistance length, in m, below the base radius. 0: no loss.",
+        "Rolling resistance length, in m; less than the base radius. 0: no loss.",
     )
 
     def case(self) -> rw.Case:

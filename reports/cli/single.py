@@ -278,7 +278,7 @@ Engine = Annotated[
     str | None,
     options.method(f"{options.ENGINES}; checks the model by one run. none: no check. Default: mujoco."),
 ]
-Details = Annotated[bool, options.output("Print the details that are folded on the page.", "--details")]
+Details = Annotated[bool, options.output("Also print the details of the page.", "--details")]
 
 
 @takes_options

@@ -59,7 +59,7 @@ class SubjectOptions(Plan):
         "and azimuth.",
     )
     trajectory: Path | None = _subject(
-        None, "Trajectory to check (CSV with time, tilt, azimuth), of the one case of --suite."
+        None, "Trajectory to check (CSV with time, tilt, azimuth); --suite states its case."
     )
     suite: str | None = _subject(
         None,

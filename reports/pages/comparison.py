@@ -184,7 +184,7 @@ def _agrees(row: SummaryRow) -> str:
 
 
 def _until(row: SummaryRow, start: float) -> str:
-    """Return the end of an agreement within 1 % of alpha, in the time of the run; that of the run with +."""
+    """Return the end of an agreement within 1 % of alpha [s], with + if it lasts to the end of the run."""
     return f"{row.agreement_time + start:.2f}" if row.diverged else f"{row.agreement_time:.2f}+"
 
 

@@ -222,7 +222,7 @@ class Advice(Results, kind=KIND):
 
     @property
     def copies_differ(self) -> bool:
-        """Whether the copies of the case are more than one run."""
+        """Whether perturbing the case changes it."""
         return _differ(self.groups)
 
     @property

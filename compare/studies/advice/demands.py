@@ -285,7 +285,7 @@ def _largest(name: str, groups: list[tuple[str, float, pd.DataFrame]]) -> dict[s
 def _together(
     name: str, groups: list[tuple[str, float, pd.DataFrame]], limits: Mapping[str, float]
 ) -> dict[str, float]:
-    """What acts together where the shear, or moment, of a run is largest and nothing is beyond its limit."""
+    """Actions at the time of the largest shear or moment of a run, while nothing is beyond its limit."""
     runs = pd.concat([each for *_, each in groups])
     load = pd.DataFrame({part: runs[f"{name}_with_{part}"].astype(float) for part in _TOGETHER})
     acting = {part: load[part] for part in _TOGETHER}

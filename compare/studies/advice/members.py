@@ -168,7 +168,7 @@ def without_vertical(motion: GroundMotion) -> GroundMotion:
 
 
 def ratios_of(found: Contrast) -> dict[str, float]:
-    """Return what may be stated of the largest tilts of copies by one of two ways over those by the other.
+    """Return statistics of the ratio of the largest tilts of copies by two methods.
 
     Returns
     -------

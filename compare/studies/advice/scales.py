@@ -147,7 +147,7 @@ def planar_shares(runs: pd.DataFrame) -> list[dict[str, float]]:
 
 
 def held_by(case: Case) -> float:
-    """Return by what a tendon raises the threshold of uplift [-]."""
+    """Return the factor by which a tendon raises the threshold of uplift [-]."""
     return 1.0 if case.tendon is None else case.tendon.uplift_factor(case.cylinder)
 
 

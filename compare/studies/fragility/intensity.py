@@ -120,7 +120,7 @@ def pseudo_acceleration(motion: GroundMotion, period: float) -> Array:
 
 @cache  # it takes longer than the motion, and most motions of a study have one step
 def _oscillator(period: float, step: float) -> tuple[Array, Array]:
-    """Return the first-order hold of the transfer from -a to omega^2 x: numerator and denominator."""
+    """Return the transfer function from -a to omega^2 x with first-order hold: numerator, denominator."""
     from scipy.signal import cont2discrete
 
     omega = 2.0 * math.pi / period

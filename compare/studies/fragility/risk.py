@@ -160,7 +160,7 @@ def frequencies_of(hazard: HazardCurve, x: Array, y: Array, uplift: Array, far: 
 
 
 def _fill(x: Array, y: Array) -> Array:
-    """Return an indicator with what is not known as between its neighbours; all NaN where nothing is."""
+    """Return an indicator, unknown values interpolated between neighbours; all NaN if none is known."""
     known = ~np.isnan(y)
     return y if known.all() or not known.any() else np.interp(x, x[known], y[known])
 
@@ -180,7 +180,7 @@ def _integral(hazard: HazardCurve, x: Array, y: Array, low: Array) -> Array:
 
 
 def _rate(hazard: HazardCurve, x: Array) -> Array:
-    """Return annual frequencies at logarithms of intensities, at an end those of the end."""
+    """Return annual frequencies at logarithms of intensities, constant beyond the ends."""
     return np.asarray(np.exp(np.interp(x, np.log(hazard.intensity), np.log(hazard.annual_frequency))))
 
 
@@ -317,7 +317,7 @@ def resampled(exposure: Exposure, hazard: HazardCurve, single: Array, weights: A
 
 
 def _few_parts_factor(parts: Array) -> float:
-    """Return the 97.5 % quantile of Student's t of a sum of parts (R,) over that of as many alike."""
+    """Return the 97.5 % quantile of Student's t for a sum of parts (R,), over that for equal parts."""
     from scipy.stats import t
 
     squares, most = (parts**2).sum(), len(parts) - 1

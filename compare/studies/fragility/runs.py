@@ -194,7 +194,7 @@ class Task:
 
     @property
     def _of_peaks(self) -> bool:
-        """Whether the batch kernel does, which knows homogeneous cylinders, a slab, and peaks alone."""
+        """Whether the batch kernel suffices: peaks of homogeneous cylinders, with or without a slab."""
         own = self.shakings[0].case.cylinder
         homogeneous = (own.height, own.transverse_inertia, own.axial_inertia) == (None, None, None)
         return self.run.is_model and homogeneous and not self.contact
@@ -436,7 +436,7 @@ def default_levels(
 
 
 def _hold_of(body: Cylinder, asked: FragilityPlan) -> tuple[float, float]:
-    """Return by what a tendon raises the couple at uplift, and the velocity that its way to balance takes."""
+    """Return the factors by which a tendon raises the couple at uplift and the velocity to reach balance."""
     from rockwobble import reduced
 
     tendon = asked.tendon

@@ -229,7 +229,7 @@ def _whole_tilt(trace: Trace) -> Array:
 
 
 def _peak(trace: Trace) -> Array:
-    """Peak tilt [alpha]; what leans beyond its balance counts as that, it falls sooner or later."""
+    """Peak tilt [alpha], at most that of balance, beyond which it overturns sooner or later."""
     return np.array([min(trace.peak_tilt / trace.case.cylinder.alpha, 1.0)])
 
 

@@ -164,7 +164,7 @@ def _load() -> float:
 
 
 def reaches(line: pd.DataFrame, target: float) -> pd.DataFrame:
-    """Return the points of a line below an error that are so at the next finer value of the knob, too.
+    """Return the points of a series below an error bound that also hold at the next finer setting.
 
     An error that happens to be small at one value does not count, but at the finest, which none follows.
     """

@@ -416,7 +416,7 @@ def rings(tables: Tables) -> Numbers:
 
 
 def _soft_contacts(tables: Tables) -> pd.DataFrame:
-    """The runs with a contact of their own: failed; ratio of the peaks and loss, NaN where one failed."""
+    """The runs with other contact settings: failed, ratio of the peaks, loss; NaN where one failed."""
     table = tables["contact"]
     failed = table[["free_outcome", "outcome"]].isin(NO_PEAK).any(axis="columns")
     known = table.assign(ratio=quotient(table))[["ratio", "loss"]].mask(failed)
@@ -424,7 +424,7 @@ def _soft_contacts(tables: Tables) -> pd.DataFrame:
 
 
 def soft_contact(tables: Tables) -> Numbers:
-    """Return up to which softness, its time constant times p, contact leaves the peak as it is."""
+    """Return the largest softness of contact (time constant times p) that does not change the peak."""
     table = _soft_contacts(tables)
     known = table[~table["failed"]]
     # one contact is one point, though its softness differs by slenderness in the third digit

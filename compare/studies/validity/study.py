@@ -106,7 +106,7 @@ def measure_all(
     workers: int | None = None,
     progress: ProgressCallback | None = None,
 ) -> dict[str, pd.DataFrame]:
-    """Measure every part, with a slab those without walls, and return its table by its name.
+    """Measure every part (with a slab, only those without walls), and return the tables by name.
 
     Parameters
     ----------

@@ -132,10 +132,10 @@ def _orientation(
         return "z", None, code == _DOWN
     azimuth = float(code % 360) if 1 <= code <= 360 else None  # 0 is none of the format's azimuths
     if azimuth is not None and stated not in (None, azimuth):
-        raise ValueError(f"{where}: the header states {stated:g} deg and code {code} for its orientation")
+        raise ValueError(f"{where}: the header states two orientations, {stated:g} deg and code {code}")
     if code in (_UP, _DOWN, _VERTICAL):
         raise ValueError(
-            f"{where}: the header states {stated:g} deg and code {code}, vertical, for its orientation"
+            f"{where}: the header states two orientations, {stated:g} deg and code {code}, vertical"
         )
     azimuth = stated if azimuth is None else azimuth
     # a stream of three letters, HNE, names its direction last
