@@ -297,7 +297,7 @@ def default_runs(
 
 
 def _require_one_with(support: str) -> None:
-    """Refuse a support of which the only engine does not run here, for what that engine lacks."""
+    """Refuse a support whose only engine does not run here, and say what that engine lacks."""
     for name in missing_engines():
         if support in engine_named(name).supports:
             find_engine(name)

@@ -120,7 +120,7 @@ class Reading(Plan):
     resample: bool = _ground(False, options.RESAMPLE, flag="--resample")
 
     def ways(self) -> ReadingOptions:
-        """Return them as keywords of `read_record` and `read_records`."""
+        """Return the options as keywords of `read_record` and `read_records`."""
         return {
             "units": self.units,
             "columns": self.record_columns,

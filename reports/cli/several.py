@@ -242,7 +242,7 @@ class GridOptions(GridPlan, Reading):
     record_z: list[Path] | None = _motion(None, "Vertical component of each record. Default: none.")
 
     def grid(self, models: list[str] | None) -> rw.Grid:
-        """Return the grid of these axes by some reduced models, the recess model without any.
+        """Return the grid of these axes for some reduced models; default: the recess model.
 
         Raises
         ------

@@ -145,7 +145,7 @@ def demands_of(trace: Trace) -> dict[str, float]:
 
 
 def weaker_factors(threshold: float) -> list[float]:
-    """Return the factors below 1 on a record at which its demands are looked at, too.
+    """Return the factors below 1 on a record at which demands are also evaluated.
 
     They are a fixed series of intensities in steps of `LEVEL_RATIO`, so that those of stronger shaking by the
     same record contain those of weaker: its demands do not fall. The threshold of uplift, at which models

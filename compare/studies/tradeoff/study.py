@@ -137,7 +137,7 @@ def _points(problem: Problem, methods: list[Method], stage: Stage) -> pd.DataFra
 
 
 def _warm_up(methods: list[Method], case: Case) -> None:
-    """Let all be compiled, imported and fetched, by the first point of each line, the coarsest."""
+    """Compile, import and load everything by a run of the first, coarsest point of each series."""
     for place, method in enumerate(methods):
         if not place or method.line != methods[place - 1].line:
             method.solve(case)
