@@ -29,6 +29,9 @@ def print_checks(console: Console, found: Checks) -> None:
         counts = Counter(result.outcome for result in of_group)
         words = ", ".join(f"{count} {outcome}" for outcome, count in counts.items())
         console.print(f"{TITLES.get(group, 'engines')}: {words}", highlight=False, markup=False)
+        if group == "baseline":  # of another version, or of other digits, which is no failure
+            for note in dict.fromkeys(each.note for each in of_group if each.outcome == PASSED and each.note):
+                console.print(f"  {note}", highlight=False, markup=False, soft_wrap=True)
 
 
 def page_of(found: Checks) -> Page:
@@ -131,12 +134,12 @@ def headline(found: Checks) -> str:
 def in_words(result: Result) -> str:
     """Return a result in one sentence."""
     note = f"; {result.note}" if result.note else ""
-    return f"{_failure(result)} ({result.reason}){note}"
+    return f"{_failure(result, f' ({result.reason})')}{note}"
 
 
-def _failure(result: Result) -> str:
+def _failure(result: Result, reason: str = "") -> str:
     cause = f"; likely cause: {result.cause}" if result.cause else ""
-    return f"{result.name}: {_measurement(result)}, at most {_bound(result)}{cause}"
+    return f"{result.name}: {_measurement(result)}, at most {_bound(result)}{reason}{cause}"
 
 
 def _by_group(results: Sequence[Result]) -> dict[str, list[Result]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import io
 import json
 import math
 import re
@@ -12,6 +13,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import pytest
+from rich.console import Console
 from showing import loads_as_it_was
 
 from rockwobble.compare.check import FAILED, NOT_RUN, PASSED, Checks, Result, Subject, baseline, groups
@@ -19,7 +21,7 @@ from rockwobble.compare.check.measurement import Bound, at_most, not_run
 from rockwobble.compare.storage.files import replace_files
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages import page_of
-from rockwobble.reports.pages.check import as_junit, headline
+from rockwobble.reports.pages.check import as_junit, headline, in_words, print_checks
 
 FAST = ["--only", "rest", "--only", "equations"]
 MADE = (
@@ -77,7 +79,7 @@ def test_failures_alone_are_printed_and_end_with_1(
     assert run("--only", "agreement") == 1
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith(
-        "FAILED: reduced model, El | Centro, recess: 0.5 alpha, at most 0.1; likely cause: "
+        "FAILED: reduced model, El | Centro, recess: 0.5 alpha, at most 0.1 (contact <2 h>); likely cause: "
     )
     assert lines[1] == "FAILED: reduced model, a run, recess: none, at most 0.1 (must end)"
     assert lines[2] == "not run: a case, recess: nothing moves"
@@ -85,6 +87,20 @@ def test_failures_alone_are_printed_and_end_with_1(
     assert lines[4].startswith("2 of 4 checks FAILED (1 passed, 1 not run)") or lines[4].startswith(
         "2 of 4 checks FAILED (1 not run), in "
     )
+
+
+def test_a_bound_has_its_reason_and_a_failure_its_cause() -> None:
+    failed = dataclasses.replace(BAD, cause="axial inertia +5 %")
+    words = in_words(failed)
+    assert f"at most 0.1 ({failed.reason}); likely cause: axial inertia +5 %" in words
+
+
+def test_the_version_of_a_baseline_is_said_once_where_nothing_has_changed() -> None:
+    note = "the baseline is of mujoco 3.9.9, this is 4.0.0"
+    same = [dataclasses.replace(GOOD, group="baseline", name=name, note=note) for name in ("one", "two")]
+    console = Console(file=io.StringIO(), record=True, width=100)
+    print_checks(console, checks(*same))
+    assert console.export_text().splitlines() == ["baseline: 2 passed", f"  {note}"]
 
 
 @pytest.mark.parametrize(
@@ -159,7 +175,7 @@ def test_junit_counts_failures_and_what_did_not_run() -> None:
     assert failure is not None
     said = "El | Centro: 0.5 alpha, at most 0.1; likely cause: contact of x"
     assert failure.get("message") == said
-    assert said in str(failure.text)
+    assert said.replace("0.1;", "0.1 (contact <2 h>);") in str(failure.text)
 
 
 def test_junit_is_xml_whatever_an_engine_says() -> None:
