@@ -82,7 +82,7 @@ def test_settings_of_a_model_are_numbers(
 def test_auto_says_what_error_is_left(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     method = ["--engine", "mujoco", "--time-step", "auto", "--set", "step_tolerance=1e-4"]
     assert call("simulate", *RELEASE, *method, "--out", str(tmp_path)) == 0
-    assert "The tilt is, until 0.2 s, within" in " ".join(capsys.readouterr().out.split())
+    assert "Until 0.2 s the tilt is within" in " ".join(capsys.readouterr().out.split())
     assert json.loads((tmp_path / "manifest.json").read_text())["about"]["result"]["error_estimate"] > 0.0
 
 

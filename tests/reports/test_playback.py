@@ -134,7 +134,7 @@ def test_stored_results_are_played_and_drawn_again_without_a_run(comparison, tmp
         (["view", "{folder}/missing"], "does not hold results of rockwobble: it has no manifest.json"),
         (
             ["report", "{folder}/missing"],
-            "does not hold results of rockwobble: it has no manifest.json",
+            "is not a folder of results",
         ),
         (["view", "{folder}", "--case", "x"], "--case must be one of release, got 'x'"),
     ],

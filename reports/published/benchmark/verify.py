@@ -45,7 +45,7 @@ class Sample(TypedDict):
 
 
 class Entry(Sample):
-    """The same with what a comparison may leave: until when, how closely a number repeats, by signal."""
+    """A sample with the end of the comparison and, by signal, the repeatability of its numbers."""
 
     agreement_time: float | None
     repeats: float
@@ -82,7 +82,7 @@ class FingerprintVerdict:
     ----------
     word : {"same", "chaotic", "changed"}
     case, claim, term : str
-        Of the case that decides; empty where all are the same.
+        Case, claim and term of the case that decides; empty where all are the same.
     quantity : str
         What differs there.
     time : float
@@ -169,7 +169,7 @@ def compare_entries(old: Entry, new: Sample) -> FingerprintVerdict:
 
 
 def late_peaks(entry: Sample, end: float) -> np.ndarray:
-    """Return the largest sampled tilt of each copy from a time on; of one that ended before, its last."""
+    """Return the largest sampled tilt of each copy from a time on; its last tilt if it ended before."""
     found = []
     for copy in entry.get("copies", ()):
         known = [tilt for tilt in copy if tilt is not None]

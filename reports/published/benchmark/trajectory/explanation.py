@@ -134,7 +134,7 @@ class _Search:
                 return
 
     def _follows(self, before: Difference, after: Difference, motion: Motion, *, by_rate: bool) -> bool:
-        """Whether the tilts agree over so much more motion that chance is no reason."""
+        """Whether the tilts agree for so much longer that it cannot be by chance."""
         alpha, scale = self.reference.alpha, self.reference.time_scale
         if after.agreed_peak < LEANING * after.tilt.bound * alpha:
             return False
@@ -209,7 +209,7 @@ def _path_explained(reference: Reference, motion: Motion, axes: Frame) -> tuple[
 
 
 def _origin(reference: Reference, motion: Motion, end: float) -> Change:
-    """Return what takes back that a path is counted from elsewhere."""
+    """Return the change that corrects another origin of the path."""
     wanted, own = on_samples_of(reference.motion, motion)
     assert wanted.path is not None
     assert own.path is not None
@@ -288,7 +288,7 @@ def _beginning(reference: Reference, window: float) -> Motion:
 
 
 def _misfit(model: Motion, motion: Motion, offset: float, slower: float = 1.0) -> float:
-    """Root mean square difference of the tilts [rad] of a model and a motion that is late and slower."""
+    """Root mean square difference of the tilts [rad] of a model and a motion, later and slower."""
     time = (model.time - offset) * slower
     begin, end = int(time.searchsorted(motion.time[0])), int(time.searchsorted(motion.time[-1], side="right"))
     # most of the window must be there, or a few samples that agree by chance decide
@@ -355,5 +355,5 @@ def _off(products: Complex, angle: float, lean: Complex, noise: float, small: fl
 
 
 def _minima(tilt: Array) -> NDArray[np.intp]:
-    """Return the samples of least tilt: a first pass may hardly be one, and still turn one of two motions."""
+    """Return the samples of minimum tilt: even a shallow first pass may turn one of two motions."""
     return np.flatnonzero((tilt[1:-1] <= tilt[:-2]) & (tilt[1:-1] < tilt[2:])) + 1

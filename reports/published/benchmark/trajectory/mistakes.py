@@ -76,7 +76,7 @@ class Mistake:
 
     @property
     def changes_tilt(self) -> bool:
-        """Whether tilts differ by it; horizontal axes, azimuth and the path beside a tilt change none."""
+        """Whether it changes tilts; mistakes in horizontal axes, azimuth or path (beside a tilt) do not."""
         return self.code == "y_up" or self.concerns not in ("azimuth", "path", "axes")
 
     @property
@@ -130,7 +130,7 @@ def correct(values: Values, read: Read, changes: Sequence[Change]) -> Motion | N
 
 
 def with_changes(motion: Motion, changes: Sequence[Change]) -> Motion:
-    """Return a motion after some changes, as far as they are of the motion."""
+    """Return a motion after those of some changes that concern the motion."""
     for change in changes:
         motion = change.motion(motion)
     return motion
@@ -174,7 +174,7 @@ def readings(values: Values) -> Iterator[Change]:
 
 
 def of_path(reading: Change) -> Change:
-    """Return the change of a path alone that a reading of its columns is."""
+    """Return the change of the path alone that corresponds to another reading of its columns."""
     mistake = replace(reading.mistake, concerns="path")
 
     def taken_back(motion: Motion) -> Motion:

@@ -250,8 +250,8 @@ class Difference:
     Attributes
     ----------
     start, end, covered : float
-        Of the agreement of the tilts, and up to when azimuth and path are compared, in the time of the
-        run [s].
+        Start and end of the agreement of the tilts, and the time up to which azimuth and path are compared,
+        in the time of the run [s].
     compared : float
         End of what both have in common [s].
     agreed_motion, agreed_peak : float
@@ -345,13 +345,13 @@ class Reference:
         )
 
     def leaning(self, model: Motion, trial: Motion, within: Mask) -> Mask:
-        """Return the samples at which an azimuth is compared: both lean far enough."""
+        """Return the samples at which azimuths are compared: where both motions tilt far enough."""
         least = max(self.least_lean * float(model.tilt[within].max(initial=0.0)), ABOVE_NOISE * trial.noise)
         counts: Mask = within & (model.tilt > least) & (trial.tilt > least)
         return counts
 
     def noise_allowance(self, noise: float) -> float:
-        """Return what noise [rad] adds to the bound of the tilt [alpha]; none where it is a tenth of that."""
+        """Return the allowance for noise [rad] in the bound of the tilt [alpha]; 0 where it is small."""
         added = ABOVE_NOISE * noise / self.alpha
         return added if added > 0.1 * self.tilt_bound else 0.0
 
@@ -392,7 +392,7 @@ class Reference:
 
 
 def explains(before: Part, after: Part | None) -> bool:
-    """Whether a difference is gone, and not only just."""
+    """Whether a change removes a difference by a clear margin."""
     return after is not None and not after.differs and after.size <= LEFT_OVER * before.size
 
 
