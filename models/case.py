@@ -166,7 +166,7 @@ class Case:
     def friction_at_rest(self) -> float:
         """Largest friction demand at the base while it stays closed [-]; inf where it carries no weight.
 
-        |a_xy| / (g + a_z), with the prestress of a tendon. Exact: between samples it is quasi-convex.
+        ``|a_xy| / (g + a_z)``, with the prestress of a tendon. Exact: between samples it is quasi-convex.
         """
         if self.motion is None:
             return 0.0
