@@ -148,3 +148,22 @@ def test_each_reason_for_no_curve_is_one_line_with_all_limits_of_it(cylinders):
         bodies = cylinders if row["cylinder"] == "all" else (row["cylinder"],)
         of_step = {(body, row[name]) for body in bodies for name in ("method", "against")} & steps
         assert np.isnan(row["dispersion_difference"]) == bool(of_step)
+
+
+@pytest.mark.parametrize(
+    ("kind", "exceeded", "why"),
+    [
+        ("one motion", 1, "all overturning runs are of one motion"),
+        ("one motion", 7, "all runs that stand are of one motion"),
+        ("extrapolated", 2, "outside the intensities that were run"),
+        ("always", 8, "everything overturns"),
+    ],
+)
+def test_what_bounds_a_median_is_said(kind: str, exceeded: int, why: str) -> None:
+    found = made_up(("pier",))
+    fits = found.fits.copy()
+    chosen = (fits["limit"] == "overturned") & (fits["method"] == "recess model")
+    fits.loc[chosen, ["kind", "exceeded", "runs"]] = [kind, exceeded, 8]
+    values: Any = fragility_values(dataclasses.replace(found, tables={**found.tables, "fits": fits}))
+    (line,) = [each for each in values["undetermined"] if "recess model" in each]
+    assert line.endswith(f", {why}.")
