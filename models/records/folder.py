@@ -21,7 +21,11 @@ _WAYS = ("units", "columns", "time_step", "lengths", "remove_mean", "rotate", "r
 _COLUMNS = ("name", "record", "x", "y", "z", "scale", "level", *_WAYS)
 
 
-class ReadingOptions(TypedDict, total=False):
+Row = Mapping[str | None, str | list[str]]
+"""Cells by column; those under no column by None."""
+
+
+class RecordOptions(TypedDict, total=False):
     """The options of `read_record`, as those of a row and of all rows are merged."""
 
     units: str | None
@@ -83,7 +87,7 @@ def read_records(
     >>> [(motion.name, motion.peak) for motion in read_records(folder)]
     [('pulse', 0.5)]
     """
-    ways = ReadingOptions(
+    ways = RecordOptions(
         units=units,
         columns=columns,
         time_step=time_step,
@@ -92,7 +96,7 @@ def read_records(
         rotate=rotate,
         resample=resample,
     )
-    return [motion for motion, _ in _read(Path(folder), ways)]
+    return _read(Path(folder), ways)
 
 
 @with_argument_kinds
@@ -139,7 +143,8 @@ def read_records_by_level(
     table = Path(folder) / TABLE if Path(folder).is_dir() else Path(folder)
     if not table.exists() or table.name.endswith(PEER_TABLE) or "level" not in _table(table)[0]:
         return {}
-    ways = ReadingOptions(
+    read = read_records(
+        table,
         units=units,
         columns=columns,
         time_step=time_step,
@@ -148,26 +153,24 @@ def read_records_by_level(
         rotate=rotate,
         resample=resample,
     )
+    levels = [_level(row) for _, row in _table(table)[1]]
+    if 0 < (without := levels.count(None)) < len(levels):
+        raise ValueError(f"each row must have a level, or none: {without} of {len(levels)} have none")
     motions: dict[float, list[GroundMotion]] = {}
-    read = _read(table, ways)
-    without = sum(level is None for _, level in read)
-    if 0 < without < len(read):
-        raise ValueError(f"each row must have a level, or none: {without} of {len(read)} have none")
-    for motion, level in read:
+    for motion, level in zip(read, levels, strict=True):
         if level is not None:
             motions.setdefault(level, []).append(motion)
     return motions
 
 
-def _read(path: Path, ways: ReadingOptions) -> list[tuple[GroundMotion, float | None]]:
-    """Return motions, each with its level."""
+def _read(path: Path, ways: RecordOptions) -> list[GroundMotion]:
     if path.is_dir() and not (path / TABLE).exists():
         stations, listed = _stations(path)
         if stations or listed:
-            return [(motion, None) for motion in _peer_motions(path, ways)]
+            return _peer_motions(path, ways)
     path = path / TABLE if path.is_dir() else path
     if path.name.endswith(PEER_TABLE):
-        return [(motion, None) for motion in _peer_motions(path.parent, ways)]
+        return _peer_motions(path.parent, ways)
     columns_of_table, rows = _table(path)
     wrong = [column for column in columns_of_table if column not in _COLUMNS]
     if wrong or not ({"x", "y"} <= set(columns_of_table) or "record" in columns_of_table):
@@ -177,17 +180,21 @@ def _read(path: Path, ways: ReadingOptions) -> list[tuple[GroundMotion, float | 
         )
     if not rows:
         raise ValueError(f"{path} must list ground motions, one in a line, got none")
-    motions: list[tuple[GroundMotion, float | None]] = []
+    motions: list[GroundMotion] = []
     for number, row in rows:
         try:
-            level = _positive("level", row.get("level"))
-            motions.append((_motion(path.parent, row, ways), level))
+            _level(row)  # refused where it stands
+            motions.append(_motion(path.parent, row, ways))
         except ValueError as error:
             raise ValueError(f"{path.name}, line {number}: {error}") from None
     return motions
 
 
-def _table(path: Path) -> tuple[list[str], list[tuple[int, dict[str | None, str | list[str]]]]]:
+def _level(row: Row) -> float | None:
+    return _positive("level", row.get("level"))
+
+
+def _table(path: Path) -> tuple[list[str], list[tuple[int, Row]]]:
     """Return the columns of records.csv, and number and cells of each row."""
     try:
         text = bytes_of(path).decode("utf-8-sig")
@@ -209,13 +216,13 @@ def _place(folder: Path, name: str | None) -> str | Path | None:
 _TRUE, _FALSE = ("1", "true", "yes"), ("", "0", "false", "no")
 
 
-def _motion(folder: Path, row: Mapping[str | None, str | list[str]], ways: ReadingOptions) -> GroundMotion:
+def _motion(folder: Path, row: Row, ways: RecordOptions) -> GroundMotion:
     beyond = list(row.get(None, ()))  # cells under no column
     if any(cell.strip() for cell in beyond):
         raise ValueError(f"must have {len(row) - 1} cells, got {len(row) - 1 + len(beyond)}")
     cells = {name: (cell or "").strip() for name, cell in row.items() if isinstance(cell, str)}
-    of_row = cast("ReadingOptions", {name: _way(name, cells[name]) for name in _WAYS if cells.get(name)})
-    options: ReadingOptions = {**ways, **of_row}
+    of_row = cast("RecordOptions", {name: _way(name, cells[name]) for name in _WAYS if cells.get(name)})
+    options: RecordOptions = {**ways, **of_row}
     name = cells.get("name") or None
     if cells.get("record"):
         if any(cells.get(axis) for axis in "xyz"):
@@ -323,7 +330,7 @@ def _listed_stations(table: Path) -> list[tuple[str, list[Path]]]:
     return found
 
 
-def _peer_motions(folder: Path, ways: ReadingOptions) -> list[GroundMotion]:
+def _peer_motions(folder: Path, ways: RecordOptions) -> list[GroundMotion]:
     stations, listed = _stations(folder)
     if not stations:
         raise ValueError(f"the table of PEER in {folder} lists no records")
@@ -339,7 +346,7 @@ def _peer_motions(folder: Path, ways: ReadingOptions) -> list[GroundMotion]:
     return motions
 
 
-def _of_station(paths: Sequence[Path], name: str, ways: ReadingOptions, *, listed: bool) -> GroundMotion:
+def _of_station(paths: Sequence[Path], name: str, ways: RecordOptions, *, listed: bool) -> GroundMotion:
     if not 2 <= len(paths) <= 3:
         raise ValueError(f"must have two or three files, got {', '.join(path.name for path in paths)[:120]}")
     try:

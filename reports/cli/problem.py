@@ -18,7 +18,7 @@ from ..pages.command_line import command_line
 from . import options
 
 if TYPE_CHECKING:
-    from rockwobble.models.records.folder import ReadingOptions
+    from rockwobble.models.records.folder import RecordOptions
 
 # length of a free response where the user does not say [s]
 FREE_DURATION = 10.0
@@ -119,7 +119,7 @@ class Reading(Plan):
     rotate: str | None = _ground(None, options.ROTATE)
     resample: bool = _ground(False, options.RESAMPLE, flag="--resample")
 
-    def ways(self) -> ReadingOptions:
+    def ways(self) -> RecordOptions:
         """Return the options as keywords of `read_record` and `read_records`."""
         return {
             "units": self.units,

@@ -19,7 +19,7 @@ from rockwobble.multibody.ring import clearance_needed, take_ring
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 from rockwobble.reduced.body import body_of
 
-from ...comparison.driver import comparison
+from ...comparison.driver import comparison_row
 from ...metrics.pair import FloatArray
 from ...runs.execution import simulate_run
 from .plan import (
@@ -199,8 +199,22 @@ def measure_following(
     The columns are tan_alpha, semidiagonal, intensity, duration and those of `SUMMARY_COLUMNS`.
     """
     case = shaken_case(EL_CENTRO, tan_alpha, semidiagonal, intensity, duration=duration, structure=structure)
-    summary = comparison(case, runs=[Run(DEFAULT_ENGINE, support)], workers=1).summary[list(_COLUMNS)]
-    return [{str(name): value for name, value in row.items()} for row in summary.to_dict("records")]
+    run = Run(DEFAULT_ENGINE, support)
+    models = {model: simulate_run(case, model) for model in (*run.compared_with, run.own_model)}
+    trace = simulate_run(case, run)
+    rows = [
+        comparison_row(
+            case,
+            str(model),
+            models[model],
+            str(run),
+            trace,
+            own=models[run.own_model],
+            simulate=simulate_run,
+        )
+        for model in run.compared_with
+    ]
+    return [{name: row[name] for name in _COLUMNS} for row in rows]
 
 
 FOLLOWING = Part(
