@@ -1,24 +1,34 @@
-"""Many cases from one: perturbed copies of it, or the same cylinder under several ground motions."""
+"""Many cases from one: perturbed copies of it, or the same cylinder under several ground motions.
+
+A perturbed copy is the same problem, off by a little. What is off is one of three:
+
+===========  =================================================================  =========================
+the inputs   tilt and rolling rate of a release, or both horizontal components  `perturbed`
+             of the ground motion, each by a factor of its own, which
+             `perturbed_copies` draws from one seed
+strength     all components of the ground motion, or the tilt of a release      `perturbed_in_strength`
+gravity      it acts all the time, as the error of a step does                  `perturbed_in_gravity`
+===========  =================================================================  =========================
+
+By how much depends on the question, and stands where that is asked. Two runs have diverged where their tilts
+first differ by more than 1 % of alpha, see `agreement_of` of `compare.metrics.pair`.
+"""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
+from numbers import Integral
 
 import numpy as np
 
 from .argument_kinds import with_argument_kinds
 from .case import Case
 from .ground_motion import GroundMotion
+from .number_checks import require_in_range
 
 # a copy further off is another problem, and a factor could change its sign
 MOST_PERTURBED = 0.1
-
-
-def require_perturbation(perturbation: float) -> None:
-    """Refuse a relative standard deviation of copies that is out of range."""
-    if not 0.0 < perturbation <= MOST_PERTURBED:
-        raise ValueError(f"perturbation must be above 0 and at most {MOST_PERTURBED:g}, got {perturbation!r}")
 
 
 @with_argument_kinds
@@ -55,8 +65,8 @@ def perturbed_copies(case: Case, count: int, *, perturbation: float, seed: int) 
     >>> [round(copy.initial.tilt / release.tilt, 5) for copy in copies]
     [1.00035, 1.00033, 1.00091]
     """
-    _require_count(count)
-    require_perturbation(perturbation)
+    require_in_range("count", count, Integral, least=2)
+    require_in_range("perturbation", perturbation, above=0.0, most=MOST_PERTURBED)
     factors = 1.0 + perturbation * np.random.default_rng(seed).standard_normal((count, 2))
     return [
         dataclasses.replace(perturbed(case, *map(float, pair)), name=f"{case.name} #{index + 1}")
@@ -73,11 +83,26 @@ def perturbed(case: Case, first: float, second: float) -> Case:
         )
         return dataclasses.replace(case, initial=released)
     if motion is None:
-        raise ValueError("an ensemble needs a release or a ground motion, got a cylinder at rest")
+        raise ValueError("a perturbed copy needs a release or a ground motion, got a cylinder at rest")
     acceleration = np.array(motion.acceleration)
     acceleration[:, 0] *= first
     acceleration[:, 1] *= second
     return dataclasses.replace(case, motion=motion.with_samples(acceleration, "perturbed"))
+
+
+def perturbed_in_strength(case: Case, relative: float) -> Case:
+    """Return a copy whose ground motion is stronger by a relative change, or whose release tilts more."""
+    factor, motion, initial = 1.0 + relative, case.motion, case.initial
+    if motion is not None:
+        return dataclasses.replace(case, motion=motion.scaled(factor))
+    if initial is None:
+        return case
+    return dataclasses.replace(case, initial=dataclasses.replace(initial, tilt=factor * initial.tilt))
+
+
+def perturbed_in_gravity(case: Case, relative: float) -> Case:
+    """Return a copy whose gravity is off by a relative change."""
+    return dataclasses.replace(case, gravity=case.gravity * (1.0 + relative))
 
 
 @with_argument_kinds
@@ -106,8 +131,3 @@ def with_motions(case: Case, motions: Sequence[GroundMotion]) -> list[Case]:
         dataclasses.replace(case, name=f"{case.name}: {motion.name}", motion=motion, duration=None)
         for motion in motions
     ]
-
-
-def _require_count(count: int) -> None:
-    if count < 2:
-        raise ValueError(f"an ensemble has at least 2 members, got {count!r}")

@@ -25,8 +25,7 @@ from rockwobble.reduced.problem import LARGEST_REST_TILT, REST_TILT
 
 from ..comparison.prediction import (
     Prediction,
-    disturbance,
-    disturbed,
+    copies_off_by,
     early_rms,
     estimated_error,
     time_scale,
@@ -262,9 +261,8 @@ def _copies(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, by_step: Arra
 
     by_table = estimated_error(case, job.run, trace.time_step)
     error = max(early_rms(case, trace.time[: len(by_step)], by_step, start), by_table)
-    relative = disturbance(case, model, error, runs.simulate)
-    moved = [disturbed(case, share) for share in ((relative, -relative) if relative else ())]
-    return [*closing, *(_tilt_difference(model, runs.simulate(each, model.run)) for each in moved)]
+    copies = copies_off_by(case, model, error, runs.simulate)
+    return [*closing, *(_tilt_difference(model, runs.simulate(copy, model.run)) for copy in copies)]
 
 
 def likely_cause(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, *, until: float) -> tuple[str, str]:

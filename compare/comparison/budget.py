@@ -34,7 +34,7 @@ from rockwobble.multibody.extrapolated_step import EXTRAPOLATED, measured_order,
 
 from ..metrics.pair import (
     Agreement,
-    agreement_time,
+    agreement_of,
     first_unresolved_pass,
     landings,
     make_pair,
@@ -458,8 +458,8 @@ def _impacts(
 def _agreement(case: Case, response: Trace, trajectory: Trace) -> Agreement | None:
     if response.outcome == "failed" or not math.isfinite(response.uplift_time):
         return None
-    pair = make_pair(case.cylinder, response, trajectory, until=case.length)
-    agreement = agreement_time(pair, tolerance=tolerance_of(response, trajectory))
+    tolerance = tolerance_of(response, trajectory)
+    agreement = agreement_of(response, trajectory, until=case.length, tolerance=tolerance)
     return agreement if agreement.length > 0.0 else None
 
 

@@ -9,13 +9,12 @@ Three things end an agreement, and the first of them is the prediction:
   multiply whatever difference there is, and the copy goes through the same passes.
 
 The copy is perturbed through its gravity, which acts all the time as the error of a step does, and which
-shifts the uplift as a base does that stands on corners. The size of the disturbance is set so that the
+shifts the uplift as a base does that stands on corners. The size of the perturbation is set so that the
 copy is as far off after the first second as the engine is.
 """
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -23,12 +22,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from rockwobble.models import AGREEMENT, Case, Run, Trace
+from rockwobble.models.members import perturbed_in_gravity
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP, froude_scale
 
 from ..metrics.pair import (
     FloatArray,
-    agreement_time,
+    agreement_of,
     landings,
     make_pair,
     rms,
@@ -130,9 +130,9 @@ def predict(
     """
     length = case.length
     ends = {
-        "model form": length if own is reference else _diverges(case, reference, own, tolerance),
+        "model form": length if own is reference else _divergence(case, reference, own, tolerance),
         "pass": _close_pass(own, contact_resolution, length),
-        "growth": _copy_diverges(case, own, error, simulate, tolerance),
+        "growth": _divergence_of_copy(case, own, error, simulate, tolerance),
     }
     return _first_of(ends, reference, length)
 
@@ -177,10 +177,9 @@ def time_scale(case: Case) -> float:
     return froude_scale(case.cylinder.semidiagonal, case.gravity).time
 
 
-def _diverges(case: Case, reference: Trace, other: Trace, tolerance: float) -> float:
+def _divergence(case: Case, reference: Trace, other: Trace, tolerance: float) -> float:
     """Time at which two responses diverge [s]; the length of the run where they do not."""
-    pair = make_pair(case.cylinder, reference, other, until=case.length)
-    agreement = agreement_time(pair, tolerance=tolerance)
+    agreement = agreement_of(reference, other, until=case.length, tolerance=tolerance)
     return agreement.end if agreement.diverged else case.length
 
 
@@ -190,16 +189,15 @@ def _close_pass(own: Trace, contact_resolution: float, length: float) -> float:
     return float(min([*times[:1], *landings(own)[:1], length]))
 
 
-def _copy_diverges(case: Case, own: Trace, error: float, simulate: Simulate, tolerance: float) -> float:
-    relative = disturbance(case, own, error, simulate)
-    if not relative:
-        return case.length
-    # what is disturbed by less than the reduced model's own tolerance is no copy
-    return _diverges(case, own, simulate(disturbed(case, relative), own.run), tolerance)
+def _divergence_of_copy(case: Case, own: Trace, error: float, simulate: Simulate, tolerance: float) -> float:
+    for copy in copies_off_by(case, own, error, simulate)[:1]:
+        # what is perturbed by less than the reduced model's own tolerance is no copy
+        return _divergence(case, own, simulate(copy, own.run), tolerance)
+    return case.length
 
 
-def disturbance(case: Case, own: Trace, error: float, simulate: Simulate) -> float:
-    """Return the relative change of gravity of a copy that is as far off as an engine early on.
+def copies_off_by(case: Case, own: Trace, error: float, simulate: Simulate) -> list[Case]:
+    """Return the copies of a case that are as far off early on as an engine, of more and of less gravity.
 
     Parameters
     ----------
@@ -213,16 +211,13 @@ def disturbance(case: Case, own: Trace, error: float, simulate: Simulate) -> flo
 
     Returns
     -------
-    float
-        0 where nothing moves.
+    list of Case
+        Empty where nothing moves.
     """
     if not math.isfinite(own.uplift_time):
-        return 0.0
-    trial = make_pair(case.cylinder, own, simulate(disturbed(case, _TRIAL), own.run), until=case.length)
-    distance = early_rms(case, trial.time, trial.tilt_difference, start_of(own))
-    return min(_TRIAL * error / distance, _LARGEST) if distance else 0.0
-
-
-def disturbed(case: Case, relative: float) -> Case:
-    """Return a copy of a case whose gravity is off by a relative change."""
-    return dataclasses.replace(case, gravity=case.gravity * (1.0 + relative))
+        return []
+    trial = simulate(perturbed_in_gravity(case, _TRIAL), own.run)
+    pair = make_pair(case.cylinder, own, trial, until=case.length)
+    distance = early_rms(case, pair.time, pair.tilt_difference, start_of(own))
+    relative = min(_TRIAL * error / distance, _LARGEST) if distance else 0.0
+    return [perturbed_in_gravity(case, share) for share in (relative, -relative)] if relative else []

@@ -325,6 +325,15 @@ def agreement_time(
     )
 
 
+def agreement_of(
+    reference: Trace, trial: Trace, *, until: float | None = None, tolerance: float = AGREEMENT
+) -> Agreement:
+    """Return the agreement of two traces of one case, see `make_pair` and `agreement_time`."""
+    return agreement_time(
+        make_pair(reference.case.cylinder, reference, trial, until=until), tolerance=tolerance
+    )
+
+
 def agreed_passes(reference: Trace, agreement: Agreement) -> int:
     """Return how many passes of the reference lie within the agreement."""
     times = np.asarray(reference.passes["time"], dtype=np.float64)

@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, Run, Suite, Tendon, Trace, perturbed_copies
+from rockwobble.models import Case, Run, Suite, Tendon, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import REDUCED_MODELS
 from rockwobble.models.diagnostic import cell_of
@@ -168,10 +168,9 @@ def ensemble(
     if not isinstance(case_or_members, Case | Suite):
         require_each("case_or_members", case_or_members, Case)
     if isinstance(case_or_members, Case):
-        perturbation = plan.perturbation
-        members = perturbed_copies(case_or_members, plan.copies, perturbation=perturbation, seed=plan.seed)
-        about |= {"members": f"perturbed copies of {case_or_members.name}, {100.0 * perturbation:g} %"}
-        about |= {"perturbation": perturbation}
+        members = plan.perturbed(case_or_members)
+        about |= {"members": f"perturbed copies of {case_or_members.name}, {100.0 * plan.perturbation:g} %"}
+        about |= {"perturbation": plan.perturbation}
     else:
         members = list(case_or_members.cases if isinstance(case_or_members, Suite) else case_or_members)
         about |= {"members": source}

@@ -54,6 +54,13 @@ class Copies(Plan):
     )
     seed: int = option(0, "Random seed of the perturbations.", group="Members", least=0)
 
+    def perturbed(self, case: Case, count: int | None = None) -> list[Case]:
+        """Return perturbed copies of a case, as many as the plan says or `count`."""
+        from rockwobble.models import perturbed_copies
+
+        copies = self.copies if count is None else count
+        return perturbed_copies(case, copies, perturbation=self.perturbation, seed=self.seed)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AdvicePlan(Copies):
@@ -78,13 +85,6 @@ class AdvicePlan(Copies):
 
         Plan.__post_init__(self)
         support_named(self.support)
-
-    def perturbed(self, case: Case, count: int | None = None) -> list[Case]:
-        """Return perturbed copies of a case, as many as the plan says or `count`."""
-        from rockwobble.models import perturbed_copies
-
-        copies = self.copies if count is None else count
-        return perturbed_copies(case, copies, perturbation=self.perturbation, seed=self.seed)
 
 
 def tendon_of(prestress: float, stiffness: float) -> Tendon | None:

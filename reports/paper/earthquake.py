@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.models import AGREEMENT, Case, GroundMotion, Trace, el_centro_1940
+from rockwobble.compare.metrics.pair import agreement_of
+from rockwobble.models import Case, GroundMotion, Trace, el_centro_1940
 from rockwobble.models.cylinder import PIER
+from rockwobble.models.members import perturbed_in_strength
 
 from . import Statement, verdict_of
 from .free import RESIDUAL, displacement
@@ -80,12 +82,12 @@ class Shaken:
 def shaken() -> Shaken:
     """Run the record, its neighbours that do not overturn, and the perturbed copy."""
     motion = el_centro_1940()
-    trace, copy = _run(motion), _run(motion.scaled(1.0 + NUDGE))
-    count = min(len(trace.tilt), len(copy.tilt))
-    apart = np.abs(trace.tilt[:count] - copy.tilt[:count]) > AGREEMENT * PIER.alpha
+    trace = _run(Case(PIER, motion))
+    agreement = agreement_of(trace, _run(perturbed_in_strength(trace.case, NUDGE)))
     end = strong_end(motion)
     strong, weak = parts(trace, end)
-    others = [(motion.scaled(scale), _run(motion.scaled(scale), _NEIGHBOUR_STEP)) for scale in _NEIGHBOURS]
+    neighbours = [motion.scaled(scale) for scale in _NEIGHBOURS]
+    others = [(scaled, _run(Case(PIER, scaled), _NEIGHBOUR_STEP)) for scaled in neighbours]
     return Shaken(
         trace=trace,
         strong_end=end,
@@ -94,12 +96,12 @@ def shaken() -> Shaken:
         neighbours=[
             parts(other, strong_end(scaled)) for scaled, other in others if other.outcome != "overturned"
         ],
-        agreement=float(trace.time[apart.argmax()]) if apart.any() else math.inf,
+        agreement=agreement.end if agreement.diverged else math.inf,
     )
 
 
-def _run(motion: GroundMotion, sample_step: float = _SAMPLE_STEP) -> Trace:
-    return reduced.simulate(Case(PIER, motion), rtol=_RTOL, sample_step=sample_step)
+def _run(case: Case, sample_step: float = _SAMPLE_STEP) -> Trace:
+    return reduced.simulate(case, rtol=_RTOL, sample_step=sample_step)
 
 
 def strong_end(motion: GroundMotion) -> float:

@@ -13,7 +13,6 @@ import pytest
 from browser import dumped, needs_chromium
 from numpy.typing import NDArray
 
-from rockwobble.compare.comparison.prediction import disturbed
 from rockwobble.models import (
     CLOSED_TILT,
     Case,
@@ -25,6 +24,7 @@ from rockwobble.models import (
     WobblingFrame,
     el_centro_1940,
 )
+from rockwobble.models.members import perturbed_in_gravity
 from rockwobble.models.synthetic import synthetic_motions
 from rockwobble.reduced import simulate
 
@@ -34,7 +34,7 @@ STEP = 0.05  # of the samples [s]
 AGREES = 1e-6  # of alpha: what the page may be off while nothing but its own error counts
 AGREES_IN_PLACE = 1e-4  # of the radius: the rolling angle turns by pi within a pass, at an error of its time
 AGREES_IN_FORCE = 1e-3  # of the weight: the centrifugal force of a pass has its peak there
-DISTURBED = 1e-9  # of gravity: a copy so far off predicts when chance comes in; the page errs by less
+PERTURBED = 1e-9  # of gravity: a copy so far off predicts when chance comes in; the page errs by less
 DECIDED = 1e-6  # of gravity: where copies so far off end alike, how it ends is no matter of chance
 ROWS = ("tilt", "angle", "x", "y", "outward", "across", "normal")
 
@@ -149,9 +149,10 @@ def on_the_page(
 
 @pytest.fixture(scope="module")
 def solved() -> list[tuple[Problem, Trace, Trace]]:
-    """Problems, with the motion of each and that of a disturbed copy."""
+    """Problems, with the motion of each and that of a perturbed copy."""
     return [
-        (each, each.solved(each.case), each.solved(disturbed(each.case, DISTURBED))) for each in problems()
+        (each, each.solved(each.case), each.solved(perturbed_in_gravity(each.case, PERTURBED)))
+        for each in problems()
     ]
 
 
@@ -161,7 +162,7 @@ def apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.fl
 
 
 def agreement(trace: Trace, copy: Trace) -> int:
-    """Return for how many samples a disturbed copy is within what the page may be off."""
+    """Return for how many samples a perturbed copy is within what the page may be off."""
     leaves = apart(trace.tilt, copy.tilt) > AGREES * trace.case.cylinder.alpha
     return int(leaves.argmax()) if leaves.any() else len(leaves)
 
@@ -190,7 +191,7 @@ def complaints_of(solved: list[tuple[Problem, Trace, Trace]], runs: list[dict[st
         for name, (size, allowed) in off.items():
             if not size.max(initial=0.0) <= allowed:
                 wrong.append(f"{label}: {name} off by {size.max():.2g} until {trace.time[until - 1]:.2f} s")
-        ends = {problem.solved(disturbed(problem.case, by)).outcome for by in (DECIDED, -DECIDED)}
+        ends = {problem.solved(perturbed_in_gravity(problem.case, by)).outcome for by in (DECIDED, -DECIDED)}
         if ends == {trace.outcome} and run["outcome"] != trace.outcome:
             wrong.append(f"{label}: {run['outcome']}, not {trace.outcome}")
     return wrong

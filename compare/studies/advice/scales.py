@@ -19,7 +19,7 @@ from ..plans import STEP
 from ..spectrum.maps import intensity_unit, uplift_of_series
 from ..spectrum.parts import RTOL, SERIES, SPATIAL, series_options
 from ..spectrum.search import Array, lowest_on_grid, run_searches, search_lowest
-from ..spectrum.study import CHECK_RTOL, NUDGE
+from ..spectrum.study import CHECK_RTOL, CONFIRMING
 
 # twelve scales for each factor of two, from a quarter to sixteen times the record as it is given
 FACTORS: Array = 2.0 ** (np.arange(-24, 49) / 12.0)
@@ -72,7 +72,7 @@ def scan_scales(case: Case, support: str = RECESS) -> tuple[pd.DataFrame, pd.Dat
         search = search_lowest(FACTORS, peaks, start=start, step=step, alpha=alpha, stands=stands)
         found = run_searches([search], at)[0]
         factor = float(np.fmin(found, lowest_on_grid(FACTORS, peaks[None])[0]))
-        again = run(factor * np.array([1.0, 1.0 - NUDGE, 1.0 + NUDGE]), rtol=CHECK_RTOL)
+        again = run(factor * np.array(CONFIRMING), rtol=CHECK_RTOL)
         lowest.append((name, factor, bool(overturned(again).all()), start))
         tables.append(pd.DataFrame({"series": name, "factor": FACTORS, "peak_tilt": peaks}))
     return pd.concat(tables, ignore_index=True), pd.DataFrame(lowest, columns=_LOWEST)

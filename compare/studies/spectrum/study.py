@@ -141,6 +141,8 @@ CHECK_RTOL = 1e-9
 # Relative change of the record. A cell that it changes as much as the tolerance of the grid does is a
 # matter of chance and says nothing of accuracy.
 NUDGE = 1e-9
+# a cell overturns for sure where it does so at all three of these factors on its record
+CONFIRMING = (1.0, 1.0 - NUDGE, 1.0 + NUDGE)
 SAME_PEAK = 0.02  # of the peak tilt, by which two runs of a cell may differ
 CELLS = 60  # enough to find one wrong cell in twenty almost surely, in half a second
 
@@ -208,8 +210,7 @@ def confirm_lowest(spectrum: TiltMaps) -> pd.DataFrame:
 def _overturns_again(spectrum: TiltMaps, series: str, i: int, scale: float) -> bool:
     if math.isnan(scale):
         return False
-    factors = (1.0, 1.0 - NUDGE, 1.0 + NUDGE)
-    return all(overturned(_single(spectrum, series, i, scale * factor)) for factor in factors)
+    return all(overturned(_single(spectrum, series, i, scale * factor)) for factor in CONFIRMING)
 
 
 def _single(spectrum: TiltMaps, series: str, i: int, scale: float) -> float:
