@@ -2,7 +2,7 @@
 
 from .bounds import AGREEMENT, CLOSED_TILT, Bounds
 from .case import Case, InitialState, Run, Suite, run_duration
-from .cylinder import Cylinder, WobblingFrame
+from .cylinder import Cylinder, RockingBody, WobblingFrame
 from .diagnostic import Assumptions, Diagnostic
 from .ground_motion import GroundMotion
 from .hazard import HazardCurve, read_hazard
@@ -26,6 +26,7 @@ __all__ = [
     "GroundMotion",
     "HazardCurve",
     "InitialState",
+    "RockingBody",
     "Run",
     "Suite",
     "Tendon",

@@ -77,6 +77,7 @@ def require_argument(name: str, value: object, kind: object) -> object:
 def in_words(kind: object) -> str:
     """Return a kind in words, as "a Case or None"."""
     members = _members(kind)
+    members = tuple(one for each in members for one in _concrete(each))
     words = dict.fromkeys(_name(each) for each in members if each is not type(None))
     if "a path" in words:
         words.pop("a text", None)
@@ -114,6 +115,11 @@ def _members(kind: Any) -> tuple[Any, ...]:
     if get_origin(kind) in (Union, types.UnionType):
         return tuple(each for one in get_args(kind) for each in _members(one))
     return (type(None),) if kind is None else (kind,)
+
+
+def _concrete(kind: Any) -> tuple[Any, ...]:
+    """What may be given for a kind: of an abstract class those that it stands for."""
+    return tuple(kind.__subclasses__()) if inspect.isabstract(kind) else (kind,)
 
 
 def _is(value: Any, kind: Any) -> bool:
@@ -189,7 +195,8 @@ def _plural(kind: Any) -> str:
     plurals = {float: "numbers", int: "whole numbers", str: "texts", Path: "paths"}
     words = dict.fromkeys(
         plurals.get(each) or (_name(each) if get_origin(each) else getattr(each, "__name__", str(each)))
-        for each in _members(kind)
+        for member in _members(kind)
+        for each in _concrete(member)
         if each is not type(None)
     )
     return " or ".join(words)

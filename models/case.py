@@ -11,9 +11,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from .argument_kinds import with_argument_kinds
+from .argument_kinds import in_words, with_argument_kinds
 from .bounds import OVERTURNED_TILT, Bounds
-from .cylinder import Cylinder, WobblingFrame
+from .cylinder import RockingBody
 from .ground_motion import GroundMotion
 from .number_checks import quoted, require_finite, require_positive
 from .shown import Brief, brief, line
@@ -70,7 +70,7 @@ class Case:
 
     Parameters
     ----------
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
         Alone, or the columns of a `WobblingFrame`.
     motion : GroundMotion, optional
         Without it the ground is still.
@@ -107,7 +107,7 @@ class Case:
     ('free response', 8.0, 9.81)
     """
 
-    cylinder: Cylinder
+    cylinder: RockingBody
     motion: GroundMotion | None = None
     initial: InitialState | None = None
     duration: float | None = None
@@ -118,11 +118,16 @@ class Case:
     tendon: Tendon | None = None
 
     def __post_init__(self) -> None:
-        kinds = {"cylinder": Cylinder, "motion": GroundMotion, "initial": InitialState, "tendon": Tendon}
+        kinds: dict[str, type] = {
+            "cylinder": RockingBody,
+            "motion": GroundMotion,
+            "initial": InitialState,
+            "tendon": Tendon,
+        }
         for name, kind in kinds.items():
             given = getattr(self, name)
             if not (isinstance(given, kind) or (given is None and name != "cylinder")):
-                raise ValueError(f"{name} must be of kind {kind.__name__}, got {quoted(given)}")
+                raise ValueError(f"{name} must be {in_words(kind)}, got {quoted(given)}")
         object.__setattr__(self, "gravity", require_positive("gravity", self.gravity, "m/s^2"))
         object.__setattr__(self, "friction", require_finite("friction", self.friction, ""))
         if self.friction < 0.0:
@@ -145,7 +150,7 @@ class Case:
     def __repr__(self) -> str:
         cylinder, motion = self.cylinder, self.motion
         facts = [brief(self.name), f"R={cylinder.semidiagonal:g} m", f"tan_alpha={cylinder.tan_alpha:g}"]
-        if isinstance(cylinder, WobblingFrame):
+        if cylinder.carries_slab:
             facts += [f"slab_mass_ratio={cylinder.slab_mass_ratio:g}"]
         if motion is not None:
             facts += [brief(motion.name)] if motion.name not in ("", self.name) else []

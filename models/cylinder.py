@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from numbers import Real
 
 from .number_checks import quoted, require_finite, require_positive
@@ -23,40 +24,8 @@ _SMALLEST, _LARGEST = 1e-70, 1e70  # [m]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Cylinder(Brief):
-    """A rigid body of revolution that stands on a circular base.
-
-    Size and slenderness are those that govern rocking: they locate the mass centre S against the
-    rim. For the homogeneous solid cylinder of the paper, the default, they are also those of its
-    outline. A hollow column, a chimney or a pier that carries a deck is the same body with other
-    inertias; per unit mass, because the mass itself cancels everywhere.
-
-    Parameters
-    ----------
-    semidiagonal : float
-        R = sqrt(b^2 + h^2), distance from the rim to the mass centre [m]. Equation (20).
-    tan_alpha : float
-        b/h, base radius over height of the mass centre; alpha is the slenderness [-].
-    height : float, optional
-        Height of the outline [m]. Default: twice the height of the mass centre.
-    transverse_inertia : float, optional
-        I1/m about a horizontal axis through the mass centre [m^2]. Default: (3 b^2 + height^2)/12,
-        equation (16).
-    axial_inertia : float, optional
-        I2/m about the axis of revolution [m^2]. Default: b^2/2, equation (16).
-
-    Raises
-    ------
-    ValueError
-        If a value is not a positive finite number, or the inertias belong to no real body
-        (I2 > 2 I1).
-
-    Examples
-    --------
-    >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    >>> round(pier.base_radius, 4), round(pier.half_height, 4)
-    (1.1767, 5.8835)
-    """
+class RockingBody(Brief, ABC):
+    """What models and engines ask of a body: the dimensions of one column, and what it carries."""
 
     semidiagonal: float
     tan_alpha: float
@@ -93,6 +62,78 @@ class Cylinder(Brief):
                 f"axial_inertia must not exceed twice transverse_inertia, "
                 f"got {axial:g} and {transverse:g} [m^2]"
             )
+
+    @property
+    def alpha(self) -> float:
+        """Slenderness: angle at the mass centre between the axis and the rim [rad]."""
+        return math.atan(self.tan_alpha)
+
+    @property
+    def base_radius(self) -> float:
+        """Base radius b [m]."""
+        return self.semidiagonal * (self.tan_alpha / math.hypot(1.0, self.tan_alpha))
+
+    @property
+    def mass_centre_height(self) -> float:
+        """Height h of the mass centre above the base [m]."""
+        return self.semidiagonal / math.hypot(1.0, self.tan_alpha)
+
+    @property
+    def half_height(self) -> float:
+        """Half the height of the outline [m]; h of the paper where the body is homogeneous."""
+        return self.mass_centre_height if self.height is None else 0.5 * self.height
+
+    @property
+    @abstractmethod
+    def carries_slab(self) -> bool:
+        """Whether a slab lies on it, so that it rocks on both its ends."""
+
+    @property
+    @abstractmethod
+    def slab_mass_ratio(self) -> float:
+        """Mass of the slab over that of the columns under it [-]."""
+
+    @property
+    @abstractmethod
+    def columns(self) -> int:
+        """Number of columns that make the one motion."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Cylinder(RockingBody):
+    """A rigid body of revolution that stands on a circular base.
+
+    Size and slenderness are those that govern rocking: they locate the mass centre S against the
+    rim. For the homogeneous solid cylinder of the paper, the default, they are also those of its
+    outline. A hollow column, a chimney or a pier that carries a deck is the same body with other
+    inertias; per unit mass, because the mass itself cancels everywhere.
+
+    Parameters
+    ----------
+    semidiagonal : float
+        R = sqrt(b^2 + h^2), distance from the rim to the mass centre [m]. Equation (20).
+    tan_alpha : float
+        b/h, base radius over height of the mass centre; alpha is the slenderness [-].
+    height : float, optional
+        Height of the outline [m]. Default: twice the height of the mass centre.
+    transverse_inertia : float, optional
+        I1/m about a horizontal axis through the mass centre [m^2]. Default: (3 b^2 + height^2)/12,
+        equation (16).
+    axial_inertia : float, optional
+        I2/m about the axis of revolution [m^2]. Default: b^2/2, equation (16).
+
+    Raises
+    ------
+    ValueError
+        If a value is not a positive finite number, or the inertias belong to no real body
+        (I2 > 2 I1).
+
+    Examples
+    --------
+    >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> round(pier.base_radius, 4), round(pier.half_height, 4)
+    (1.1767, 5.8835)
+    """
 
     @classmethod
     def from_dimensions(
@@ -143,29 +184,19 @@ class Cylinder(Brief):
         )
 
     @property
-    def alpha(self) -> float:
-        """Slenderness: angle at the mass centre between the axis and the rim [rad]."""
-        return math.atan(self.tan_alpha)
-
-    @property
-    def base_radius(self) -> float:
-        """Base radius b [m]."""
-        return self.semidiagonal * (self.tan_alpha / math.hypot(1.0, self.tan_alpha))
-
-    @property
-    def mass_centre_height(self) -> float:
-        """Height h of the mass centre above the base [m]."""
-        return self.semidiagonal / math.hypot(1.0, self.tan_alpha)
-
-    @property
-    def half_height(self) -> float:
-        """Half the height of the outline [m]; h of the paper where the body is homogeneous."""
-        return self.mass_centre_height if self.height is None else 0.5 * self.height
+    def carries_slab(self) -> bool:
+        """Whether a slab lies on it: no."""
+        return False
 
     @property
     def slab_mass_ratio(self) -> float:
         """Mass of the slab over that of the columns under it [-]: 0, since there is none."""
         return 0.0
+
+    @property
+    def columns(self) -> int:
+        """Number of columns: 1."""
+        return 1
 
 
 # beyond it the columns weigh no more than rounding: the motion is that of a slab alone
@@ -173,7 +204,7 @@ LARGEST_SLAB_MASS_RATIO = 1e15
 
 
 @dataclass(frozen=True, slots=True, repr=False, init=False)
-class WobblingFrame(Cylinder):
+class WobblingFrame(RockingBody):
     """A rigid slab on equal cylinders that rock and wobble together: a deck on piers, a podium.
 
     It stands where a `Cylinder` stands, and gives the dimensions of one of its columns. The columns
@@ -203,11 +234,12 @@ class WobblingFrame(Cylinder):
     WobblingFrame(Cylinder(semidiagonal=6, tan_alpha=0.2), slab_mass_ratio=2, columns=3)
     """
 
-    slab_mass_ratio: float
-    columns: int
+    # `field()`: no default, where the body has a property of the name
+    slab_mass_ratio: float = field()
+    columns: int = field()
 
     def __init__(self, cylinder: Cylinder, slab_mass_ratio: float = 1.0, columns: int = 3) -> None:
-        if not isinstance(cylinder, Cylinder) or isinstance(cylinder, WobblingFrame):
+        if not isinstance(cylinder, Cylinder):
             raise ValueError(  # noqa: TRY004 (bad input)
                 f"cylinder must be a Cylinder, got {quoted(cylinder)}"
             )
@@ -226,8 +258,8 @@ class WobblingFrame(Cylinder):
             raise ValueError(
                 f"columns must be 3 or more, or 1 under a slab that cannot turn, got {quoted(columns)}"
             )
-        for field in fields(Cylinder):
-            object.__setattr__(self, field.name, getattr(cylinder, field.name))
+        for each in fields(Cylinder):
+            object.__setattr__(self, each.name, getattr(cylinder, each.name))
         object.__setattr__(self, "slab_mass_ratio", ratio)
         object.__setattr__(self, "columns", int(columns))
 
@@ -236,16 +268,21 @@ class WobblingFrame(Cylinder):
         return line("WobblingFrame", [repr(self.cylinder), ratio, f"columns={self.columns}"])
 
     @property
+    def carries_slab(self) -> bool:
+        """Whether a slab lies on it: yes, be its mass 0."""
+        return True
+
+    @property
     def cylinder(self) -> Cylinder:
         """One of its columns."""
-        return Cylinder(**{field.name: getattr(self, field.name) for field in fields(Cylinder)})
+        return Cylinder(**{each.name: getattr(self, each.name) for each in fields(Cylinder)})
 
 
 # the pier on which engines and studies are measured; others scale from it (Froude)
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 
-def cylinder_of(values: Facts, make: Callable[..., Cylinder] = Cylinder) -> Cylinder:
+def cylinder_of(values: Facts, make: Callable[..., Cylinder] = Cylinder) -> RockingBody:
     """Return what `make` gives for the values of a cylinder, in a frame where they hold those of a slab."""
     slab = {name: values[name] for name in ("slab_mass_ratio", "columns") if name in values}
     cylinder = make(**{name: value for name, value in values.items() if name not in slab})

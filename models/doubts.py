@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 
 from .case import Case
-from .cylinder import Cylinder
+from .cylinder import RockingBody
 from .diagnostic import Diagnostic
 from .ground_motion import GroundMotion
 from .records.units import doubts_of
@@ -44,7 +44,7 @@ def doubts_of_cases(cases: Iterable[Case]) -> list[dict[str, object]]:
 def doubts_about(
     *,
     motions: Iterable[GroundMotion | None] = (),
-    cylinders: Iterable[Cylinder] = (),
+    cylinders: Iterable[RockingBody] = (),
     gravities: Iterable[float] = (),
 ) -> list[dict[str, object]]:
     """Return the doubts about motions, cylinders and gravities [m/s^2], as `doubts_of_cases` does."""
@@ -64,7 +64,7 @@ def doubts_about(
     return [*plain, *known.values()]
 
 
-def length_doubts(cylinder: Cylinder) -> Iterator[Diagnostic]:
+def length_doubts(cylinder: RockingBody) -> Iterator[Diagnostic]:
     """Yield the doubt about a height or a base diameter beyond those of structures: "unlikely_length".
 
     Its size is the length [m], its bound the limit that it exceeds or falls below, its detail the unit that

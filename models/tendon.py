@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .cylinder import Cylinder
+from .cylinder import RockingBody
 from .number_checks import require_finite, require_positive
 from .shown import Brief
 
@@ -111,11 +111,11 @@ class Tendon(Brief):
             else require_finite("yield_force", yield_force, "N") / weight,
         )
 
-    def gaps(self, body: Cylinder) -> int:
+    def gaps(self, body: RockingBody) -> int:
         """Return how many gaps the tendon crosses: 1, or 2 under a slab."""
         return 2 if body.slab_mass_ratio > 0.0 else 1
 
-    def initial_stiffness(self, body: Cylinder) -> float:
+    def initial_stiffness(self, body: RockingBody) -> float:
         """Return the slope of the static couple against the tilt just after uplift [m g b].
 
         n^2 kt b^2 - w m g h over m g b, w = 1 + 2 slab_mass_ratio: negative where the couple falls with the
@@ -124,10 +124,10 @@ class Tendon(Brief):
         w = 1.0 + 2.0 * body.slab_mass_ratio
         return self.gaps(body) ** 2 * self.stiffness - w / body.tan_alpha
 
-    def uplift_factor(self, body: Cylinder) -> float:
+    def uplift_factor(self, body: RockingBody) -> float:
         """Return the horizontal acceleration at uplift over g tan(alpha): 1 + n P0/(w m g) [-]."""
         return 1.0 + self.gaps(body) * self.prestress / (1.0 + 2.0 * body.slab_mass_ratio)
 
-    def tension(self, body: Cylinder, tilt: float) -> float:
+    def tension(self, body: RockingBody, tilt: float) -> float:
         """Return the tension at a tilt [rad] over the weight of one column [-]."""
         return self.prestress + self.stiffness * self.gaps(body) * 2.0 * math.sin(0.5 * tilt)

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from . import plain_json, trace_file
 from .bounds import CLOSED_TILT
 from .case import Case, Run
-from .cylinder import WobblingFrame
 from .diagnostic import Assumptions, Diagnostic, cell_of
 from .shown import Shown, line
 from .trace_source import Array, Known, Source, friction_of, no_passes
@@ -259,7 +258,7 @@ class Trace(Shown):
         """
         cylinder = self.case.cylinder
         stood = np.array([0.0, 0.0, cylinder.mass_centre_height])
-        moves = 2.0 if isinstance(cylinder, WobblingFrame) else math.nan
+        moves = 2.0 if cylinder.carries_slab else math.nan
         return np.asarray(moves * (self.centre_of_mass - stood))
 
     @property
@@ -342,7 +341,7 @@ class Trace(Shown):
             for field, names in vectors.items()
             for name, part in zip(names, getattr(self, field).T, strict=True)
         }
-        left_out = () if isinstance(self.case.cylinder, WobblingFrame) else trace_file.OF_FRAMES
+        left_out = () if self.case.cylinder.carries_slab else trace_file.OF_FRAMES
         left_out += () if self.case.tendon is not None else trace_file.OF_TENDONS
         return pd.DataFrame(
             {

@@ -47,7 +47,7 @@ from typing import Annotated
 
 import numpy as np
 
-from rockwobble.models import Cylinder
+from rockwobble.models import RockingBody
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.support import Support
 
@@ -114,14 +114,14 @@ def take_ring(given: Settings, support: Support, tan_alpha: float) -> tuple[Sett
     return others, None
 
 
-def clearance_needed(cylinder: Cylinder, tilt: float, inclination: float) -> float:
+def clearance_needed(cylinder: RockingBody, tilt: float, inclination: float) -> float:
     """Return the clearance of a ring that nothing touches up to a tilt, in base radii.
 
     For walls that are half-spaces, and the motion of the recess model.
 
     Parameters
     ----------
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
     tilt : float
         The largest, from 0 to pi/2 [rad].
     inclination : float

@@ -25,7 +25,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder, InitialState
+from rockwobble.models import InitialState, RockingBody
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.support import Support
 
@@ -67,7 +67,7 @@ class Body:
         return self.base_radius / self.mass_centre_height
 
 
-def scaled_body(cylinder: Cylinder, length: float) -> Body:
+def scaled_body(cylinder: RockingBody, length: float) -> Body:
     """Return the body of `cylinder` with every length divided by `length`.
 
     Inertias that the cylinder leaves out are those of a homogeneous solid cylinder of its outline,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace, WobblingFrame
+from rockwobble.models import Case, Diagnostic, InitialState, RockingBody, Run, Trace
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_positive, require_sample_step
@@ -234,9 +234,9 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
     )
 
 
-def _column_facts(cylinder: Cylinder) -> tuple[Diagnostic, ...]:
+def _column_facts(cylinder: RockingBody) -> tuple[Diagnostic, ...]:
     """Return the fact that one column stands for all in the scene of a frame, if it does."""
-    columns = cylinder.columns if isinstance(cylinder, WobblingFrame) and cylinder.slab_mass_ratio else 1
+    columns = cylinder.columns if cylinder.slab_mass_ratio else 1
     return (Diagnostic(code="one_column", size=columns),) if columns > 1 else ()
 
 

@@ -34,7 +34,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from rockwobble.models import Cylinder
+from rockwobble.models import RockingBody
 
 
 class Body(NamedTuple):
@@ -86,7 +86,7 @@ class TiedBody(NamedTuple):
     fastest: float
 
 
-def body_of(cylinder: Cylinder, gravity: float, rolling_resistance: float = 0.0) -> Body:
+def body_of(cylinder: RockingBody, gravity: float, rolling_resistance: float = 0.0) -> Body:
     """Return the constants of `cylinder` under `gravity` [m/s^2] with a length of rolling resistance [m]."""
     b, h = cylinder.base_radius, cylinder.mass_centre_height
     height = 2.0 * cylinder.half_height
@@ -124,7 +124,7 @@ def body_of(cylinder: Cylinder, gravity: float, rolling_resistance: float = 0.0)
     )
 
 
-def restitution_from_momentum(cylinder: Cylinder) -> float:
+def restitution_from_momentum(cylinder: RockingBody) -> float:
     """Return the ratio of tilt rates at an impact that conserves the moment of momentum.
 
     About the new pivot, r = (J - mu b^2)/A; (16 - 25 sin^2 alpha)/(16 - sin^2 alpha) for the
@@ -133,7 +133,7 @@ def restitution_from_momentum(cylinder: Cylinder) -> float:
 
     Parameters
     ----------
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
         Alone or in a frame.
 
     Returns

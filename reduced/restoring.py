@@ -35,7 +35,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder
+from rockwobble.models import RockingBody
 from rockwobble.models.tendon import Tendon
 
 from ._compile import by_body, inlined, jit
@@ -412,7 +412,7 @@ def balance_tilt(body: TiedBody) -> float:
     return low
 
 
-def tied_body(body: Body, cylinder: Cylinder, tendon: Tendon) -> TiedBody:
+def tied_body(body: Body, cylinder: RockingBody, tendon: Tendon) -> TiedBody:
     """Return the constants of a body that a tendon holds."""
     gaps, w = tendon.gaps(cylinder), 1.0 + 2.0 * cylinder.slab_mass_ratio
     stiffness = gaps**2 * tendon.stiffness * body.g / w

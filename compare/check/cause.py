@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from rockwobble.models import Case, Cylinder, Trace
+from rockwobble.models import Case, RockingBody, Trace
 
 from ..metrics.pair import rms
 from .lagrange import shape_of
@@ -30,7 +30,7 @@ _LARGEST_LOSS = 0.2  # of the base radius
 Change = Callable[[Case, float], Case]
 
 
-def _of_body(change: Callable[[Cylinder, float], Cylinder]) -> Change:
+def _of_body(change: Callable[[RockingBody, float], RockingBody]) -> Change:
     return lambda case, scale: dataclasses.replace(case, cylinder=change(case.cylinder, scale))
 
 

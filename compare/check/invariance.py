@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
+from rockwobble.models import Case, GroundMotion, InitialState, RockingBody, Run
 from rockwobble.models.cylinder import PIER
 from rockwobble.models.support import support_named
 from rockwobble.multibody.engines.registry import find_engine
@@ -113,7 +113,7 @@ def _motion(case: Case) -> GroundMotion:
 
 
 def _slow_copy(
-    case: Case, slower: float, force: float = 1.0, *, cylinder: Cylinder = PIER, gravity: float = GRAVITY
+    case: Case, slower: float, force: float = 1.0, *, cylinder: RockingBody = PIER, gravity: float = GRAVITY
 ) -> Case:
     """Return a case whose time runs slower, under accelerations that are `force` times as large."""
     motion, start = _motion(case), case.initial

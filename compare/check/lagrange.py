@@ -46,7 +46,7 @@ from rockwobble.models import (
     WobblingFrame,
     el_centro_1940,
 )
-from rockwobble.models.cylinder import PIER
+from rockwobble.models.cylinder import PIER, RockingBody
 from rockwobble.models.support import SUPPORTS
 
 from ..metrics.pair import energy_loss
@@ -73,7 +73,7 @@ class Shape:
     stiffness: float = 0.0  # [1/s^2]
 
 
-def shape_of(cylinder: Cylinder, tendon: Tendon | None = None) -> Shape:
+def shape_of(cylinder: RockingBody, tendon: Tendon | None = None) -> Shape:
     """Return the constants of a cylinder, homogeneous where it has no inertias of its own: (16)."""
     b, h = cylinder.base_radius, cylinder.mass_centre_height
     I1, I2 = cylinder.transverse_inertia, cylinder.axial_inertia
@@ -294,7 +294,7 @@ def _worst(subject: Subject, support: str, tendon: Tendon | None) -> Iterator[Re
         yield worst_of(words, {place: found[at] for place, found in errors.items()}, bound)
 
 
-def _residuals(subject: Subject, support: str, cylinder: Cylinder, tendon: Tendon | None) -> list[float]:
+def _residuals(subject: Subject, support: str, cylinder: RockingBody, tendon: Tendon | None) -> list[float]:
     shape = shape_of(cylinder, tendon)
     p = math.sqrt(GRAVITY * cylinder.semidiagonal / (shape.I1 + shape.h**2 + shape.b**2))
     step, inner = _SAMPLE / p, slice(REACH, -REACH)

@@ -11,7 +11,16 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Trace, WobblingFrame
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    GroundMotion,
+    InitialState,
+    RockingBody,
+    Run,
+    Trace,
+    WobblingFrame,
+)
 from rockwobble.models.cylinder import PIER
 from rockwobble.models.shown import Brief
 from rockwobble.models.support import SUPPORTS
@@ -118,7 +127,7 @@ THRESHOLD = GRAVITY * PIER.tan_alpha  # ground acceleration of its uplift [m/s^2
 
 
 def release_case(
-    share: float, spin: float, duration: float, cylinder: Cylinder = PIER, name: str = ""
+    share: float, spin: float, duration: float, cylinder: RockingBody = PIER, name: str = ""
 ) -> Case:
     """Return a release from rest at a share of alpha, with a rolling rate [rad/s]."""
     initial = InitialState(tilt=share * cylinder.alpha, rolling_angle=0.3, rolling_rate=spin)

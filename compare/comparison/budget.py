@@ -25,7 +25,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, Cylinder, Run, Trace
+from rockwobble.models import Case, RockingBody, Run, Trace
 from rockwobble.models.shown import Brief
 from rockwobble.models.support import RECESS
 from rockwobble.multibody.auto_step import common_count
@@ -167,13 +167,13 @@ class ErrorBudget(Brief):
 
 
 def error_budget(
-    cylinder: Cylinder, engine: Trace, reference: Trace, own: Trace, limit: Limit, agreement: Agreement
+    cylinder: RockingBody, engine: Trace, reference: Trace, own: Trace, limit: Limit, agreement: Agreement
 ) -> ErrorBudget:
     """Return the budget of `engine` minus `reference` over their agreement.
 
     Parameters
     ----------
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
     engine : Trace
         Trajectory of the engine.
     reference : Trace

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, Cylinder
+from rockwobble.models import Case, RockingBody
 
 from .motion import Pose, pose_of, scatter
 from .table import POSITION, QUATERNION, Array, Mask, Table, name_list
@@ -253,7 +253,7 @@ def _checked_quaternions(table: Table, axis: Array, twist: Array) -> list[str]:
     return [turned] if start > math.degrees(_TWISTED) else []
 
 
-def _check_positions(table: Table, pose: Pose, cylinder: Cylinder) -> None:
+def _check_positions(table: Table, pose: Pose, cylinder: RockingBody) -> None:
     """Refuse a mass centre that is not R from the rim."""
     assert pose.position is not None
     x, y, height = pose.position.T

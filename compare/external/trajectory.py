@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from rockwobble.models import Case, Cylinder, Diagnostic, Run, Trace
+from rockwobble.models import Case, Diagnostic, RockingBody, Run, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.shown import Brief
@@ -342,7 +342,7 @@ def _passes(poses: Poses, start: float) -> pd.DataFrame:
 
 
 def _places(
-    poses: Poses, time: Array, axis: Array, angle: Array, cylinder: Cylinder
+    poses: Poses, time: Array, axis: Array, angle: Array, cylinder: RockingBody
 ) -> tuple[Array, Array, float]:
     """Contact point and mass centre [m], and how far the base centre has moved at the end [m]."""
     b, h = cylinder.base_radius, cylinder.mass_centre_height

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockwobble.models import AGREEMENT, Cylinder, GroundMotion, Trace
+from rockwobble.models import AGREEMENT, GroundMotion, RockingBody, Trace
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.shown import Brief
 
@@ -31,7 +31,7 @@ class Pair(Brief):
 
     Parameters
     ----------
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
     start : float
         Uplift or release of the reference [s]; 0 where it never uplifts.
     time : ndarray, shape (n,)
@@ -44,7 +44,7 @@ class Pair(Brief):
         Relative to O [m]; NaN at rest.
     """
 
-    cylinder: Cylinder
+    cylinder: RockingBody
     start: float
     time: FloatArray
     tilt: FloatArray
@@ -65,12 +65,12 @@ class Pair(Brief):
         return float(self.time[-1])
 
 
-def make_pair(cylinder: Cylinder, reference: Trace, trial: Trace, *, until: float | None = None) -> Pair:
+def make_pair(cylinder: RockingBody, reference: Trace, trial: Trace, *, until: float | None = None) -> Pair:
     """Put `trial` on the samples of `reference`, as far as both reach.
 
     Parameters
     ----------
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
     reference, trial : Trace
     until : float, optional
         End of the window, in the time of the run [s]. Default: all that both have.

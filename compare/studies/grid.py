@@ -102,9 +102,9 @@ class GridChunk:
 
     def _outcome(self, size: float, scale: float) -> str:
         options: dict[str, Any] = {**reduced.MODELS[self.model], **self.options}
-        cylinder: Cylinder = Cylinder(semidiagonal=float(size), tan_alpha=self.tan_alpha)
-        if ratio := options.pop("slab_mass_ratio", 0.0):
-            cylinder = WobblingFrame(cylinder, ratio)
+        column = Cylinder(semidiagonal=float(size), tan_alpha=self.tan_alpha)
+        ratio = options.pop("slab_mass_ratio", 0.0)
+        cylinder = WobblingFrame(column, ratio) if ratio else column
         stated = {name: options.pop(name) for name in ("gravity", "tendon") if name in options}
         case = Case(cylinder, self.motion.scaled(float(scale)), **stated)
         return reduced.simulate(case, **{"rtol": _RTOL, **options}).outcome

@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import BaseModel
 
 from ..case import Case, InitialState, Run, Suite
-from ..cylinder import Cylinder, cylinder_of
+from ..cylinder import Cylinder, RockingBody, cylinder_of
 from ..ground_motion import GroundMotion
 from ..records.files import ZERO, el_centro_1940, read_record
 from ..records.p695 import p695_far_field
@@ -125,11 +125,11 @@ def _case(
         return Case(cylinder, motion, initial=initial, name=name, tendon=tendon, **own)
 
 
-def _cylinder(table: CylinderTable, values: dict[str, float]) -> Cylinder:
+def _cylinder(table: CylinderTable, values: dict[str, float]) -> RockingBody:
     return cylinder_of(values, Cylinder if table.base_radius is None else Cylinder.from_dimensions)
 
 
-def _release(table: ReleaseTable, values: dict[str, float], cylinder: Cylinder) -> InitialState:
+def _release(table: ReleaseTable, values: dict[str, float], cylinder: RockingBody) -> InitialState:
     tilt = values.get("tilt", math.radians(values.get("tilt_deg", 0.0)))
     if table.tilt_over_alpha is not None:
         tilt = values["tilt_over_alpha"] * cylinder.alpha

@@ -17,7 +17,7 @@ from functools import cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 
-from rockwobble.models import Case, WobblingFrame
+from rockwobble.models import Case
 from rockwobble.models.support import SUPPORTS
 
 from ..protocol import MEMBERS, Engine, EngineFacts
@@ -233,7 +233,7 @@ def _require_able(engine: Engine, name: str, case: Case, support: str) -> None:
     if support not in supports:
         allowed = f"one of {', '.join(supports)}" if len(supports) > 1 else supports[0]
         raise ValueError(f"support must be {allowed} in {name}, got {support!r}")
-    if isinstance(case.cylinder, WobblingFrame) and case.cylinder.slab_mass_ratio > 0.0:
+    if case.cylinder.slab_mass_ratio > 0.0:
         if not engine.facts.carries_slab:
             raise ValueError(f"{name} has no scene of a frame, got {case.cylinder!r}")
         if SUPPORTS[support].walls:

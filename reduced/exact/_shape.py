@@ -32,7 +32,7 @@ from typing import TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder, Tendon
+from rockwobble.models import RockingBody, Tendon
 from rockwobble.models.number_checks import require_positive
 
 from ..body import Body, body_of
@@ -94,7 +94,7 @@ def deflate(body: Body, R: float, gap2: float, t1: float, t2: float, t: T, drop:
     return positive, negative
 
 
-def body_under(cylinder: Cylinder, gravity: float, tendon: Tendon | None = None) -> Body:
+def body_under(cylinder: RockingBody, gravity: float, tendon: Tendon | None = None) -> Body:
     """Return the constants of `cylinder`, or raise ValueError unless gravity is positive and finite."""
     body = body_of(cylinder, require_positive("gravity", gravity, "m/s^2"))
     return body if tendon is None else cast("Body", tied_body(body, cylinder, tendon))

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from rockwobble.models import Cylinder, InitialState, Tendon
+from rockwobble.models import InitialState, RockingBody, Tendon
 from rockwobble.models.shown import Brief
 
 from ..body import Body, TiedBody
@@ -64,13 +64,13 @@ class FreeResponse(Brief):
 
 
 def free_response(
-    cylinder: Cylinder, initial: InitialState, *, gravity: float = 9.81, tendon: Tendon | None = None
+    cylinder: RockingBody, initial: InitialState, *, gravity: float = 9.81, tendon: Tendon | None = None
 ) -> FreeResponse:
     """Solve the free response of the recess model exactly.
 
     Parameters
     ----------
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
         The body.
     initial : InitialState
         The release, at any point of the cycle; its rolling angle does not matter.
@@ -150,13 +150,13 @@ def free_response(
 
 
 def angle_of_turn(
-    cylinder: Cylinder, initial: InitialState, *, gravity: float = 9.81, tendon: Tendon | None = None
+    cylinder: RockingBody, initial: InitialState, *, gravity: float = 9.81, tendon: Tendon | None = None
 ) -> float:
     """Return the exact angle of turn of the recess model in free response.
 
     Parameters
     ----------
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
         The body.
     initial : InitialState
         The release, at any point of the cycle.
@@ -186,12 +186,12 @@ def angle_of_turn(
     return free_response(cylinder, initial, gravity=gravity, tendon=tendon).angle_of_turn
 
 
-def limiting_angle_of_turn(cylinder: Cylinder) -> float:
+def limiting_angle_of_turn(cylinder: RockingBody) -> float:
     """Return the angle of turn in the limit of vanishing spin.
 
     Parameters
     ----------
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
         The body.
 
     Returns

@@ -25,7 +25,7 @@ from typing import Protocol, cast, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockwobble.models import Cylinder, Tendon
+from rockwobble.models import RockingBody, Tendon
 from rockwobble.models.bounds import OVERTURNED_TILT
 
 from ..body import Body, TiedBody
@@ -42,12 +42,12 @@ class _OfTilts(Protocol):
 
     @overload
     def __call__(
-        self, cylinder: Cylinder, tilt: float, *, gravity: float = ..., tendon: Tendon | None = ...
+        self, cylinder: RockingBody, tilt: float, *, gravity: float = ..., tendon: Tendon | None = ...
     ) -> float: ...
     @overload
     def __call__(
         self,
-        cylinder: Cylinder,
+        cylinder: RockingBody,
         tilt: Array | Sequence[float],
         *,
         gravity: float = ...,
@@ -60,7 +60,7 @@ def _of_tilts(function: Callable[..., Array]) -> _OfTilts:
 
     @wraps(function)
     def wrapper(
-        cylinder: Cylinder, tilt: ArrayLike, *, gravity: float = 9.81, tendon: Tendon | None = None
+        cylinder: RockingBody, tilt: ArrayLike, *, gravity: float = 9.81, tendon: Tendon | None = None
     ) -> float | Array:
         theta, largest, name = np.asarray(tilt, dtype=float), cylinder.alpha, "alpha"
         if tendon is not None:
@@ -78,13 +78,13 @@ def _of_tilts(function: Callable[..., Array]) -> _OfTilts:
 
 @_of_tilts
 def planar_quarter_period(
-    cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81, tendon: Tendon | None = None
+    cylinder: RockingBody, tilt: Array, *, gravity: float = 9.81, tendon: Tendon | None = None
 ) -> Array:
     """Return the time of planar rocking from rest at `tilt` to the upright position.
 
     Parameters
     ----------
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
         The body.
     tilt : float or array_like
         Tilt at release [rad], 0 < tilt < alpha, or below the balance tilt of a tendon.
@@ -119,13 +119,13 @@ def planar_quarter_period(
 
 @_of_tilts
 def rocking_period(
-    cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81, tendon: Tendon | None = None
+    cylinder: RockingBody, tilt: Array, *, gravity: float = 9.81, tendon: Tendon | None = None
 ) -> Array:
     """Return the period of planar rocking released from rest at `tilt`.
 
     Parameters
     ----------
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
         The body.
     tilt : float or array_like
         Tilt at release [rad], 0 < tilt < alpha, or below the balance tilt of a tendon.
@@ -172,13 +172,13 @@ def quarter_period(body: Body, R: float, theta: Array, gap: Array) -> Array:
 
 @_of_tilts
 def steady_wobble_rate(
-    cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81, tendon: Tendon | None = None
+    cylinder: RockingBody, tilt: Array, *, gravity: float = 9.81, tendon: Tendon | None = None
 ) -> Array:
     """Return the rolling rate W at which the recess model wobbles with constant tilt.
 
     Parameters
     ----------
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
         The body.
     tilt : float or array_like
         The constant tilt [rad], 0 < tilt < alpha, or below the balance tilt of a tendon.
@@ -217,13 +217,13 @@ def steady_wobble_rate(
 
 @_of_tilts
 def wobble_stability(
-    cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81, tendon: Tendon | None = None
+    cylinder: RockingBody, tilt: Array, *, gravity: float = 9.81, tendon: Tendon | None = None
 ) -> Array:
     """Return the squared frequency at which the tilt oscillates about a steady wobble.
 
     Parameters
     ----------
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
         The body.
     tilt : float or array_like
         The constant tilt [rad], 0 < tilt < alpha, or below the balance tilt of a tendon.
@@ -259,13 +259,13 @@ def wobble_stability(
 
 @_of_tilts
 def wobbling_period(
-    cylinder: Cylinder, tilt: Array, *, gravity: float = 9.81, tendon: Tendon | None = None
+    cylinder: RockingBody, tilt: Array, *, gravity: float = 9.81, tendon: Tendon | None = None
 ) -> Array:
     """Return the period of steady wobble, in which the contact point goes once around the rim.
 
     Parameters
     ----------
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
         The body.
     tilt : float or array_like
         The constant tilt [rad], 0 < tilt < alpha, or below the balance tilt of a tendon.

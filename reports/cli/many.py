@@ -36,6 +36,7 @@ from .several import GridOptions, Hazard, ManyMethods, ManyMotions, cylinders_of
 from .suite_choice import chosen_runs, refuse_problem_options, say_what_is_left_out, without_missing
 
 if TYPE_CHECKING:
+    from rockwobble.models import RockingBody
     from rockwobble.models.case import TimeStep
 
 Cylinders = Annotated[
@@ -416,7 +417,7 @@ def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
 
     if isinstance(plan, rc.Grid):
         doubts = plan.doubts()
-        ends = [
+        ends: list[RockingBody] = [
             rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
             for size in (min(plan.semidiagonals), max(plan.semidiagonals))
             for tan_alpha in (min(plan.tan_alphas), max(plan.tan_alphas))

@@ -18,6 +18,7 @@ from ..pages.command_line import command_line
 from . import options
 
 if TYPE_CHECKING:
+    from rockwobble.models import RockingBody
     from rockwobble.models.records.folder import RecordOptions
 
 # length of a free response where the user does not say [s]
@@ -56,7 +57,7 @@ class Body(Plan):
         "always run one column under a slab that only translates. Default: 3.",
     )
 
-    def cylinder(self) -> rw.Cylinder:
+    def cylinder(self) -> RockingBody:
         """Return the cylinder, by semidiagonal and slenderness or by diameter and height, or the frame.
 
         Raises
@@ -87,7 +88,7 @@ class Body(Plan):
         return under_slab(cylinder, self.slab_mass_ratio, self.columns)
 
 
-def under_slab(cylinder: rw.Cylinder, slab_mass_ratio: float | None, columns: int | None) -> rw.Cylinder:
+def under_slab(cylinder: rw.Cylinder, slab_mass_ratio: float | None, columns: int | None) -> RockingBody:
     """Return a cylinder, or the frame of a slab on such cylinders where a slab is given.
 
     Raises
@@ -238,7 +239,7 @@ class Steel(Plan):
     mass: float | None = option(None, MASS, group="Cylinder", above=0.0)
 
     def of_steel(
-        self, given: str, cylinder: rw.Cylinder, gravity: float, yield_force: float | None = None
+        self, given: str, cylinder: RockingBody, gravity: float, yield_force: float | None = None
     ) -> rw.Tendon:
         """Return the tendon of one column; `given`: an option of steel, `yield_force` [N].
 
@@ -268,7 +269,7 @@ TiedPlan = TypeVar("TiedPlan", bound=TendonPlan)
 
 
 def with_steel(
-    context: typer.Context, plan: TiedPlan, steel: Steel, cylinders: Sequence[rw.Cylinder], gravity: float
+    context: typer.Context, plan: TiedPlan, steel: Steel, cylinders: Sequence[RockingBody], gravity: float
 ) -> TiedPlan:
     """Return the plan of a study with the tendon that steel states, in multiples of the one body.
 
@@ -308,7 +309,7 @@ class Restraint(Steel):
         None, "Yield force of the tendon, in N. Default: no yielding.", above=0.0
     )
 
-    def tendon(self, cylinder: rw.Cylinder, gravity: float) -> rw.Tendon | None:
+    def tendon(self, cylinder: RockingBody, gravity: float) -> rw.Tendon | None:
         """Return the tendon of one column; None without any of its options.
 
         Raises

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import rockwobble as rw
 import rockwobble.compare as rc
@@ -14,6 +14,9 @@ from rockwobble.compare.studies.plans import GridPlan
 
 from . import options
 from .options import settings
+
+if TYPE_CHECKING:
+    from rockwobble.models import RockingBody
 from .problem import WAYS, Body, Reading, first_given, under_slab
 
 DEFAULT_COUNT = 100  # of synthetic motions, where the user does not say
@@ -73,7 +76,7 @@ class ManyMotions(Reading):
         return rw.synthetic_motions(count, peak=1.0, seed=seed), f"synthetic ground motions, seed {seed}"
 
 
-def cylinders_of(given: Sequence[str] | None, body: Body) -> dict[str, rw.Cylinder]:
+def cylinders_of(given: Sequence[str] | None, body: Body) -> dict[str, RockingBody]:
     """Return the cylinders of texts NAME=R,TAN_ALPHA; without any the one of the options.
 
     Raises
@@ -84,7 +87,7 @@ def cylinders_of(given: Sequence[str] | None, body: Body) -> dict[str, rw.Cylind
     if not given:
         one = body.cylinder()
         return {f"R = {one.semidiagonal:g} m, tan α = {one.tan_alpha:g}": one}
-    found: dict[str, rw.Cylinder] = {}
+    found: dict[str, RockingBody] = {}
     for text in given:
         name, sign, numbers = (part.strip() for part in text.partition("="))
         sizes = numbers.split(",")
@@ -120,7 +123,7 @@ class ManyMethods:
     setting: options.Settings = None
     time_step: options.TimeStep = None
 
-    def methods(self, body: rw.Cylinder, *, tendon: bool = False) -> list[str | rw.Run]:
+    def methods(self, body: RockingBody, *, tendon: bool = False) -> list[str | rw.Run]:
         """Return reduced models by name, and each engine with those of the supports that it has.
 
         Parameters

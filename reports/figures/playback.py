@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Trace, WobblingFrame
+from rockwobble.models import Trace
 
 from .case_view import CaseView
 from .interactive import base64_of
@@ -55,7 +55,7 @@ def playback(view: CaseView) -> dict[str, object] | None:
         "partners": [list(view.references).index(view.partner(label)) for label in view.runs]
         if view.references
         else [],
-        "slab": isinstance(cylinder, WobblingFrame),
+        "slab": cylinder.carries_slab,
         "tendon": view.case.tendon is not None,
         "start": _start(view),
         "magnify": factors,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rockwobble.models import Case, Cylinder, GroundMotion
+    from rockwobble.models import Case, GroundMotion, RockingBody
     from rockwobble.models.plain_json import Facts
 
 
@@ -116,7 +116,7 @@ def case_warnings(cases: Iterable[Case]) -> list[str]:
 
 
 def warnings_about(
-    motions: Iterable[GroundMotion], cylinders: Iterable[Cylinder] = (), gravity: float = 9.81
+    motions: Iterable[GroundMotion], cylinders: Iterable[RockingBody] = (), gravity: float = 9.81
 ) -> list[str]:
     """Return a line on each doubt about motions, cylinders and a gravity [m/s^2]."""
     from rockwobble.models.doubts import doubts_about

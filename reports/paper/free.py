@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, InitialState, Trace
+from rockwobble.models import Case, Cylinder, InitialState, RockingBody, Trace
 from rockwobble.models.cylinder import PIER
 
 from ..figures.thinning import kept_samples
@@ -62,7 +62,7 @@ def curve(table: pd.DataFrame, name: str, tan_alpha: float = np.nan) -> tuple[Ar
     return chosen["tilt_over_alpha"].to_numpy(), chosen["p_times_period"].to_numpy()
 
 
-def _frequency(cylinder: Cylinder) -> float:
+def _frequency(cylinder: RockingBody) -> float:
     """P of a homogeneous cylinder [1/s], equation (23)."""
     return float(np.sqrt(12.0 / (15.0 + np.cos(cylinder.alpha) ** 2) * _GRAVITY / cylinder.semidiagonal))
 

@@ -22,7 +22,7 @@ from rockwobble import reduced
 from rockwobble.compare.studies.fragility.fit import interval, resamples
 from rockwobble.compare.studies.fragility.study import Fragility, fragility
 from rockwobble.compare.studies.fragility.tables import blocks_of, curves_of
-from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame, synthetic_motions
+from rockwobble.models import Case, Cylinder, GroundMotion, RockingBody, WobblingFrame, synthetic_motions
 from rockwobble.reduced.body import body_of
 from rockwobble.reports.figures.palette import run_styles
 from rockwobble.reports.figures.picture import Axis, Band, Line, Panel, Picture
@@ -43,7 +43,7 @@ _NEEDS_LEVEL, _NEEDS_MOTIONS = 2.75, 22  # at which forces are compared
 _OVERTURNED = "overturned"
 
 
-def deck(ratio: float) -> Cylinder:
+def deck(ratio: float) -> RockingBody:
     """Return the pier under a slab of a mass ratio."""
     return WobblingFrame(PIER, ratio) if ratio else PIER
 
@@ -54,7 +54,7 @@ def equivalent(ratio: float) -> Cylinder:
     return Cylinder(semidiagonal=PIER.semidiagonal * p2[0] / p2[1], tan_alpha=PIER.tan_alpha)
 
 
-def bodies() -> dict[str, Cylinder]:
+def bodies() -> dict[str, RockingBody]:
     """Return the bodies by name."""
     return {f"deck {ratio:g}": deck(ratio) for ratio in RATIOS} | {
         f"as deck {ratio:g}": equivalent(ratio) for ratio in RATIOS if ratio

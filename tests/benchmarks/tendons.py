@@ -26,7 +26,7 @@ from rockwobble.compare.metrics.statistics import quantile_interval
 from rockwobble.compare.studies.fragility.fit import Curves, Sample, interval, resamples
 from rockwobble.compare.studies.fragility.study import fragility
 from rockwobble.compare.studies.fragility.tables import Key, blocks_of, curves_of
-from rockwobble.models import Case, Cylinder, GroundMotion, Tendon, WobblingFrame
+from rockwobble.models import Case, Cylinder, GroundMotion, RockingBody, Tendon, WobblingFrame
 from rockwobble.reports.figures.palette import run_styles
 from rockwobble.reports.figures.picture import Axis, Band, Line, Panel, Picture
 from rockwobble.reports.figures.svg import svg
@@ -73,7 +73,7 @@ _SIDE_DOWN = 0.5 * math.pi * (1.0 - 1e-9)  # peak of what overturns [rad]
 _OVERTURNED = "overturned"
 
 
-def neutral_stiffness(body: Cylinder) -> float:
+def neutral_stiffness(body: RockingBody) -> float:
     """Return the stiffness at which the slope of the static couple is 0 [weights per base radius]."""
     gaps = 2 if body.slab_mass_ratio > 0.0 else 1
     return (1.0 + 2.0 * body.slab_mass_ratio) / (gaps**2 * body.tan_alpha)
@@ -140,7 +140,7 @@ def medians_of_many(motions: Sequence[GroundMotion]) -> Iterator[dict[str, float
 
 
 def _overturned(
-    body: Cylinder, tendon: Tendon, motions: Sequence[GroundMotion], levels: Array
+    body: RockingBody, tendon: Tendon, motions: Sequence[GroundMotion], levels: Array
 ) -> dict[str, Sample]:
     """Return by method which motions at which levels [g tan(alpha)] overturn a body."""
     peaks: dict[str, list[Array]] = {"recess model": [], "planar x": [], "planar y": []}

@@ -12,7 +12,15 @@ import numpy as np
 import pandas as pd
 
 from rockwobble import reduced
-from rockwobble.models import CLOSED_TILT, Case, Cylinder, GroundMotion, Run, Trace, el_centro_1940
+from rockwobble.models import (
+    CLOSED_TILT,
+    Case,
+    GroundMotion,
+    RockingBody,
+    Run,
+    Trace,
+    el_centro_1940,
+)
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL
 from rockwobble.models.cylinder import cylinder_of
@@ -180,7 +188,7 @@ class Advice(Results, kind=KIND):
         }
 
     @property
-    def cylinder(self) -> Cylinder:
+    def cylinder(self) -> RockingBody:
         """The cylinder, or the frame."""
         return cylinder_of(self.facts["cylinder"])
 

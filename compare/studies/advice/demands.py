@@ -23,7 +23,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, Trace
+from rockwobble.models import Case, RockingBody, Trace
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.support import support_named
 from rockwobble.models.trace import NO_PEAK
@@ -169,7 +169,7 @@ def weaker_factors(threshold: float) -> list[float]:
 
 
 def demand_table(
-    members: pd.DataFrame, cylinder: Cylinder, *, gravity: float, support: str, mass: float | None = None
+    members: pd.DataFrame, cylinder: RockingBody, *, gravity: float, support: str, mass: float | None = None
 ) -> pd.DataFrame:
     """Return the design demands on ground, recess and slab: the largest of all groups and intensities.
 
@@ -177,7 +177,7 @@ def demand_table(
     ----------
     members : DataFrame
         Rows of `member_rows` that count, with the factor on the ground motion.
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
     gravity : float
         [m/s^2]
     support : str

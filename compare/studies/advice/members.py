@@ -13,11 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import (
     Case,
-    Cylinder,
     GroundMotion,
+    RockingBody,
     Run,
     Trace,
-    WobblingFrame,
     el_centro_1940,
     far_field_motions,
     synthetic_motions,
@@ -57,7 +56,7 @@ _QUANTILES = {"05": 0.05, "50": 0.5}
 DEMANDS = (*UNITS, *SHARES)
 
 
-def top_displacement(cylinder: Cylinder, tilt: ArrayLike) -> Array:
+def top_displacement(cylinder: RockingBody, tilt: ArrayLike) -> Array:
     """Return the horizontal displacement of the top, over a circle of contact that stays [m].
 
     Of the centre of the top of a cylinder or, in a frame, of the slab: over it the rim of the top rolls as
@@ -65,12 +64,12 @@ def top_displacement(cylinder: Cylinder, tilt: ArrayLike) -> Array:
 
     Parameters
     ----------
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
     tilt : array_like
         [rad]; infinite where it overturns, and so is then the displacement.
     """
     theta = np.asarray(tilt, dtype=np.float64)
-    ends = 2.0 if isinstance(cylinder, WobblingFrame) else 1.0
+    ends = 2.0 if cylinder.carries_slab else 1.0
     stands = np.where(np.isinf(theta), 0.0, theta)
     moved = ends * cylinder.base_radius * (1.0 - np.cos(stands)) + 2.0 * cylinder.half_height * np.sin(stands)
     return np.where(np.isinf(theta), math.inf, moved)

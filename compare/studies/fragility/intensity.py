@@ -15,7 +15,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder, GroundMotion, Tendon
+from rockwobble.models import GroundMotion, RockingBody, Tendon
 from rockwobble.models.number_checks import require_one_of, require_positive
 
 Array = NDArray[np.float64]
@@ -52,7 +52,7 @@ MEASURES: Mapping[str, Measure] = {
 
 
 def intensity(
-    name: str, motion: GroundMotion, cylinder: Cylinder, *, gravity: float = 9.81, period: float = 1.0
+    name: str, motion: GroundMotion, cylinder: RockingBody, *, gravity: float = 9.81, period: float = 1.0
 ) -> float:
     """Return the intensity of a ground motion for a cylinder.
 
@@ -62,7 +62,7 @@ def intensity(
         One of `MEASURES`.
     motion : GroundMotion
         Its vertical component, if there is one, has no part in it.
-    cylinder : Cylinder
+    cylinder : Cylinder or WobblingFrame
     gravity : float, optional
         g [m/s^2].
     period : float, optional
@@ -129,7 +129,7 @@ def _oscillator(period: float, step: float) -> tuple[Array, Array]:
     return np.ravel(numerator), denominator
 
 
-def _value(name: str, motion: GroundMotion, cylinder: Cylinder, gravity: float, period: float) -> float:
+def _value(name: str, motion: GroundMotion, cylinder: RockingBody, gravity: float, period: float) -> float:
     uplift = gravity * cylinder.tan_alpha
     if name == "peak_acceleration":
         return motion.peak / uplift
@@ -143,7 +143,7 @@ def _value(name: str, motion: GroundMotion, cylinder: Cylinder, gravity: float, 
     return (largest_resultant(response) if name == "sa" else _mean_of_peaks(response)) / gravity
 
 
-def velocity_unit(cylinder: Cylinder, gravity: float = 9.81) -> float:
+def velocity_unit(cylinder: RockingBody, gravity: float = 9.81) -> float:
     """Return g tan(alpha)/p, the unit of peak velocities of a cylinder [m/s]."""
     from rockwobble.reduced.body import body_of  # the folder loads a compiler
 
@@ -151,7 +151,7 @@ def velocity_unit(cylinder: Cylinder, gravity: float = 9.81) -> float:
 
 
 def uplift_scale(
-    motion: GroundMotion, cylinder: Cylinder, gravity: float = 9.81, tendon: Tendon | None = None
+    motion: GroundMotion, cylinder: RockingBody, gravity: float = 9.81, tendon: Tendon | None = None
 ) -> float:
     """Return the least factor on a motion with which it uplifts a cylinder; infinite where none does.
 
@@ -169,7 +169,7 @@ def uplift_scale(
 
 
 def measures_of(
-    motions: Sequence[GroundMotion], cylinder: Cylinder, *, gravity: float = 9.81, period: float = 1.0
+    motions: Sequence[GroundMotion], cylinder: RockingBody, *, gravity: float = 9.81, period: float = 1.0
 ) -> dict[str, list[float]]:
     """Return every intensity of every motion, NaN where it has none."""
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from rockwobble.models import Case, Cylinder, GroundMotion, Run
+from rockwobble.models import Case, GroundMotion, RockingBody, Run
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.case import REDUCED_MODELS
 from rockwobble.models.number_checks import quoted, require_each, require_increasing, require_one_of
@@ -282,7 +282,7 @@ class RunPlan:
         If an axis is empty, repeats a value or holds one that is out of range, or an engine cannot run.
     """
 
-    cylinders: Mapping[str, Cylinder]
+    cylinders: Mapping[str, RockingBody]
     motions: Sequence[GroundMotion]
     methods: Sequence[Method]
     options: FragilityPlan
@@ -318,7 +318,7 @@ class RunPlan:
         """Factors on the motions of a cloud."""
         return (1.0,) if self.options.scales is None else tuple(map(float, self.options.scales))
 
-    def factors(self, cylinder: Cylinder, motion: GroundMotion) -> dict[int, float]:
+    def factors(self, cylinder: RockingBody, motion: GroundMotion) -> dict[int, float]:
         """Return the factors on a motion by their place: one for each level of its, or of the cloud."""
         asked = self.options
         if asked.levels is None:
@@ -327,7 +327,7 @@ class RunPlan:
         steps = range(len(asked.levels)) if self.stripes is None else self.stripes[motion.name]
         return {step: float(asked.levels[step]) / own for step in steps}
 
-    def _shaking(self, cylinder: Cylinder, motion: GroundMotion) -> Shaking:
+    def _shaking(self, cylinder: RockingBody, motion: GroundMotion) -> Shaking:
         case = Case(
             cylinder,
             motion,
@@ -380,7 +380,7 @@ class RunPlan:
                 ]
                 yield from _together(tasks) if run.is_model else tasks
 
-    def _with_step(self, run: Run, cylinder: Cylinder) -> Run:
+    def _with_step(self, run: Run, cylinder: RockingBody) -> Run:
         if run.is_model or run.time_step is not None or self.options.step_factor == 1.0:
             return run
         step = self.options.step_factor * default_step(cylinder.semidiagonal, self.options.gravity)
@@ -416,7 +416,7 @@ def motions_by_level(
 
 
 def default_levels(
-    cylinders: Mapping[str, Cylinder], motions: Sequence[GroundMotion], asked: FragilityPlan
+    cylinders: Mapping[str, RockingBody], motions: Sequence[GroundMotion], asked: FragilityPlan
 ) -> tuple[float, ...]:
     """Return levels from a little above uplift to where most overturn, each the same factor above the last.
 
@@ -435,7 +435,7 @@ def default_levels(
     return tuple(float(f"{middle * level:.3g}") for level in np.geomspace(low, high, LEVELS))
 
 
-def _hold_of(body: Cylinder, asked: FragilityPlan) -> tuple[float, float]:
+def _hold_of(body: RockingBody, asked: FragilityPlan) -> tuple[float, float]:
     """Return the factors by which a tendon raises the couple at uplift and the velocity to reach balance."""
     from rockwobble import reduced
 

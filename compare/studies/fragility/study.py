@@ -11,7 +11,7 @@ from typing import Any
 
 import pandas as pd
 
-from rockwobble.models import Cylinder, GroundMotion, HazardCurve, Run
+from rockwobble.models import GroundMotion, HazardCurve, RockingBody, Run
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
 from rockwobble.models.number_checks import require_each, require_positive
@@ -317,7 +317,7 @@ _ALL = tuple(MODELS)
 
 @with_argument_kinds
 def fragility(
-    cylinders: Cylinder | Mapping[str, Cylinder] | Sequence[Cylinder],
+    cylinders: RockingBody | Mapping[str, RockingBody] | Sequence[RockingBody],
     motions: Sequence[GroundMotion] | Mapping[float, Sequence[GroundMotion]],
     *,
     methods: Iterable[str | Run] = _ALL,
@@ -484,12 +484,12 @@ def _description(method: Method, methods: Sequence[Method]) -> dict[str, object]
     }
 
 
-def _by_name(cylinders: Cylinder | Mapping[str, Cylinder] | Sequence[Cylinder]) -> dict[str, Cylinder]:
+def _by_name(
+    cylinders: RockingBody | Mapping[str, RockingBody] | Sequence[RockingBody],
+) -> dict[str, RockingBody]:
     if isinstance(cylinders, Mapping):
-        require_each("cylinders", list(cylinders.values()), Cylinder)
         return dict(cylinders)
-    several = [cylinders] if isinstance(cylinders, Cylinder) else cylinders
-    require_each("cylinders", several, Cylinder)
+    several = [cylinders] if isinstance(cylinders, RockingBody) else cylinders
     found = {f"R = {each.semidiagonal:g} m, tan α = {each.tan_alpha:g}": each for each in several}
     if len(found) < len(several):
         raise ValueError("cylinders of the same size and slenderness need names: give them as a mapping")

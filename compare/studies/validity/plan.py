@@ -14,6 +14,7 @@ from rockwobble.models import (
     Cylinder,
     GroundMotion,
     InitialState,
+    RockingBody,
     Tendon,
     Trace,
     WobblingFrame,
@@ -72,7 +73,7 @@ class Structure:
         """Horizontal acceleration at uplift over g tan(alpha)."""
         return 1.0 if self.tendon is None else self.tendon.uplift_factor(self.column(REFERENCE_SIZE, 1.0))
 
-    def column(self, semidiagonal: float, tan_alpha: float) -> Cylinder:
+    def column(self, semidiagonal: float, tan_alpha: float) -> RockingBody:
         """Return a cylinder alone, or the frame of one column under the slab."""
         cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
         return WobblingFrame(cylinder, self.slab_mass_ratio, columns=1) if self.slab_mass_ratio else cylinder
