@@ -16,6 +16,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Self
 
+from rockwobble import reduced
 from rockwobble.models import Case, Suite, Trace, read_suite
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import TimeStep
@@ -38,7 +39,6 @@ from .subject import TOLERANCE, Subject
 from .suite import SuiteRuns, check_suite
 
 Measure = Callable[[Subject, str], Iterator[Result]]
-MODELS = (*MODELLED, "planar")
 _ENDS = Bound(0.0, "a check must reach its end")
 
 
@@ -120,10 +120,15 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
         Check(measure=lagrange.free_motion, knows=("energy",)),
         Check(measure=lagrange.rolling_loss, supports=(RECESS,), options=("rolling_resistance",)),
         Check(measure=lagrange.work_of_the_ground, knows=("energy", "centre_of_mass")),
-        Check(measure=lagrange.work_of_a_record, supports=MODELS, knows=("energy",), options=("rtol",)),
+        Check(
+            measure=lagrange.work_of_a_record,
+            supports=tuple(reduced.MODELS),
+            knows=("energy",),
+            options=("rtol",),
+        ),
     ),
     "rest": (
-        Check(measure=laws.stands, supports=MODELS, from_rest=True),
+        Check(measure=laws.stands, supports=tuple(reduced.MODELS), from_rest=True),
         Check(measure=laws.uplift, knows=("uplift_time",), from_rest=True),
         Check(measure=laws.force_at_rest, knows=("contact_force",), from_rest=True),
         Check(measure=laws.falls, knows=("outcome",)),

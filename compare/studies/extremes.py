@@ -52,7 +52,7 @@ from ..storage.results import Results
 from .plans import QuickPlan
 
 KIND = "extremes"
-MODELS = (Run(None, FLAT, plane=0.0), *REDUCED_MODELS)
+_PLANAR_MODEL = Run(None, FLAT, plane=0.0)
 
 FINE = AGREEMENT  # of alpha, or of the angle of turn
 # relative to the energy that balances the cylinder on its rim
@@ -207,7 +207,7 @@ def _row(task: Task, found: Verdict) -> pd.DataFrame:
 def methods() -> tuple[Run, ...]:
     """Return the reduced models, and each support of each of our engines that is installed."""
     engines = (Run(name, support) for name in own_engines() for support in find_engine(name).supports)
-    return (*MODELS, *engines)
+    return (_PLANAR_MODEL, *REDUCED_MODELS, *engines)
 
 
 def conditions(*, quick: bool = False) -> list[Condition]:

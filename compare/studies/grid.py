@@ -23,7 +23,6 @@ from ..metrics.pair import outcome_of_peak
 from ..storage.provenance import fingerprint, reduced_makers
 from .plans import GridPlan
 
-MODELS = tuple(reduced.MODELS)
 MOST_RUNS = 100_000_000  # whose table takes 10 GB
 # The runs of a chunk take about a second together: little is lost with it, and keeping it takes a few
 # thousandths of that.
@@ -157,7 +156,7 @@ class Grid(Brief, GridPlan):
         _require_different("motions", [motion.name or "record" for motion in self.motions])
         _require_different("models", self.models)
         for model in self.models:
-            require_one_of("a model of a grid", model, MODELS)
+            require_one_of("a model of a grid", model, reduced.MODELS)
         planar = [name for name in ("plane", "restitution") if name in self.options]
         if planar and tuple(self.models) != ("planar",):
             raise ValueError(f"{planar[0]} belongs to planar motion, got models {', '.join(self.models)}")

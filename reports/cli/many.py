@@ -395,11 +395,11 @@ def sweep(
 
 def _suite(name: str, models: list[str] | None) -> rw.Suite:
     from rockwobble.compare.studies.sweep import runnable_suite
+    from rockwobble.models.number_checks import require_one_of
     from rockwobble.models.support import RECESS
 
     for model in models or ():
-        if model not in rw.reduced.MODELS:
-            raise ValueError(f"--model must be of {', '.join(rw.reduced.MODELS)}, got {model!r}")
+        require_one_of("--model", model, rw.reduced.MODELS)
     suite = rw.read_suite(name)
     chosen = [rw.Run(None, **{"support": RECESS, **rw.reduced.MODELS[model]}) for model in models or ()]
     added = suite.runs

@@ -139,12 +139,14 @@ class ManyMethods:
             If an engine has none of the supports, or nothing has a setting.
         """
         from rockwobble.compare.runs.choice import with_settings
-        from rockwobble.compare.studies.fragility.runs import MODELS, models_with_tendon
+        from rockwobble.compare.studies.fragility.runs import MODEL_LABELS, models_with_tendon
         from rockwobble.multibody.engines.registry import find_engine
 
         given, supports = settings(self.setting), self.support
         chosen: list[str | rw.Run] = (
-            [] if self.model == ["none"] else list(self.model or (models_with_tendon() if tendon else MODELS))
+            []
+            if self.model == ["none"]
+            else list(self.model or (models_with_tendon() if tendon else MODEL_LABELS))
         )
         if not self.engine or self.engine == [options.NO_ENGINE]:
             if supports or given or self.time_step is not None:

@@ -39,7 +39,7 @@ class Style:
     symbol: str = ""
 
 
-_MODELS = {
+_MODEL_STYLES = {
     RECESS.model: Style(colour="#000000"),
     FLAT.model: Style(colour="#666666", dash="dash"),
 }
@@ -48,7 +48,7 @@ _OTHER_MODEL = Style(colour="#000000", dash="dot")
 
 def model_style(label: str) -> Style:
     """Return the style of a reduced model."""
-    return _MODELS.get(label, _OTHER_MODEL)
+    return _MODEL_STYLES.get(label, _OTHER_MODEL)
 
 
 def run_styles(labels: Sequence[str]) -> dict[str, Style]:

@@ -15,7 +15,7 @@ from rockwobble.models import Case, Diagnostic, InitialState, Run, Trace
 from rockwobble.models.cylinder import PIER
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 
-PLANAR, RECESS, _ = extremes.MODELS
+PLANAR, RECESS, *_ = extremes.methods()
 ENGINE, RING = Run("mujoco", "recess"), Run("mujoco", "ring")
 
 

@@ -74,7 +74,8 @@ def test_what_is_not_fine_is_one_line_for_what_the_same_thing_limits() -> None:
 def test_a_second_scan_repeats_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cheap = [each for each in scan.conditions() if each.value in ("0.001 s", "R = 0.01 m")]
     monkeypatch.setattr(scan, "conditions", lambda **_: cheap)
-    monkeypatch.setattr(scan, "methods", lambda: scan.MODELS[:2])
+    models = scan.methods()[:2]
+    monkeypatch.setattr(scan, "methods", lambda: models)
     first = measure_extremes(tmp_path, QuickPlan(), workers=1)
     assert list(first.extremes["verdict"]) == ["fine"] * 4
     monkeypatch.setattr(scan, "judge", None)

@@ -34,7 +34,7 @@ Row = dict[str, float | str]  # of a run
 # The worse plane is no run of its own: of both planes, for each motion, the one that tilts more.
 WORSE_PLANE = "worse-plane"
 _PLANES = {"planar-x": 0.0, "planar-y": 0.5 * math.pi}
-MODELS: Mapping[str, str] = {
+MODEL_LABELS: Mapping[str, str] = {
     **{support: support.model for support in MODELLED},
     "planar-x": "planar x",
     "planar-y": "planar y",
@@ -44,7 +44,7 @@ MODELS: Mapping[str, str] = {
 
 def models_with_tendon() -> tuple[str, ...]:
     """Return the names of the models with a tendon: on flat ground the base wanders from its anchor."""
-    return tuple(name for name in MODELS if name not in MODELLED or SUPPORTS[name].guided)
+    return tuple(name for name in MODEL_LABELS if name not in MODELLED or SUPPORTS[name].guided)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,7 +76,7 @@ def methods_of(given: Iterable[str | Run], *, restitution: float | str = 1.0) ->
     Parameters
     ----------
     given : iterable of str or Run
-        Names in `MODELS`, and runs of engines or of reduced models with settings.
+        Names in `MODEL_LABELS`, and runs of engines or of reduced models with settings.
     restitution : float or "momentum", optional
         Restitution of the planar models, see `reduced.simulate`.
 
@@ -90,7 +90,7 @@ def methods_of(given: Iterable[str | Run], *, restitution: float | str = 1.0) ->
         if isinstance(method, Run):
             chosen.append(method)
             continue
-        require_one_of("a reduced model", method, MODELS)
+        require_one_of("a reduced model", method, MODEL_LABELS)
         needed = (*_PLANES, method) if method == WORSE_PLANE else (method,)
         chosen += [each for each in needed if each not in chosen]
     if not chosen:
@@ -104,7 +104,7 @@ def methods_of(given: Iterable[str | Run], *, restitution: float | str = 1.0) ->
     found = tuple(
         Method(label=next(labels), run=method)
         if isinstance(method, Run)
-        else Method(label=MODELS[method], run=models.get(method))
+        else Method(label=MODEL_LABELS[method], run=models.get(method))
         for method in chosen
     )
     for name, count in Counter(method.label for method in found).items():
@@ -521,13 +521,13 @@ def _with_labels(task: Task, table: pd.DataFrame) -> pd.DataFrame:
 
 def worse_plane(runs: pd.DataFrame) -> pd.DataFrame:
     """Return the rows of the worse plane: the larger tilt of both, overturned where one is."""
-    parts = [runs[runs["method"] == MODELS[name]].set_index(KEYS) for name in _PLANES]
+    parts = [runs[runs["method"] == MODEL_LABELS[name]].set_index(KEYS) for name in _PLANES]
     of = {name: pd.concat([part[name] for part in parts], axis=1) for name in parts[0]}
     ends = [(of["outcome"] == name).any(axis=1) for name in (*NO_PEAK, "overturned")]
     return (
         parts[0]
         .assign(
-            method=MODELS[WORSE_PLANE],
+            method=MODEL_LABELS[WORSE_PLANE],
             peak_tilt=of["peak_tilt"].max(axis=1, skipna=False),  # NaN where one failed
             outcome=np.select(ends, [*NO_PEAK, "overturned"], parts[0]["outcome"]),
             contact_lost=of["contact_lost"].max(axis=1, skipna=False),

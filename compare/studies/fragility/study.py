@@ -30,7 +30,7 @@ from .fit import TOO_FEW
 from .intensity import velocity_unit
 from .risk import RARE, exposures_of, measure_factor, risk_tables
 from .runs import (
-    MODELS,
+    MODEL_LABELS,
     Method,
     RunPlan,
     default_levels,
@@ -312,7 +312,7 @@ def _inverse(row: Row) -> Row:
     }
 
 
-_ALL = tuple(MODELS)
+_ALL = tuple(MODEL_LABELS)
 
 
 @with_argument_kinds
