@@ -1,4 +1,4 @@
-"""Values for the page of an advice: its sentences are in the template advice.md.j2."""
+"""Values for the page of an advice; the lines on its case are those of `advised_case`."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any
 
 from rockwobble.compare.comparison.prediction import UNTESTED
 from rockwobble.compare.metrics.statistics import FEWEST
-from rockwobble.compare.studies.advice.advice import WEAKER_COUNT, Advice
-from rockwobble.compare.studies.advice.demands import PASSED, SPIKES
+from rockwobble.compare.studies.advice.advice import Advice
+from rockwobble.compare.studies.advice.demands import SPIKES
 from rockwobble.compare.studies.advice.grades import CRITERIA, NEAR
 from rockwobble.compare.studies.advice.members import ACCELERATION, COPIES, HORIZONTAL, VELOCITY, VERTICAL
-from rockwobble.compare.studies.advice.scales import AS_STRONG, planar_shares
+from rockwobble.compare.studies.advice.scales import planar_shares
 from rockwobble.compare.studies.advice.trust import Verification
 from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.compare.studies.spectrum.study import CHECK_RTOL, NUDGE
@@ -22,9 +22,22 @@ from rockwobble.models.records import p695
 from rockwobble.models.support import FLAT, RECESS, RING, support_named
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody import DEFAULT_ENGINE
-from rockwobble.reduced.body import restitution_from_momentum
 
 from ..figures.advice import pictures
+from .advised_case import (
+    STRONG,
+    assumptions,
+    case_lines,
+    cautions,
+    no_planar_analysis,
+    opening,
+    planar_words,
+    record_lines_of,
+    vertical_words,
+    wall_lines,
+    weaker_words,
+    weight_words,
+)
 from .command_line import command_line, spectrum_line
 from .page import Page
 from .table import NONE, number
@@ -59,7 +72,6 @@ _DIVERGENCE = {
     "too little motion": "until then the model's tilt hardly changes, which tests nothing",
     "earlier": "less than half as long as predicted: rely on neither before you know why",
 }
-_STRONG = f"{100.0 * (1.0 - AS_STRONG[0]):.0f} % weaker to {100.0 * (AS_STRONG[1] - 1.0):.0f} % stronger"
 # options of an advice that other commands do not have
 PLAN = ("mass", "copies", "perturbation", "seed")
 # share of a demand below which what acts beside another is none
@@ -74,40 +86,44 @@ def page_of(found: Advice) -> Page:
     drawn = list(pictures(found))
     facts, grades = found.facts, found.grades
     reasons = _reasons(found) if grades else {}
+    frame, holds = "columns" in facts["cylinder"], support_named(facts["support"])
     values = {
         **facts,
         "found": found,
         "about": found.manifest,
-        "drawn": bool(drawn),
-        "engine": DEFAULT_ENGINE,
-        "failed": found.response["outcome"] in NO_PEAK,
-        "meanings": [CODES[code][1] for code in found.response["diagnostics"]],
-        "grades": grades,
-        "numbers": list(_numbers(found)),
-        "part": "slab" if "columns" in facts["cylinder"] else "top",
+        "drawn": [picture.name for picture in drawn],
+        "opening": list(opening(found)),
+        "case_lines": list(case_lines(found)),
+        "cautions": list(cautions(found)),
+        "compared": _comparison_words(found),
+        # what matters stands in the opening
+        "vertical": "" if found.vertical_matters else vertical_words(found),
         "criteria": [
             {"topic": topic, "grade": grade, "reason": reasons[topic], **CRITERIA[topic].by_grade()}
             for topic, grade in grades.items()
         ],
+        "part": "slab" if frame else "top",
+        "numbers": list(_numbers(found)),
+        "place": "recess" if holds.is_recess else "ground",
+        "weight": weight_words(found),
         "demanded": list(_demand_rows(found)),
+        "demand_columns": list(_demand_columns(found)),
         "together": _together(found),
         "wall": _wall(found),
-        "tendon_words": _tendon_words(found),
-        "compared": _comparison_words(found),
-        "vertical_words": _vertical_words(found),
+        "weaker": weaker_words(found),
+        "weaker_mark": "× n: under n times this shaking, as weaker shaking may ask more."
+        if len(found.weaker)
+        else "",
         "steps": _steps(found),
         "groups": _groups(found),
-        "checks": list(_checks(found)),
-        "shares": planar_shares(found.planar) if len(found.planar) else [],
-        "loss": 1.0 - restitution_from_momentum(found.cylinder),
-        "holds": support_named(facts["support"]),
+        "record_lines": list(record_lines_of(found)),
         "closed": CLOSED_TILT,
-        "strong": _STRONG,
-        "strong_scales": len(found.as_strong),
-        "passed": PASSED,
-        "weaker_count": WEAKER_COUNT,
-        "weaker": sorted(set(found.weaker["factor"])) if len(found.weaker) else [],
-        **dict(zip(("slips", "lost"), found.missing, strict=True)),
+        "wall_lines": list(wall_lines(found)),
+        "checks": list(_checks(found)),
+        "in_one_plane": planar_words(found),
+        "shares": planar_shares(found.planar) if len(found.planar) else [],
+        "no_planar_analysis": no_planar_analysis(found),
+        "assumptions": list(assumptions(found)),
     }
     return Page(name="advice", template="advice", values=values, pictures=drawn)
 
@@ -191,23 +207,6 @@ def _ratios_of_tendon(found: Advice) -> dict[str, str]:
     return {f"tendon_{name}": f"{tendon[name]:.6g}" for name in ("prestress", "stiffness") if name in tendon}
 
 
-def _tendon_words(found: Advice) -> str:
-    """What a tendon does to uplift, stiffness and balance."""
-    tendon = found.facts.get("tendon")
-    if tendon is None:
-        return ""
-    stiffness, balance = tendon["initial_stiffness"], tendon["balance_tilt"]
-    way = "grows" if stiffness > 0.0 else "falls"
-    returns = "It brings the column back from every tilt"
-    if math.isfinite(balance):
-        returns = f"It brings the column back from tilts up to {number(balance)} α"
-    steel = f"prestress {number(tendon['prestress'])} W, stiffness {number(tendon['stiffness'])} W/b"
-    return (
-        f"Tendon: {steel}. Uplift at {number(tendon['uplift_factor'])} g tan α; initial stiffness "
-        f"{number(stiffness)} m g b, the couple {way} with the tilt. {returns}."
-    )
-
-
 def _reason_of_trace(found: Advice) -> str:
     trust, verification = found.trust, found.verification
     if not found.copies_differ and trust.kind != "statistics":
@@ -234,11 +233,11 @@ def _reason_of_intensity(found: Advice) -> str:
     low, high = found.range_as_strong
     if math.isnan(low):
         return "no other scales of this shaking were run"
-    which = f"at {len(found.as_strong)} scales, {_STRONG}"
+    which = f"at {len(found.as_strong)} scales, {STRONG}"
     if math.isinf(high):
         lowest, share = found.overturning_as_strong
         return (
-            f"{_STRONG} it overturns in {number(share, 'percent')} of the range, "
+            f"{STRONG} it overturns in {number(share, 'percent')} of the range, "
             f"first at {number(lowest)} times this shaking"
         )
     if high <= CLOSED_TILT:
@@ -323,22 +322,6 @@ def _comparison_words(found: Advice) -> str:
     return f"Of {kind}{plane}, scaled {'; scaled '.join(did)}."
 
 
-def _vertical_words(found: Advice) -> str:
-    """What is known of the vertical component: counts with and without it, or that it was not looked at."""
-    vertical = found.vertical
-    if not vertical.source:
-        return ""
-    if vertical.source == "other":
-        return "No vertical component of this record was given: its effect was not looked at."
-    if vertical.ratios is None:
-        return ""
-    ratios = vertical.ratios
-    with_it, without, count = (int(ratios[key]) for key in ("overturned", "against_overturned", "members"))
-    words = f"With the vertical component of the record {with_it} of {count} copies overturn"
-    words += f", without it {without}."
-    return f"{words} This case leaves it out." if vertical.source == "shipped" else words
-
-
 def _numbers(found: Advice) -> Iterator[Row]:
     """Rows of the numbers: the run as given, and the order statistic that 95 % of each group make."""
     alpha = math.degrees(found.cylinder.alpha)
@@ -387,6 +370,14 @@ def _demand_rows(found: Advice) -> Iterator[Row]:
             if not math.isnan(row["for_mass"]):
                 cells["mass"] = f"{_rounded(row['for_mass'])} {unit}"
         yield {**cells, "of": _of(found, row)}
+
+
+def _demand_columns(found: Advice) -> Iterator[list[str]]:
+    """Columns of the design demands; forces of a body only where its mass was given."""
+    yield from (["name", "demand", "words"], ["value", "value", "words"], ["tonne", "per tonne", "words"])
+    if found.facts["mass"] is not None:
+        yield ["mass", "one column" if "columns" in found.facts["cylinder"] else "in all", "words"]
+    yield ["of", "not exceeded by", "words"]
 
 
 def _rounded(value: float) -> str:
@@ -576,7 +567,7 @@ def _scales(found: Advice) -> Iterator[Row]:
     if not math.isnan(low) and not found.overturned:
         span = f"{number(low)} to {number(high)} α"
         yield _check(
-            f"largest tilt at {len(found.as_strong)} scales, {_STRONG}",
+            f"largest tilt at {len(found.as_strong)} scales, {STRONG}",
             span,
             "∞: overturns" if math.isinf(high) else "",
         )

@@ -8,16 +8,27 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.metrics.statistics import MARGIN
+from rockwobble.compare.studies.validity.criteria import (
+    clearance_is_unconservative,
+)
 from rockwobble.compare.studies.validity.limits import cells, contrasts, damping, limits_of, needs
 from rockwobble.compare.studies.validity.plan import LARGEST_PEAK
 from rockwobble.compare.studies.validity.shaken import FREE, INTENSITY
 from rockwobble.compare.studies.validity.study import Validity
-from rockwobble.models.support import RECESSES_FIRST, SUPPORTS
+from rockwobble.models.support import SUPPORTS
 
 from ..figures.validity import METHODS, has_walls, pictures
+from .limits_in_words import (
+    agreement_rows,
+    force_findings,
+    free_findings,
+    record_findings,
+    requirements,
+    ring_findings,
+    scope,
+    verdict_words,
+)
 from .page import Page
-from .table import number
 
 _NEEDS = {
     "friction": "friction over tan α",
@@ -26,21 +37,64 @@ _NEEDS = {
     "motions": "motions counted",
 }
 
-_PLACES: Mapping[str, str] = {
-    **{support: support.place for support in RECESSES_FIRST},
-    "copy": "by a record 1 % stronger alone",
+# how the maps and the free response are shown: a tendon has no model on flat ground to compare with
+_WITHOUT_TENDON: Mapping[str, object] = {
+    "map_words": "Flat ground over an ideal recess by the reduced models, over all sizes; where both factors "
+    "are alike, the difference is sensitivity.",
+    "map_columns": [
+        ["intensity", "peak over g tan α [-]", "g"],
+        ["peak", "peak [g]", ".2g"],
+        ["flat_ratio_min", "median, least", ".2f"],
+        ["flat_ratio_max", "largest", ".2f"],
+        ["flat_90_max", "nine in ten", ".2f"],
+        ["copy_90_max", "record + 1 %", ".2f"],
+        ["overturned_min", "overturn, least", "percent", "wide"],
+        ["overturned_max", "largest", "percent", "wide"],
+        ["flat_overturned_max", "largest on flat ground", "percent", "wide"],
+    ],
+    "free_title": "Free response: rolling out",
+    "free_pictures": ["free-turn", "free-period", "verification"],
+}
+_WITH_TENDON: Mapping[str, object] = {
+    "map_words": "Over all sizes: the factor of nine in ten records under a record 1 % stronger, and the "
+    "share that overturns.",
+    "map_columns": [
+        ["intensity", "peak over g tan α [-]", "g"],
+        ["peak", "peak [g]", ".2g"],
+        ["copy_90_max", "record + 1 %", ".2f"],
+        ["overturned_min", "overturn, least", "percent"],
+        ["overturned_max", "largest", "percent"],
+    ],
+    "free_title": "Free response",
+    "free_pictures": [],
 }
 
 
 def page_of(found: Validity) -> Page:
     """Return the report."""
-    tables, structure = found.tables, found.structure
+    tables, structure, limits = found.tables, found.structure, limits_of(found.tables)
+    drawn = pictures(found)
+    names = [picture.name for picture in drawn]
+    tendon, slab = structure.tendon is not None, bool(structure.slab_mass_ratio)
     values: dict[str, object] = {
-        "limits": limits_of(tables),
-        "margin": MARGIN,
-        "strayed": _strays(limits_of(tables)["records"]),
+        "limits": limits,
+        "scope": list(scope(structure)),
+        "unconservative": ""
+        if slab or not clearance_is_unconservative(limits)
+        else "A recess with clearance is another system, and the model is not on the safe side of it.",
+        "verdict": verdict_words(limits),
+        "requirements": list(requirements(limits)),
         "contrasts": _contrasts(contrasts(tables)),
+        "record_findings": list(record_findings(limits, slab=slab)),
         "summary": _summary(cells(tables)),
+        **(_WITH_TENDON if tendon else _WITHOUT_TENDON),
+        "map_pictures": [name for name in ("bias", "spread", "sensitivity") if name in names],
+        "trace_rows": list(agreement_rows(limits["traces"], tendon=tendon)),
+        "free_findings": list(free_findings(limits["free_response"], tendon=tendon)),
+        "force_pictures": [
+            name for name in ("need-friction", "need-contact", "need-moment", "slip") if name in names
+        ],
+        "force_findings": list(force_findings(limits, slab=slab)),
         **_needs(needs(tables)),
         "damping": damping(tables).to_dict("records"),
         "ranges": {
@@ -54,28 +108,16 @@ def page_of(found: Validity) -> Page:
         },
         "largest_peak": LARGEST_PEAK,
         "records": found.facts["records"],
-        "slab_mass_ratio": structure.slab_mass_ratio,
-        "tendon": structure.tendon,
-        "uplift": structure.uplift,
-        "ring_level": INTENSITY * structure.uplift,
+        "has_clearance": not slab,
         "about": found.manifest,
     }
-    if not structure.slab_mass_ratio:
-        values |= {"rings": _rings(tables["rings"]), "worst": _worst(tables["rings"])}
-    drawn = pictures(found)
-    values["drawn"] = {picture.name for picture in drawn}
+    if not slab:
+        values |= {
+            "ring_level": INTENSITY * structure.uplift,
+            "rings": _rings(tables["rings"]),
+            "ring_findings": list(ring_findings(limits["rings"], _worst(tables["rings"]))),
+        }
     return Page(name="validity", template="validity", values=values, pictures=drawn)
-
-
-def _strays(records: Mapping[str, float]) -> list[str]:
-    """What one record in twenty exceeds at the points, in words, of what enough records know it."""
-    found = []
-    for name, place in _PLACES.items():
-        ends = [records.get(f"{name}_95_{end}", math.nan) for end in ("least", "largest")]
-        if not math.isnan(ends[0]):
-            span = dict.fromkeys(number(end, ".2f") for end in ends)
-            found.append(f"{' to '.join(span)} {place}")
-    return found
 
 
 def _contrasts(table: pd.DataFrame) -> list[dict[str, object]]:

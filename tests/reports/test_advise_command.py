@@ -20,10 +20,12 @@ from rockwobble.compare.comparison.prediction import UNTESTED, Prediction, verdi
 from rockwobble.compare.studies.advice import scales
 from rockwobble.compare.studies.advice.trust import Trust
 from rockwobble.models import Case, Cylinder, InitialState, WobblingFrame, el_centro_1940
+from rockwobble.models.diagnostic import CODES
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages import page, stored_page
 from rockwobble.reports.pages.advice import page_of
+from rockwobble.reports.pages.advised_case import assumptions, case_lines, opening, weight_words
 
 PAGE_LIMIT = 2e6  # bytes, of every page
 # lines: an answer, its grades, its numbers, what the recess must carry, the record, and what to do next
@@ -291,6 +293,50 @@ def test_what_slides_at_rest_is_not_said_to_stay_there(found):
         assert ("0.05 is below the demand at rest, 0.0859: it slides" in words) == slides
     del motion["friction_at_rest"]  # of an earlier version
     assert changed(still, friction=0.05).verdict == "the cylinder stays at rest"
+
+
+def test_a_case_at_rest_begins_with_what_keeps_it_there(found):
+    at_rest = {**found.facts["response"], "uplift_time": math.inf, "diagnostics": []}
+    still = changed(found, response=at_rest, vertical={**found.facts["vertical"], "source": "other"})
+    weak = {**found.facts["motion"], "friction_at_rest": 0.0, "uplift_factor": 2.5}
+    shipped = {**found.facts["vertical"], "source": "shipped", "uplift_factor": 2.25}
+    times = "It takes 2.5 times this shaking to uplift it"
+    for facts, words in (
+        ({"motion": None}, "Nothing moves it."),
+        ({"motion": {**weak, "uplift_factor": math.inf}}, "This ground motion uplifts it at no scale."),
+        ({"motion": weak}, f"{times}."),
+        (
+            {"motion": weak, "vertical": shipped},
+            f"{times}, 2.25 times with the vertical component of the record.",
+        ),
+        ({"motion": {**weak, "friction_at_rest": 0.1}}, f"At rest the friction demand is 0.1. {times}."),
+    ):
+        assert list(opening(changed(still, **facts))) == [words]
+    failed = {**still.facts["response"], "diagnostics": ["step_budget"]}
+    (words,) = opening(changed(still, response=failed))
+    assert words.startswith(CODES["step_budget"][1].capitalize())
+    assert list(opening(found)) == []
+
+
+def test_the_case_and_its_assumptions_are_stated_as_they_were_asked(found):
+    asked = changed(
+        with_columns(found, 3), rolling_resistance=0.012, friction=None, support="flat", mass=45.0
+    )
+    lines = list(case_lines(asked))
+    assert lines[0] == "3 columns under a slab of 0.5 times their mass:"
+    assert "Flat ground, friction not given, rolling resistance 0.012 m." in lines
+    assert weight_words(asked).startswith("weight of one column with its share of the slab, a mass of 67.5 t")
+    assert weight_words(found) == "weight of the cylinder"
+    plain, other = " ".join(assumptions(found)), " ".join(assumptions(asked))
+    for words, there, here in (
+        ("no other damping", True, False),
+        ("3 equal columns", True, False),
+        ("Flat ground: the rim rolls", True, False),
+        ("Ideal recess", False, True),
+        ("Unbonded tendon", False, False),
+        (f"{len(found.as_strong)} scales from 11 % weaker to 12 % stronger", True, True),
+    ):
+        assert (words in other, words in plain) == (there, here), words
 
 
 def test_the_part_of_the_range_that_overturns_is_stated_with_its_lowest_scale(found):

@@ -153,6 +153,14 @@ def test_the_headline_counts_what_is_missed(spectrum):
     assert f"unconservative in {unconservative:.1f} %, conservative in {conservative:.1f} %" in words
 
 
+def test_bands_of_sizes_in_which_planar_analysis_is_unconservative_are_listed(spectrum):
+    bands = planar_contrast(spectrum).iloc[:-1]
+    wrong = bands[bands["unconservative"] > bands["conservative"]]
+    listed = ", ".join(f"{band.smallest:.3g} to {band.largest:.3g} m" for band in wrong.itertuples())
+    assert 0 < len(wrong) < len(bands)
+    assert f"More cells unconservative than conservative: R = {listed}." in said(spectrum)
+
+
 def test_failed_cells_are_counted_and_left_out(spectrum):
     tilt = spectrum.peak_tilt[PLANAR_X].copy()
     tilt[3, 4] = tilt[5, 6] = np.nan

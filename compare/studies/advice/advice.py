@@ -23,7 +23,7 @@ from rockwobble.models import (
 )
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL
-from rockwobble.models.cylinder import cylinder_of
+from rockwobble.models.cylinder import WobblingFrame, cylinder_of
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.plain_json import plain
 from rockwobble.models.records.units import sources_of
@@ -44,6 +44,7 @@ from ..spectrum.maps import uplift_factor
 from ..spectrum.parts import SPATIAL
 from .demands import demand_table, demands_of, fall_of, weaker_factors
 from .grades import (
+    EVENLY_LOADED,
     POOR,
     STABILITY,
     USE,
@@ -372,6 +373,11 @@ class Advice(Results, kind=KIND):
         chances = self.groups.set_index("group")["chance"]
         pair = [chances[name] for name in (COPIES, VERTICAL, HORIZONTAL) if name in chances]
         return len(pair) == 2 and len(set(map(grade_chance, pair))) == 2
+
+    @property
+    def shares_load_unevenly(self) -> bool:
+        """Whether it is a frame of so many columns that their ends do not share the load evenly."""
+        return isinstance(self.cylinder, WobblingFrame) and self.cylinder.columns > EVENLY_LOADED
 
     @property
     def next_steps(self) -> list[str]:

@@ -31,6 +31,9 @@ SENSITIVE = 1.5
 # of the ratio: the tilt may change by so much more between the scales that were run
 BETWEEN_SCALES = 1.05
 
+# columns of a frame: what lies on more than three ends rests on those that happen to be higher
+EVENLY_LOADED = 3
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criterion:
