@@ -109,12 +109,12 @@ function derivative(o, flat, y, ax, ay, az, side, out) {
 const standing = (o, az) => o.g + az + o.q;
 const excess = (o, ax, ay, az) => Math.hypot(ax, ay) - standing(o, az) * o.slope;
 
-// first time in a piece at which the excess reaches zero and rises, from `from`; -1 if none. It is convex in a piece.
-function upliftIn(o, piece, from) {
+// first time in a piece at which the excess reaches zero and rises, from `from` to `end`; -1 if none. It is convex in a piece.
+function upliftIn(o, piece, from, end) {
   const f = (time) => excess(o, piece.x + piece.sx * time, piece.y + piece.sy * time, piece.z + piece.sz * time);
   if (f(from) > 0) return from;
-  if (f(piece.length) <= 0) return -1;
-  let low = from, high = piece.length;
+  if (f(end) <= 0) return -1;
+  let low = from, high = end;
   for (let i = 0; i < 100; i++) {
     const middle = (low + high) / 2;
     if (middle <= low || middle >= high) break;

@@ -6,6 +6,9 @@ const HAIR = 1e-6;  // of 1/p: an uplift so near to the next sample is taken up 
 const FIRST_STEP = 1e-3;  // of 1/p
 const FOLLOWED = 40;  // of 1/p: for so long a motion that goes on when its time is over is followed to a maximum
 const BUDGET = 400000;  // steps
+const LONG = 40000;  // steps: a motion of more rattles at tiny tilts, through so many passes that no tolerance repeats it;
+const CRUDE = 1e-6;  // from there on this relative tolerance does
+const COLUMNS = ["time", "tilt", "angle", "twist", "x", "y", "outward", "across", "normal"];
 
 // -- rolling resistance: what holds a body that is tilted and still, and what a pass without spin takes
 
@@ -92,8 +95,7 @@ function sitsDown(o, y, flat, ax, ay, az) {
 
 // -- forces on the base, over the mass that it carries: outward, across, up
 
-function contactForce(o, flat, y, ax, ay, az, slopes, out, place) {
-  derivative(o, flat, y, ax, ay, az, 0, slopes);
+function contactForce(o, flat, y, ax, ay, az, slopes) {
   const theta = y[0], omega = y[1], S = flat ? y[5] : 0, s = Math.sin(theta), c = Math.cos(theta), t = Math.tan(theta / 2), sec = 1 + t * t;
   const roll = o.E + o.C * t, reach = o.h + o.b * t, H = o.J + (2 * o.E + o.C * t) * t, H1 = roll * sec;
   const D = s * reach, D1 = o.b * s + o.h * c, D2 = o.b * c - o.h * s, phiRate = slopes[2], twist = flat ? slopes[4] : 0;
@@ -109,9 +111,7 @@ function contactForce(o, flat, y, ax, ay, az, slopes, out, place) {
     sideways -= o.nu * reach / H * (free - slopes[3]) / s;
   }
   const half = Math.sin(theta / 2), pull = (o.q + 2 * o.k * half) * o.nu / o.gaps;
-  out[place] = o.nu * outward + ar + pull * half;
-  out[place + 1] = sideways;
-  out[place + 2] = o.g + az + o.nu * (D2 * slopes[1] - D1 * omega * omega) + pull * Math.cos(theta / 2);
+  return [o.nu * outward + ar + pull * half, sideways, o.g + az + o.nu * (D2 * slopes[1] - D1 * omega * omega) + pull * Math.cos(theta / 2)];
 }
 
 // -- the run
@@ -123,25 +123,26 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
   const o = bodyOf(problem, rtol), planar = problem.support === "planar", flat = problem.support === "flat", n = flat ? 8 : 4;
   const azimuth = planar ? problem.azimuth || 0 : 0, release = problem.release, scale = motion ? motion.scale : 0;
   const length = motion ? motion.x.length : 0, dt = motion ? motion.dt : 1, ca = Math.cos(azimuth), sa = Math.sin(azimuth);
-  const sample = (i) => {
-    if (i >= length) return [0, 0, 0];
-    const x = scale * motion.x[i], y = scale * motion.y[i], z = motion.z ? scale * motion.z[i] : 0;
-    return planar ? [x * ca + y * sa, 0, z] : [x, y, z];
-  };
+  const [gx, gy, gz] = [0, 1, 2].map(() => new Float64Array(length));
+  for (let i = 0; i < length; i++) {
+    const x = scale * motion.x[i], y = scale * motion.y[i];
+    gx[i] = planar ? x * ca + y * sa : x; gy[i] = planar ? 0 : y; gz[i] = motion.z ? scale * motion.z[i] : 0;
+  }
   const pieceAfter = (i) => {
     if (i >= length - 1) return { x: 0, y: 0, z: 0, sx: 0, sy: 0, sz: 0, begin: Math.max(length - 1, 0) * dt, length: Infinity, step: dt };
-    const a = sample(i), b = sample(i + 1);
-    return { x: a[0], y: a[1], z: a[2], sx: (b[0] - a[0]) / dt, sy: (b[1] - a[1]) / dt, sz: (b[2] - a[2]) / dt, begin: i * dt, length: dt, step: dt };
+    const x = gx[i], y = gy[i], z = gz[i];
+    return { x, y, z, sx: (gx[i + 1] - x) / dt, sy: (gy[i + 1] - y) / dt, sz: (gz[i + 1] - z) / dt, begin: i * dt, length: dt, step: dt };
   };
+  const shakes = (i) => gx[i] || gy[i] || gz[i];
   let last = Math.max(length - 1, 0);
-  while (last > 0 && !sample(last - 1).some(Boolean) && !sample(last).some(Boolean)) last--;
+  while (last > 0 && !shakes(last - 1) && !shakes(last)) last--;
   const stillFrom = last * dt, duration = problem.duration;
   const impact = Math.max(0, (o.A * (problem.restitution ?? 1) - o.delta * o.mu * o.b) / (o.A + o.delta * o.mu * o.b));
 
   const y = new Float64Array(8), k = new Float64Array(8), out = new Float64Array(8), kOut = new Float64Array(8);
   const error = new Float64Array(8), part = new Float64Array(8), kPart = new Float64Array(8);
-  const run = { outcome: "stands", peak: 0, upliftTime: NaN, endTime: NaN, passes: 0, rests: false, closest: Infinity, steps: 0 };
-  let resting = true, side = 0, sense = 0, h = FIRST_STEP / o.p, restart = true, lastMaximum = -1, minimum = false;
+  const run = { outcome: "stands", peak: 0, upliftTime: NaN, endTime: NaN, steps: 0 };
+  let resting = true, side = 0, sense = 0, h = FIRST_STEP / o.p, restart = true, lastMaximum = -1;
   let now = 0, index = 0, piece = pieceAfter(0), elapsed = 0, nextSample = 0, following = false, end = duration, passLimit = null;
 
   if (release && release.tilt > 0) {
@@ -154,18 +155,15 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
     if (k[1] < 0) lastMaximum = 0;
   }
 
-  const NAMES = ["time", "tilt", "rate", "angle", "momentum", "twist", "twistMomentum", "x", "y", "outward", "across", "normal"], width = NAMES.length;
-  let rows = new Float64Array(sampleStep ? width * (Math.ceil(duration / sampleStep) + 3) : 0), count = 0;
+  const most = sampleStep ? Math.ceil((duration + FOLLOWED / o.p) / sampleStep) + 4 : 0, buffer = new Float64Array(COLUMNS.length * most);
+  const [times, tilts, angles, twists, xs, ys, outwards, acrosses, normals] = COLUMNS.map((_, i) => buffer.subarray(i * most, (i + 1) * most));
+  let count = 0;
   const record = () => {
     if (!sampleStep) return;
-    const place = width * count++;
-    if (place + width > rows.length) { const longer = new Float64Array(2 * place + width); longer.set(rows); rows = longer; }
-    rows[place] = now;
-    for (let i = 0; i < 8; i++) rows[place + i + 1] = y[i];
-    rows[place + 3] = resting ? NaN : y[2] + azimuth;
-    const ax = piece.x + piece.sx * elapsed, ay = piece.y + piece.sy * elapsed, az = piece.z + piece.sz * elapsed;
-    if (!resting) contactForce(o, flat, y, ax, ay, az, kPart, rows, place + 9);
-    else { rows[place + 9] = Math.hypot(ax, ay); rows[place + 11] = o.g + az + o.q * o.nu / o.gaps; }
+    const ax = piece.x + piece.sx * elapsed, ay = piece.y + piece.sy * elapsed, az = piece.z + piece.sz * elapsed, i = count++;
+    times[i] = now; tilts[i] = y[0]; angles[i] = resting ? NaN : y[2] + azimuth; twists[i] = y[4]; xs[i] = y[6]; ys[i] = y[7];
+    if (restart && !resting) derivative(o, flat, y, ax, ay, az, 0, k);
+    [outwards[i], acrosses[i], normals[i]] = resting ? [Math.hypot(ax, ay), 0, o.g + az + o.q * o.nu / o.gaps] : contactForce(o, flat, y, ax, ay, az, k);
   };
   const isPlanar = (state) => state[3] === 0 && (!flat || state[5] === 0);
   const partial = (time) => step(o, flat, n, y, k, time, piece, elapsed, side, part, kPart, error);
@@ -183,7 +181,7 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
     partial(at);
     return at;
   };
-  const sitDown = () => { y.fill(0, 0, 2); y[3] = y[5] = 0; resting = true; sense = 0; side = 0; run.restTime = now; };
+  const sitDown = () => { y.fill(0, 0, 2); y[3] = y[5] = 0; resting = true; sense = 0; side = 0; };
 
   record(); nextSample = 1;
   for (;;) {
@@ -201,16 +199,17 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
     if (pieceEnd - until < 1e-9 * dt) until = Math.min(pieceEnd, end);
     const stop = until >= pieceEnd ? piece.length : until - piece.begin;
     while (elapsed < stop) {
+      if (run.steps > LONG) o.rtol = Math.max(rtol, CRUDE);
       if (run.steps > BUDGET) { run.outcome = "undecided"; run.endTime = now; return finish(); }
       if (resting) {
-        const at = upliftIn(o, { ...piece, length: stop }, elapsed);
+        const at = upliftIn(o, piece, elapsed, stop);
         if (at < 0 || (at > elapsed && stop - at < HAIR / o.p)) { elapsed = stop; now = until; break; }
         const up = upliftOf(o, piece, at), time = Math.min(up.length, stop - at);
         lifted(o, piece, up, time, y[2], y);
         if (Number.isNaN(run.upliftTime)) run.upliftTime = piece.begin + at;
         elapsed = at + time; run.steps++;
         if (y[0] <= 0) { y[0] = y[1] = y[3] = 0; continue; }
-        resting = false; restart = true; h = 0.1 * time; side = 0; minimum = false; lastMaximum = -1;
+        resting = false; restart = true; h = 0.1 * time; side = 0; lastMaximum = -1;
         run.peak = Math.max(run.peak, y[0]);
         now = Math.min(piece.begin + elapsed, until);
         continue;
@@ -254,9 +253,9 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
         if (y[1] === 0) { h = size / 32; continue; }
         turned = crossing((state) => state[1], 0, size, Math.sign(y[1]));
         const tilt = part[0];
-        if (!inPlane || tilt > 0) {
-          if (y[1] > 0) { maximumAt(tilt, piece.begin + elapsed + turned); if (following && !(flat && o.delta > 0)) return finish(); }
-          else { minimum = true; run.closest = Math.min(run.closest, tilt); }
+        if (y[1] > 0 && (!inPlane || tilt > 0)) {
+          run.peak = Math.max(run.peak, tilt); lastMaximum = piece.begin + elapsed + turned;
+          if (following && !(flat && o.delta > 0)) return finish();
         }
         if (o.delta > 0 && inPlane && tilt > 0) { taken = turned; out.set(part); out[1] = 0; fell = false; }
       }
@@ -267,18 +266,15 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
         out.set(part);
       } else if (fell) { taken = crossing((state) => state[0] - (state === part ? HALF_PI : 0), 0, size, -1); out.set(part); }
       y.set(out); k.set(kOut);
+      if (taken !== size) restart = true;
       elapsed = taken === size && size === stop - elapsed ? stop : elapsed + taken;
       now = elapsed >= stop ? until : piece.begin + elapsed;
       if (fell) { y[0] = HALF_PI; run.outcome = "overturned"; run.peak = HALF_PI; run.endTime = now; if (sampleStep) record(); return finish(); }
       run.peak = Math.max(run.peak, y[0]);
-      if (taken !== size) restart = true;
       if (landed) {
-        minimum = true;
         let turn = y[2] > 0 ? -Math.PI : Math.PI, kept = impact;
-        if (sense) { passLimit ??= limitOfPass(o); turn = sense * passLimit[0]; kept = passLimit[1]; run.side = true; }
-        run.closest = 0;
+        if (sense) { passLimit ??= limitOfPass(o); turn = sense * passLimit[0]; kept = passLimit[1]; }
         y[0] = 0; y[1] = kept * Math.abs(y[1]); y[2] += turn; y[3] = 0; side = Math.sign(y[1]);
-        if (!planar && isPlanar(y) && Number.isNaN(run.sideTime ?? NaN)) run.sideTime = now;
         if (y[1] === 0) { sitDown(); continue; }
       } else if (inPlane) side = Math.sign(y[1]); else side = 0;
       if (sitsDown(o, y, flat, piece.x + piece.sx * elapsed, piece.y + piece.sy * elapsed, piece.z + piece.sz * elapsed)) sitDown();
@@ -297,12 +293,6 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
   }
   return finish();
 
-  function maximumAt(tilt, time) {
-    run.peak = Math.max(run.peak, tilt);
-    if (minimum && lastMaximum >= 0) run.passes++;
-    lastMaximum = time; minimum = false;
-  }
-
   // over 1 where a step does not follow the turn of the couple and is too long not to matter
   function turnOfCouple(size) {
     const before = acrossOf(o, y, flat), after = acrossOf(o, out, flat), first = y[1] ** 2 + before ** 2, second = out[1] ** 2 + after ** 2;
@@ -315,9 +305,8 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
   }
 
   function finish() {
-    run.rests = resting;
-    if (run.outcome !== "overturned") while (count && rows[width * (count - 1)] > duration * (1 + 1e-12)) count--;
-    NAMES.forEach((name, i) => { run[name] = Float64Array.from({ length: count }, (_, j) => rows[width * j + i]); });
+    if (run.outcome !== "overturned") while (count && times[count - 1] > duration * (1 + 1e-12)) count--;
+    COLUMNS.forEach((name, i) => { run[name] = buffer.subarray(i * most, i * most + count); });
     run.body = o;
     return run;
   }

@@ -244,7 +244,7 @@
     redraw(graphs.path, [line([circle.map((angle) => b * Math.cos(angle)), circle.map((angle) => b * Math.sin(angle))], "#bbb", "base at rest", { width: 1 }), ...paths]);
   }
   const outcome = ({ outcome: end, endTime, upliftTime, peak, alpha }) => {
-    const words = { overturned: `Overturns, lies on the ground at ${number(endTime, 4)} s`, undecided: "Not decided: rounding, not the shaking, says how it ends" }[end]
+    const words = { overturned: `Overturns, lies on the ground at ${number(endTime, 4)} s`, undecided: `Not decided: followed for ${number(Number.isNaN(endTime) ? length : endTime, 4)} s only` }[end]
       || (Number.isNaN(upliftTime) ? "Stands, and does not uplift" : peak > alpha ? "Stands, after a tilt beyond α" : "Stands");
     if (find("outcome").textContent !== words) find("outcome").textContent = words;
     find("outcome").className = end;
@@ -326,7 +326,7 @@
 
   // -- the map: size by intensity, coarse at first, made in a worker of its own
 
-  const CELLS = 40, SIZES = [1 / 4, 4], palette = ["#e8e8e8", "#dbe9f6", "#9ecae1", "#4292c6", "#08519c", "#E69F00", RED], classes = ["no uplift", "below 0.25 α", "to 0.5 α", "to 0.75 α", "to α", "beyond α", "overturns"];
+  const CELLS = 40, SIZES = [1 / 4, 4], palette = graphs.map.panel.legend.map((entry) => entry.colour);
   const classOf = (peak) => (peak === Infinity ? 6 : peak > 1 ? 5 : peak === 0 ? 0 : 1 + Math.min(3, Math.floor(peak * 4)));
   let map = null, mapTimer = 0, mapKey = "";
   const spread = (i) => (i + 0.5) / CELLS, geometric = (low, high, share) => low * (high / low) ** share;

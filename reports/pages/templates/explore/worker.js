@@ -14,6 +14,5 @@ onmessage = ({ data }) => {
   }
   const begin = performance.now();
   const runs = data.problems.map((problem) => simulateMotion(problem, motionOf(problem)));
-  const arrays = runs.flatMap((run) => Object.values(run).filter((value) => value instanceof Float64Array));
-  postMessage({ id: data.id, runs, took: performance.now() - begin }, arrays.map((array) => array.buffer));
+  postMessage({ id: data.id, runs, took: performance.now() - begin }, runs.map((run) => run.time.buffer));
 };
