@@ -16,13 +16,10 @@ from rockwobble.compare.studies.fragility.study import Row
 from rockwobble.models.trace import NO_PEAK
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles
-from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, ecdf, list_axis
+from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, ecdf, list_axis, log_ticks
 
 # beyond the largest ratio, and at least beyond the margin
 _ROOM = 1.25
-_DECADES = tuple(digit * 10.0**power for power in range(-6, 7) for digit in (1.0, 2.0, 5.0))
-_STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
-_MOST_TICKS = 7
 _DOTS, _BEYOND = Style(colour=ORDER[0], dash="none", symbol="circle"), ORDER[1]
 _MEDIAN = Style(colour=DARK, dash="none", symbol="diamond")
 _LINE = 0.5  # inch for a pair of methods
@@ -121,7 +118,7 @@ def _ratios(found: Ensemble, rows: list[Row]) -> Panel:
             at = np.array([row["ratio"]]), np.array([place + 0.2])
             layers.append(Line(x=at[0], y=at[1], name="median", style=_MEDIAN))
         names.append(f"{row['method']}\n/ {row['against']}, n = {has.sum()}")
-    x, y = ratio_axes("ratio of peaks", low, high, ratio_ticks(low, high), names)
+    x, y = ratio_axes("ratio of peaks", low, high, log_ticks(low, high), names)
     title = "Ratio of the peaks of each member"
     return Panel(x=x, y=y, layers=layers, title=title, height=_LINE * len(rows) + 1.4)
 
@@ -168,13 +165,3 @@ def ratio_span(logarithms: Array) -> tuple[float, float]:
     known = np.abs(logarithms[np.isfinite(logarithms)])
     reach = _ROOM * max(float(known.max(initial=0.0)), 2.0 * math.log1p(MARGIN))
     return math.exp(-reach), math.exp(reach)
-
-
-def ratio_ticks(low: float, high: float) -> list[float]:
-    """Return the ticks of an axis of ratios."""
-    if high / low > 4.0:
-        found = [tick for tick in _DECADES if low <= tick <= high]
-        return found if len(found) <= _MOST_TICKS else [t for t in found if math.log10(t).is_integer()]
-    step = next((s for s in _STEPS if (high - low) / s <= _MOST_TICKS), _STEPS[-1])
-    first = math.ceil(low / step)
-    return [round(index * step, 6) for index in range(first, math.floor(high / step) + 1)]

@@ -95,8 +95,9 @@ def _curves(found: Fragility, cylinder: str, place: int) -> Picture:
     panels = []
     for support, title in _PANELS.items():
         labels = [name for name, own in methods.items() if own["support"] == support]
-        if labels:
-            shown = labels if support in _GUIDED else [*guided, *labels]
+        shown = labels if support in _GUIDED else [*guided, *labels]
+        # a curve alone is compared with nothing, unless it is the only one
+        if labels and (len(shown) > 1 or len(methods) == 1):
             panels.append(_panel(found, cylinder, shown, title))
     measure = MEASURES[str(found.facts["measure"])]
     drawn = (found.curves["cylinder"] == cylinder) & (found.curves["limit"] == OVERTURNED)

@@ -62,6 +62,8 @@ class Shades:
         Centre of a scale with two sides, for signed values: low and high as far from it.
     steps : int
         Number of colours; 0: a continuous scale.
+    reverse : bool
+        Whether low values are the red ones of a scale with two sides, because they are those to fear.
     """
 
     label: str
@@ -71,6 +73,7 @@ class Shades:
     log: bool = False
     centre: float | None = None
     steps: int = 0
+    reverse: bool = False
 
     @property
     def title(self) -> str:
@@ -80,7 +83,7 @@ class Shades:
     @property
     def colours(self) -> str:
         """Name of the colours, the same to both renderers."""
-        return "Blues" if self.centre is None else "RdBu_r"
+        return "Blues" if self.centre is None else "RdBu" if self.reverse else "RdBu_r"
 
     def place(self, values: Array) -> Array:
         """Return where values are on the scale, from 0 to 1; NaN stays."""

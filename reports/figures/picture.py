@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
@@ -18,6 +19,9 @@ Array = NDArray[np.float64]
 
 MOST_ENTRIES = 8  # of a legend: more cannot be distinguished
 _LINE = Style(colour=DARK, dash="solid")
+_DECADES = tuple(digit * 10.0**power for power in range(-6, 7) for digit in (1.0, 2.0, 5.0))
+_STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
+_MOST_TICKS = 7
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,6 +59,16 @@ class Axis:
     def title(self) -> str:
         """Label and unit."""
         return f"{self.label} [{self.unit}]" if self.unit else self.label
+
+
+def log_ticks(low: float, high: float) -> list[float]:
+    """Return round places for the ticks of a logarithmic axis, few enough that their numbers do not touch."""
+    if high / low > 4.0:
+        found = [tick for tick in _DECADES if low <= tick <= high]
+        return found if len(found) <= _MOST_TICKS else [t for t in found if math.log10(t).is_integer()]
+    step = next((s for s in _STEPS if (high - low) / s <= _MOST_TICKS), _STEPS[-1])
+    first = math.ceil(low / step)
+    return [round(index * step, 6) for index in range(first, math.floor(high / step) + 1)]
 
 
 def list_axis(names: Sequence[str], label: str = "") -> Axis:

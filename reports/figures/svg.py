@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from .heat import NOTHING, Heat, Shades
 from .palette import DARK, DASHES, SYMBOLS
-from .picture import MOST_ENTRIES, Band, Bars, Line, Panel, Picture, Rule, Text
+from .picture import MOST_ENTRIES, Band, Bars, Line, Panel, Picture, Rule, Text, log_ticks
 from .thinning import kept_points
 
 Keywords = dict[str, Any]  # arguments of a function of matplotlib
@@ -167,6 +167,13 @@ def _panel(axes: Axes, panel: Panel, picture: Picture) -> None:
     # after what is drawn, which would move them
     axes.set_xlim(panel.x.low, panel.x.high)
     axes.set_ylim(panel.y.low, panel.y.high)
+    for given, axis in ((panel.x, axes.xaxis), (panel.y, axes.yaxis)):
+        low, high = axis.get_view_interval()
+        # matplotlib writes 2 x 10^-1 and 3 x 10^-1 over each other on an axis of less than two decades
+        if given.log and not given.ticks and high < 100.0 * low:
+            places = log_ticks(low, high)
+            axis.set_ticks(places, [f"{place:g}" for place in places])
+            axis.set_ticks([], minor=True)
     if panel.y.reverse:
         axes.invert_yaxis()
     if panel.equal:

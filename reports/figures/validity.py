@@ -79,9 +79,9 @@ _MAPS = (
         "need-contact",
         "Least normal force",
         "10th percentile of the least normal force over the records that rock without overturning; "
-        "below zero the ground would have to pull.",
+        "below zero (red) the ground would have to pull.",
         "normal_10",
-        Shades(label="normal force / weight", unit="-", low=-1.0, high=1.0, centre=0.0),
+        Shades(label="normal force / weight", unit="-", low=-1.0, high=1.0, centre=0.0, reverse=True),
     ),
     (
         "need-moment",
@@ -166,7 +166,7 @@ def _free(name: str, what: str, table: pd.DataFrame) -> Picture:
                 title=f"tan α = {tan_alpha:g}",
             )
         )
-    reach = max(float(np.nanquantile(table["off"].abs(), 0.99)), 1e-3)
+    reach = float(f"{max(float(np.nanquantile(table['off'].abs(), 0.99)), 1e-3):.0e}")
     return Picture(
         name=name,
         title=f"{what} from tilt maximum to next maximum",

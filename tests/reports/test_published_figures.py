@@ -1,11 +1,13 @@
-"""Published figures, drawn at their size: no words are cut at an edge, and no titles collide."""
+"""Published figures, drawn at their size: no words are cut at an edge, no titles or numbers collide."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -22,15 +24,22 @@ def words_of(drawn: Figure) -> Iterator[Text]:
     for axes in (each for each in drawn.axes if each.axison):
         yield from (axes.title, axes.xaxis.label, axes.yaxis.label)
         for axis in (axes.xaxis, axes.yaxis):
-            low, high = sorted(axis.get_view_interval())
-            yield from (tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high)
+            yield from numbers_of(axis)
     for legend in drawn.legends:
         yield from legend.get_texts()
 
 
+def numbers_of(axis: Axis) -> list[Text]:
+    """Return the words of the ticks within the limits of an axis, those of its minor ticks included."""
+    low, high = sorted(axis.get_view_interval())
+    ticks = [*axis.get_major_ticks(), *axis.get_minor_ticks()]
+    inside = [tick for tick in ticks if low <= tick.get_loc() <= high and tick.label1.get_text().strip()]
+    return [tick.label1 for tick in sorted(inside, key=lambda tick: float(tick.get_loc()))]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["ensemble/p695-2", "fragility/p695", "risk/p695", "tradeoff", "validity"])
-def test_no_words_are_cut_and_no_titles_collide(name: str) -> None:
+@pytest.mark.parametrize("name", ["ensemble/p695-2", "fragility/p695", "risk/tendon", "tradeoff", "validity"])
+def test_no_words_are_cut_and_no_titles_or_numbers_collide(name: str) -> None:
     kind = read_manifests(PUBLISHED / name)[0].kind
     for picture in stored_page(kind, PUBLISHED / name).pictures:
         drawn = figure(picture)
@@ -45,3 +54,6 @@ def test_no_words_are_cut_and_no_titles_collide(name: str) -> None:
         titles = [box for text, box in boxes if text in names]
         for place, one in enumerate(titles):
             assert not any(one.padded(6.0).overlaps(other) for other in titles[place + 1 :]), picture.name
+        for axis in (each for axes in drawn.axes if axes.axison for each in (axes.xaxis, axes.yaxis)):
+            beside = [text.get_window_extent(canvas.get_renderer()) for text in numbers_of(axis)]
+            assert not any(one.overlaps(other) for one, other in pairwise(beside)), picture.name
