@@ -10,9 +10,8 @@ beyond it no step is small enough: they diverge where they differ by 1 % of alph
 Halving ends without that where it no longer brings the traces closer, which engines know (a smaller step
 is not always better), or at the smallest step. The run that is kept is the last that was an improvement.
 
-The estimate of the remaining error is Richardson's: with differences d1 and then d2 of successive
-halvings, the order is p = log2(d1/d2), and what is left of the finer one d2/(2^p - 1). Near passes mix the
-orders, so p counts as 1 at most. Only a run that has settled states an error; one with a pass that is not
+The estimate of the remaining error is Richardson's, see `halving`. Near passes mix the orders, so that counts
+as 1 at most. Only a run that has settled states an error; one with a pass that is not
 resolved, or in which contact makes or takes energy, has not.
 """
 
@@ -27,9 +26,7 @@ import numpy as np
 from rockwobble.models import AGREEMENT, Diagnostic, Trace
 
 from .guard import LARGEST_STEP
-from .scene import Array
-
-_SAME_TIME = 1e-9  # of the length of a run
+from .halving import common_count, error_left, order_between
 
 Progress = Callable[[float], None]
 Attempt = Callable[[float, Progress], Trace]
@@ -83,17 +80,6 @@ def unknown_from(trace: Trace) -> tuple[float, str]:
     low = np.flatnonzero((kind < 0.0) & (tilt < trace.contact_resolution))[:1]
     landing = time[max(int(low[0]) - 1, 0)] if len(low) else math.inf
     return min((float(landing), "unresolved_pass"), (trace.first("energy"), "energy"))
-
-
-def common_count(times: Sequence[Array]) -> int:
-    """Return up to which sample the times of all traces are the same."""
-    count = min(map(len, times))
-    # the last sample of a run that overturned stands at its own time
-    near = _SAME_TIME * max(1.0, *(float(time[-1]) for time in times if len(time)))
-    different = np.flatnonzero(
-        np.any([np.abs(time[:count] - times[0][:count]) > near for time in times], axis=0)
-    )
-    return int(different[0]) if len(different) else count
 
 
 def shares(steps: Sequence[float]) -> list[float]:
@@ -197,9 +183,9 @@ def _estimate(found: list[Closeness]) -> tuple[float, float]:
     last = found[-1]
     order = 1.0
     if len(found) > 1 and last.difference > 0.0 and found[-2].until >= last.until / _PUT_OFF:
-        order = math.log2(max(found[-2].difference, 1e-300) / last.difference)
+        order = order_between(max(found[-2].difference, 1e-300), last.difference)
     order = min(max(order, _ORDERS[0]), _ORDERS[1])
-    return last.difference / (2.0**order - 1.0), order
+    return error_left(last.difference, order), order
 
 
 def _report(run: Trace, found: list[Closeness], verdict: str, alpha: float) -> Trace:

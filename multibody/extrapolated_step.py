@@ -1,14 +1,11 @@
 """time_step="extrapolated": the limit of a run for a vanishing step, from runs at steps that halve.
 
-Three runs, at h = 4, 2 and 1 times the finest step. The two finest give, sample by sample,
-
-    x(h) + (x(h) - x(2 h))/(2^p - 1),
-
-the third run gives the order p, from the differences d1 and d2 of successive runs as log2(d1/d2), and the
-error that is left. p is 1 or 2. After a release, and wherever the rim only rolls, it is 1 and the formula
-2 x(h) - x(2 h); under shaking the near passes of upright take over, in which a step of h is a share of a
-short time, and their error is of order 2. The error is what one halving has moved the extrapolation by: of a
-pure series it is a third or a seventh of that, but near passes mix the orders.
+Three runs, at h = 4, 2 and 1 times the finest step. The two finest give the limit, sample by sample, the
+third its order p and the error that is left, see `halving`. p is 1 or 2. After a release, and wherever the
+rim only rolls, it is 1 and the limit 2 x(h) - x(2 h); under shaking the near passes of upright take over, in
+which a step of h is a share of a short time, and their error is of order 2. The error is what one halving has
+moved the extrapolation by: of a pure series it is a third or a seventh of that, but near passes mix the
+orders.
 
 It means something as far as the runs agree: to the last pass before two of them part by 1 % of alpha, no
 further than a halving moves the extrapolation by less than it moves the run, and not beyond a swing that ends
@@ -31,8 +28,9 @@ from numpy.typing import NDArray
 from rockwobble.models import Diagnostic, Trace
 from rockwobble.models.trace_source import Known
 
-from .auto_step import Attempt, Progress, closeness, common_count, part_of, shares, unknown_from
+from .auto_step import Attempt, Progress, closeness, part_of, shares, unknown_from
 from .guard import LARGEST_STEP
+from .halving import common_count, measured_order, to_zero_step
 from .scene import Array
 
 if TYPE_CHECKING:
@@ -113,23 +111,6 @@ def extrapolation(runs: Sequence[Trace], alpha: float) -> Trace:
         facts.append(Diagnostic(code="not_extrapolated", time=end, detail=why))
     merged = _merge(runs[-2:], order, good)
     return replace(_with_facts(merged, *facts), error_estimate=left, settled_until=end)
-
-
-def to_zero_step(values: Sequence[Array], order: int) -> Array:
-    """Return the value for a vanishing step of the last two of `values`, at steps that halve."""
-    coarse, fine = values[-2:]
-    return np.asarray(fine + (fine - coarse) / (2.0**order - 1.0))
-
-
-def measured_order(values: Sequence[Array]) -> float:
-    """Return the order in the step of the last three of `values`, at steps that halve.
-
-    NaN of fewer than three, and where two of them are equal.
-    """
-    if len(values) < 3:
-        return math.nan
-    first, second = (float(np.linalg.norm(coarse - fine)) for coarse, fine in pairwise(values[-3:]))
-    return math.log2(first / second) if first > 0.0 and second > 0.0 else math.nan
 
 
 def _meaningful(moved: Array, difference: Array) -> int:

@@ -28,9 +28,9 @@ from numpy.typing import NDArray
 from rockwobble.models import Case, RockingBody, Run, Trace
 from rockwobble.models.shown import Brief
 from rockwobble.models.support import RECESS
-from rockwobble.multibody.auto_step import common_count
 from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.extrapolated_step import EXTRAPOLATED, measured_order, to_zero_step
+from rockwobble.multibody.extrapolated_step import EXTRAPOLATED
+from rockwobble.multibody.halving import common_count, line_to_zero_step, measured_order, to_zero_step
 
 from ..metrics.pair import (
     Agreement,
@@ -247,11 +247,7 @@ def _intercept(tilts: Sequence[Array], *, smooth: bool) -> Array:
         return to_zero_step([to_zero_step(tilts[-3:-1], 1), to_zero_step(tilts[-2:], 1)], 2)
     if smooth or len(tilts) == 2:
         return to_zero_step(tilts[-2:], 1)
-    # least squares of a straight line over all runs, by the step: one that is off by chance weighs little
-    steps = 0.5 ** np.arange(len(tilts))
-    design = np.column_stack([np.ones_like(steps), steps]) / steps[:, None]  # scatter goes with the step
-    weights = np.linalg.pinv(design)[0] / steps
-    return np.asarray(np.tensordot(weights, np.stack(tilts), axes=1))
+    return line_to_zero_step(tilts)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

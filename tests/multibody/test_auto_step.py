@@ -12,7 +12,8 @@ import pytest
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace
 from rockwobble.models.trace_source import Known
-from rockwobble.multibody.auto_step import COARSEST, SMALLEST, Closeness, closeness, common_count, find_step
+from rockwobble.multibody.auto_step import COARSEST, SMALLEST, Closeness, closeness, find_step
+from rockwobble.multibody.halving import common_count
 
 ALPHA = 0.2
 # Richardson with a measured order is good for a factor; three is what it misses by at the bounds of the order

@@ -22,8 +22,9 @@ from rockwobble.models import (
     el_centro_1940,
 )
 from rockwobble.models.trace_source import Known
-from rockwobble.multibody.extrapolated_step import extrapolation, to_zero_step
+from rockwobble.multibody.extrapolated_step import extrapolation
 from rockwobble.multibody.guard import LARGEST_STEP
+from rockwobble.multibody.halving import to_zero_step
 
 ALPHA = 0.2
 # of alpha, after a release: what the second order leaves of an engine of first order
