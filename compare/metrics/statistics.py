@@ -1,4 +1,4 @@
-"""Statistics of small samples: quantiles with intervals, and two methods compared member by member.
+"""Statistics of small samples: quantiles and shares with intervals, and tests of pairs.
 
 A quantile lies between two order statistics with a probability that is known exactly, whatever is sampled:
 that the k-th of n values is below the quantile of share q is I_q(k, n + 1 - k), the regularised incomplete
@@ -8,10 +8,6 @@ the fraction (A. D. Hutson, J. Appl. Stat. 26, 343-353, 1999). Infinite values a
 A bootstrap over the members draws from the same order statistics but does not know what lies beyond them:
 of 22 members its interval of the median has a coverage of 94 %, that of the 5th percentile of at most 68 %,
 the probability that any member is below it.
-
-Beyond the agreement of traces single runs say nothing, many do. The members of an ensemble are the same for
-all methods: the same record moves both, so what differs is their ratio, and every test and interval is of
-the members as pairs.
 """
 
 from __future__ import annotations
@@ -186,116 +182,6 @@ MARGIN = 0.05
 POWER = 0.8
 # probability of a difference as large by chance, below which two methods are told apart
 SIGNIFICANCE = 0.05
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Contrast:
-    """Contrast of two methods.
-
-    The ratio of a member is that of its two peak tilts, an overturned run larger than everything: infinite
-    where it overturns by the first method alone, zero where by the second alone. A member that overturns by
-    both, or stays at rest by both, has none.
-
-    Attributes
-    ----------
-    count : int
-        Members that count: those that failed in neither method.
-    compared : int
-        Members with a ratio.
-    higher, lower : int
-        Members with a ratio above and below 1.
-    ratio : Interval
-        Median of the ratios. An end of zero or infinity is not bounded.
-    ratio_05, ratio_95 : Interval
-        Ratios that 5 % and 95 % of the members do not exceed.
-    ratio_p : float
-        P value of Wilcoxon's signed ranks of the logarithms: probability of a difference as large if both
-        methods could be exchanged in every member. Infinite ratios have the largest ranks; ratios of 1 have
-        none.
-    within_reach : float
-        The least ratio above 1 for which, and for its inverse, the interval of the median of as many members,
-        scattered as these are, leaves 1 out with a probability of `POWER`; infinite where there is none.
-    overturned, against_overturned : int
-        Runs that overturn.
-    both_overturned : int
-        Members that overturn by both methods.
-    overturned_p : float
-        P value of McNemar's exact test: of the members that overturn by one method alone.
-    overturned_difference : Interval
-        Share of the members that overturn, less that of the second method [-].
-    """
-
-    count: int
-    compared: int
-    higher: int
-    lower: int
-    ratio: Interval
-    ratio_05: Interval
-    ratio_95: Interval
-    ratio_p: float
-    within_reach: float
-    overturned: int
-    against_overturned: int
-    both_overturned: int
-    overturned_p: float
-    overturned_difference: Interval
-
-    @property
-    def verdict(self) -> str:
-        """Whether the median ratio is known to be within the margin of 1: "within", "beyond", "undecided"."""
-        return self.ratio.about_one(MARGIN)
-
-
-def contrast(peaks: Array, against: Array, overturned: Flags, against_overturned: Flags) -> Contrast:
-    """Compare the peak tilts of one method with those of another, member by member.
-
-    Parameters
-    ----------
-    peaks, against : ndarray, shape (n,)
-        Peak tilts of the same members [alpha]; NaN where a run failed: such a member does not count.
-    overturned, against_overturned : ndarray of bool, shape (n,)
-
-    Raises
-    ------
-    ValueError
-        If fewer than two members count.
-    """
-    counts = np.isfinite(peaks) & np.isfinite(against)
-    if np.count_nonzero(counts) < 2:
-        raise ValueError(f"two members that do not fail are needed, got {np.count_nonzero(counts)}")
-    fell, fell_there = overturned[counts], against_overturned[counts]
-    logarithms = log_ratios(peaks, against, overturned, against_overturned)
-    logarithms = logarithms[~np.isnan(logarithms)]
-    only, only_there = (int((a & ~b).sum()) for a, b in ((fell, fell_there), (fell_there, fell)))
-    ratio, ratio_05, ratio_95 = (
-        quantile_interval(logarithms, share).exponential() for share in (0.5, 0.05, 0.95)
-    )
-    return Contrast(
-        count=len(fell),
-        compared=len(logarithms),
-        higher=int((logarithms > 0.0).sum()),
-        lower=int((logarithms < 0.0).sum()),
-        ratio=ratio,
-        ratio_05=ratio_05,
-        ratio_95=ratio_95,
-        ratio_p=signed_rank_p(logarithms),
-        within_reach=ratio_within_reach(logarithms),
-        overturned=int(fell.sum()),
-        against_overturned=int(fell_there.sum()),
-        both_overturned=int((fell & fell_there).sum()),
-        overturned_p=mcnemar_p(only, only_there),
-        overturned_difference=paired_difference(only, only_there, len(fell)),
-    )
-
-
-def log_ratios(peaks: Array, against: Array, overturned: Flags, against_overturned: Flags) -> Array:
-    """Return the logarithm of the ratio of each member, NaN where it has none; arguments as in `contrast`."""
-    ours = np.where(overturned, math.inf, peaks)
-    theirs = np.where(against_overturned, math.inf, against)
-    ours[np.isnan(peaks) | np.isnan(against)] = math.nan
-    # at rest the logarithm is infinite; twice at rest and twice overturned there is no ratio
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.log(ours) - np.log(theirs), dtype=np.float64)
 
 
 def signed_rank_p(logarithms: Array) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,7 +12,6 @@ from typing import cast
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Tendon, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
@@ -25,18 +23,9 @@ from rockwobble.models.plain_json import fields_of, plain
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.trace import NO_PEAK
 
+from ..metrics.contrast import pairs_in
 from ..metrics.pair import outcome_of
-from ..metrics.statistics import (
-    Array,
-    Contrast,
-    Flags,
-    Interval,
-    adjusted,
-    contrast,
-    log_ratios,
-    quantile_interval,
-    value_if_enough,
-)
+from ..metrics.statistics import adjusted, quantile_interval, value_if_enough
 from ..runs.choice import default_runs, require_runnable, run_labels
 from ..runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
 from ..runs.progress import ProgressCallback
@@ -243,83 +232,6 @@ def _members(jobs: Sequence[Job], results: Sequence[Trace]) -> pd.DataFrame:
     )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Pairs:
-    """The members of an ensemble by two methods.
-
-    Attributes
-    ----------
-    members : ndarray of str, shape (n,)
-    peaks, against : ndarray, shape (n,)
-        Peak tilts [alpha], NaN where a run failed.
-    overturned, against_overturned : ndarray of bool, shape (n,)
-    """
-
-    members: NDArray[np.str_]
-    peaks: Array
-    against: Array
-    overturned: Flags
-    against_overturned: Flags
-
-    @property
-    def failed(self) -> Flags:
-        """Whether a member failed by one method or both."""
-        return np.isnan(self.peaks) | np.isnan(self.against)
-
-    def log_ratios(self) -> Array:
-        """Return the logarithms of the ratios of the members, see `statistics.log_ratios`."""
-        return log_ratios(self.peaks, self.against, self.overturned, self.against_overturned)
-
-    def ratio_bounds(self) -> tuple[float, float]:
-        """Return the least and the largest median ratio, whatever the members that failed would have done."""
-        known, unknown = self.log_ratios()[~self.failed], np.count_nonzero(self.failed)
-        known = known[~np.isnan(known)]
-        least, most = (
-            quantile_interval(np.append(known, np.full(unknown, fate)), 0.5).exponential().value
-            for fate in (-math.inf, math.inf)
-        )
-        return least, most
-
-    def contrast(self) -> Contrast | None:
-        """Return the contrast of the methods; None where fewer than two members ran by both."""
-        if np.count_nonzero(~self.failed) < 2:
-            return None
-        return contrast(self.peaks, self.against, self.overturned, self.against_overturned)
-
-
-def pairs(
-    runs: pd.DataFrame, method: str, against: str, *, member: str = "member", peak: str = "peak_tilt"
-) -> Pairs:
-    """Return the members by two methods, each beside itself.
-
-    Parameters
-    ----------
-    runs : DataFrame
-        One row for each member and method: columns method, outcome, and those of the names below.
-    method, against : str
-    member, peak : str, optional
-        Columns of the member's name and of its peak tilt [alpha].
-
-    Raises
-    ------
-    ValueError
-        If a member has two runs of one method.
-    """
-    if runs.duplicated([member, "method"]).any():
-        raise ValueError("each member must have one run by each method, got more")
-    names = list(runs[member].unique())
-    ours, theirs = (
-        runs[runs["method"] == name].set_index(member).reindex(names) for name in (method, against)
-    )
-    return Pairs(
-        members=np.array(names, dtype=str),
-        peaks=ours[peak].where(~ours["outcome"].isin(NO_PEAK)).to_numpy(float),
-        against=theirs[peak].where(~theirs["outcome"].isin(NO_PEAK)).to_numpy(float),
-        overturned=(ours["outcome"] == "overturned").to_numpy(bool),
-        against_overturned=(theirs["outcome"] == "overturned").to_numpy(bool),
-    )
-
-
 def method_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFrame:
     """Return one row for each method, see `Ensemble.methods`; `methods` names the own model of each."""
     rows = []
@@ -359,7 +271,7 @@ def contrast_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.Data
     """Return one row for each two methods, see `Ensemble.contrasts`."""
     rows = []
     for against, method in itertools.combinations(methods, 2):
-        both = pairs(members, method, against)
+        both = pairs_in(members, method, against)
         found = both.contrast()
         if found is not None:
             least, most = both.ratio_bounds()
@@ -367,7 +279,7 @@ def contrast_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.Data
                 {
                     "method": method,
                     "against": against,
-                    **contrast_row(found),
+                    **found.columns(),
                     "masked": ", ".join(both.members[both.failed]),
                     "ratio_least": least,
                     "ratio_most": most,
@@ -377,12 +289,3 @@ def contrast_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.Data
     for name in ("ratio_p", "overturned_p") if len(table) else ():
         table[f"{name}_adjusted"] = adjusted(table[name].to_numpy(float))
     return table
-
-
-def contrast_row(found: Contrast) -> dict[str, float | int | str]:
-    """Return a contrast by the names of its attributes, the ends of an interval as NAME_low and NAME_high."""
-    row: dict[str, float | int | str] = {}
-    for field in dataclasses.fields(found):
-        value = getattr(found, field.name)
-        row |= value.columns(field.name) if isinstance(value, Interval) else {field.name: value}
-    return row | {"verdict": found.verdict}

@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare import Ensemble
+from rockwobble.compare.metrics.contrast import pairs_in
 from rockwobble.compare.metrics.statistics import MARGIN
-from rockwobble.compare.studies.ensemble import pairs
 from rockwobble.compare.studies.fragility.study import Row
 from rockwobble.models.trace import NO_PEAK
 
@@ -92,7 +92,7 @@ def peak_shares(
 
 
 def _ratios(found: Ensemble, rows: list[Row]) -> Panel:
-    both = [pairs(found.members, row["method"], row["against"]) for row in rows]
+    both = [pairs_in(found.members, row["method"], row["against"]) for row in rows]
     logarithms = [each.log_ratios() for each in both]
     low, high = ratio_span(np.concatenate(logarithms))
     layers: list[Line | Rule | Text] = [*margin_rules(MARGIN)]

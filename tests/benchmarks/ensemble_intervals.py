@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.compare.metrics.contrast import log_ratios
 from rockwobble.compare.metrics.statistics import (
-    log_ratios,
     mcnemar_p,
     paired_difference,
     quantile_interval,

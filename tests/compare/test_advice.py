@@ -16,8 +16,8 @@ from showing import loads_as_it_was, shows_itself
 
 from rockwobble import reduced
 from rockwobble.compare.comparison.driver import comparison
+from rockwobble.compare.metrics.contrast import contrast
 from rockwobble.compare.metrics.pair import overturned
-from rockwobble.compare.metrics.statistics import contrast
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.studies.advice import advice as study

@@ -14,17 +14,16 @@ import pytest
 from scipy.special import betainc, betaincinv
 from scipy.stats import PermutationMethod, beta, binom, binomtest, norm, wilcoxon
 
+from rockwobble.compare.metrics.contrast import contrast, log_ratios
 from rockwobble.compare.metrics.statistics import (
     CONFIDENCE,
     MARGIN,
     POWER,
     Interval,
     adjusted,
-    contrast,
     end_index,
     largest_share_unseen,
     least_significant_count,
-    log_ratios,
     mcnemar_p,
     paired_difference,
     quantile_interval,

@@ -30,15 +30,14 @@ from rockwobble.models.records.units import sources_of
 from rockwobble.models.support import RECESS, support_named
 from rockwobble.models.trace import NO_PEAK
 
+from ...metrics.contrast import pairs_of
 from ...metrics.pair import overturned, tolerance_of
-from ...metrics.statistics import Contrast
 from ...runs.choice import require_runnable
 from ...runs.execution import Job, job_fingerprint, simulate_run
 from ...runs.progress import ProgressCallback, stages
 from ...storage.manifest import Number
 from ...storage.provenance import fingerprint
 from ...storage.results import Results
-from ..ensemble import Pairs
 from ..plans import AdvicePlan
 from ..spectrum.maps import uplift_factor
 from ..spectrum.parts import SPATIAL
@@ -539,7 +538,7 @@ def advise(
         "trace": _samples(trace, alpha).assign(friction_needed=trace.friction_needed),
         "engine": _samples(engine, alpha),
     }
-    form = _contrast(others, perturbed) if others and _differ(group_table(members)) else None
+    form = pairs_of(others, perturbed).contrast() if others and _differ(group_table(members)) else None
     facts = {
         **_problem(case),
         "friction": case.friction if friction_given else None,
@@ -715,7 +714,7 @@ def vertical_effect(
         shaken = dataclasses.replace(case, motion=each, duration=duration)
         copies = plan.perturbed(shaken, VERTICAL_COUNT)
         runs[name] = [simulate_run(copy, model, sample_step=DEMAND_STEP) for copy in copies]
-    found = _contrast(*runs.values())
+    found = pairs_of(*runs.values()).contrast()
     ratios = None if found is None or not found.compared else ratios_of(found)
     kept = {"own": HORIZONTAL, "shipped": VERTICAL}.get(source, "")
     return dataclasses.replace(about, ratios=ratios), {
@@ -737,17 +736,3 @@ def weaker_rows(case: Case, groups: Mapping[str, Sequence[Case]], model: Run) ->
         for name, cases in groups.items()
         for row in run_rows(name, cases[:WEAKER_COUNT], model, factor)
     ]
-
-
-def _contrast(traces: Sequence[Trace], against: Sequence[Trace]) -> Contrast | None:
-    peaks, peaks_against = (np.array([trace.peak_tilt for trace in part]) for part in (traces, against))
-    fell, fell_against = (
-        np.array([trace.outcome == "overturned" for trace in part]) for part in (traces, against)
-    )
-    return Pairs(
-        members=np.array([trace.case.name for trace in traces]),
-        peaks=peaks,
-        against=peaks_against,
-        overturned=fell,
-        against_overturned=fell_against,
-    ).contrast()

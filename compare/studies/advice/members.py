@@ -25,9 +25,9 @@ from rockwobble.models.cpus import in_threads
 from rockwobble.models.records import p695
 from rockwobble.models.trace import NO_PEAK
 
+from ...metrics.contrast import Contrast
 from ...metrics.statistics import (
     FEWEST,
-    Contrast,
     Interval,
     covering,
     quantile_interval,

@@ -13,9 +13,9 @@ from rockwobble.models.support import FLAT, RECESS, RECESSES_FIRST, RING, SUPPOR
 from rockwobble.models.trace import NO_PEAK
 
 from ...comparison.prediction import IN_TIME
+from ...metrics.contrast import log_ratios, pairs_in
 from ...metrics.pair import overturned
-from ...metrics.statistics import MARGIN, log_ratios, quantile_interval
-from ..ensemble import contrast_row, pairs
+from ...metrics.statistics import MARGIN, quantile_interval
 from .plan import EL_CENTRO, RELEASE
 from .plan import POINT as POINT_NAMES
 from .shaken import FREE, HALVED, PERTURBED
@@ -100,10 +100,10 @@ def contrasts(tables: Tables) -> pd.DataFrame:
     rows = []
     for point, runs in tables["records"].groupby(POINT, sort=False):
         for method, against in CONTRASTS:
-            found = pairs(runs, method, against, member="motion", peak="peak").contrast()
+            found = pairs_in(runs, method, against, member="motion", peak="peak").contrast()
             if found is not None:
                 at = dict(zip(POINT, point, strict=True)) | {"method": method, "against": against}
-                rows.append(at | contrast_row(found))
+                rows.append(at | found.columns())
     return pd.DataFrame(rows)
 
 

@@ -1,0 +1,245 @@
+"""Contrast of two methods: the same members by both, compared member by member.
+
+Beyond the agreement of traces single runs say nothing, many do. The members of an ensemble are the same for
+all methods: the same record moves both, so what differs is their ratio, and every test and interval is of
+the members as pairs. The medians of two fragility curves have a contrast of their own, see
+`studies.fragility.tables`: their motions are the same, too, but it is of curves.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockwobble.models import Trace
+from rockwobble.models.trace import NO_PEAK
+
+from .statistics import (
+    MARGIN,
+    Array,
+    Flags,
+    Interval,
+    mcnemar_p,
+    paired_difference,
+    quantile_interval,
+    ratio_within_reach,
+    signed_rank_p,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Contrast:
+    """Contrast of two methods.
+
+    The ratio of a member is that of its two peak tilts, an overturned run larger than everything: infinite
+    where it overturns by the first method alone, zero where by the second alone. A member that overturns by
+    both, or stays at rest by both, has none.
+
+    Attributes
+    ----------
+    count : int
+        Members that count: those that failed in neither method.
+    compared : int
+        Members with a ratio.
+    higher, lower : int
+        Members with a ratio above and below 1.
+    ratio : Interval
+        Median of the ratios. An end of zero or infinity is not bounded.
+    ratio_05, ratio_95 : Interval
+        Ratios that 5 % and 95 % of the members do not exceed.
+    ratio_p : float
+        P value of Wilcoxon's signed ranks of the logarithms: probability of a difference as large if both
+        methods could be exchanged in every member. Infinite ratios have the largest ranks; ratios of 1 have
+        none.
+    within_reach : float
+        The least ratio above 1 for which, and for its inverse, the interval of the median of as many members,
+        scattered as these are, leaves 1 out with a probability of `POWER`; infinite where there is none.
+    overturned, against_overturned : int
+        Runs that overturn.
+    both_overturned : int
+        Members that overturn by both methods.
+    overturned_p : float
+        P value of McNemar's exact test: of the members that overturn by one method alone.
+    overturned_difference : Interval
+        Share of the members that overturn, less that of the second method [-].
+    """
+
+    count: int
+    compared: int
+    higher: int
+    lower: int
+    ratio: Interval
+    ratio_05: Interval
+    ratio_95: Interval
+    ratio_p: float
+    within_reach: float
+    overturned: int
+    against_overturned: int
+    both_overturned: int
+    overturned_p: float
+    overturned_difference: Interval
+
+    @property
+    def verdict(self) -> str:
+        """Whether the median ratio is known to be within the margin of 1: "within", "beyond", "undecided"."""
+        return self.ratio.about_one(MARGIN)
+
+    def columns(self) -> dict[str, float | int | str]:
+        """Return the attributes and the verdict as columns, ends of an interval as NAME_low and NAME_high."""
+        row: dict[str, float | int | str] = {}
+        for field in fields(self):
+            value = getattr(self, field.name)
+            row |= value.columns(field.name) if isinstance(value, Interval) else {field.name: value}
+        return row | {"verdict": self.verdict}
+
+
+def contrast(peaks: Array, against: Array, overturned: Flags, against_overturned: Flags) -> Contrast:
+    """Compare the peak tilts of one method with those of another, member by member.
+
+    Parameters
+    ----------
+    peaks, against : ndarray, shape (n,)
+        Peak tilts of the same members [alpha]; NaN where a run failed: such a member does not count.
+    overturned, against_overturned : ndarray of bool, shape (n,)
+
+    Raises
+    ------
+    ValueError
+        If fewer than two members count.
+    """
+    counts = np.isfinite(peaks) & np.isfinite(against)
+    if np.count_nonzero(counts) < 2:
+        raise ValueError(f"two members that do not fail are needed, got {np.count_nonzero(counts)}")
+    fell, fell_there = overturned[counts], against_overturned[counts]
+    logarithms = log_ratios(peaks, against, overturned, against_overturned)
+    logarithms = logarithms[~np.isnan(logarithms)]
+    only, only_there = (int((a & ~b).sum()) for a, b in ((fell, fell_there), (fell_there, fell)))
+    ratio, ratio_05, ratio_95 = (
+        quantile_interval(logarithms, share).exponential() for share in (0.5, 0.05, 0.95)
+    )
+    return Contrast(
+        count=len(fell),
+        compared=len(logarithms),
+        higher=int((logarithms > 0.0).sum()),
+        lower=int((logarithms < 0.0).sum()),
+        ratio=ratio,
+        ratio_05=ratio_05,
+        ratio_95=ratio_95,
+        ratio_p=signed_rank_p(logarithms),
+        within_reach=ratio_within_reach(logarithms),
+        overturned=int(fell.sum()),
+        against_overturned=int(fell_there.sum()),
+        both_overturned=int((fell & fell_there).sum()),
+        overturned_p=mcnemar_p(only, only_there),
+        overturned_difference=paired_difference(only, only_there, len(fell)),
+    )
+
+
+def log_ratios(peaks: Array, against: Array, overturned: Flags, against_overturned: Flags) -> Array:
+    """Return the logarithm of the ratio of each member, NaN where it has none; arguments as in `contrast`."""
+    ours = np.where(overturned, math.inf, peaks)
+    theirs = np.where(against_overturned, math.inf, against)
+    ours[np.isnan(peaks) | np.isnan(against)] = math.nan
+    # at rest the logarithm is infinite; twice at rest and twice overturned there is no ratio
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.log(ours) - np.log(theirs), dtype=np.float64)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Pairs:
+    """The members of an ensemble by two methods.
+
+    Attributes
+    ----------
+    members : ndarray of str, shape (n,)
+    peaks, against : ndarray, shape (n,)
+        Peak tilts [alpha], NaN where a run failed.
+    overturned, against_overturned : ndarray of bool, shape (n,)
+    """
+
+    members: NDArray[np.str_]
+    peaks: Array
+    against: Array
+    overturned: Flags
+    against_overturned: Flags
+
+    @property
+    def failed(self) -> Flags:
+        """Whether a member failed by one method or both."""
+        return np.isnan(self.peaks) | np.isnan(self.against)
+
+    def log_ratios(self) -> Array:
+        """Return the logarithms of the ratios of the members, see `log_ratios`."""
+        return log_ratios(self.peaks, self.against, self.overturned, self.against_overturned)
+
+    def ratio_bounds(self) -> tuple[float, float]:
+        """Return the least and the largest median ratio, whatever the members that failed would have done."""
+        known, unknown = self.log_ratios()[~self.failed], np.count_nonzero(self.failed)
+        known = known[~np.isnan(known)]
+        least, most = (
+            quantile_interval(np.append(known, np.full(unknown, fate)), 0.5).exponential().value
+            for fate in (-math.inf, math.inf)
+        )
+        return least, most
+
+    def contrast(self) -> Contrast | None:
+        """Return the contrast of the methods; None where fewer than two members ran by both."""
+        if np.count_nonzero(~self.failed) < 2:
+            return None
+        return contrast(self.peaks, self.against, self.overturned, self.against_overturned)
+
+
+def pairs_in(
+    runs: pd.DataFrame, method: str, against: str, *, member: str = "member", peak: str = "peak_tilt"
+) -> Pairs:
+    """Return the members of a table by two methods, each beside itself.
+
+    Parameters
+    ----------
+    runs : DataFrame
+        One row for each member and method: columns method, outcome, and those of the names below.
+    method, against : str
+    member, peak : str, optional
+        Columns of the member's name and of its peak tilt [alpha].
+
+    Raises
+    ------
+    ValueError
+        If a member has two runs of one method.
+    """
+    if runs.duplicated([member, "method"]).any():
+        raise ValueError("each member must have one run by each method, got more")
+    names = list(runs[member].unique())
+    ours, theirs = (
+        runs[runs["method"] == name].set_index(member).reindex(names) for name in (method, against)
+    )
+    return Pairs(
+        members=np.array(names, dtype=str),
+        peaks=ours[peak].where(~ours["outcome"].isin(NO_PEAK)).to_numpy(float),
+        against=theirs[peak].where(~theirs["outcome"].isin(NO_PEAK)).to_numpy(float),
+        overturned=(ours["outcome"] == "overturned").to_numpy(bool),
+        against_overturned=(theirs["outcome"] == "overturned").to_numpy(bool),
+    )
+
+
+def pairs_of(traces: Sequence[Trace], against: Sequence[Trace]) -> Pairs:
+    """Return the members of two sequences of traces (n,), in the same order; peak tilts in rad."""
+
+    def peaks(runs: Sequence[Trace]) -> Array:
+        return np.array([trace.peak_tilt for trace in runs])
+
+    def overturned(runs: Sequence[Trace]) -> Flags:
+        return np.array([trace.outcome == "overturned" for trace in runs])
+
+    return Pairs(
+        members=np.array([trace.case.name for trace in traces]),
+        peaks=peaks(traces),
+        against=peaks(against),
+        overturned=overturned(traces),
+        against_overturned=overturned(against),
+    )
