@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import pandas as pd
 
@@ -35,8 +36,7 @@ def page_of(found: Extremes) -> Page:
     counts = {name: int((runs["verdict"] == name).sum()) for name in WORDS}
     values: dict[str, object] = {
         "fine": FINE,
-        "counts": counts,
-        "total": len(runs),
+        "answer": _answer(counts, len(runs)),
         "methods": _by_method(runs),
         "verdicts": [[name, word, "d"] for name, word in WORDS.items()],
         "not_fine": _not_fine(runs),
@@ -53,6 +53,17 @@ def page_of(found: Extremes) -> Page:
         "about": found.manifest,
     }
     return Page(name="extremes", template="extremes", values=values)
+
+
+def _answer(counts: Mapping[str, int], total: int) -> str:
+    """How many runs are wrong without a word; or what became of all, on three lines of the document."""
+    if silent := counts["silent"]:
+        return f"{silent} of {total} runs {'is' if silent == 1 else 'are'} silently wrong."
+    return (
+        f"Nothing is silently wrong: of {total} runs {counts['fine']} are fine, {counts['flagged']} are "
+        f"flagged by what limits them,\n{counts['refused']} are refused, {counts['caught']} fail and are "
+        f"caught,\nand {counts['no reference']} have no reference."
+    )
 
 
 def _by_method(runs: pd.DataFrame) -> list[dict[str, object]]:

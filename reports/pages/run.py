@@ -1,8 +1,9 @@
-"""Values for the page of a run: its words are in the template runs/run.md.j2."""
+"""The page of a run: its outcome in words, and the numbers that its method gives."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 from rockwobble.compare.studies.advice.demands import fall_of
 from rockwobble.compare.studies.single_run import SingleRun
@@ -12,54 +13,150 @@ from ..figures.trace import pictures
 from .cases import describe
 from .diagnostics import remarks
 from .page import Page
+from .table import Row, number
 
 
 def page_of(found: SingleRun) -> Page:
-    """Return the page of a run; numbers are NaN or infinite where there is none."""
-    trace, single = found.trace, found.facts.get("single_trace", {})
-    cylinder, engine, falls = trace.case.cylinder, not trace.run.is_model, fall_of(trace)
-    held = trace.assumptions_until(falls)  # a fall asks nothing
-    part = single.get("copies_part", math.inf)  # of earlier versions nothing is known
-    at_rest = 0.0 if engine or trace.peak_tilt else trace.case.friction_at_rest
+    """Return the page of a run."""
+    trace, said = found.trace, remarks(_limits(found.trace))
     values = {
-        "trace": trace,
-        "at_rest": at_rest,
-        "slides": at_rest > trace.case.friction,
-        "label": found.facts["run"],
+        "title": f"{trace.case.name}, {found.facts['run']}: {trace.outcome}",
+        "statements": list(_statements(trace)),
+        "said": f"{said[0].upper()}{said[1:]}." if said else "",
+        "warnings": list(_not_reproducible(found)),
+        "answer": found.facts.get("single_trace", {}).get("answer", ""),
+        "rows": list(_rows(trace)),
         "lines": describe(trace.case),
-        "said": remarks(_limits(trace, falls)),
-        "alpha": cylinder.alpha,
-        "peak": trace.peak_tilt,
-        "falls": falls,
-        "side_down": float(trace.time[-1]),
-        "end": float(trace.time[-1]),
-        "length": trace.case.length,
-        "plane": trace.run.settings.get("plane", math.nan),
-        "restitution": trace.run.settings.get("restitution", ""),
-        "uplift": trace.uplift_time,
-        "towards": math.remainder(trace.uplift_direction, math.tau),
-        "closest": float(trace.passes["minimum_tilt"].min()) / cylinder.alpha,
-        "held": held,
-        "friction": max(at_rest, held.largest_friction_needed) if held else math.nan,
-        "lost": min((fact.time for fact in held.breaches if fact.code == "tension"), default=math.nan)
-        if held
-        else math.nan,
-        "moment": held.largest_restraining_moment / cylinder.base_radius if held else math.nan,
-        "tension": trace.peak_tendon_force,
-        "engine": engine,
-        "moves": engine or not trace.run.support.guided,  # out of its place
-        "displacement": trace.residual_displacement / cylinder.base_radius,
-        "first_touch": trace.first("wall_contact"),
-        "part": part,
-        "peak_later": falls > part if math.isfinite(falls) else trace.peak_time > part,
-        "perturbation": single.get("perturbation", math.nan),
-        "answer": single.get("answer", ""),
         "about": found.manifest,
     }
     return Page(name="run", template="runs/run", values=values, pictures=pictures(trace))
 
 
-def _limits(trace: Trace, falls: float) -> list[Diagnostic]:
+def _limits(trace: Trace) -> list[Diagnostic]:
     """Return the diagnostics of a run up to its fall, in which contact is lost and the rim slips."""
-    held = trace.assumptions_until(falls)
+    held = trace.assumptions_until(fall_of(trace))
     return [*trace.facts, *(held.breaches if held else ())]
+
+
+def _friction_at_rest(trace: Trace) -> float:
+    """Friction demand of a base that stays closed, as a reduced model knows it; 0 of what moves."""
+    return trace.case.friction_at_rest if trace.run.is_model and not trace.peak_tilt else 0.0
+
+
+def _statements(trace: Trace) -> Iterator[str]:
+    """Yield what became of the cylinder, and whether that is more than its method knows."""
+    yield _outcome(trace)
+    if (at_rest := _friction_at_rest(trace)) > trace.case.friction:
+        yield (
+            f"It slides: the friction demand at rest is {number(at_rest)}, and {number(trace.case.friction)} "
+            "is given. The model knows no sliding."
+        )
+
+
+def _outcome(trace: Trace) -> str:
+    falls, peak, alpha = fall_of(trace), trace.peak_tilt, trace.case.cylinder.alpha
+    if math.isfinite(falls):
+        uplift = "" if trace.case.initial else f" it uplifts at {number(trace.uplift_time, '.4g')} s,"
+        passes = f"its tilt passes α = {math.degrees(alpha):.4f} deg for good at {number(falls, '.4g')} s"
+        return (
+            f"The cylinder overturns:{uplift} {passes if falls else 'it starts beyond α'}, and its side is "
+            f"down at {number(float(trace.time[-1]), '.4g')} s."
+        )
+    if math.isfinite(peak):
+        tilt = f"{peak / alpha:.4f} α = {math.degrees(peak):.4f} deg"
+        return f"Peak tilt {tilt}; the cylinder stands{'' if peak else ', and has not uplifted'}."
+    if trace.outcome == "undecided":
+        return (
+            "Undecided: it stays close to its balance, and rounding decides whether it overturns. The peak "
+            "tilt is unknown."
+        )
+    return "The run failed: its peak tilt is unknown."
+
+
+def _not_reproducible(found: SingleRun) -> Iterator[str]:
+    """Yield from when on a single trace says little, on two lines of the document."""
+    trace, single = found.trace, found.facts.get("single_trace", {})
+    part, falls = single.get("copies_part", math.inf), fall_of(trace)  # of earlier versions nothing is known
+    if not math.isfinite(part):
+        return
+    before = ""
+    if math.isfinite(falls):
+        before = ", before it falls," if falls > part else ""
+    elif trace.peak_time > part:
+        before = ", before its largest tilt,"
+    model = "" if trace.run.is_model else "in the reduced model "
+    yield (
+        f"From {number(part, '.4g')} s on{before} a single trace is not reproducible: {model}perturbing the "
+        f"input\nby {number(single['perturbation'], 'percent')} spreads the tilt over more than half of its "
+        "peak."
+    )
+
+
+def _rows(trace: Trace) -> Iterator[Row]:
+    """Yield the numbers of a run, without those that do not belong to it."""
+    case, settings, engine = trace.case, trace.run.settings, not trace.run.is_model
+    if math.isfinite(plane := settings.get("plane", math.nan)):
+        yield _quantity("plane", f"{math.degrees(plane):.2f} deg")
+    if restitution := settings.get("restitution", ""):
+        yield _quantity("restitution", str(restitution))
+    yield _quantity("end", _end(trace))
+    if not case.initial:
+        towards = math.degrees(math.remainder(trace.uplift_direction, math.tau))
+        uplifts = math.isfinite(trace.uplift_time)
+        yield _quantity(
+            "uplift", f"{trace.uplift_time:.4f} s towards {towards:.2f} deg" if uplifts else "none"
+        )
+    yield _quantity("near-upright passes", str(len(trace.passes)))
+    closest = float(trace.passes["minimum_tilt"].min()) / case.cylinder.alpha
+    if math.isfinite(closest):
+        yield _quantity("closest pass", f"{number(closest)} α")
+    yield from _demands(trace)
+    if math.isfinite(trace.peak_tendon_force):
+        yield _quantity("tendon force", f"largest {number(trace.peak_tendon_force)} weights of a column")
+    if engine or not trace.run.support.guided:  # it may leave its place
+        displacement = trace.residual_displacement / case.cylinder.base_radius
+        yield _quantity("residual displacement", f"{number(displacement)} b")
+        yield _quantity("residual twist", f"{number(math.degrees(trace.residual_twist))} deg")
+    if math.isfinite(first := trace.first("wall_contact")):
+        whole = number(trace.wall_contact[-1])
+        yield _quantity("wall contact", f"{whole} s in all, first at {number(first, '.4g')} s")
+    if engine:
+        yield _quantity("time step", f"{number(trace.time_step, 'g')} s")
+    yield _quantity("computing time", f"{number(trace.wall_time)} s")
+
+
+def _quantity(name: str, value: str) -> Row:
+    return {"name": name, "value": value}
+
+
+def _end(trace: Trace) -> str:
+    end, length = float(trace.time[-1]), trace.case.length
+    words = f"{number(end, '.4g')} s"
+    if end > length:
+        words += f", over still ground from {number(length, '.4g')} s on"
+    if trace.outcome == "stands" and not trace.rests:
+        words += ", moving"
+    if trace.followed_until > end:
+        words += f", followed over still ground to {number(trace.followed_until, '.4g')} s"
+    return words
+
+
+def _demands(trace: Trace) -> Iterator[Row]:
+    """Yield what a model asks of friction and recess, and up to when: a fall asks nothing."""
+    falls = fall_of(trace)
+    held = trace.assumptions_until(falls)
+    if held is None:
+        return
+    covered = ", until it falls" if math.isfinite(falls) else ""
+    if not covered and trace.followed_until > float(trace.time[-1]):
+        # the swing that is followed past the end has no samples
+        covered = ", up to the end of the run"
+    friction = max(_friction_at_rest(trace), held.largest_friction_needed)
+    demand = f"{friction:.3f}"
+    if not math.isfinite(friction):
+        lost = min((fact.time for fact in held.breaches if fact.code == "tension"), default=math.nan)
+        demand = f"none suffices, contact is lost at {number(lost, '.4g')} s"
+    yield _quantity("friction demand", f"{demand}{covered}")
+    moment = held.largest_restraining_moment / trace.case.cylinder.base_radius
+    if moment > 0.0:
+        yield _quantity("restraining moment", f"κ = {number(moment)} weights × b{covered}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pandas as pd
 
 from rockwobble.compare.studies.tradeoff.study import (
@@ -27,8 +29,8 @@ def page_of(found: Tradeoff) -> Page:
     price = rest_tilt_price(points)
     tightest = price.loc[price.groupby(["problem", "line"], sort=False)["value"].idxmin()]
     values: dict[str, object] = {
-        "factors": engine_factors(points),
-        "scipy": (scipy.min(), scipy.max()),
+        "answer": _answer(*engine_factors(points)),
+        "scipy": _of_scipy(scipy.min(), scipy.max()),
         "ways": [[family, family, "words"] for family in points["family"].unique()],
         "costs": _rows(_ways(cheapest)),
         "plateaus": _rows(plateaus(points)),
@@ -38,12 +40,40 @@ def page_of(found: Tradeoff) -> Page:
         "chance": _within_chance(found),
         "failed": _rows(points[points["error"].isna()]),
         "rounds": ROUNDS,
-        "load": found.facts["load"],
+        "load": _of_load(*found.facts["load"]),
         "about": found.manifest,
     }
     drawn = pictures(found)
     values["drawn"] = [picture.name for picture in drawn]
     return Page(name="tradeoff", template="tradeoff", values=values, pictures=drawn)
+
+
+def _answer(least: float, largest: float) -> str:
+    """What an engine costs, on two lines of the document; NaN where none is as exact as was asked."""
+    if not least > 0.0:
+        return "No engine reaches any of the target errors."
+    return (
+        f"At an error that both reach in a recess, an engine takes {number(least, ',.0f')} to "
+        f"{number(largest, ',.0f')} times\nthe computing time of the recess model at its default tolerance, "
+        "by problem, error and engine."
+    )
+
+
+def _of_scipy(least: float, largest: float) -> str:
+    """What the cheapest solver of scipy costs; empty where none is as exact as was asked."""
+    if not least > 0.0:
+        return ""
+    return (
+        f"The cheapest of scipy's solvers on the same equations takes {number(least, ',.0f')} to "
+        f"{number(largest, ',.0f')} times."
+    )
+
+
+def _of_load(before: float, after: float) -> str:
+    """How busy the machine was; empty where it does not say."""
+    if not math.isfinite(before):
+        return ""
+    return f"The load of the machine was {number(before, '.1f')} before and {number(after, '.1f')} after."
 
 
 def _rows(table: pd.DataFrame) -> list[dict[str, object]]:

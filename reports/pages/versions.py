@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -38,12 +39,31 @@ def page_of(found: EngineVersions) -> Page:
         {**{str(name): value for name, value in row.items()}, "title": engine_facts(str(row["engine"])).title}
         for row in found.versions.to_dict("records")
     ]
-    earlier = [
-        {"title": engine_facts(name).title, **origin}
-        for name, origin in found.facts.get("earlier", {}).items()
-    ]
-    values = {"rows": rows, "about": found.manifest, "moved": _changes(found.versions), "earlier": earlier}
+    values = {
+        "rows": rows,
+        "about": found.manifest,
+        "answer": _answer(_changes(found.versions)),
+        "earlier": _earlier(found.facts.get("earlier", {})),
+    }
     return Page(name="versions", template="versions", values=values)
+
+
+def _answer(moved: Sequence[Row]) -> str:
+    """Which releases have moved the error, or that none has."""
+    if not moved:
+        return "No release has moved the error under El Centro by more than a tenth."
+    each = [f"{row['engine']} {row['since']} ({row['ratio']:.2g} times)" for row in moved]
+    count = f"{len(moved)} releases have" if len(moved) > 1 else "1 release has"
+    return f"{count} moved the error under El Centro by more than a tenth: {', '.join(each)}."
+
+
+def _earlier(origins: Mapping[str, Mapping[str, str]]) -> str:
+    """What made the rows of earlier runs; empty without such rows."""
+    each = [
+        f"{engine_facts(name).title} ({made['date']}, commit {made['commit'][:12]})"
+        for name, made in origins.items()
+    ]
+    return f"Rows of earlier runs: {', '.join(each)}." if each else ""
 
 
 def _changes(table: pd.DataFrame) -> list[Row]:

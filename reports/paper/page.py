@@ -28,7 +28,8 @@ from ..figures.picture import TIME, Axis, Layer, Line, Panel, Picture, Rule
 from ..figures.spectrum import NAMES, picture_of, series_styles
 from ..pages.page import Page
 from ..pages.spectrum import spectrum_values
-from . import earthquake, free, from_frame, overturning, to_frame
+from ..pages.table import number
+from . import Statement, earthquake, free, from_frame, overturning, to_frame
 from .overturning import lowest_on_axes
 
 KIND = "paper"
@@ -102,6 +103,11 @@ def page_of(paper: Paper) -> Page:
         values={
             **spectrum_values(spectrum, tables),
             "statements": found,
+            "judgements": {name: _judgement(each) for name, each in found.items()},
+            "linear_range": _linear_range(found["housner"].numbers),
+            "copy_agreement": _copy_agreement(found["abrupt"].numbers),
+            "at_the_end": _at_the_end(found["place"].numbers),
+            "lower_from": _lower_from(found["large_equal"].numbers),
             "cylinder": PIER,
             "release": free.RELEASE,
             "about": paper.manifest,
@@ -113,6 +119,47 @@ def page_of(paper: Paper) -> Page:
             overturning_picture(spectrum),
         ],
     )
+
+
+# of what follows, a sentence of several lines has the lines of the document
+
+
+def _judgement(found: Statement) -> str:
+    """Whether a statement of the paper is borne out, and on which axes."""
+    return f"{'On equal shaking it' if found.name.endswith('equal') else 'It'} {found.verdict}."
+
+
+def _linear_range(numbers: Mapping[str, float]) -> str:
+    """Up to which slenderness Housner's linearised period holds."""
+    if not (good := numbers["good"]):
+        return "never so close"
+    return f"within {number(numbers['tolerance'], 'percent')} up to tan α =\n{number(good)}"
+
+
+def _copy_agreement(numbers: Mapping[str, float]) -> str:
+    """From when on a perturbed copy is another response."""
+    if math.isfinite(until := numbers["agreement"]):
+        return (
+            f"differs by 1 % of α from {number(until, '.1f')} s on: passes close\nto upright amplify every "
+            "difference, and from there on this response is one of many"
+        )
+    return "stays within 1 % of α of this\nresponse to the end"
+
+
+def _at_the_end(numbers: Mapping[str, float]) -> str:
+    """Whether the cylinder is back in its place when the record ends."""
+    if numbers["rests"]:
+        return "it stands where it stood"
+    return (
+        f"it still rocks,\nundamped as it is, at {number(numbers['last_tilt'], '.3f')} α, the centre of its "
+        f"base {number(numbers['last_away'], '.1g')} b from\nits place"
+    )
+
+
+def _lower_from(numbers: Mapping[str, float]) -> str:
+    """From which size up 3D is the lowest at every size; empty where the largest is not among them."""
+    size = numbers["from"]
+    return "" if math.isnan(size) else f", and from R = {number(size)} m up at every size"
 
 
 Array = NDArray[np.float64]

@@ -37,6 +37,9 @@ def test_the_page_names_the_release_that_moved_a_figure(table: pd.DataFrame) -> 
         in text
     )
     assert "no such name" in text
+    still = table.assign(el_centro=1e-5)
+    text = page_of(EngineVersions(tables={"versions": still}, facts={})).markdown()
+    assert "**No release has moved the error under El Centro by more than a tenth.**" in text
 
 
 def test_the_page_is_drawn_again_from_its_files(table: pd.DataFrame, tmp_path: Path) -> None:

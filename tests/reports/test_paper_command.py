@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +15,7 @@ from rockwobble.compare.storage.manifest import read_results
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages import stored_page
 from rockwobble.reports.paper import earthquake, overturning
+from rockwobble.reports.paper.page import Paper, page_of
 
 pytestmark = pytest.mark.slow
 
@@ -70,6 +72,28 @@ def test_numbers_on_the_page_are_those_of_the_tables(made):
     lower = (lowest["3d"] < own)[large].sum()
     words = " ".join(page.split())
     assert f"the curve of 3D is the lowest at {lower} of {large.sum()} sizes from R = 20 m up" in words
+
+
+@pytest.mark.parametrize(
+    ("statement", "number", "value", "words"),
+    [
+        ("housner", "good", 0.0, "tan α = 3: never so close."),
+        ("housner", "good", 0.2, "up to tan α = 0.2."),
+        ("abrupt", "agreement", math.inf, "stays within 1 % of α of this response to the end."),
+        ("abrupt", "agreement", 7.04, "differs by 1 % of α from 7.0 s on: passes close to upright amplify"),
+        ("place", "rests", 1.0, "at the end of the record it stands where it stood."),
+        ("place", "rests", 0.0, "at the end of the record it still rocks, undamped as it is, at"),
+        ("large_equal", "from", 12.5, "in the median, and from R = 12.5 m up at every size; at R ="),
+        ("large_equal", "from", math.nan, "in the median; at R ="),
+    ],
+)
+def test_other_numbers_make_other_sentences(made, statement, number, value, words):
+    found = Paper.load(made)
+    table = found.statements
+    chosen = (table["statement"] == statement) & (table["number"] == number)
+    assert chosen.sum() == 1
+    tables = {**found.tables, "statements": table.assign(value=table["value"].mask(chosen, value))}
+    assert words in " ".join(page_of(replace(found, tables=tables)).markdown().split())
 
 
 def test_the_report_is_drawn_again_from_what_is_kept(made):

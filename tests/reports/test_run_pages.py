@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import re
 from pathlib import Path
@@ -103,6 +104,25 @@ def test_a_run_that_fails_or_falls_says_so():
     assert facts(page)["friction demand"].endswith(", until it falls")
     soft = rw.Run("mujoco", "recess", contact_damping_ratio=0.01)
     assert "its peak tilt is unknown" in page_of_run(RELEASE, soft).markdown()
+
+
+def test_a_run_that_its_rounding_decides_is_undecided():
+    trace = rw.simulate(RELEASE)
+    end = dataclasses.replace(trace, outcome="undecided", peak_tilt=math.nan)
+    words = page_of(single_run_of(end).made_by()).markdown()
+    assert "**Undecided: it stays close to its balance, and rounding decides whether it overturns." in words
+
+
+@pytest.mark.parametrize(
+    ("part", "before"), [(0.01, ", before its largest tilt,"), (9.0, ""), (math.inf, None)]
+)
+def test_a_single_trace_is_doubted_from_when_its_copies_spread(part, before):
+    found = single_run_of(rw.simulate(rw.Case(PIER, rw.el_centro_1940(), duration=3.0))).made_by()
+    single = {"copies_part": part, "perturbation": 0.01, "answer": "rockwobble ensemble"}
+    words = page_of(dataclasses.replace(found, facts={**found.facts, "single_trace": single})).markdown()
+    doubt = f"**From {part:g} s on{before} a single trace is not reproducible: perturbing the input\nby 1 %"
+    assert (doubt in words) == (before is not None)
+    assert ("Distribution: `rockwobble ensemble`" in words) == (before is not None)
 
 
 def test_a_sweep_counts_each_part(swept):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -85,6 +86,16 @@ def test_other_stored_numbers_have_other_conclusions(found: Tradeoff, tmp_path: 
     manifest = Tradeoff.load(tmp_path).manifest
     assert manifest is not None
     assert manifest.command == "rockwobble tradeoff"
+
+
+def test_nothing_is_said_of_what_reaches_no_error(found: Tradeoff) -> None:
+    exact = found.points["family"] == "reduced"
+    points = found.points.assign(error=found.points["error"].where(exact, 1.0))
+    none = replace(found, tables={**found.tables, "points": points}, facts={"load": [math.nan, math.nan]})
+    words = page_of(none.made_by()).markdown()
+    assert "**No engine reaches any of the target errors.**" in words
+    assert "scipy's solvers" not in words
+    assert "load of the machine" not in words
 
 
 def test_variants_stand_beside_what_they_vary_on_shared_axes(found: Tradeoff) -> None:
