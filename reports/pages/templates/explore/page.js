@@ -7,28 +7,13 @@
   const peaks = motions.map(({ x, y }) => x.reduce((most, value, i) => Math.max(most, Math.hypot(value, y[i])), 0) / GRAVITY);
   const BLUE = "#0072B2", RED = "#B00020", ORANGE = "#D55E00", GREY = "#8a8a8a", AGREEMENT = 0.01;  // of alpha
 
-  // -- the problem: what each slider states, with unit, bounds and place
+  // -- the problem: what each slider states, between the bounds of its number
 
-  const FIELDS = {
-    height: ["column", "height [m]", 0.1, 40, "log"], diameter: ["column", "diameter [m]", 0.02, 12, "log"],
-    intensity: ["shaking", "intensity [× record]", 0.02, given.most, "log"],
-    tilt: ["release", "release at a tilt of [deg]", 0.1, 60, "log"], rate: ["release", "rolling rate at release [rad/s]", -2, 2],
-    lean: ["release", "direction of the lean, from east [deg]", -180, 180], plane: ["plane", "azimuth of the plane, from east [deg]", -90, 90],
-    slab: ["more", "slab over column mass [-]", 0, 10], loss: ["more", "rolling resistance [mm]", 0, 200],
-    prestress: ["more", "tendon prestress [weights of a column]", 0, 5], stiffness: ["more", "tendon stiffness [weights per base radius]", 0, 50],
-  };
-  const standard = given.state, state = { ...standard };
-  for (const [name, field] of Object.entries(FIELDS)) {  // whatever was given has its place on the slider
-    [field[2], field[3]] = [Math.min(field[2], standard[name]), Math.max(field[3], standard[name])];
-  }
-  for (const [name, [place, title, low, high, kind]] of Object.entries(FIELDS)) {
-    const log = kind === "log", to = (value) => (log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low)) * 1000;
+  const standard = given.state, state = { ...standard }, fields = {};
+  for (const field of root.querySelectorAll(".field")) {
+    const name = field.dataset.field, [number, slider] = field.querySelectorAll("input"), [low, high] = [Number(number.min), Number(number.max)];
+    const log = "log" in slider.dataset, to = (value) => (log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low)) * 1000;
     const from = (share) => Number((log ? low * (high / low) ** (share / 1000) : low + (high - low) * share / 1000).toPrecision(4));
-    const field = find(place).appendChild(Object.assign(document.createElement("div"), { className: "field" }));
-    field.dataset.field = name;
-    field.innerHTML = `<label for="of-${name}">${title}</label><input type="number" id="of-${name}" min="${low}" max="${high}" step="any">`
-      + `<input type="range" min="0" max="1000" step="1" aria-label="${title}">`;
-    const [number, slider] = field.querySelectorAll("input");
     const set = (value) => { state[name] = value; changed(); };
     slider.addEventListener("input", () => { const value = from(Number(slider.value)); number.value = value; slider.ariaValueText = String(value); set(value); });
     number.addEventListener("input", () => {
@@ -36,10 +21,9 @@
       number.ariaInvalid = fits ? "false" : "true";
       if (fits) { slider.value = to(value); set(value); }
     });
-    FIELDS[name].show = () => { const value = state[name]; number.value = Number(value.toPrecision(5)); number.ariaInvalid = "false"; slider.value = to(value); slider.ariaValueText = number.value; };
+    const show = () => { const value = state[name]; number.value = Number(value.toPrecision(5)); number.ariaInvalid = "false"; slider.value = to(value); slider.ariaValueText = number.value; };
+    fields[name] = { field, low, high, show };
   }
-  records.forEach(({ name }, i) => find("record").add(new Option(name, i)));
-  find("record").add(new Option("none: release from a tilt", -1));
   for (const name of ["record", "support"]) {
     find(name).addEventListener("change", () => { state[name] = name === "record" ? Number(find(name).value) : find(name).value; changed(); });
   }
@@ -62,8 +46,8 @@
   const readAddress = () => {
     Object.assign(state, standard);
     for (const [name, text] of new URLSearchParams(location.hash.slice(1))) {
-      const value = Number(text), field = FIELDS[name];
-      if (field && text !== "" && value >= field[2] && value <= field[3]) state[name] = value;
+      const value = Number(text), field = fields[name];
+      if (field && text !== "" && value >= field.low && value <= field.high) state[name] = value;
       else if (name === "record" && (value === -1 || records[value])) state.record = value;
       else if (name === "support" && [...find("support").options].some((option) => option.value === text)) state.support = text;
     }
@@ -75,44 +59,58 @@
   };
   addEventListener("hashchange", () => { readAddress(); showFields(); changed(); });
 
-  // -- runs: the worker has one request at a time, and the newest one next
+  // -- runs: a worker has one request at a time, and the newest one next; what is compared has a worker of its own
 
   const source = document.getElementById("model").textContent, address = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
-  const [worker, mapper] = [0, 1].map(() => { const made = new Worker(address); made.postMessage({ motions }); return made; });
-  let busy = false, waiting = null, requested = 0, shown = null, pinned = null;
+  const workerOf = (answer) => {
+    const worker = new Worker(address);
+    worker.onmessage = answer;
+    worker.postMessage({ motions });
+    return worker;
+  };
+  const solverOf = (done) => {
+    let solving = null, waiting = null;
+    const worker = workerOf(({ data }) => {
+      const at = solving;
+      solving = null;
+      if (waiting) ask(waiting);
+      done(at, data.run);
+    });
+    const ask = (at) => {
+      waiting = solving ? at : null;
+      if (solving) return;
+      solving = at;
+      worker.postMessage({ problem: problemOf(at) });
+    };
+    return ask;
+  };
+  let bodies = [], pinned = null, frame = 0;
   const besideOf = (at) => ({
     pinned, stronger: { ...at, intensity: at.intensity * (1 + 1e-6), tilt: at.record < 0 ? at.tilt * (1 + 1e-6) : at.tilt },
     planar: { ...at, support: "planar" }, other: { ...at, support: at.support === "flat" ? "recess" : "flat" },
   })[find("beside").value];
-  const ask = (request) => {
-    if (busy) { waiting = request; return; }
-    busy = true;
-    worker.postMessage({ id: request.id, problems: [request.at, request.beside].filter(Boolean).map(problemOf) });
-    shown = request;
-  };
-  worker.onmessage = ({ data }) => {
-    busy = false;
-    const { at, beside, begin } = shown;
-    show(at, data.runs[0], beside, data.runs[1]);
-    root.dataset.took = Math.round(performance.now() - begin);
-    root.dataset.solved = data.took.toFixed(1);
-    if (waiting) { const next = waiting; waiting = null; ask(next); }
-  };
-  let drawn = false;
+  // both are drawn once where they come before the same frame
+  const showSoon = () => { frame ||= requestAnimationFrame(() => { frame = 0; show(); }); };
+  const solve = solverOf((at, run) => { bodies[0] = bodyOf(at, run, run.outcome === "overturned" ? RED : BLUE, 1); showSoon(); });
+  const solveBeside = solverOf((at, run) => {
+    if (find("beside").value) bodies[1] = bodyOf(at, run, GREY, 0.4);
+    if (bodies[0]) showSoon();
+  });
   const changed = () => {
-    const at = { ...state }, released = at.record < 0;
+    const at = { ...state }, beside = besideOf(at), released = at.record < 0;
     find("follows").textContent = `R = ${number(Math.hypot(at.height, at.diameter) / 2)} m, tan α = ${number(at.diameter / at.height)}, α = ${number(alphaOf(at) * DEG)}°`;
     const hide = { intensity: released, tilt: !released, rate: !released || at.support === "planar", lean: !released || at.support === "planar", plane: at.support !== "planar" };
-    for (const [name, hidden] of Object.entries(hide)) root.querySelector(`[data-field="${name}"]`).hidden = hidden;
+    for (const [name, hidden] of Object.entries(hide)) fields[name].field.hidden = hidden;
     const refused = (at.prestress || at.stiffness) && at.support === "flat";
     find("refused").textContent = refused ? "The tendon is left out: the model has none on flat ground." : "";
-    ask({ id: ++requested, at, beside: besideOf(at), begin: performance.now() });
+    solve(at);
+    if (beside) solveBeside(beside); else bodies.length = Math.min(bodies.length, 1);
     writeAddress();
     askMap(at);
-    if (!find("text").hidden) find("text").hidden = true;
+    find("text").hidden = true;
   };
   const showFields = () => {
-    for (const field of Object.values(FIELDS)) field.show();
+    for (const field of Object.values(fields)) field.show();
     find("record").value = state.record; find("support").value = state.support;
   };
   const number = (value, digits = 3) => (value === 0 ? "0" : Math.abs(value) >= 1000 ? value.toFixed(0) : String(Number(value.toPrecision(digits)))).replace("-", "−");
@@ -120,21 +118,12 @@
   // -- what a run becomes: poses for the view, lines for the graphs
 
   const bodyOf = (at, run, colour, opacity) => {
-    const b = at.diameter / 2, n = run.time.length, body = { ...run, at, colour, opacity, contact_x: new Float64Array(n), contact_y: new Float64Array(n), alpha: alphaOf(at) };
-    for (let i = 0; i < n; i++) {
-      const angle = Number.isNaN(run.angle[i]) ? 0 : run.angle[i];
-      body.contact_x[i] = run.x[i] + b * Math.cos(angle);
-      body.contact_y[i] = run.y[i] + b * Math.sin(angle);
-    }
+    const b = at.diameter / 2, body = { ...run, at, colour, opacity, alpha: alphaOf(at) };
+    let held = run.angle.find((angle) => !Number.isNaN(angle)) ?? 0;  // the view keeps it while the column stands
+    body.rolling_angle = run.angle.map((angle) => { held = Number.isNaN(angle) ? held : angle; return held; });
+    body.contact_x = run.x.map((x, i) => x + b * Math.cos(body.rolling_angle[i]));
+    body.contact_y = run.y.map((y, i) => y + b * Math.sin(body.rolling_angle[i]));
     return body;
-  };
-  const poseAt = (body, time) => {
-    const { time: t } = body, last = t.length - 1, low = Math.max(0, Math.min(last, Math.floor(time / 0.01 + 1e-6))), next = Math.min(low + 1, last);
-    const share = next > low ? Math.min(Math.max((time - t[low]) / (t[next] - t[low]), 0), 1) : 0;
-    const [from, to] = [low, next].map((i) => (Number.isNaN(body.angle[i]) ? null : body.angle[i]));
-    const angle = from === null ? to ?? 0 : to === null ? from : from + share * (to - from), b = body.at.diameter / 2;
-    const mix = (values) => values[low] + share * (values[next] - values[low]), x = mix(body.x), y = mix(body.y);
-    return { sample: low, tilt: mix(body.tilt), rolling_angle: angle, twist: mix(body.twist), contact_x: x + b * Math.cos(angle), contact_y: y + b * Math.sin(angle) };
   };
   // extremes of each stretch, so that a graph has few points and no peak less
   const thinned = (x, y, most = 1200) => {
@@ -150,31 +139,26 @@
   const line = ([x, y], colour, name, more = {}) => ({ kind: "line", name, x, y, style: { colour, dash: "solid", symbol: "" }, width: 1.4, size: 5, opacity: 1, open: [0], steps: false, clip: true, notes: [], ...more });
   const rule = (axis, at, text, colour) => ({ kind: "rule", name: text, axis, at, until: null, text, colour, dash: "dash", side: "right" });
 
-  let bodies = [], now = 0, length = 1, playing = false, before = 0, laterTimer = 0;
-  // a graph over time, with the time of the view in it
+  const clock = rockwobbleClock(find, picture);
+  let drawn = false, laterTimer = 0;
+  // a graph with a mark: in the map where the sliders stand, over time the moment that is seen
   class Graph extends Chart {
     draw() {
       super.draw();
       if (!this.at || this.panel.equal) return;
-      if (this.place.id === "map") {  // where the sliders stand
-        this.here = element(this.sheet, "circle", { r: 6, fill: "#fff", stroke: "#000", "stroke-width": 2.5 });
-        this.follow();
-        return;
-      }
-      this.cursor = element(this.sheet, "line", { y1: this.at.frame.top, y2: this.at.frame.bottom, stroke: "#222", "stroke-width": 1.2 });
+      const { top, bottom } = this.at.frame;
+      this.mark = this.place.id === "map" ? element(this.sheet, "circle", { r: 6, fill: "#fff", stroke: "#000", "stroke-width": 2.5 })
+        : element(this.sheet, "line", { y1: top, y2: bottom, stroke: "#222", "stroke-width": 1.2 });
       this.follow();
     }
 
     follow() {
-      if (this.here) {
-        const [x, y] = [this.at.x(Math.hypot(state.height, state.diameter) / 2), this.at.y(state.record < 0 ? NaN : state.intensity * peaks[state.record])];
-        this.here.setAttribute("visibility", Number.isFinite(x) && Number.isFinite(y) ? "visible" : "hidden");
-        if (Number.isFinite(y)) { this.here.setAttribute("cx", x); this.here.setAttribute("cy", y); }
-      }
-      if (!this.cursor) return;
-      const place = this.at.x(now), inside = place >= this.at.frame.left && place <= this.at.frame.right;
-      this.cursor.setAttribute("visibility", inside ? "visible" : "hidden");
-      if (inside) for (const end of ["x1", "x2"]) this.cursor.setAttribute(end, place);
+      if (!this.mark) return;
+      const { left, right, top, bottom } = this.at.frame;
+      const [x, y] = this.place.id === "map" ? [this.at.x(Math.hypot(state.height, state.diameter) / 2), this.at.y(state.intensity * peaks[state.record])] : [this.at.x(clock.now), 0];
+      const inside = x >= left && x <= right && (y === 0 || (y >= top && y <= bottom));
+      this.mark.setAttribute("visibility", inside ? "visible" : "hidden");
+      if (inside) this.mark.setAttribute("transform", `translate(${x} ${y})`);
     }
   }
   for (const place of root.querySelectorAll(".unfilled")) place.className = "chart";  // after charts.js drew those that are filled
@@ -184,23 +168,22 @@
   for (const chart of [graphs.tilt, graphs.ground]) {
     chart.sheet.addEventListener("click", (event) => {
       const u = event.clientX - chart.sheet.getBoundingClientRect().left;
-      if (u > chart.at.frame.left && u < chart.at.frame.right) seek(chart.at.x.back(u));
+      if (u > chart.at.frame.left && u < chart.at.frame.right) clock.seek(chart.at.x.back(u));
     });
   }
 
-  function show(at, run, besideAt, besideRun) {
-    const first = !drawn, fell = run.outcome === "overturned", main = bodyOf(at, run, fell ? RED : BLUE, 1), motion = motions[at.record];
-    bodies = [main, ...(besideRun ? [bodyOf(besideAt, besideRun, GREY, 0.4)] : [])];
+  function show() {
+    const [main, beside] = bodies, { at } = main, first = !drawn, motion = motions[at.record];
     drawn = true;
-    length = Math.max(...bodies.map((body) => body.time[body.time.length - 1]), 0.01);
-    find("time").max = length;
+    clock.length = Math.max(...bodies.map((body) => body.time[body.time.length - 1]), 0.01);
+    clock.start = Math.max(0, (main.upliftTime || 0) - 0.2);
     outcome(main); results(main, motion); parting();
 
-    const ends = [0, length];
+    const ends = [0, clock.length];
     const tilts = (body, colour, name) => line(thinned(body.time, body.tilt.map((tilt) => tilt * DEG)), colour, name);
     const top = Math.max(...bodies.map((body) => Math.min(body.peak, 1.6 * body.alpha))), alpha = main.alpha * DEG, near = top > 0.25 * main.alpha;
     graphs.tilt.panel.y.high = Math.max(1.08 * top * DEG, near ? 1.15 * alpha : 0, 1e-9);
-    redraw(graphs.tilt, [...(bodies[1] ? [tilts(bodies[1], GREY, "beside it")] : []), tilts(main, main.colour, "tilt"), ...(near ? [rule("y", alpha, `α = ${number(alpha)}°`, RED)] : [])], ends);
+    redraw(graphs.tilt, [...(beside ? [tilts(beside, GREY, "beside it")] : []), tilts(main, main.colour, "tilt"), ...(near ? [rule("y", alpha, `α = ${number(alpha)}°`, RED)] : [])], ends);
     clearTimeout(laterTimer);
     laterTimer = setTimeout(() => showFurther(main, motion, ends), first ? 0 : 80);  // once the sliders rest
 
@@ -208,10 +191,8 @@
     const factors = [1, 3, 10, 30].filter((factor) => factor === 1 || factor * most < 60 / DEG), best = factors.filter((factor) => factor === 1 || factor * most < 30 / DEG).at(-1);
     find("magnify").replaceChildren(...factors.map((factor) => new Option(`${factor} ×`, factor)));
     find("magnify").value = factors.includes(Number(chosen)) ? chosen : best;
-    if (first) {
-      seek(Number.isNaN(run.upliftTime) ? 0 : Math.max(0, run.upliftTime - 0.2));
-      if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play();
-    } else seek(Math.min(now, length));
+    if (first || !clock.playing) clock.seek(first ? clock.start : clock.now);
+    if (first && !matchMedia("(prefers-reduced-motion: reduce)").matches) clock.play();
   }
   // ground and paths
   function showFurther(main, motion, ends) {
@@ -220,7 +201,7 @@
       graphs.ground.key = key;
       const axis = motion && Float64Array.from(motion.x, (_, i) => i * motion.dt);
       const shakes = motion ? [["x", "east", BLUE], ["y", "north", ORANGE], ["z", "up", "#009E73"]].filter(([key]) => motion[key]) : [];
-      redraw(graphs.ground, shakes.length ? shakes.map(([key, name, colour]) => line(thinned(axis, motion[key].map((value) => value * scale)), colour, name, { width: 1 })) : [line([[0, length], [0, 0]], GREY, "still")], ends);
+      redraw(graphs.ground, shakes.length ? shakes.map(([key, name, colour]) => line(thinned(axis, motion[key].map((value) => value * scale)), colour, name, { width: 1 })) : [line([ends, [0, 0]], GREY, "still")], ends);
     }
     // a line is broken where the column stands, and where it jumps: in a pass
     const path = (body, x, y, jump, colour, name) => {
@@ -244,7 +225,7 @@
     redraw(graphs.path, [line([circle.map((angle) => b * Math.cos(angle)), circle.map((angle) => b * Math.sin(angle))], "#bbb", "base at rest", { width: 1 }), ...paths]);
   }
   const outcome = ({ outcome: end, endTime, upliftTime, peak, alpha }) => {
-    const words = { overturned: `Overturns, lies on the ground at ${number(endTime, 4)} s`, undecided: `Not decided: followed for ${number(Number.isNaN(endTime) ? length : endTime, 4)} s only` }[end]
+    const words = { overturned: `Overturns, lies on the ground at ${number(endTime, 4)} s`, undecided: `Not decided: followed for ${number(endTime || clock.length, 4)} s only` }[end]
       || (Number.isNaN(upliftTime) ? "Stands, and does not uplift" : peak > alpha ? "Stands, after a tilt beyond α" : "Stands");
     if (find("outcome").textContent !== words) find("outcome").textContent = words;
     find("outcome").className = end;
@@ -267,16 +248,13 @@
     ];
     const { prestress, stiffness } = problemOf(at);
     if (prestress || stiffness) rows.push(["tendon force", `${number(prestress + stiffness * o.gaps * 2 * Math.sin(Math.min(peak, Math.PI / 2) / 2))} weights`]);
-    find("results").replaceChildren(...rows.map(([name, value]) => {
-      const row = document.createElement("div");
-      for (const [tag, text] of [["dt", name], ["dd", value]]) row.appendChild(Object.assign(document.createElement(tag), { textContent: text }));
-      return row;
-    }));
+    find("results").innerHTML = rows.map(([name, value]) => `<div><dt>${name}</dt><dd>${value}</dd></div>`).join("");
   };
   // first time at which both tilts differ by 1 % of alpha
   const parting = () => {
     const [main, beside] = bodies, place = find("parts");
     if (!beside) { place.textContent = ""; return; }
+    if (JSON.stringify(beside.at) !== JSON.stringify(besideOf(main.at))) return;  // that of these sliders is on its way
     const n = Math.min(main.tilt.length, beside.tilt.length);
     let i = 0;
     while (i < n && Math.abs(main.tilt[i] - beside.tilt[i]) <= AGREEMENT * main.alpha) i++;
@@ -287,33 +265,14 @@
   // -- the view and its clock
 
   const draw = rockwobbleStage(find("plot"), () => {
-    const at = bodies.length ? bodies[0].at : state, fell = bodies.some((body) => body.outcome === "overturned");
+    const at = bodies[0] ? bodies[0].at : state, fell = bodies.some((body) => body.outcome === "overturned");
     return { b: at.diameter / 2, height: at.height, slab: at.slab > 0, tendon: at.support !== "flat" && at.prestress + at.stiffness > 0, reach: fell ? 0.75 * at.height + at.diameter : 0 };
   }, () => picture());
   function picture() {
-    if (!bodies.length) return;
-    draw(bodies.map((body) => { const at = poseAt(body, now); return { body, at, first: at.sample - 400, last: at.sample }; }), Number(find("magnify").value));
-    find("clock").textContent = `${now.toFixed(2)} s of ${length.toFixed(2)} s`;
-    find("time").value = now;
+    if (!bodies[0]) return;
+    draw(bodies.map((body) => { const at = rockwobblePose(body, clock.now); return { body, at, first: at.sample - 400, last: at.sample }; }), Number(find("magnify").value));
     graphs.tilt.follow(); graphs.ground.follow();
   }
-  function seek(time) { now = Math.min(Math.max(time, 0), length); picture(); }
-  const pause = () => { playing = false; find("play").textContent = "Play"; };
-  function play() {
-    if (now >= length - 1e-9) now = Math.max(0, (bodies[0].upliftTime || 0) - 0.2);
-    playing = true; find("play").textContent = "Pause";
-    requestAnimationFrame((stamp) => { before = stamp; tick(stamp); });
-  }
-  function tick(stamp) {
-    if (!playing) return;
-    now += Math.min((stamp - before) / 1000, 0.25) * Number(find("speed").value);
-    before = stamp;
-    if (now >= length) { now = length; pause(); }
-    picture();
-    requestAnimationFrame(tick);
-  }
-  find("play").addEventListener("click", () => (playing ? pause() : play()));
-  find("time").addEventListener("input", () => { pause(); seek(Number(find("time").value)); });
   find("magnify").addEventListener("change", () => { find("magnify").dataset.chosen = find("magnify").value; picture(); });
   find("beside").addEventListener("change", changed);
   find("pin").addEventListener("click", () => {
@@ -328,7 +287,7 @@
 
   const CELLS = 40, SIZES = [1 / 4, 4], palette = graphs.map.panel.legend.map((entry) => entry.colour);
   const classOf = (peak) => (peak === Infinity ? 6 : peak > 1 ? 5 : peak === 0 ? 0 : 1 + Math.min(3, Math.floor(peak * 4)));
-  let map = null, mapTimer = 0, mapKey = "";
+  let map = null, mapTimer = 0, mapKey = "", asked = 0;
   const spread = (i) => (i + 0.5) / CELLS, geometric = (low, high, share) => low * (high / low) ** share;
   const cellOf = (column, row) => ({ ...map.at, height: map.at.height * geometric(...SIZES, spread(column)), diameter: map.at.diameter * geometric(...SIZES, spread(column)), intensity: geometric(...map.intensities, spread(row)) });
   function askMap(at) {
@@ -344,7 +303,7 @@
     mapTimer = setTimeout(() => {  // once the sliders rest
       // around the uplift of the column: from half of it on
       const uplift = diameter / height / peaks[at.record];
-      map = { at, others: JSON.stringify(others), intensities: [0.5 * uplift, 16 * uplift], values: new Float64Array(CELLS * CELLS).fill(NaN), id: ++requested };
+      map = { at, others: JSON.stringify(others), intensities: [0.5 * uplift, 16 * uplift], values: new Float64Array(CELLS * CELLS).fill(NaN), id: ++asked };
       row(8, 0);
     }, 500);
   }
@@ -352,7 +311,7 @@
     const size = level;
     mapper.postMessage({ id: map.id, level, place, row: Array.from({ length: CELLS / size }, (_, i) => problemOf(cellOf(i * size + (size - 1) / 2, place * size + (size - 1) / 2))) });
   };
-  mapper.onmessage = ({ data }) => {
+  const mapper = workerOf(({ data }) => {
     if (!map || data.id !== map.id) return;
     const { level, place, peaks: found } = data;
     found.forEach((peak, i) => { for (let r = 0; r < level; r++) for (let c = 0; c < level; c++) map.values[(place * level + r) * CELLS + i * level + c] = peak; });
@@ -360,8 +319,7 @@
     if (last || place % (8 / level) === 0) drawMap();
     if (!last) row(level, place + 1);
     else if (level > 1) row({ 8: 4, 4: 2, 2: 1 }[level], 0);
-    root.dataset.map = last && level === 1 ? "whole" : "partial";
-  };
+  });
   function drawMap() {
     graphs.map.place.classList.remove("stale");
     const R = (share) => geometric(...SIZES, share) * Math.hypot(map.at.height, map.at.diameter) / 2, edges = Array.from({ length: CELLS + 1 }, (_, i) => i / CELLS);
@@ -374,7 +332,7 @@
   graphs.map.sheet.addEventListener("click", (event) => {
     if (!map) return;
     const edges = graphs.map.sheet.getBoundingClientRect(), [R, pga] = [10 ** graphs.map.at.x.back(event.clientX - edges.left), 10 ** graphs.map.at.y.back(event.clientY - edges.top)];
-    const factor = R / (Math.hypot(map.at.height, map.at.diameter) / 2), bound = (name, value) => Number(Math.min(Math.max(value, FIELDS[name][2]), FIELDS[name][3]).toPrecision(6));
+    const factor = R / (Math.hypot(map.at.height, map.at.diameter) / 2), bound = (name, value) => Number(Math.min(Math.max(value, fields[name].low), fields[name].high).toPrecision(6));
     Object.assign(state, { height: bound("height", map.at.height * factor), diameter: bound("diameter", map.at.diameter * factor), intensity: bound("intensity", pga / peaks[map.at.record]) });
     showFields(); changed();
   });

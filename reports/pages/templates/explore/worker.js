@@ -1,4 +1,4 @@
-// Runs in the background: a request is answered by a run and the one beside it, or by a row of the map.
+// Runs in the background: a request is answered by a run, with the time that it took [ms], or by a row of the map.
 let motions = [];
 const motionOf = ({ record, intensity }) => (record < 0 ? null : { ...motions[record], scale: intensity });
 
@@ -13,6 +13,6 @@ onmessage = ({ data }) => {
     return;
   }
   const begin = performance.now();
-  const runs = data.problems.map((problem) => simulateMotion(problem, motionOf(problem)));
-  postMessage({ id: data.id, runs, took: performance.now() - begin }, runs.map((run) => run.time.buffer));
+  const run = simulateMotion(data.problem, motionOf(data.problem));
+  postMessage({ run, took: performance.now() - begin }, [run.time.buffer]);
 };

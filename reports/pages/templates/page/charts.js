@@ -106,7 +106,7 @@ const MARKS = {
   "cross-thin": cross(0), "x-thin": cross(Math.PI / 4),
 };
 
-// -- layers: each draws itself and adds to `near` what a pointer finds
+// -- layers: each draws itself and adds to `near` what a pointer finds, with words that are made when it does
 
 const LAYERS = {
   line(at, layer, near) {
@@ -133,7 +133,7 @@ const LAYERS = {
       if (paths.filled) element(place, "path", { ...look, d: paths.filled, class: "mark", fill: style.colour });
       if (paths.open) element(place, "path", { ...look, d: paths.open, class: "mark", fill: "white", "stroke-width": 1.2 });
     }
-    pixels.forEach((place, i) => seen[i] && near.push({ place, value: x[i], text: [
+    pixels.forEach((place, i) => seen[i] && near.push({ place, value: x[i], text: () => [
       `${said(y[i])}${at.units[1]} at ${said(x[i])}${at.units[0]}`, layer.name, layer.notes[i]] }));
   },
   band(at, layer) {
@@ -149,7 +149,7 @@ const LAYERS = {
       element(at.inside, "rect", { ...box, fill: layer.colours[i], class: "mark" });
       if (layer.hatch) element(at.inside, "rect", { ...box, fill: `url(#${at.hatch(layer.hatch)})` });
       if (layer.texts[i]) words(at.above, layer.texts[i], { x: Math.max(a, b) + 4, y: (top + bottom) / 2 + 4 });
-      near.push({ box, text: [`${said(layer.end[i], 3)}${at.units[0]}`, layer.name] });
+      near.push({ box, text: () => [`${said(layer.end[i], 3)}${at.units[0]}`, layer.name] });
     });
   },
   rule(at, layer) {
@@ -183,7 +183,7 @@ const LAYERS = {
       const column = i % columns, row = Math.floor(i / columns);
       const box = { x: u[column], y: Math.min(v[row], v[row + 1]), width: u[column + 1] - u[column], height: Math.abs(v[row + 1] - v[row]) };
       if (colour >= 0) paths.set(colour, `${paths.get(colour) || ""}M${box.x} ${box.y}h${box.width}v${box.height}h${-box.width}z`);
-      near.push({ box, text: layer.said(column, row, i) });
+      near.push({ box, text: () => layer.said(column, row, i) });
     });
     paths.forEach((d, colour) => element(at.inside, "path", { d, fill: layer.palette[colour], class: "mark", "shape-rendering": "crispEdges" }));
     layer.written.forEach((text, i) => {
@@ -426,7 +426,7 @@ class Chart {
     }
     this.tip.hidden = !best;
     if (!best) return;
-    this.tip.textContent = best.text.filter(Boolean).join("\n");
+    this.tip.textContent = best.text().filter(Boolean).join("\n");
     const [x, y] = best.place || [u, v];
     this.tip.style.left = `${Math.max(0, Math.min(x + 10, this.width - this.tip.offsetWidth))}px`;
     this.tip.style.top = `${y > this.tip.offsetHeight + 14 ? y - this.tip.offsetHeight - 10 : y + 14}px`;
