@@ -277,6 +277,10 @@ def _yield(impedance: float) -> float:
 
 _SECANT_STEPS = 30
 _STILL = 1e-9  # [m/s^2] acceleration left of the rim at the start
+# a rim that comes down is thrown back at any depth: the acceleration jumps where contact begins, and a secant
+# across the jump may end anywhere. What is so much worse than all before it is left, and what is so high [m]
+# that a tendon takes the place of the ground
+_LEAP, _HIGHEST = 2.0, 1e-5
 
 
 def set_start(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, staggered: bool) -> None:
@@ -305,11 +309,16 @@ def set_start(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, staggere
     # contact is a spring under a given load, so the secant is nearly exact
     before, depth = 1e-7, 2e-7
     value_before, value = rim_acceleration(before), rim_acceleration(depth)
+    tried = {before: abs(value_before), depth: abs(value)}
     for _ in range(_SECANT_STEPS):
         if abs(value) < _STILL or value == value_before:
             break
         before, depth = depth, depth - value * (depth - before) / (value - value_before)
         value_before, value = value, rim_acceleration(depth)
+        tried[depth] = abs(value)
+    last = tried.pop(depth)
+    if not (last <= _LEAP * max(tried.values()) and depth > -_HIGHEST):
+        rim_acceleration(min((each for each in tried if each > -_HIGHEST), key=tried.__getitem__))
     if staggered and not start.standing:
         data.qvel[:] -= 0.5 * model.opt.timestep * data.qacc
 
