@@ -42,6 +42,13 @@ window.lookFurther = (found) => {
   const { state, commandOf, pythonOf } = window.rockwobbleExplore;
   if (!commandOf(state).includes(`--scale ${state.intensity}`)) say(commandOf(state));
   if (!pythonOf(state).includes(`.scaled(${state.intensity})`)) say(pythonOf(state));
+  if (innerWidth < 500) {  // on a phone the result stays above the slider that is moved
+    root.querySelector("details").open = true;
+    const last = root.querySelector('[data-field="stiffness"] input[type="range"]');
+    last.scrollIntoView({ block: "center" });
+    const { top, bottom } = root.querySelector(".result").getBoundingClientRect();
+    if (top < -1 || bottom > last.getBoundingClientRect().top) say(`the result stands at ${top} px, over ${bottom}`);
+  }
   for (const input of root.querySelectorAll("input, select, canvas, button")) {
     if (!(input.labels && input.labels.length) && !input.ariaLabel && !input.textContent.trim()) say(`no label: ${input.outerHTML}`);
   }

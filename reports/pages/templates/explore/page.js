@@ -144,6 +144,7 @@
   // a graph with a mark: in the map where the sliders stand, over time the moment that is seen
   class Graph extends Chart {
     draw() {
+      if (this.place.id === "tilt") this.panel.height = this.place.clientWidth < 400 ? 150 : 230;  // beside the view, or below it
       super.draw();
       if (!this.at || this.panel.equal) return;
       const { top, bottom } = this.at.frame;
@@ -225,7 +226,7 @@
     redraw(graphs.path, [line([circle.map((angle) => b * Math.cos(angle)), circle.map((angle) => b * Math.sin(angle))], "#bbb", "base at rest", { width: 1 }), ...paths]);
   }
   const outcome = ({ outcome: end, endTime, upliftTime, peak, alpha }) => {
-    const words = { overturned: `Overturns, lies on the ground at ${number(endTime, 4)} s`, undecided: `Not decided: followed for ${number(endTime || clock.length, 4)} s only` }[end]
+    const words = { overturned: `Overturns: on the ground at ${number(endTime, 4)} s`, undecided: `Not decided: followed for ${number(endTime || clock.length, 4)} s only` }[end]
       || (Number.isNaN(upliftTime) ? "Stands, and does not uplift" : peak > alpha ? "Stands, after a tilt beyond α" : "Stands");
     if (find("outcome").textContent !== words) find("outcome").textContent = words;
     find("outcome").className = end;

@@ -34,10 +34,11 @@ function rockwobbleStage(plot, shape, changed) {
   // parallel projection of a camera that looks at the middle of the height
   const camera = { azimuth: -0.9, elevation: 0.28 };
   const pen = plot.getContext("2d");
-  let project, light;
+  let project, light, narrow;
   const look = () => {
-    const width = plot.clientWidth, tall = plot.clientHeight, ratio = window.devicePixelRatio || 1;
-    [plot.width, plot.height] = [width * ratio, tall * ratio];
+    narrow = plot.clientWidth < 200;  // then words are short, and have two lines below
+    const width = plot.clientWidth, tall = plot.clientHeight - (narrow ? 26 : 0), ratio = window.devicePixelRatio || 1;
+    [plot.width, plot.height] = [width * ratio, plot.clientHeight * ratio];
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     const [sa, ca, se, ce] = [Math.sin(camera.azimuth), Math.cos(camera.azimuth), Math.sin(camera.elevation), Math.cos(camera.elevation)];
     const scale = Math.min(width / (3 * edge), tall / (top * ce + 2.6 * edge * Math.abs(se) + 0.4 * edge));
@@ -63,10 +64,11 @@ function rockwobbleStage(plot, shape, changed) {
     Object.assign(pen, { fillStyle: "#444", font: "12px system-ui, sans-serif", textAlign: "center" });
     for (const [name, x, y] of [["east", 1.3, 0], ["west", -1.3, 0], ["north", 0, 1.3], ["south", 0, -1.3]]) {
       const [u, v] = project([x * edge, y * edge, 0]);
-      pen.fillText(name, u, v + 4);
+      pen.fillText(narrow ? name[0].toUpperCase() : name, u, v + 4);
     }
     pen.textAlign = "left";
-    pen.fillText(`grid: ${step} m${factor > 1 ? `, tilt drawn ${factor} ×` : ""}`, 8, plot.clientHeight - 8);
+    const scales = [`grid: ${step} m`, ...(factor > 1 ? [`tilt drawn ${factor} ×`] : [])], lines = narrow ? scales : [scales.join(", ")];
+    lines.forEach((line, i) => pen.fillText(line, 8, plot.clientHeight - 8 - 14 * (lines.length - 1 - i)));
     stroke(circle, "#888", 1.5, [6, 4]);
   };
   // a line that is broken where the cylinder stands
