@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import partial
 from types import MappingProxyType
 from typing import Any, Literal
@@ -168,6 +168,25 @@ class Case:
         return run_duration(self.motion, self.duration)
 
     @property
+    def terms(self) -> dict[str, Any]:
+        """What it adds to the equations of the paper, by field: tendon and rolling resistance where given.
+
+        Digests take all of them, models and engines refuse what they do not know: a new field is ignored
+        nowhere.
+        """
+        given = {each.name: getattr(self, each.name) for each in fields(self)}
+        added = (each for each in fields(self) if each.name not in _OF_THE_PAPER)
+        return {each.name: given[each.name] for each in added if given[each.name] != each.default}
+
+    @property
+    def anchor(self) -> str:
+        """What joins the base to its place on the ground, such as "a tendon"; empty without.
+
+        The reduced model on flat ground, where the base wanders, has none of it.
+        """
+        return "" if self.tendon is None else "a tendon"
+
+    @property
     def friction_at_rest(self) -> float:
         """Largest friction demand at the base while it stays closed [-]; inf where it carries no weight.
 
@@ -188,6 +207,11 @@ class Case:
     def is_release(self) -> bool:
         """Whether it starts tilted."""
         return self.initial is not None and self.initial.tilt > 0.0
+
+
+# every other field is a term of the equations
+_OF_THE_PAPER = ("cylinder", "motion", "initial", "duration", "gravity", "friction", "name")
+TERMS = tuple(each.name for each in fields(Case) if each.name not in _OF_THE_PAPER)
 
 
 def run_duration(motion: GroundMotion | None, duration: float | None) -> float:

@@ -41,6 +41,7 @@ _BUDGET, _BUDGET_PER_SAMPLE, _BUDGET_PER_TIME = 500_000, 50, 100_000
 # A spin (over p) whose passes are as near to the upright position as numbers can be to zero. A weaker one
 # turns by the same angle, that of vanishing spin, and is solved as this one.
 _LEAST_SPIN = 1e-100
+_TERMS = {"rolling_resistance", "tendon"}  # of a case that the models have; any other is refused
 LARGEST_REST_TILT = 0.1  # tilt of the rest rule over alpha
 
 
@@ -104,10 +105,12 @@ class Problem:
             raise ValueError(f"restitution belongs to planar motion, got {factor!r} without a plane")
         if plane is not None and initial is not None:
             _require_in_plane(initial, plane)
-        if self.case.tendon is not None and self.free_twist:
+        for term in self.case.terms.keys() - _TERMS:
+            raise ValueError(f"the reduced models know no {term}, got {self.case.terms[term]!r}")
+        if self.case.anchor and self.free_twist:
             raise ValueError(
-                f"a tendon is part of the models in the recess and in a plane, got support {self.support!r}: "
-                "there the base wanders from its anchor"
+                f"{self.case.anchor} is part of the models in the recess and in a plane, got support "
+                f"{self.support!r}: there the base wanders from its anchor"
             )
 
     def __getstate__(self) -> dict[str, Any]:

@@ -264,7 +264,8 @@ def default_runs(
     supports : sequence of str, optional
         "recess", "flat" and "ring".
     cases : sequence of Case, optional
-        What is to be run: of cases with a tendon, flat ground is left out where no support is named.
+        What is to be run: of cases with an anchor, such as a tendon, flat ground is left out where no
+        support is named.
 
     Returns
     -------
@@ -282,7 +283,7 @@ def default_runs(
         reserved = reserved_engines()
         engines = [name for name in available_engines() if name not in reserved]
     runs = []
-    tied = any(case.tendon is not None for case in cases)
+    tied = any(case.anchor for case in cases)
     usual = [each for each in MODELLED if each.guided or not tied]
     for support in MODELLED if supports is None else supports:
         able = [engine for engine in engines if support in find_engine(engine).supports]

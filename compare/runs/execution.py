@@ -259,21 +259,16 @@ def job_fingerprint(job: Job) -> str:
 
 def case_inputs(case: Case) -> dict[str, object]:
     """Return the inputs that runs of a case depend on, without the names of it and its motion."""
-    motion, length = case.motion, case.rolling_resistance
-    # without them a run is the one that it was before there was any
-    held = {} if case.tendon is None else {"tendon": case.tendon}
-    return (
-        ({"rolling_resistance": length} if length else {})
-        | held
-        | {
-            "cylinder": case.cylinder,
-            "motion": None if motion is None else (motion.acceleration, motion.time_step),
-            "initial": case.initial,
-            "length": case.length,
-            "gravity": case.gravity,
-            "friction": case.friction,
-        }
-    )
+    motion = case.motion
+    # without a term a run is the one that it was before there was any
+    return case.terms | {
+        "cylinder": case.cylinder,
+        "motion": None if motion is None else (motion.acceleration, motion.time_step),
+        "initial": case.initial,
+        "length": case.length,
+        "gravity": case.gravity,
+        "friction": case.friction,
+    }
 
 
 T = TypeVar("T")

@@ -15,7 +15,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Run, Suite, Tendon, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
-from rockwobble.models.case import REDUCED_MODELS
+from rockwobble.models.case import REDUCED_MODELS, TERMS
 from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.number_checks import require_each
@@ -167,7 +167,7 @@ def ensemble(
         raise ValueError(f"an ensemble has at least 2 members of different names, got {len(members)}")
     stated = case_or_members.runs if isinstance(case_or_members, Suite) else ()
     chosen = (stated or default_runs(cases=members)) if runs is None else tuple(runs)
-    if models is REDUCED_MODELS and any(case.tendon is not None for case in members):
+    if models is REDUCED_MODELS and any(case.anchor for case in members):
         # on flat ground the base wanders from its anchor
         models = tuple(model for model in models if model.support.guided)
     for case in members:
@@ -180,7 +180,7 @@ def ensemble(
     table = _members(jobs, results)
     about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
     about |= {"slab_mass_ratio": _of_all(case.cylinder.slab_mass_ratio for case in members)}
-    for name in ("gravity", "rolling_resistance", "tendon"):
+    for name in ("gravity", *TERMS):
         about[name] = _of_all(getattr(case, name) for case in members)
     about |= {"methods": {label: _compared_with(run) for label, run in methods.items()}}
     about |= {"doubts": doubts_of_cases(members)}

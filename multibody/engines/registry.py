@@ -15,7 +15,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from types import MappingProxyType
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 from rockwobble.models import Case
 from rockwobble.models.support import SUPPORTS
@@ -228,6 +228,20 @@ def engine_for(case: Case, name: str, support: str) -> Engine:
     return engine
 
 
+class _Term(NamedTuple):
+    fact: str  # the field of `EngineFacts` that says whether an engine has it
+    words: str
+    none: str  # value of a case without it
+    unit: str = ""
+
+
+# the terms of a case that an engine may have; any other is refused
+_TERMS = {
+    "tendon": _Term("tendons", "tendon", "None"),
+    "rolling_resistance": _Term("rolling_friction", "rolling friction", "0", " m"),
+}
+
+
 def _require_able(engine: Engine, name: str, case: Case, support: str) -> None:
     supports = engine.supports
     if support not in supports:
@@ -242,12 +256,14 @@ def _require_able(engine: Engine, name: str, case: Case, support: str) -> None:
         raise ValueError(
             f"{name} cannot uplift a cylinder that stands: give a release with a tilt, got a start at rest"
         )
-    if case.tendon is not None and not engine.facts.tendons:
-        raise ValueError(f"{name} has no tendon: tendon must be None, got {case.tendon!r}")
-    if case.rolling_resistance and not engine.facts.rolling_friction:
-        raise ValueError(
-            f"{name} has no rolling friction: rolling_resistance must be 0, got {case.rolling_resistance!r} m"
-        )
+    for term, value in case.terms.items():
+        known = _TERMS.get(term)
+        if known is None:
+            raise ValueError(f"{name} knows no {term}, got {value!r}")
+        if not getattr(engine.facts, known.fact):
+            raise ValueError(
+                f"{name} has no {known.words}: {term} must be {known.none}, got {value!r}{known.unit}"
+            )
 
 
 def engine_facts(name: str) -> EngineFacts:

@@ -21,9 +21,12 @@ from .command import takes_options
 from .outputs import plan_of, require_own_file
 from .problem import (
     FREE_DURATION,
+    PROBLEM,
     Problem,
     Reading,
     Record,
+    Release,
+    Steel,
     first_given,
     given_options,
     refuse,
@@ -32,16 +35,12 @@ from .problem import (
 
 _several = OptionsIn("Many ground motions")
 
-# of a problem, what the model of the page has not
-_NOT_OF_PAGE = {
-    "mass_centre_height",
-    "transverse_inertia",
-    "axial_inertia",
-    "columns",
-    "friction",
-    "tendon_yield",
+# of a problem, what the page has; the rest is refused
+_OF_PAGE = {
+    *(field.name for each in (Record, Release, Steel) for field in fields(each)),
+    *("semidiagonal", "tan_alpha", "diameter", "height", "slab_mass_ratio", "gravity", "rolling_resistance"),
+    *("tendon_prestress", "tendon_stiffness"),
 }
-_NOT_OF_PAGE |= {"tendon_yield_force"}
 _RECORD = {field.name for field in fields(Record)} - {"scale"}
 
 
@@ -96,7 +95,7 @@ def explore(
 
         from ..pages.explore import explore_page, plan_in_page
 
-        refuse(context, _NOT_OF_PAGE, "is not part of the model in the page")
+        refuse(context, PROBLEM - _OF_PAGE, "is not part of the model in the page")
         require_one_of("--support", support, MODELLED)
         if plane is not None and "support" in given_options(context):
             raise ValueError("--plane holds the motion on any support, got --support beside it")

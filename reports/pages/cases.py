@@ -30,7 +30,8 @@ def describe(case: Case) -> list[str]:
     if resistance > 0.0:
         lines.append(f"Rolling resistance: {case.rolling_resistance:g} m ({resistance:.3g} b)")
     tendon = case.tendon
-    lines += conditions({"gravity": case.gravity, "tendon": tendon and dataclasses.asdict(tendon)})
+    stated = {"gravity": case.gravity, **case.terms, "tendon": tendon and dataclasses.asdict(tendon)}
+    lines += conditions({name: value for name, value in stated.items() if name != "rolling_resistance"})
     if motion is not None:
         # here, because the help of the command line needs no numpy
         from rockwobble.compare.studies.spectrum.maps import uplift_factor
@@ -67,8 +68,11 @@ def conditions(facts: Facts) -> list[str]:
     ----------
     facts : mapping
         gravity [m/s^2], slab_mass_ratio [-], rolling_resistance [m]; tendon, a mapping of its fields, or
-        tendon_prestress and tendon_stiffness. Each may be missing, or be `DIFFERS`.
+        tendon_prestress and tendon_stiffness; any other term of a case by its name. Each may be missing, or
+        be `DIFFERS`.
     """
+    from rockwobble.models.case import TERMS  # here, because the help of the command line needs no numpy
+
     gravity = facts.get("gravity", _GRAVITY)
     slab, resistance = facts.get("slab_mass_ratio", 0.0), facts.get("rolling_resistance", 0.0)
     tendon = facts.get("tendon") or {
@@ -81,6 +85,9 @@ def conditions(facts: Facts) -> list[str]:
         "Tendon": pulls,
         "Gravity": gravity != _GRAVITY and (gravity if gravity == DIFFERS else f"{gravity:g} m/s²"),
     }
+    for name in TERMS:
+        if name not in ("rolling_resistance", "tendon") and facts.get(name):
+            stated[name.replace("_", " ").capitalize()] = str(facts[name])
     return [f"{name}: {words}" for name, words in stated.items() if words]
 
 

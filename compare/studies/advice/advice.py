@@ -22,7 +22,7 @@ from rockwobble.models import (
     el_centro_1940,
 )
 from rockwobble.models.argument_kinds import with_argument_kinds
-from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL
+from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL, TERMS
 from rockwobble.models.cylinder import WobblingFrame, cylinder_of
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.plain_json import plain
@@ -493,8 +493,8 @@ def advise(
         if moves:  # in this process: other ones take longer to begin than hundreds of reduced runs
             groups[COPIES] = plan.perturbed(case)
             perturbed = [simulate_run(each, model, sample_step=DEMAND_STEP) for each in groups[COPIES]]
-            # no other model knows a tendon; and where the base never opens, chatter takes it minutes
-            if case.tendon is None and trace.peak_tilt > CLOSED_TILT * case.cylinder.alpha:
+            # the other model has no anchor; and where the base never opens, chatter takes it minutes
+            if not case.anchor and trace.peak_tilt > CLOSED_TILT * case.cylinder.alpha:
                 others = [simulate_run(each, other, sample_step=BAND_STEP) for each in groups[COPIES]]
         rows = [*member_rows(COPIES, perturbed), *member_rows(OTHER, others)]
     with stage("other records as strong, planar analysis and the vertical component"):
@@ -569,10 +569,12 @@ def require_judged(case: Case, support: str) -> None:
     Raises
     ------
     ValueError
-        If it has a tendon on a support whose reduced model knows none.
+        If it has an anchor, such as a tendon, on a support whose reduced model has none.
     """
-    if case.tendon is not None and not support_named(support).guided:
-        raise ValueError(f"an advice on a body with a tendon is for support {str(RECESS)!r}, got {support!r}")
+    if case.anchor and not support_named(support).guided:
+        raise ValueError(
+            f"an advice on a body with {case.anchor} is for support {str(RECESS)!r}, got {support!r}"
+        )
 
 
 def _threshold(case: Case, motion: GroundMotion) -> float:
@@ -654,7 +656,7 @@ def _problem(case: Case) -> dict[str, object]:
         "release": dataclasses.asdict(case.initial) if case.is_release and case.initial else None,
         "length": case.length,
         "gravity": case.gravity,
-        "rolling_resistance": case.rolling_resistance,
+        **{name: getattr(case, name) for name in TERMS},
         "tendon": _restraint(case),
     }
 

@@ -38,7 +38,7 @@ def _row(tan_alpha: float, release: float, spin: float, structure: Structure) ->
     assert case.initial is not None
     exact = reduced.free_response(case.cylinder, case.initial, tendon=case.tendon)
     period = turn = peak = math.nan
-    if case.tendon is None:  # which the flat-ground model does not know
+    if not case.anchor:  # which the flat-ground model does not have
         flat = reduced.simulate(replace(case, duration=_CYCLES * exact.period), support=FLAT, rtol=_RTOL)
         (period, turn), peak = next_maximum(flat), flat.peak_tilt
     return {

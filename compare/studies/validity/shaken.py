@@ -90,7 +90,7 @@ def _row(shaken: Callable[..., Case], intensity: float, vertical: bool) -> Row:
         RECESS: recess,
         "copy": reduced.simulate(stronger, rtol=_RTOL),
     }
-    if case.tendon is None:
+    if not case.anchor:
         found[FLAT] = reduced.simulate(case, support=FLAT, rtol=_RTOL)
     if vertical:
         found["vertical"] = reduced.simulate(shaken(intensity, vertical=True), rtol=_RTOL)

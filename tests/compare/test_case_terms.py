@@ -1,0 +1,80 @@
+"""A field that a case gets is ignored nowhere: digests take it, and who does not know it refuses it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import pytest
+
+import rockwobble as rw
+from rockwobble.compare.runs.execution import case_inputs
+from rockwobble.compare.storage.provenance import fingerprint
+from rockwobble.models import case as case_module
+from rockwobble.multibody.engines.registry import engine_for, engine_named, engine_names
+from rockwobble.reports.pages.cases import conditions
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Padded(rw.Case):
+    """A case with a term that nothing knows."""
+
+    pad_stiffness: float = 0.0
+
+
+PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+RELEASE = rw.InitialState(0.1, rolling_rate=0.4)
+PLAIN = rw.Case(PIER, initial=RELEASE, duration=2.0)
+TENDON = rw.Tendon(prestress=0.5, stiffness=2.0)
+PADDED = Padded(PIER, initial=RELEASE, duration=2.0, pad_stiffness=0.25)
+
+
+def test_terms_are_what_is_added_to_the_equations_and_differs_from_none() -> None:
+    assert case_module.TERMS == ("rolling_resistance", "tendon")
+    assert PLAIN.terms == replace(PLAIN, gravity=1.6, friction=0.3, name="other").terms == {}
+    both = replace(PLAIN, tendon=TENDON, rolling_resistance=0.01)
+    assert both.terms == {"rolling_resistance": 0.01, "tendon": TENDON}
+    assert PADDED.terms == {"pad_stiffness": 0.25}
+
+
+def test_a_tendon_is_an_anchor() -> None:
+    assert (PLAIN.anchor, replace(PLAIN, rolling_resistance=0.01).anchor) == ("", "")
+    assert replace(PLAIN, tendon=TENDON).anchor == "a tendon"
+
+
+def test_the_digest_of_a_case_tells_a_new_term_by_its_value() -> None:
+    cases = PLAIN, PADDED, replace(PADDED, pad_stiffness=0.5)
+    assert len({fingerprint(case_inputs(case)) for case in cases}) == len(cases)
+    assert fingerprint(case_inputs(replace(PADDED, pad_stiffness=0.0))) == fingerprint(case_inputs(PLAIN))
+
+
+# as version 0.3.0 names results on disk: another digest computes them all again
+@pytest.mark.parametrize(
+    ("terms", "digest"),
+    [
+        ({}, "3a6bd9b6bcd3bb9d25e58cd1d8fd624f"),
+        ({"tendon": TENDON}, "596ddccee15cdb46a2972692b19eb481"),
+        ({"rolling_resistance": 0.01}, "444da70fcea97bafcc45df61ca35c781"),
+        ({"tendon": rw.Tendon(), "rolling_resistance": 0.02}, "f06b450414106ee97d08133e5783aeeb"),
+    ],
+)
+def test_the_digests_of_cases_stay(terms: dict[str, object], digest: str) -> None:
+    assert fingerprint(case_inputs(replace(PLAIN, **terms))) == digest
+
+
+@pytest.mark.parametrize("options", [{}, {"support": "flat"}, {"plane": 0.0}])
+def test_the_reduced_models_refuse_an_unknown_term(options: dict[str, object]) -> None:
+    case = replace(PADDED, initial=rw.InitialState(0.1))
+    with pytest.raises(ValueError, match=r"^the reduced models know no pad_stiffness, got 0\.25$"):
+        rw.simulate(case, **options)
+
+
+@pytest.mark.parametrize("engine", engine_names())
+def test_engines_refuse_an_unknown_term(engine: str) -> None:
+    with pytest.raises(ValueError, match=rf"^{engine} knows no pad_stiffness, got 0\.25$"):
+        engine_for(PADDED, engine, engine_named(engine).supports[0])
+
+
+def test_a_page_states_a_term_that_it_has_no_words_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(case_module, "TERMS", (*case_module.TERMS, "pad_stiffness"))
+    assert conditions({"pad_stiffness": 0.25}) == ["Pad stiffness: 0.25"]
+    assert conditions({"pad_stiffness": 0.0}) == []
