@@ -24,7 +24,7 @@ from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.extrapolated_step import FINEST
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP, froude_scale
 
-from ..storage.provenance import engine_makers, fingerprint, reduced_makers
+from ..storage.provenance import engine_makers, fingerprint, reduced_makers, result_fingerprint
 from .cache import Cache, open_cache, open_table_cache
 from .dask_backend import ClusterError
 from .progress import IncompleteError, Lost, ProgressCallback
@@ -252,9 +252,14 @@ def all_makers(runs: Iterable[Run]) -> dict[str, str]:
 
 
 def job_fingerprint(job: Job) -> str:
-    """Return the hash of everything that the result of a job depends on."""
-    own = {"method": job.run, "sample step": SAMPLE_STEP, "made with": makers_of(job.run)}
-    return fingerprint(case_inputs(job.case) | own)
+    """Return what identifies the result of a job."""
+    own = {"method": job.run, "sample step": SAMPLE_STEP}
+    return result_fingerprint(case_inputs(job.case) | own, makers_of(job.run))
+
+
+def jobs_fingerprint(jobs: Iterable[Job]) -> str:
+    """Return what identifies the results of jobs in a table, which holds their names."""
+    return fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])
 
 
 def case_inputs(case: Case) -> dict[str, object]:
@@ -302,7 +307,7 @@ def run_tables(
     kind : str
         Kind of the results.
     key : callable
-        Returns the hash of all that the table of a task depends on.
+        Returns what identifies the table of a task, see `result_fingerprint`.
     folder : str or Path, optional
         Keeps each finished task: a second call, after whatever ended the first, repeats none. It is this
         process's until the block ends; if the block ends well, the tasks of other results of this kind go.

@@ -6,12 +6,14 @@ import dataclasses
 import hashlib
 import importlib.metadata
 import importlib.util
+import inspect
 import platform
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 from typing import Protocol
 
 import numpy as np
@@ -161,6 +163,24 @@ def code_digests() -> dict[str, str]:
     return {name: _source_digest(name) for name in ("models", "reduced", "multibody", "compare")}
 
 
+def result_fingerprint(inputs: object, made_with: Mapping[str, str]) -> str:
+    """Return what identifies a result: the hash of its inputs, and of the versions and code that made it.
+
+    Parameters
+    ----------
+    inputs : object
+        As of `fingerprint`, without names that are for people alone.
+    made_with : mapping
+        As of `reduced_makers`, `engine_makers` or `package_makers`.
+    """
+    return fingerprint({"inputs": inputs, "made with": made_with})
+
+
+def package_makers() -> dict[str, str]:
+    """Return versions of all and code of every folder that numbers come from."""
+    return package_versions() | {f"code of {name}": digest for name, digest in code_digests().items()}
+
+
 def reduced_makers() -> dict[str, str]:
     """Return versions and code on which the runs of the reduced models depend."""
     return _makers(_REDUCED, "reduced")
@@ -197,6 +217,11 @@ def _source_digest(folder: str) -> str:
     found = importlib.util.find_spec(f"rockwobble.{folder}")  # importing it would load the compiler
     assert found is not None
     return _digest_of(Path(str(found.origin)).parent)
+
+
+def source_digest(*parts: ModuleType | type | Callable[..., object]) -> str:
+    """Return a hash of the sources of modules, functions and classes."""
+    return hashlib.sha256("".join(map(inspect.getsource, parts)).encode()).hexdigest()[:16]
 
 
 def _digest_of(place: Path) -> str:

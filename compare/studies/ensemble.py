@@ -27,10 +27,9 @@ from ..metrics.contrast import pairs_in
 from ..metrics.pair import outcome_of
 from ..metrics.statistics import adjusted, quantile_interval, value_if_enough
 from ..runs.choice import default_runs, require_runnable, run_labels
-from ..runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
+from ..runs.execution import Job, jobs_fingerprint, open_trace_cache, simulate_all
 from ..runs.progress import ProgressCallback
 from ..storage.manifest import Number
-from ..storage.provenance import fingerprint
 from ..storage.results import Results
 from .plans import Copies
 
@@ -185,7 +184,7 @@ def ensemble(
     about |= {"methods": {label: _compared_with(run) for label, run in methods.items()}}
     about |= {"doubts": doubts_of_cases(members)}
     about |= {"record_sources": sources_of(case.motion for case in members)}
-    about |= {"inputs": fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])}
+    about |= {"inputs": jobs_fingerprint(jobs)}
     return ensemble_of(table, about)
 
 

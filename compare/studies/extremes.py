@@ -47,7 +47,7 @@ from ..runs.choice import require_runnable
 from ..runs.execution import run_tables, simulate_run
 from ..runs.progress import ProgressCallback
 from ..storage.manifest import Number
-from ..storage.provenance import code_digests, fingerprint, package_versions
+from ..storage.provenance import package_makers, result_fingerprint
 from ..storage.results import Results
 from .plans import QuickPlan
 
@@ -178,12 +178,12 @@ def measure_extremes(
     """
     tasks = [(condition, run) for condition in conditions(quick=plan.quick) for run in methods()]
     # an engine may read whatever of the package, and what is looked at takes minutes: any change repeats all
-    made_with = fingerprint({"code": code_digests(), "versions": package_versions()})
+    made_with = package_makers()
     with run_tables(
         measure_task,
         tasks,
         kind=KIND,
-        key=lambda task: fingerprint({"task": task, "made with": made_with}),
+        key=lambda task: result_fingerprint(task, made_with),
         label=lambda task: f"{task[0].extreme} {task[0].value}, {task[1]}",
         folder=folder,
         lost=lambda task: _row(task, Verdict(verdict="silent", limit="died")),

@@ -20,7 +20,7 @@ from rockwobble.models.shown import Brief
 from rockwobble.models.support import RECESS
 
 from ..metrics.pair import outcome_of_peak
-from ..storage.provenance import fingerprint, reduced_makers
+from ..storage.provenance import fingerprint, reduced_makers, result_fingerprint
 from .plans import GridPlan
 
 MOST_RUNS = 100_000_000  # whose table takes 10 GB
@@ -58,8 +58,8 @@ class GridChunk:
         return f"{self.label}, {self.model}, {where} {self.scales[0]:g}"
 
     def key(self) -> str:
-        """Return the hash of all that the results depend on."""
-        return fingerprint(
+        """Return what identifies the results."""
+        return result_fingerprint(
             {
                 "motion": (self.motion_key, self.label),
                 "model": self.model,
@@ -67,8 +67,8 @@ class GridChunk:
                 "semidiagonals": np.array(self.semidiagonals),
                 "scales": np.array(self.scales),
                 "options": self.options,
-                "made with": reduced_makers(),
-            }
+            },
+            reduced_makers(),
         )
 
     def run(self) -> pd.DataFrame:

@@ -22,7 +22,7 @@ from rockwobble.models.records.units import sources_of
 from ..metrics.pair import outcome_of
 from ..metrics.statistics import value_if_enough
 from ..runs.choice import require_runnable, run_labels
-from ..runs.execution import Job, all_makers, job_fingerprint, run_job, run_tables
+from ..runs.execution import Job, all_makers, jobs_fingerprint, run_job, run_tables
 from ..runs.progress import ProgressCallback
 from ..storage.manifest import Number
 from ..storage.provenance import fingerprint
@@ -55,8 +55,8 @@ class CaseChunk:
         return f"{self.jobs[0].name}{more}"
 
     def key(self) -> str:
-        """Return the hash of all that the results depend on."""
-        return fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in self.jobs])
+        """Return what identifies the results."""
+        return jobs_fingerprint(self.jobs)
 
     def run(self) -> pd.DataFrame:
         """Return the table of the results, one row for each run."""

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rockwobble.compare.runs.progress import ProgressCallback, stages
 from rockwobble.compare.storage.manifest import Number
-from rockwobble.compare.storage.provenance import code_digests, fingerprint, package_versions
+from rockwobble.compare.storage.provenance import package_makers, result_fingerprint
 from rockwobble.compare.storage.results import Results
 from rockwobble.compare.studies.spectrum.maps import TiltMaps, maps_of, tilt_maps
 from rockwobble.compare.studies.spectrum.parts import SERIES
@@ -88,7 +88,7 @@ def compute(grid: int, progress: ProgressCallback | None = None, resume: Path | 
         "statements": to_frame(found),
         **tables_of(spectrum),
     }
-    inputs = fingerprint([grid, code_digests(), package_versions()])
+    inputs = result_fingerprint(grid, package_makers())
     return Paper(tables=tables, facts=plain(spectrum.facts() | {"inputs": inputs}))
 
 

@@ -25,7 +25,7 @@ from ...metrics.pair import outcome_of, outcome_of_peak
 from ...runs.choice import require_runnable, run_labels
 from ...runs.execution import all_makers, case_inputs, engine_time, makers_of, run_tables, simulate_run
 from ...runs.progress import ProgressCallback
-from ...storage.provenance import fingerprint
+from ...storage.provenance import result_fingerprint
 from ..plans import FragilityPlan
 from .intensity import intensity, measures_of, uplift_scale
 from .tables import CONTACT_LOST
@@ -186,11 +186,10 @@ class Task:
         return sum(time(shaking.case) * len(shaking.scales) for shaking in self.shakings)
 
     def key(self) -> str:
-        """Return the hash of all that the results depend on; names are no part of it."""
+        """Return what identifies the results."""
         own = {"contact": self.contact, "rtol": _RTOL} if self.run.is_model else {}
         shakings = [case_inputs(shaking.case) | {"scales": shaking.scales} for shaking in self.shakings]
-        made_with = makers_of(self.run)
-        return fingerprint({"shakings": shakings, "run": self.run, "made with": made_with, **own})
+        return result_fingerprint({"shakings": shakings, "run": self.run, **own}, makers_of(self.run))
 
     @property
     def _of_peaks(self) -> bool:

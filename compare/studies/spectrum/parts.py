@@ -16,7 +16,7 @@ from rockwobble import reduced
 from rockwobble.models import GroundMotion
 from rockwobble.models.cpus import usable_cpus
 
-from ...storage.provenance import fingerprint, reduced_makers
+from ...storage.provenance import reduced_makers, result_fingerprint
 from ..plans import SpectrumPlan
 from .search import probe_below, run_searches, search_lowest
 
@@ -92,15 +92,16 @@ class SpectrumPart:
         return f"{TITLES[self.series]}, R = {first:.3g} m" + (f" to {last:.3g} m" if last > first else "")
 
     def key(self) -> str:
-        """Return the hash of all that its result depends on."""
+        """Return what identifies its result."""
         plan, motion = self.plan, self.motion
         of_body = ("slab_mass_ratio", "rolling_resistance", "tendon")
         named = ("gravity", *of_body, "support", "search_step", "probes")
-        return fingerprint(
+        return result_fingerprint(
             {name: getattr(plan, name) for name in named}
             | {name: getattr(self, name) for name in ("series", "semidiagonals", "levels", "unit", "start")}
             | {"places": list(self.places), "tan_alpha": self.tan_alpha, "rtol": [RTOL, _CALM]}
-            | {"motion": (motion.acceleration, motion.time_step), "made with": reduced_makers()}
+            | {"motion": (motion.acceleration, motion.time_step)},
+            reduced_makers(),
         )
 
 

@@ -26,7 +26,7 @@ from rockwobble.models.support import RECESS
 from ...metrics.pair import overturned
 from ...runs.progress import ProgressCallback
 from ...storage.manifest import Number
-from ...storage.provenance import fingerprint, reduced_makers
+from ...storage.provenance import reduced_makers, result_fingerprint
 from ...storage.results import Results
 from ..plans import PROBES, STEP, SpectrumPlan, tendon_of
 from .maps import KIND, TiltMaps, maps_of, record_frame, safe_gaps, tilt_maps
@@ -374,5 +374,5 @@ def spectrum_of(maps: TiltMaps) -> OverturningSpectrum:
     doubts = doubts_about(motions=[maps.motion], cylinders=sizes, gravities=[maps.gravity])
     facts = maps.facts() | {"doubts": doubts, "record_sources": sources_of([maps.motion])}
     grid = maps.semidiagonals, maps.intensities
-    facts["inputs"] = fingerprint([maps.facts(), *grid, maps.motion.acceleration, reduced_makers()])
+    facts["inputs"] = result_fingerprint([maps.facts(), *grid, maps.motion.acceleration], reduced_makers())
     return OverturningSpectrum(tables=tables_of(maps), facts=plain(facts))

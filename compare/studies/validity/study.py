@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
-import inspect
+import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
@@ -15,7 +14,7 @@ from rockwobble.models.support import RECESSES_FIRST
 from ...runs.execution import run_tables
 from ...runs.progress import ProgressCallback
 from ...storage.manifest import Number
-from ...storage.provenance import engine_makers, fingerprint, reduced_makers
+from ...storage.provenance import engine_makers, reduced_makers, result_fingerprint, source_digest
 from ...storage.results import Results
 from ..plans import ValidityPlan
 from .limits import limits_of, records
@@ -177,19 +176,19 @@ def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent) -> Validity:
 
 
 def task_name(task: Task) -> str:
-    """Return the hash of all that the result of a task depends on."""
+    """Return what identifies the result of a task."""
     part = PARTS[task[0]]
-    return fingerprint({"part": part.name, "inputs": task[1], "made with": _makers(part)})
+    return result_fingerprint({"part": part.name, "inputs": task[1]}, _makers(part))
 
 
 def _makers(part: Part) -> dict[str, str]:
     """Versions and code on which a part depends."""
-    problems = [inspect.getsource(each) for each in (Structure, release_case, motion_named, shaken_case)]
-    own = Path(str(inspect.getsourcefile(part.measure))).read_bytes() + "".join(problems).encode()
+    module = sys.modules[part.measure.__module__]
     engine = engine_makers(part.engine) if part.engine else {}
     return {
         **reduced_makers(),
         **engine,
-        f"code of {part.name}": hashlib.sha256(own).hexdigest()[:16],
+        # of the plan what states a problem: how many there are is no part of one
+        f"code of {part.name}": source_digest(module, Structure, release_case, motion_named, shaken_case),
         "records": source_of(record_names(1)),
     }
