@@ -14,7 +14,7 @@ from .cylinder import cylinder_of
 from .diagnostic import Assumptions, Diagnostic
 from .ground_motion import GroundMotion
 from .parquet_file import pack, read
-from .plain_json import Facts, JsonObject
+from .plain_json import Facts, JsonObject, fields_of
 from .record_source import source_from_plain
 from .tendon import Tendon
 from .trace_source import Array, Known
@@ -113,6 +113,22 @@ def trace_arguments(facts: Facts, samples: pd.DataFrame) -> JsonObject:
 
 def _diagnostics(given: Iterable[Facts]) -> tuple[Diagnostic, ...]:
     return tuple(Diagnostic(**each) for each in given)
+
+
+def motion_facts(motion: GroundMotion) -> JsonObject:
+    """Return the numbers that state a ground motion, without its samples; SI units."""
+    return {
+        "name": motion.name,
+        "time_step": motion.time_step,
+        "samples": len(motion.acceleration),
+        "components": "xyz"[: motion.acceleration.shape[1]],
+        "peak": motion.peak,
+    }
+
+
+def case_facts(case: Case) -> JsonObject:
+    """Return the fields of a case, of its ground motion `motion_facts`; SI units and radians."""
+    return fields_of(case) | {"motion": case.motion and motion_facts(case.motion)}
 
 
 def case_from_plain(given: Facts) -> Case:

@@ -13,8 +13,8 @@ import pandas as pd
 
 from rockwobble.models import Case, Trace, plain_json
 from rockwobble.models.number_checks import require_one_of
-from rockwobble.models.plain_json import fields_of, plain
-from rockwobble.models.trace_file import case_from_plain
+from rockwobble.models.plain_json import plain
+from rockwobble.models.trace_file import case_facts, case_from_plain
 
 from ..external.verdict import lists_in_words, lists_of_file
 from ..metrics.pair import first_unresolved_pass, start_of
@@ -286,7 +286,7 @@ def comparison_of(
         "inputs": fingerprint([case_inputs(case) for case in cases.values()]),
         "versions": dict(versions),
         "until": until,
-        "cases": {name: fields_of(case) | {"motion": _header(case)} for name, case in cases.items()},
+        "cases": {name: _facts_with_source(case) for name, case in cases.items()},
         "traces": {_SEPARATOR.join(key): trace.to_plain() for key, trace in traces.items()},
         "budgets": {
             _SEPARATOR.join(key): {"covered": each.covered, "steps": each.steps, "order": each.order}
@@ -296,14 +296,12 @@ def comparison_of(
     return Comparison(tables=tables, facts=plain(facts))
 
 
-def _header(case: Case) -> Mapping[str, object] | None:
-    """A ground motion without its samples, which stand in a table."""
-    motion = case.motion
-    if motion is None:
-        return None
-    components = "xyz"[: motion.acceleration.shape[1]]
-    header = {"name": motion.name, "time_step": motion.time_step, "components": components}
-    return header | ({"source": motion.source} if motion.source else {})
+def _facts_with_source(case: Case) -> Mapping[str, object]:
+    """Facts of a case, whose samples stand in a table, by which it is made again."""
+    facts, motion = case_facts(case), case.motion
+    if motion is not None and motion.source:
+        facts["motion"]["source"] = motion.source
+    return facts
 
 
 def _case(given: Mapping[str, Any], excitation: pd.DataFrame | None) -> Case:

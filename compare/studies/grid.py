@@ -18,6 +18,7 @@ from rockwobble.models.doubts import doubts_about
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import Brief
 from rockwobble.models.support import RECESS
+from rockwobble.models.trace_file import motion_facts
 
 from ..metrics.pair import outcome_of_peak
 from ..storage.provenance import fingerprint, reduced_makers, result_fingerprint
@@ -221,8 +222,7 @@ class Grid(Brief, GridPlan):
             "tan_alphas": self.tan_alphas,
             "scales": self.scales,
             "motions": [
-                described_motion(motion)
-                | {"name": motion.name or "record", "fingerprint": _motion_key(motion)}
+                motion_facts(motion) | {"name": motion.name or "record", "fingerprint": _motion_key(motion)}
                 for motion in self.motions
             ],
             "models": self.models,
@@ -236,17 +236,6 @@ class Grid(Brief, GridPlan):
         for i in range(0, len(self.semidiagonals), height):
             for j in range(0, len(self.scales), width):
                 yield self.semidiagonals[i : i + height], self.scales[j : j + width]
-
-
-def described_motion(motion: GroundMotion) -> dict[str, object]:
-    """Return the numbers that state a ground motion, without its samples."""
-    return {
-        "name": motion.name,
-        "time_step": motion.time_step,
-        "samples": len(motion.acceleration),
-        "components": motion.acceleration.shape[1],
-        "peak": motion.peak,
-    }
 
 
 def _motion_key(motion: GroundMotion) -> str:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 from rockwobble.models import Case, Run, Trace
-from rockwobble.models.plain_json import fields_of, plain
-from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, to_parquet
+from rockwobble.models.plain_json import plain
+from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, case_facts, to_parquet
 
 from ..runs.execution import Job, job_fingerprint, simulate_all, simulate_run
 from ..runs.progress import ProgressCallback, stages
@@ -108,12 +108,11 @@ def single_run_of(
 ) -> SingleRun:
     """Return the results of a trace, and from when on perturbed copies of it diverge [s]."""
     job = Job(case=trace.case, run=trace.run)
-    case, motion = fields_of(trace.case), trace.case.motion
     left_out = ("rest_intervals", "extrema", "passes")
     facts = {
         "inputs": job_fingerprint(job),
         "run": job.label,
-        "case": case | {"motion": motion and {"name": motion.name, "time_step": motion.time_step}},
+        "case": case_facts(trace.case),
         "result": {name: value for name, value in trace.to_plain().items() if name not in left_out},
         "single_trace": {"copies_part": part, "perturbation": perturbation, "answer": answer},
         "columns": {"run.csv": COLUMNS, "passes.csv": PASS_COLUMNS},

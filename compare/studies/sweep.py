@@ -18,6 +18,7 @@ from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.plain_json import fields_of, plain
 from rockwobble.models.records.units import sources_of
+from rockwobble.models.trace_file import case_facts
 
 from ..metrics.pair import outcome_of
 from ..metrics.statistics import value_if_enough
@@ -27,7 +28,7 @@ from ..runs.progress import ProgressCallback
 from ..storage.manifest import Number
 from ..storage.provenance import fingerprint
 from ..storage.results import Results
-from .grid import Grid, GridChunk, described_motion
+from .grid import Grid, GridChunk
 
 # An engine's run takes seconds, a reduced one milliseconds.
 _REDUCED_CHUNK_SIZE, _ENGINE_CHUNK_SIZE = 200, 1
@@ -96,18 +97,12 @@ def describe_suite(suite: Suite) -> dict[str, object]:
     return {
         "plan": "cases and runs",
         "runs": len(suite.cases) * len(suite.runs),
-        "cases": {case.name: _description(case) for case in suite.cases},
+        "cases": {case.name: case_facts(case) | {"duration": case.length} for case in suite.cases},
         "runs of each": [
             {"label": label, **fields_of(run)}
             for run, label in zip(suite.runs, run_labels(suite.runs), strict=True)
         ],
     }
-
-
-def _description(case: Case) -> dict[str, object]:
-    """Return the numbers that state a case; SI units and radians."""
-    motion = case.motion and described_motion(case.motion)
-    return fields_of(case) | {"motion": motion, "duration": case.length}
 
 
 def _row(job: Job, trace: Trace) -> dict[str, object]:

@@ -16,7 +16,7 @@ import rockwobble.compare as rc
 from rockwobble.compare.studies.plans import Copies, FragilityPlan, SpectrumPlan
 
 from ..console import echo, interruptible, save_with_page, show_and_save, shown_progress, user_input
-from ..pages.cases import case_warnings, describe, record_lines, warnings_about
+from ..pages.cases import case_lines, case_warnings, record_lines, warnings_about
 from . import options
 from .command import takes_options
 from .outputs import claim_folder
@@ -186,7 +186,7 @@ def spectrum(
             f"Cylinders: tan alpha = {tan_alpha:g} (alpha = {math.degrees(slender.cylinder.alpha):.4g} deg)"
         )
         # the ground: the threshold of uplift is that of all sizes
-        echo(describe(slender)[1:-1])
+        echo(case_lines(slender)[1:-1])
         with user_input(), shown_progress("parts") as progress:
             found = rw.spectrum(
                 tan_alpha,
@@ -265,7 +265,7 @@ def ensemble(
                 stated, source = _members(context, problem, copies, motions, peak)
                 # what describes one case holds of copies, but only its first line of motions that differ
                 members = [] if isinstance(stated, rw.Case) else stated
-                lines = describe(stated) if isinstance(stated, rw.Case) else describe(members[0])[:1]
+                lines = case_lines(stated) if isinstance(stated, rw.Case) else case_lines(members[0])[:1]
                 lines += [f"Members: {len(members) or copies.copies}, {source}"]
             runs = _runs(
                 engine, support, time_step, given, [stated] if isinstance(stated, rw.Case) else members

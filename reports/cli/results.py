@@ -14,7 +14,7 @@ import rockwobble as rw
 
 from ..console import complain, echo, interruptible, print_facts, show_and_save, shown_progress, user_input
 from ..pages import stored_page
-from ..pages.cases import describe
+from ..pages.cases import case_lines
 from ..pages.table import number
 from ..registry import KINDS
 from . import options
@@ -213,7 +213,7 @@ def view(
                 require_motion(name, [rw.simulate(case)])  # before an engine runs for seconds
             claim_folder(context)
         if folder is None:
-            echo(describe(case))
+            echo(case_lines(case))
             with user_input(), shown_progress() as progress:
                 comparison = rw.comparison(case, runs=[run], progress=progress)
         found = View.of(comparison, name)

@@ -17,7 +17,7 @@ from rockwobble.compare.runs.plan import OptionsIn, Plan
 from rockwobble.compare.studies.plans import AdvicePlan, ModelPlan
 
 from ..console import FAILED, complain, echo, interruptible, show_and_save, shown_progress, user_input
-from ..pages.cases import case_warnings, describe, record_lines
+from ..pages.cases import case_lines, case_warnings, record_lines
 from . import options
 from .command import takes_options
 from .options import settings
@@ -25,9 +25,9 @@ from .outputs import claim_folder
 from .problem import Problem, given_options, next_command, refuse_options_of_engines, stated_options
 from .suite_choice import (
     chosen_runs,
-    describe_suite,
     refuse_problem_options,
     say_what_is_left_out,
+    suite_lines,
     without_missing,
 )
 
@@ -146,9 +146,9 @@ def compare(
                     require_runnable(each, run)
             trajectories = external.read(cases)
         if suite is None:
-            echo(describe(cases[0]))
+            echo(case_lines(cases[0]))
         else:
-            echo(describe_suite(suite, cases, runs))
+            echo(suite_lines(suite, cases, runs))
         if engine == [options.ALL]:
             for reason in unable_engines(cases):
                 complain(reason)

@@ -87,7 +87,7 @@ def say_what_is_left_out(supports: Sequence[str] = ()) -> None:
         complain(reason)
 
 
-def describe_suite(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> Iterator[str]:
+def suite_lines(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> Iterator[str]:
     """Yield the lines that echo what will run."""
     from rockwobble.compare.runs.choice import run_labels
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rockwobble.models.plain_json import Facts
 
 
-def describe(case: Case) -> list[str]:
+def case_lines(case: Case) -> list[str]:
     """Return the lines that echo a case: what was understood, in numbers."""
     cylinder, motion, initial = case.cylinder, case.motion, case.initial
     lines = [

@@ -27,7 +27,7 @@ from ..figures.comparison import (
 )
 from ..figures.picture import Line, Picture
 from ..figures.playback import playback
-from .cases import describe, group_of
+from .cases import case_lines, group_of
 from .findings import (
     CAUSES,
     budget_sentences,
@@ -104,7 +104,7 @@ def _case(view: CaseView) -> dict[str, object]:
     numbers, columns = all_columns(rows)
     return {
         "name": view.case.name,
-        "lines": describe(view.case),
+        "lines": case_lines(view.case),
         "headline": headline(rows, view.case.length),
         "notes": notes(view),
         "rows": main_rows(view),

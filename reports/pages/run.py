@@ -10,7 +10,7 @@ from rockwobble.compare.studies.single_run import SingleRun
 from rockwobble.models import Diagnostic, Trace
 
 from ..figures.trace import pictures
-from .cases import describe
+from .cases import case_lines
 from .diagnostics import remarks
 from .page import Page
 from .table import Row, number
@@ -26,7 +26,7 @@ def page_of(found: SingleRun) -> Page:
         "warnings": list(_not_reproducible(found)),
         "answer": found.facts.get("single_trace", {}).get("answer", ""),
         "rows": list(_rows(trace)),
-        "lines": describe(trace.case),
+        "lines": case_lines(trace.case),
         "about": found.manifest,
     }
     return Page(name="run", template="runs/run", values=values, pictures=pictures(trace))

@@ -6,7 +6,7 @@ from rockwobble.compare.comparison.result import View
 
 from ..figures.case_view import case_views
 from ..figures.playback import playback, require_motion
-from .cases import describe
+from .cases import case_lines
 from .findings import headline, notes
 from .page import Page
 from .sentences import fragment
@@ -30,7 +30,7 @@ def page_of(found: View) -> Page:
             "name": view.case.name,
             "headline": headline(view.rows, view.case.length),
             "notes": notes(view),
-            "lines": describe(view.case),
+            "lines": case_lines(view.case),
             "about": found.manifest,
         },
         blocks={"player": fragment("comparison/player.html.j2", name="player", spec=spec)},

@@ -19,7 +19,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, W
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.cli.suite_choice import chosen_runs
 from rockwobble.reports.pages import comparison as report
-from rockwobble.reports.pages.cases import describe, group_of
+from rockwobble.reports.pages.cases import case_lines, group_of
 from rockwobble.reports.pages.page import Page
 
 PAGE_LIMIT = 2_000_000  # [bytes]
@@ -194,17 +194,17 @@ def test_a_peak_is_told_in_times_of_what_uplifts_under_the_vertical_component():
     falling = [[x, y, -3.0 * (x > 0.0)] for x, y in level]
     # of a record this many times weaker, the vertical component too, nothing would uplift
     for motion, drive in ((level, 2.5), (falling, 2.5 + 3.0 * 0.2)):
-        _, ground, _ = describe(Case(pier, GroundMotion(motion, 0.1)))
+        _, ground, _ = case_lines(Case(pier, GroundMotion(motion, 0.1)))
         assert f"peak 0.255 g ({drive / 9.81 / 0.2:.2f} times the uplift threshold)" in ground
-    _, ground, _ = describe(Case(pier, GroundMotion(level, 0.1), duration=0.05))
+    _, ground, _ = case_lines(Case(pier, GroundMotion(level, 0.1), duration=0.05))
     assert f"({0.5 * 2.5 / 9.81 / 0.2:.2f} times the uplift threshold within the run)" in ground
 
 
 def test_the_slab_of_a_frame_and_its_resistance_are_stated():
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     motion = GroundMotion([[0.0, 0.0], [2.5, 0.0], [0.0, 0.0]], 0.1)
-    alone = describe(Case(pier, motion))
-    loaded = describe(Case(WobblingFrame(pier, 0.25), motion, rolling_resistance=0.5 * pier.base_radius))
+    alone = case_lines(Case(pier, motion))
+    loaded = case_lines(Case(WobblingFrame(pier, 0.25), motion, rolling_resistance=0.5 * pier.base_radius))
     assert loaded[1].startswith("Slab: 0.25 times the mass of all 3 columns")
     assert loaded[2].endswith("(0.5 b)")
     assert "(1.27 times the uplift threshold)" in alone[1]

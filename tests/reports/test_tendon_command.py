@@ -12,7 +12,7 @@ import pytest
 
 import rockwobble as rw
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.pages.cases import describe
+from rockwobble.reports.pages.cases import case_lines
 
 PIER = ["--diameter", "1.6", "--height", "9", "--release-tilt-deg", "4", "--duration", "2"]
 STEEL = ["--tendon-force", "400e3", "--tendon-rigidity", "30e6", "--tendon-length", "10", "--mass", "45"]
@@ -128,7 +128,9 @@ def test_the_threshold_of_uplift_counts_the_prestress(slab: float) -> None:
     motion = rw.el_centro_1940(vertical=True).scaled(10.0)  # more digits
     times = []
     for held in (None, tendon):
-        (line,) = (each for each in describe(rw.Case(body, motion, tendon=held)) if each.startswith("Ground"))
+        (line,) = (
+            each for each in case_lines(rw.Case(body, motion, tendon=held)) if each.startswith("Ground")
+        )
         times.append(float(line.rpartition("(")[2].split()[0]))
     assert times[0] / times[1] == pytest.approx(tendon.uplift_factor(body), rel=2e-3)
 

@@ -29,6 +29,7 @@ from rockwobble.models.plain_json import plain
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.support import RECESS, support_named
 from rockwobble.models.trace import NO_PEAK
+from rockwobble.models.trace_file import motion_facts
 
 from ...metrics.contrast import pairs_of
 from ...metrics.pair import overturned, tolerance_of
@@ -640,10 +641,7 @@ def _problem(case: Case) -> dict[str, object]:
     """Facts of a case, without the samples of its motion."""
     motion, cylinder = case.motion, case.cylinder
     shaking = motion and {
-        "name": motion.name,
-        "samples": len(motion.acceleration),
-        "time_step": motion.time_step,
-        "peak": motion.peak,
+        **motion_facts(motion),
         "has_vertical": motion.has_vertical,
         "friction_at_rest": case.friction_at_rest,
         "uplift_factor": held_by(case)
