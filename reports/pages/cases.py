@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from rockwobble.models import Case, GroundMotion, RockingBody
     from rockwobble.models.plain_json import Facts
@@ -99,17 +99,21 @@ def _of_tendon(fields: Mapping[str, Any]) -> str:
     ) + (f", yields at {yields:.4g}" if yields is not None else "")
 
 
-MOST_SHOWN = 12  # sources of records; the pages have the same number
+_MOST_SHOWN = 12  # sources of records
 
 
 def record_lines(motions: Iterable[GroundMotion | None]) -> list[str]:
     """Return a line on what each ground motion is read from."""
     from rockwobble.models.records.units import sources_of
 
-    sources = sources_of(motions)
-    lines = [f"Record: {source}" for source in sources[:MOST_SHOWN]]
-    if len(sources) > MOST_SHOWN:
-        lines.append(f"and {len(sources) - MOST_SHOWN} records more, which manifest.json lists")
+    return source_lines(sources_of(motions), "which manifest.json lists")
+
+
+def source_lines(sources: Sequence[str], where: str) -> list[str]:
+    """Return a line on each of the first sources of records, and one on how many more stand `where`."""
+    lines = [f"Record: {source}" for source in sources[:_MOST_SHOWN]]
+    if (more := len(sources) - _MOST_SHOWN) > 0:
+        lines.append(f"and {more} records more, {where}")
     return lines
 
 

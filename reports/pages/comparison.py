@@ -65,10 +65,11 @@ def page_of(found: Comparison) -> Page:
     values: dict[str, object] = {
         "many": many,
         "about": found.manifest,
-        "budgets": bars is not None,
+        "title": views[0].case.name if len(views) == 1 else f"{len(views)} problems",
+        "overview_pictures": [] if bars is None else [bars.name],
         "cases": [
             {
-                **_case(view),
+                **_case(view, many=many),
                 "matrices": matrix_tables(found.matrix[found.matrix["case"] == view.case.name]),
                 "pictures": [picture.name for picture in pictures[place]],
                 "player": name if (name := f"player-{place}") in blocks else "",
@@ -77,10 +78,11 @@ def page_of(found: Comparison) -> Page:
         ],
     }
     if many:
+        own = own_rows(summary)
         values |= {
+            "answer": _answer(own),
             "group_rows": group_rows(summary, lengths),
             "worst": worst_rows(summary, lengths),
-            "failed": int((own_rows(summary)["outcome"] == "failed").sum()),
             "matrices": matrix_tables(found.matrix),
             "remarks": [
                 *budget_sentences(summary),
@@ -99,9 +101,19 @@ def page_of(found: Comparison) -> Page:
     )
 
 
-def _case(view: CaseView) -> dict[str, object]:
+def _answer(rows: pd.DataFrame) -> str:
+    """How many runs of many cases agree with the model of their support, on two lines of the document."""
+    agree, failed = (~rows["left_tolerance"]).sum(), (rows["outcome"] == "failed").sum()
+    return (
+        f"{agree} of {len(rows)} runs stay within 1 % of alpha, and a tenth of the peak,\nof the model of "
+        f"their support to the end{f'; {failed} failed' if failed else ''}."
+    )
+
+
+def _case(view: CaseView, *, many: bool) -> dict[str, object]:
     rows = view.rows
-    numbers, columns = all_columns(rows)
+    # of many cases a page would hold too many
+    numbers, columns = ([], []) if many else all_columns(rows)
     return {
         "name": view.case.name,
         "lines": case_lines(view.case),

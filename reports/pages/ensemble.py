@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from rockwobble.compare import Ensemble
 from rockwobble.compare.metrics.statistics import (
@@ -58,6 +58,8 @@ def ensemble_values(found: Ensemble) -> dict[str, object]:
     one_column = any("one_column" in codes_in(cell) for cell in found.members["diagnostics"])
     return {
         "facts": found.facts,
+        "sizes": _range_of(found.facts["semidiagonal"]),
+        "slenderness": _range_of(found.facts["tan_alpha"]),
         "count": found.members["member"].nunique(),
         "methods": methods,
         "contrasts": rows,
@@ -71,6 +73,12 @@ def ensemble_values(found: Ensemble) -> dict[str, object]:
         "any_falls": any_falls,
         "power": POWER,
     }
+
+
+def _range_of(values: Mapping[str, float]) -> str:
+    """A number that all members have, or the first and the last of several."""
+    first, last = number(values["from"]), number(values["to"])
+    return f"{first} to {last}" if values["count"] > 1 else first
 
 
 def _headline(main: Sequence[Row], members: int) -> str:

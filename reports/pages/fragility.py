@@ -83,7 +83,7 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "risk": risk_values(found),
         "measure": measure,
         "bodies": list(_bodies(found)),
-        "headline": _headline(fallen, measure.unit, several=several, few=few, compares=bool(contrasts)),
+        "answers": list(_answers(fallen, measure.unit, several=several, few=few, compares=bool(contrasts))),
         "undetermined": [] if few else list(_bounds_of_medians(fallen, measure.unit, several=several)),
         "questions": {
             _QUESTIONS[question]: [_answer(row, margin) for row in rows if row["cylinder"] == whole]
@@ -99,7 +99,8 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "states": _states(found),
         "state_columns": [["method", "method", "words"]]
         + [[limit, limit.replace("_", " "), ".3g"] for limit in found.facts["limits"]],
-        "walls": any(each["support"] in _WALLED for each in found.facts["methods"].values()),
+        "states_title": "Medians of all limits" + ("" if measure.unit == "-" else f" [{measure.unit}]"),
+        "notes": list(_notes(found, few=few)),
         "efficiency": efficiency,
         "gaps": _gaps(found),
     }
@@ -118,23 +119,33 @@ def _bodies(found: Fragility) -> Iterator[str]:
         yield line
 
 
-def _headline(fallen: Sequence[Row], unit: str, *, several: bool, few: bool, compares: bool) -> str:
-    """What the page answers: ratios, medians, that nothing overturns, or that motions are too few."""
+def _answers(fallen: Sequence[Row], unit: str, *, several: bool, few: bool, compares: bool) -> Iterator[str]:
+    """Yield what the page answers: ratios, medians, that nothing overturns, or that motions are too few."""
     if few:
         fewest = f"{FEWEST} motions and {FEWEST_LEVELS} levels"
-        return f"Too few for a curve: a median takes at least {fewest}. Counts only."
-    if compares:
+        yield f"Too few for a curve: a median takes at least {fewest}. Counts only."
+    elif compares:
         mean = ", mean of the cylinders" if several else ""
-        return (
+        yield (
             f"Ratios of the median overturning intensity (95 % interval){mean}: "
             "above 1 the first method is unconservative."
         )
-    if curved := [row for row in fallen if row["kind"] == FITTED]:
+    elif curved := [row for row in fallen if row["kind"] == FITTED]:
         medians = (f"{_interval(row, 'median', '.3g')} by {_method(row, several)}" for row in curved)
-        return f"Median overturning intensity [{unit}] (95 % interval): {'; '.join(medians)}."
-    if fallen and not any(row["exceeded"] for row in fallen):
-        return "Nothing overturns at these intensities."
-    return ""
+        yield f"Median overturning intensity [{unit}] (95 % interval): {'; '.join(medians)}."
+    elif fallen and not any(row["exceeded"] for row in fallen):
+        yield "Nothing overturns at these intensities."
+
+
+def _notes(found: Fragility, *, few: bool) -> Iterator[str]:
+    """Yield how curves and intervals are made, and what a wall may hide."""
+    if not few:
+        yield (
+            f"Lognormal curves by maximum likelihood; 95 % intervals by {found.facts['resamples']} resamples "
+            "of the motions, the same for every method."
+        )
+    if any(each["support"] in _WALLED for each in found.facts["methods"].values()):
+        yield "A cylinder that rests on a wall beyond its balance at the end counts as overturned."
 
 
 def _bounds_of_medians(fallen: Sequence[Row], unit: str, *, several: bool) -> Iterator[str]:

@@ -9,6 +9,7 @@ from rockwobble.compare import Fragility
 from rockwobble.compare.studies.fragility.risk import FAR, TARGET
 
 from ..figures.risk import risk_pictures
+from .table import number
 
 _UNIT = 1e4  # frequencies in 1e-4 a year
 _FEWEST = 3  # motions that overturn, of which resamples make an interval
@@ -31,6 +32,7 @@ def risk_values(found: Fragility) -> dict[str, object] | None:
         "main": [{**row, "words": _words(row)} for row in rows if row["method"] == reference],
         "reference": reference,
         "remarks": _remarks(rows),
+        "dispersion": _dispersion(found.facts["hazard"]["total_dispersion"]),
         "pictures": [picture.name for picture in risk_pictures(found)],
     }
 
@@ -45,6 +47,11 @@ def _words(row: dict[str, Any]) -> str:
         f"overturned {rate:.2g} times a year ({low:.2g} to {high:.2g}), once in {1.0 / rate:,.0f} years; "
         f"{verdict} a target of {TARGET:g} a year."
     )
+
+
+def _dispersion(total: float | None) -> str:
+    """The dispersion that was given for the curves, in place of that of the motions; empty of none."""
+    return f". The total dispersion of the lognormal curves is {number(total)}" if total else ""
 
 
 def _remarks(rows: list[dict[str, Any]]) -> list[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rockwobble.models.case import REDUCED
 
-from .cases import conditions
+from .cases import conditions, source_lines
 from .diagnostics import warnings
 
 if TYPE_CHECKING:
@@ -51,6 +51,7 @@ _FILTERS = {
     "degrees": math.degrees,
     "warnings": warnings,
     "conditions": conditions,
+    "sources": source_lines,
 }
 
 

@@ -1,20 +1,68 @@
-"""Values for the page of a sweep: its words are in the template runs/sweep.md.j2."""
+"""The page of a sweep: what was run, and what became of each part of it."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from rockwobble.compare import Sweep
 
 from ..figures.sweep import pictures
+from .cases import conditions
 from .page import Page
+from .table import number
+
+# columns that tell the parts of a grid apart, and those of a suite of cases
+_OF_GRID = (("motion", "ground motion", "words"), ("model", "model", "words"), ("tan_alpha", "tan α"))
+_OF_CASES = (("run", "run", "words"),)
 
 
 def page_of(found: Sweep) -> Page:
     """Return the page of a sweep."""
+    plan, grid = found.facts, "model" in found.table
     values = {
-        "plan": found.facts,
-        "grid": "model" in found.table,
+        "plan": plan,
+        **(_of_grid(plan) if grid else _of_cases(plan)),
         "parts": found.summary().to_dict("records"),
-        "outcomes": found.outcomes,
+        "columns": [
+            *(_OF_GRID if grid else _OF_CASES),
+            ("runs", "runs", "d"),
+            *((outcome, outcome, "d") for outcome in found.outcomes),
+            ("no_uplift", "did not uplift", "d"),
+            ("median", "median [α]", ".3f"),
+            ("largest", "largest [α]", ".3f"),
+        ],
         "about": found.manifest,
     }
     return Page(name="sweep", template="runs/sweep", values=values, pictures=pictures(found))
+
+
+def _of_grid(plan: Mapping[str, Any]) -> dict[str, object]:
+    sizes, slendernesses, scales = (plan[name] for name in ("semidiagonals", "tan_alphas", "scales"))
+    motions = _counted(len(plan["motions"]), "ground motion")
+    return {
+        "size": f"{_counted(plan['runs'], 'run')} from rest, without sliding.",
+        "axes": [
+            f"{_counted(len(plan['models']), 'model')}: {', '.join(plan['models'])}",
+            f"{_counted(len(sizes), 'size')}: R = {_span(sizes)} m",
+            f"{_counted(len(slendernesses), 'slenderness', 'es')}: tan α = {_span(slendernesses)}",
+            f"{motions} at {_counted(len(scales), 'scale')}: {_span(scales)}",
+        ],
+        "conditions": conditions(plan.get("options", plan)),
+    }
+
+
+def _of_cases(plan: Mapping[str, Any]) -> dict[str, object]:
+    """A suite of cases, of which each has conditions of its own."""
+    cases, runs = _counted(len(plan["cases"]), "case"), _counted(len(plan["runs of each"]), "run")
+    size = f"{_counted(plan['runs'], 'run')}: {cases}, {runs} of each."
+    return {"size": size, "axes": [], "conditions": []}
+
+
+def _counted(count: int, what: str, ending: str = "s") -> str:
+    return f"{count:,d} {what}{'' if count == 1 else ending}"
+
+
+def _span(values: Sequence[float]) -> str:
+    least, largest = number(min(values)), number(max(values))
+    return f"{least} to {largest}" if len(values) > 1 else least

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 from pathlib import Path
 
@@ -17,8 +18,8 @@ from rockwobble.compare.studies.ensemble import KIND, ensemble_of
 from rockwobble.models import Run
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.figures.ensemble import pictures, ratio_span, ratio_ticks
-from rockwobble.reports.figures.picture import Line, Text
+from rockwobble.reports.figures.ensemble import pictures, ratio_span
+from rockwobble.reports.figures.picture import Line, Text, log_ticks
 from rockwobble.reports.pages import stored_page
 from rockwobble.reports.pages.ensemble import page_of
 from rockwobble.reports.pages.page import Page
@@ -78,6 +79,14 @@ def said(found: Ensemble, width: int = 100_000) -> str:
     console = Console(file=io.StringIO(), width=width, force_terminal=True, no_color=True)
     page_of(found.made_by("rockwobble ensemble")).show(console)
     return " ".join(console.file.getvalue().split())  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(("count", "sizes"), [(1, "2"), (3, "2 to 9")])
+def test_sizes_of_the_members_are_a_number_or_a_range(count, sizes):
+    found = made_up()
+    facts = {**found.facts, "semidiagonal": {"from": 2.0, "to": 9.0, "count": count}}
+    words = page_of(dataclasses.replace(found, facts=facts).made_by()).markdown()
+    assert f"R = {sizes} m," in words
 
 
 def test_tables_say_what_overturns_instead_of_its_tilt():
@@ -147,10 +156,10 @@ def test_the_picture_marks_who_overturns_by_one_method_alone():
 def test_the_axis_of_ratios_is_as_long_on_both_sides():
     low, high = ratio_span(np.log([1.2, 1.1, np.inf]))
     assert low < 1.0 / 1.2 < 1.2 < high == pytest.approx(1.0 / low)
-    ticks = ratio_ticks(low, high)
+    ticks = log_ticks(low, high)
     assert 1.0 in ticks
     assert low <= min(ticks) < max(ticks) <= high
-    assert ratio_ticks(0.07, 14.0) == [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0]
+    assert log_ticks(0.07, 14.0) == [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0]
 
 
 @pytest.mark.parametrize(("columns", "details"), [(300, True), (80, False)])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from rockwobble.compare.studies.fragility.tables import margin_of
 from rockwobble.reports.figures.fragility import pictures
 from rockwobble.reports.pages import page_of
 from rockwobble.reports.pages.fragility import fragility_values
+from rockwobble.reports.pages.risk import risk_values
 
 
 @pytest.fixture(scope="module")
@@ -167,3 +169,13 @@ def test_what_bounds_a_median_is_said(kind: str, exceeded: int, why: str) -> Non
     values: Any = fragility_values(dataclasses.replace(found, tables={**found.tables, "fits": fits}))
     (line,) = [each for each in values["undetermined"] if "recess model" in each]
     assert line.endswith(f", {why}.")
+
+
+@pytest.mark.parametrize(
+    ("total", "words"), [(None, ""), (0.45, ". The total dispersion of the lognormal curves is 0.45")]
+)
+def test_a_dispersion_that_was_given_for_the_curves_is_stated(total, words):
+    published = Fragility.load(Path(__file__).parents[2] / "reports" / "published" / "risk" / "p695")
+    hazard = {**published.facts["hazard"], "total_dispersion": total}
+    values: Any = risk_values(dataclasses.replace(published, facts={**published.facts, "hazard": hazard}))
+    assert values["dispersion"] == words

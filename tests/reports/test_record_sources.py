@@ -11,6 +11,7 @@ import pytest
 import rockwobble as rw
 from rockwobble.models import Case, Cylinder, Run, Suite, Trace, read_record, read_suite
 from rockwobble.reports.cli.main import main
+from rockwobble.reports.pages.cases import source_lines
 
 STEP, COUNT = 0.01, 60
 LABELS = ("Ost", "Nord")
@@ -34,6 +35,13 @@ def record(tmp_path: Path) -> Path:
     path = tmp_path / "station 12.csv"
     path.write_text("\n".join([f"Zeit [s],{LABELS[1]} [gal],{LABELS[0]} [gal]", *rows]) + "\n")
     return path
+
+
+@pytest.mark.parametrize(("count", "last"), [(12, "Record: 11"), (13, "and 1 records more, in a table")])
+def test_the_first_sources_are_listed_and_the_others_counted(count: int, last: str) -> None:
+    lines = source_lines([str(place) for place in range(count)], "in a table")
+    assert lines[:12] == [f"Record: {place}" for place in range(12)]
+    assert (len(lines), lines[-1]) == (count, last)
 
 
 def test_a_suite_gives_each_option_to_the_reader(tmp_path: Path, record: Path) -> None:

@@ -18,6 +18,7 @@ from rockwobble.compare.runs import execution
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, WobblingFrame, read_suite
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.cli.suite_choice import chosen_runs
+from rockwobble.reports.figures.case_view import own_rows
 from rockwobble.reports.pages import comparison as report
 from rockwobble.reports.pages.cases import case_lines, group_of
 from rockwobble.reports.pages.page import Page
@@ -238,7 +239,16 @@ def test_the_page_of_many_cases_stays_small_and_draws_one_at_a_time(no_engines, 
     made = rw.comparison(one, runs=runs, workers=1)
     # with as many points for six cases as 44 would get, all of them would fit
     monkeypatch.setattr(report, "_ALL_POINTS", report._ALL_POINTS * CASES // 44)
-    page = report.page_of(_repeated(made, CASES)).html()
+    many = _repeated(made, CASES)
+    summary = many.summary.assign(left_tolerance=many.summary.index % 2 == 1)
+    rows = len(own_rows(summary))
+    agree = int((~own_rows(summary)["left_tolerance"]).sum())
+    for outcome, failed in (("stands", ""), ("failed", f"; {rows} failed")):
+        other = dataclasses.replace(many, tables={**many.tables, "summary": summary.assign(outcome=outcome)})
+        words = " ".join(report.page_of(other).markdown().split())
+        assert f"**{agree} of {rows} runs stay within 1 % of alpha" in words
+        assert f"of the model of their support to the end{failed}.**" in words
+    page = report.page_of(many).html()
     assert page.count("<template id=") == CASES
     assert page.count('class="chart"') >= CASES * 4
     assert 44 * len(page.encode()) / CASES < PAGE_LIMIT
