@@ -42,7 +42,7 @@ from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,6 +107,21 @@ class EngineFacts(Brief):
     alternatives: Mapping[str, Settings] = field(default_factory=lambda: _NOTHING)
     standing_alternatives: Mapping[str, Settings] = field(default_factory=lambda: _NOTHING)
 
+
+class _Term(NamedTuple):
+    """A term of a case that an engine may have; a case with one is refused by an engine without."""
+
+    fact: str  # the field of `EngineFacts` that says whether an engine has it
+    words: str
+    none: str  # value of a case without it
+    unit: str = ""
+
+
+# by their field in a case; any other is refused by every engine
+TERMS_OF_ENGINES = {
+    "tendon": _Term("tendons", "tendon", "None"),
+    "rolling_resistance": _Term("rolling_friction", "rolling friction", "0", " m"),
+}
 
 MEMBERS = ("supports", "uplifts", "facts", "version", "settings", "open")  # of an Engine
 

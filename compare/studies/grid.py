@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
 from rockwobble.models.argument_kinds import with_argument_kinds
+from rockwobble.models.case import TERMS
 from rockwobble.models.doubts import doubts_about
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import Brief
@@ -105,7 +106,7 @@ class GridChunk:
         column = Cylinder(semidiagonal=float(size), tan_alpha=self.tan_alpha)
         ratio = options.pop("slab_mass_ratio", 0.0)
         cylinder = WobblingFrame(column, ratio) if ratio else column
-        stated = {name: options.pop(name) for name in ("gravity", "tendon") if name in options}
+        stated = {name: options.pop(name) for name in ("gravity", *TERMS) if name in options}
         case = Case(cylinder, self.motion.scaled(float(scale)), **stated)
         return reduced.simulate(case, **{"rtol": _RTOL, **options}).outcome
 

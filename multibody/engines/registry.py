@@ -15,12 +15,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, cast
 
 from rockwobble.models import Case
 from rockwobble.models.support import SUPPORTS
 
-from ..protocol import MEMBERS, Engine, EngineFacts
+from ..protocol import MEMBERS, TERMS_OF_ENGINES, Engine, EngineFacts
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -228,20 +228,6 @@ def engine_for(case: Case, name: str, support: str) -> Engine:
     return engine
 
 
-class _Term(NamedTuple):
-    fact: str  # the field of `EngineFacts` that says whether an engine has it
-    words: str
-    none: str  # value of a case without it
-    unit: str = ""
-
-
-# the terms of a case that an engine may have; any other is refused
-_TERMS = {
-    "tendon": _Term("tendons", "tendon", "None"),
-    "rolling_resistance": _Term("rolling_friction", "rolling friction", "0", " m"),
-}
-
-
 def _require_able(engine: Engine, name: str, case: Case, support: str) -> None:
     supports = engine.supports
     if support not in supports:
@@ -257,7 +243,7 @@ def _require_able(engine: Engine, name: str, case: Case, support: str) -> None:
             f"{name} cannot uplift a cylinder that stands: give a release with a tilt, got a start at rest"
         )
     for term, value in case.terms.items():
-        known = _TERMS.get(term)
+        known = TERMS_OF_ENGINES.get(term)
         if known is None:
             raise ValueError(f"{name} knows no {term}, got {value!r}")
         if not getattr(engine.facts, known.fact):

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import numpy as np
 import pytest
 
 import rockwobble as rw
 from rockwobble.compare.runs.execution import case_inputs
 from rockwobble.compare.storage.provenance import fingerprint
+from rockwobble.compare.studies.plans import SpectrumPlan
+from rockwobble.compare.studies.spectrum import parts
 from rockwobble.models import case as case_module
 from rockwobble.multibody.engines.registry import engine_for, engine_named, engine_names
 from rockwobble.reports.pages.cases import conditions
@@ -78,3 +81,35 @@ def test_a_page_states_a_term_that_it_has_no_words_for(monkeypatch: pytest.Monke
     monkeypatch.setattr(case_module, "TERMS", (*case_module.TERMS, "pad_stiffness"))
     assert conditions({"pad_stiffness": 0.25}) == ["Pad stiffness: 0.25"]
     assert conditions({"pad_stiffness": 0.0}) == []
+
+
+@dataclass(frozen=True, kw_only=True)
+class PaddedPlan(SpectrumPlan):
+    """Options of a spectrum with a term that nothing knows."""
+
+    pad_stiffness: float = 0.0
+
+
+def test_the_digest_of_a_part_of_a_spectrum_tells_a_new_term(monkeypatch: pytest.MonkeyPatch) -> None:
+    def key(plan: SpectrumPlan) -> str:
+        part = parts.SpectrumPart(
+            series="recess",
+            places=(0,),
+            semidiagonals=np.array([6.0]),
+            levels=np.array([1.0]),
+            unit=1.0,
+            start=1.0,
+            tan_alpha=0.2,
+            motion=rw.GroundMotion(np.zeros((2, 2)), 0.1),
+            plan=plan,
+        )
+        return part.key()
+
+    before = key(SpectrumPlan())
+    assert (
+        len({before, key(SpectrumPlan(rolling_resistance=0.01)), key(SpectrumPlan(tendon_stiffness=1.0))})
+        == 3
+    )
+    monkeypatch.setattr(parts, "TERMS", (*parts.TERMS, "pad_stiffness"))
+    assert key(SpectrumPlan()) == before
+    assert key(PaddedPlan(pad_stiffness=0.25)) != key(PaddedPlan())

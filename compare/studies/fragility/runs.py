@@ -217,9 +217,8 @@ class Task:
             workers=1,  # the processes share the cores already
             gravity=case.gravity,
             slab_mass_ratio=cylinder.slab_mass_ratio,
-            rolling_resistance=case.rolling_resistance,
-            tendon=case.tendon,
             support=self.run.support,
+            **case.terms,
             **{"rtol": _RTOL, **self.run.settings},
         )[0]
         return [

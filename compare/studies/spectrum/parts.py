@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.models import GroundMotion
+from rockwobble.models.case import TERMS
 from rockwobble.models.cpus import usable_cpus
 
 from ...storage.provenance import reduced_makers, result_fingerprint
@@ -94,8 +95,8 @@ class SpectrumPart:
     def key(self) -> str:
         """Return what identifies its result."""
         plan, motion = self.plan, self.motion
-        of_body = ("slab_mass_ratio", "rolling_resistance", "tendon")
-        named = ("gravity", *of_body, "support", "search_step", "probes")
+        terms = (name for name in TERMS if hasattr(plan, name))
+        named = ("gravity", "slab_mass_ratio", *terms, "support", "search_step", "probes")
         return result_fingerprint(
             {name: getattr(plan, name) for name in named}
             | {name: getattr(self, name) for name in ("series", "semidiagonals", "levels", "unit", "start")}
