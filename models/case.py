@@ -15,7 +15,7 @@ from .argument_kinds import in_words, with_argument_kinds
 from .bounds import OVERTURNED_TILT, Bounds
 from .cylinder import RockingBody
 from .ground_motion import GroundMotion
-from .number_checks import quoted, require_finite, require_positive
+from .number_checks import quoted, require_finite, require_not_negative, require_positive
 from .shown import Brief, brief, line
 from .support import EXTERNAL, FLAT, MODELLED, RECESS, Support, support_named
 from .tendon import Tendon
@@ -129,9 +129,7 @@ class Case:
             if not (isinstance(given, kind) or (given is None and name != "cylinder")):
                 raise ValueError(f"{name} must be {in_words(kind)}, got {quoted(given)}")
         object.__setattr__(self, "gravity", require_positive("gravity", self.gravity, "m/s^2"))
-        object.__setattr__(self, "friction", require_finite("friction", self.friction, ""))
-        if self.friction < 0.0:
-            raise ValueError(f"friction must not be negative, got {self.friction!r}")
+        object.__setattr__(self, "friction", require_not_negative("friction", self.friction))
         length = require_finite("rolling_resistance", self.rolling_resistance, "m")
         object.__setattr__(self, "rolling_resistance", length)
         if not 0.0 <= length < self.cylinder.base_radius:

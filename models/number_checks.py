@@ -24,6 +24,14 @@ def require_positive(name: str, value: object, unit: str = "") -> float:
     return number
 
 
+def require_not_negative(name: str, value: object, unit: str = "") -> float:
+    """Return `value` as a float, or raise ValueError unless it is finite and 0 or more."""
+    number = require_finite(name, value, unit)
+    if number < 0.0:
+        raise ValueError(f"{name} must not be negative{_in(unit)}, got {quoted(value)}")
+    return number
+
+
 def require_finite(name: str, value: object, unit: str) -> float:
     """Return `value` as a float, or raise ValueError unless it is a finite real number."""
     try:

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import math
+from numbers import Integral
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .argument_kinds import with_argument_kinds
 from .ground_motion import GroundMotion
-from .number_checks import require_finite, require_one_of, require_positive
+from .number_checks import (
+    require_finite,
+    require_in_range,
+    require_not_negative,
+    require_one_of,
+    require_positive,
+)
 from .record_source import PULSE, SYNTHETIC, source_of_samples
 
 # name: periods that it lasts; the rest is still ground
@@ -58,8 +65,7 @@ def pulse(
     amplitude = require_positive("amplitude", amplitude, "m/s^2")
     period = require_positive("period", period, "s")
     azimuth = require_finite("azimuth", azimuth, "rad")
-    if require_finite("start", start, "s") < 0.0:
-        raise ValueError(f"start must not be negative [s], got {start!r}")
+    require_not_negative("start", start, "s")
     if start > MOST_STILL * period / SAMPLES_PER_PERIOD:
         raise ValueError(f"start must leave at most {MOST_STILL:g} samples of still ground, got {start!r} s")
     count = round(SAMPLES_PER_PERIOD * _LENGTHS[kind])
@@ -115,8 +121,7 @@ def synthetic_motions(count: int, *, peak: float, seed: int, duration: float = 2
     >>> [round(motion.peak, 6) for motion in motions]
     [4.0, 4.0, 4.0]
     """
-    if count < 1:
-        raise ValueError(f"count must be at least 1, got {count!r}")
+    require_in_range("count", count, Integral, least=1)
     require_positive("peak", peak, "m/s^2")
     require_positive("duration", duration, "s")
     size = round(duration / _TIME_STEP) + 1

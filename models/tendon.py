@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from .cylinder import RockingBody
-from .number_checks import require_finite, require_positive
+from .number_checks import require_finite, require_not_negative, require_positive
 from .shown import Brief
 
 
@@ -50,9 +50,7 @@ class Tendon(Brief):
 
     def __post_init__(self) -> None:
         for name in ("prestress", "stiffness"):
-            value = require_finite(name, getattr(self, name), "")
-            if value < 0.0:
-                raise ValueError(f"{name} of a tendon must not be negative, got {value!r}")
+            value = require_not_negative(f"{name} of a tendon", getattr(self, name))
             object.__setattr__(self, name, value)
         if self.yield_force is not None:
             force = require_positive("yield_force", self.yield_force)

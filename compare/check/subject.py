@@ -14,6 +14,7 @@ import numpy as np
 from rockwobble import reduced
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.case import TimeStep
+from rockwobble.models.number_checks import require_in_range
 from rockwobble.models.shown import Brief
 from rockwobble.models.support import MODELLED, RECESS
 from rockwobble.multibody.engines.registry import engine_facts, find_engine
@@ -317,8 +318,7 @@ def load_model(name: str) -> Callable[[Case, str], object]:
 def _require(support: str, tolerance: float) -> None:
     if support not in MODELLED:
         raise ValueError(f"support must be {' or '.join(map(repr, MODELLED))}, got {support!r}")
-    if not 0.0 < tolerance < 1.0:
-        raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")
+    require_in_range("tolerance", tolerance, above=0.0, below=1.0)
 
 
 def _with_memory(source: Simulate) -> Simulate:

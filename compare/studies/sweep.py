@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from numbers import Integral
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import RECESS_MODEL
 from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.doubts import doubts_of_cases
+from rockwobble.models.number_checks import require_in_range
 from rockwobble.models.plain_json import fields_of, plain
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.trace_file import case_facts
@@ -263,8 +265,8 @@ def sweep(
     Sweep(runs 2, stands 2)
     """
     whole = plan if isinstance(plan, Grid) else runnable_suite(plan)
-    if chunk_size is not None and chunk_size < 1:
-        raise ValueError(f"chunk_size must be at least 1, got {chunk_size!r}")
+    if chunk_size is not None:
+        require_in_range("chunk_size", chunk_size, Integral, least=1)
     chunks: list[Chunk] = (
         [*whole.chunks(chunk_size)] if isinstance(whole, Grid) else [*chunks_of(whole, chunk_size)]
     )

@@ -219,7 +219,7 @@ def test_a_damaged_chunk_runs_again(tmp_path, where):
         (lambda: sweep([STANDING, STANDING]), "got 'a' twice"),
         (lambda: sweep(Suite([STANDING], [Run(None, "recess")] * 2)), "got 'recess model' twice"),
         (lambda: sweep(Suite([STANDING], [Run("mujoco", "glued")])), "got 'glued'"),
-        (lambda: sweep(grid(), chunk_size=0), "chunk_size must be at least 1"),
+        (lambda: sweep(grid(), chunk_size=0), "chunk_size must be a whole number, at least 1"),
         (
             lambda: grid(semidiagonals=[*range(1, 20_001)], scales=[*range(20_000)]),
             "at most 100,000,000 runs",
