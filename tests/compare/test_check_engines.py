@@ -21,6 +21,16 @@ SLOW = 1e-4  # [s] of a step
 ENGINES = {name: engine(name) for name in available_engines()}
 
 
+# of the groups that a slow engine is not asked, what any engine must do
+CONTRACT = tuple(
+    each
+    for group in ("rest", "invariance")
+    for each in GROUPS[group]
+    if each.measure in (laws.stands, laws.falls, invariance.frame)
+)
+ASKED = {**GROUPS, "contract": CONTRACT}
+
+
 def asked_of(name: str) -> tuple[str, ...]:
     """Groups that an engine is asked here: a step of some takes ten times as long as one of others."""
     if name in standard_engines():
@@ -29,7 +39,7 @@ def asked_of(name: str) -> tuple[str, ...]:
     return (
         ("exact", "rest", "invariance", "protocol", "agreement")
         if quick
-        else ("exact", "protocol", "agreement")
+        else ("exact", "protocol", "agreement", "contract")
     )
 
 
@@ -42,7 +52,7 @@ def test_an_engine_that_is_installed_holds(name: str, group: str, monkeypatch: p
     # tried by `tests/benchmarks version_figures`
     monkeypatch.setattr(laws, "DIRECTIONS", 5)
     monkeypatch.setattr(laws, "SLENDERNESS", (0.1, 1.0))
-    subject, chosen = ENGINES[name], GROUPS[group]
+    subject, chosen = ENGINES[name], ASKED[group]
     if name not in standard_engines():  # with its first support, and of the agreement what `check` asks of it
         subject = dataclasses.replace(subject, supports=subject.supports[:1])
         chosen = chosen[:1] if group == "agreement" else chosen
@@ -104,7 +114,12 @@ def changed(field: str, change: Any) -> Subject:
         (laws.uplift, "uplift_time", lambda value: value + 1e-3),
         (laws.uplift, "uplift_direction", lambda value: -value),
         (laws.slip, "slip", lambda values: values + 1e-2),
+        (laws.stands, "tilt", lambda values: values + 1e-4),
+        (laws.falls, "outcome", lambda _: "stands"),
+        (laws.falls, "time", lambda values: values[::-1]),
         (invariance.time_grid, "time", lambda values: values + 1e-6),
+        (invariance.time_grid, "tilt", lambda values: 1.00001 * values),
+        (invariance.time_grid, "rolling_rate", lambda values: 1.00001 * values),
     ],
 )
 def test_a_wrong_field_is_found(measure: Any, field: str, change: Any) -> None:
