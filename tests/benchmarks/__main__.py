@@ -33,6 +33,7 @@ SCRIPTS = (
     "rolling_losses",
     "run_overhead",
     "scene_cost",
+    "slider_moves",
     "speed",
     "step_errors",
     "sweep_overhead",
