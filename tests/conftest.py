@@ -16,19 +16,36 @@ def pytest_configure() -> None:
 
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Share the models out to the workers to compile, so that on a fresh installation no two do the same."""
-    given = getattr(session.config, "workerinput", None)
-    if given is None:
-        return
-    from rockwobble.reduced.kernels import INTEGRATORS
     from rockwobble.reduced.simulation import make_ready
 
-    worker, count = int(given["workerid"].removeprefix("gw")), given["workercount"]
-    for place, model in enumerate(INTEGRATORS):  # to and fro: what comes first takes longest
-        turn = place % (2 * count)
-        if worker == min(turn, 2 * count - 1 - turn):
-            make_ready(model)
+    for model in models_of_worker(session):
+        make_ready(model)
 
 
-def pytest_collection_finish() -> None:
-    """Leave out of the garbage collector's rounds what stays until the end: libraries and tests."""
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Compile what tests of tendons need, and leave out of the garbage collector what stays until the end."""
+    if any(hasattr(getattr(item, "module", None), "Tendon") for item in session.items):
+        from rockwobble import reduced
+        from rockwobble.models import Case, Cylinder, InitialState, Tendon
+
+        body = Cylinder(semidiagonal=1.0, tan_alpha=0.2)
+        initial, tendon = InitialState(0.5 * body.alpha), Tendon(prestress=0.1)
+        for model in models_of_worker(session):
+            resistance = 0.01 * body.base_radius if model.startswith("resisted") else 0.0
+            case = Case(body, initial=initial, duration=0.01, tendon=tendon, rolling_resistance=resistance)
+            if not model.endswith("flat"):  # on which a tendon is known to engines alone
+                reduced.simulate(case, plane=0.0 if model.endswith("planar") else None)
     gc.freeze()
+
+
+def models_of_worker(session: pytest.Session) -> list[str]:
+    """Return the models that are this worker's to compile; none where there is one process."""
+    given = getattr(session.config, "workerinput", None)
+    if given is None:
+        return []
+    from rockwobble.reduced.kernels import INTEGRATORS
+
+    worker, count = int(given["workerid"].removeprefix("gw")), given["workercount"]
+    # to and fro: what comes first takes longest
+    turns = {model: place % (2 * count) for place, model in enumerate(INTEGRATORS)}
+    return [model for model, turn in turns.items() if worker == min(turn, 2 * count - 1 - turn)]

@@ -384,9 +384,10 @@ PULSE = synthetic_motions(1, peak=4.0, seed=3, duration=8.0)[0]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("motion", [SHORT, PULSE], ids=["el_centro", "synthetic"])
-@pytest.mark.parametrize("body", [PIER, WobblingFrame(PIER, 0.5)], ids=["alone", "deck"])
-def test_no_demand_falls_where_the_record_is_scaled_up(motion, body, monkeypatch):
+@pytest.mark.parametrize(
+    ("body", "motion"), [(PIER, PULSE), (WobblingFrame(PIER, 0.5), SHORT)], ids=["alone", "deck"]
+)
+def test_no_demand_falls_where_the_record_is_scaled_up(body, motion, monkeypatch):
     """With all other records, of six the largest is chance; what has no part in demands is left out."""
     monkeypatch.setattr(study, "other_records", other_records)
     monkeypatch.setattr(study, "planar_runs", lambda *_: pd.DataFrame())
@@ -394,8 +395,8 @@ def test_no_demand_falls_where_the_record_is_scaled_up(motion, body, monkeypatch
     monkeypatch.setattr(study, "scan_scales", lambda *_: nothing)
     monkeypatch.setattr(study, "scan_as_strong", lambda *_: pd.DataFrame(columns=["factor", "peak_tilt"]))
     largest: dict[str, float] = {}
-    for scale in np.linspace(0.1, 2.0, 10):
-        found = advise(Case(body, motion.scaled(float(scale))), copies=20).demands
+    for scale in (0.3, 0.6, 1.0, 1.4, 2.0):
+        found = advise(Case(body, motion.scaled(scale)), copies=20).demands
         demands = dict(zip(found["demand"], found["value"], strict=True))
         acts_within_its_rows(found)
         for name, value in largest.items():

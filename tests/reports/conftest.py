@@ -14,7 +14,9 @@ from rockwobble.compare import Comparison
 from rockwobble.compare.comparison import driver
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
+from rockwobble.compare.studies.advice import scales
 from rockwobble.models import Case, Cylinder, Run, Trace, el_centro_1940
+from rockwobble.models.records import p695
 
 RESOLUTION = 2e-5  # [rad]
 
@@ -64,6 +66,13 @@ def comparison() -> Comparison:
         # no engine runs, so none needs to be installed: PyBullet is not everywhere
         patch.setattr(driver, "require_runnable", lambda case, run: None)
         return rw.comparison(case, runs=runs)
+
+
+@pytest.fixture
+def six_records(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Six other records in each advice, and two intensities in a plane: all take most of its time."""
+    monkeypatch.setattr(p695, "PAIRS", 6)
+    monkeypatch.setattr(scales, "PLANAR_SCALES", (1.0, 2.0))
 
 
 @pytest.fixture

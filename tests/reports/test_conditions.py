@@ -61,14 +61,26 @@ def an_advice(options: dict[str, Any]) -> Results:
 
 
 STUDIES = (a_fragility, a_sweep, a_spectrum, an_ensemble, an_advice)
-# a grid has no resistance
-ASKED = [(each, name) for each in STUDIES for name in STATED if (each, name) != (a_sweep, "resistance")]
+# an advice takes long: it is asked of a frame with a tendon at once; a grid has no resistance
+BOTH = ({**STATED["slab"][0], **STATED["tendon"][0]}, [*STATED["slab"][1], *STATED["tendon"][1]])
+ASKED = [
+    *(
+        (each, *STATED[name])
+        for each in STUDIES[:-1]
+        for name in STATED
+        if (each, name) != (a_sweep, "resistance")
+    ),
+    (an_advice, *BOTH),
+    (an_advice, *STATED["resistance"]),
+]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("study", "condition"), ASKED)
-def test_a_page_states_them(study: Callable[[dict[str, Any]], Results], condition: str) -> None:
-    options, words = STATED[condition]
+@pytest.mark.usefixtures("six_records")
+@pytest.mark.parametrize(("study", "options", "words"), ASKED)
+def test_a_page_states_them(
+    study: Callable[[dict[str, Any]], Results], options: dict[str, float], words: list[str]
+) -> None:
     text = page_of(study({"gravity": 3.75, **options}).made_by("rockwobble")).markdown()
     for each in [*words, "ravity", "3.75 m/s²"]:
         assert each in text, each

@@ -106,7 +106,7 @@ def test_a_support_that_only_it_has_is_refused_for_it(damaged, monkeypatch, caps
 
 
 @pytest.mark.slow
-def test_advice_goes_without_its_engine_and_says_so(damaged, in_this_process, capsys):
+def test_advice_goes_without_its_engine_and_says_so(damaged, in_this_process, six_records, capsys):
     assert call("advise", "--copies", "20") == 0
     captured = capsys.readouterr()
     said = [line for line in captured.err.splitlines() if "does not load" in line]

@@ -33,6 +33,7 @@ def test_every_command_that_writes_knows_overwrite() -> None:
 
 
 GRID = ("sweep", "--semidiagonal", "1,2", "--scale", "1", "--workers", "1")
+COARSE = ("--search-step", "0.5", "--probes", "0")
 # each with options of another plan
 PLANS = {
     "sweep": (GRID, (*GRID[:2], "1,3", *GRID[3:])),
@@ -42,8 +43,8 @@ PLANS = {
         ("ensemble", "--engine", "none", "--copies", "3", *SHORT),
     ),
     "spectrum": (
-        ("spectrum", "--semidiagonal", "1,20", "--intensity", "1,4", "--probes", "9"),
-        ("spectrum", "--semidiagonal", "1,20", "--intensity", "1,5", "--probes", "9"),
+        ("spectrum", "--semidiagonal", "1,20", "--intensity", "1,4", *COARSE),
+        ("spectrum", "--semidiagonal", "1,20", "--intensity", "1,5", *COARSE),
     ),
 }
 

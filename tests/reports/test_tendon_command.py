@@ -169,6 +169,7 @@ SIZE = {
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("command", ONE)
 def test_a_study_of_one_body_takes_the_tendon_of_its_drawing(command: str, tmp_path: Path) -> None:
     drawn = rw.Tendon.from_steel(
