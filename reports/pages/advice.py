@@ -35,6 +35,7 @@ from .advised_case import (
     record_lines_of,
     vertical_words,
     wall_lines,
+    weaker_mark,
     weaker_words,
     weight_words,
 )
@@ -88,9 +89,9 @@ def page_of(found: Advice) -> Page:
     reasons = _reasons(found) if grades else {}
     frame, holds = "columns" in facts["cylinder"], support_named(facts["support"])
     values = {
-        **facts,
-        "found": found,
+        "title": f"{facts['case']}: {found.verdict}",
         "about": found.manifest,
+        "moves": found.moves,
         "drawn": [picture.name for picture in drawn],
         "opening": list(opening(found)),
         "case_lines": list(case_lines(found)),
@@ -111,11 +112,11 @@ def page_of(found: Advice) -> Page:
         "together": _together(found),
         "wall": _wall(found),
         "weaker": weaker_words(found),
-        "weaker_mark": "× n: under n times this shaking, as weaker shaking may ask more."
-        if len(found.weaker)
-        else "",
+        "weaker_mark": weaker_mark(found),
         "steps": _steps(found),
         "groups": _groups(found),
+        "perturbation": facts["perturbation"],
+        "seed": facts["seed"],
         "record_lines": list(record_lines_of(found)),
         "closed": CLOSED_TILT,
         "wall_lines": list(wall_lines(found)),

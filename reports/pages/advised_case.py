@@ -140,6 +140,11 @@ def record_lines_of(found: Advice) -> Iterator[str]:
         )
 
 
+def weaker_mark(found: Advice) -> str:
+    """The meaning of the mark on a demand of weaker shaking; empty where none was run."""
+    return "× n: under n times this shaking, as weaker shaking may ask more." if len(found.weaker) else ""
+
+
 def weaker_words(found: Advice) -> str:
     """The weaker shaking that a demand is of, too; empty without one."""
     if not len(found.weaker):

@@ -10,7 +10,13 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from rockwobble.compare.metrics.statistics import MARGIN
-from rockwobble.compare.studies.validity.criteria import Limits, Verdict, converges_by_record, model_verdict
+from rockwobble.compare.studies.validity.criteria import (
+    Limits,
+    Verdict,
+    clearance_is_unconservative,
+    converges_by_record,
+    model_verdict,
+)
 from rockwobble.compare.studies.validity.plan import Structure
 from rockwobble.models.support import RECESSES_FIRST
 
@@ -104,6 +110,13 @@ def _single_records(records: Mapping[str, float]) -> str:
         "The peak of one record is another matter: by point, one record in twenty exceeds the model's by a "
         f"factor of more than\n{', '.join(strays)}{alone}."
     )
+
+
+def clearance_words(limits: Limits) -> str:
+    """Whether the model is safe for a recess with clearance; empty where it is, or too few records know."""
+    if not clearance_is_unconservative(limits):
+        return ""
+    return "A recess with clearance is another system, and the model is not on the safe side of it."
 
 
 def requirements(limits: Limits) -> Iterator[Row]:

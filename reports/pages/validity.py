@@ -8,9 +8,6 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.studies.validity.criteria import (
-    clearance_is_unconservative,
-)
 from rockwobble.compare.studies.validity.limits import cells, contrasts, damping, limits_of, needs
 from rockwobble.compare.studies.validity.plan import LARGEST_PEAK
 from rockwobble.compare.studies.validity.shaken import FREE, INTENSITY
@@ -20,6 +17,7 @@ from rockwobble.models.support import SUPPORTS
 from ..figures.validity import METHODS, has_walls, pictures
 from .limits_in_words import (
     agreement_rows,
+    clearance_words,
     force_findings,
     free_findings,
     record_findings,
@@ -79,10 +77,8 @@ def page_of(found: Validity) -> Page:
     values: dict[str, object] = {
         "limits": limits,
         "scope": list(scope(structure)),
-        "unconservative": ""
-        if slab or not clearance_is_unconservative(limits)
-        else "A recess with clearance is another system, and the model is not on the safe side of it.",
         "verdict": verdict_words(limits),
+        "clearance": "" if slab else clearance_words(limits),
         "requirements": list(requirements(limits)),
         "contrasts": _contrasts(contrasts(tables)),
         "record_findings": list(record_findings(limits, slab=slab)),
