@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,6 +26,7 @@ class Padded(rw.Case):
     pad_stiffness: float = 0.0
 
 
+ROOT = Path(__file__).parents[2]
 PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = rw.InitialState(0.1, rolling_rate=0.4)
 PLAIN = rw.Case(PIER, initial=RELEASE, duration=2.0)
@@ -113,3 +116,14 @@ def test_the_digest_of_a_part_of_a_spectrum_tells_a_new_term(monkeypatch: pytest
     monkeypatch.setattr(parts, "TERMS", (*parts.TERMS, "pad_stiffness"))
     assert key(SpectrumPlan()) == before
     assert key(PaddedPlan(pad_stiffness=0.25)) != key(PaddedPlan())
+
+
+def test_the_places_of_a_term_that_contributing_lists_are_there() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    section = text.split("### A new term of the equations\n")[1].split("\n### ")[0]
+    places = []
+    for cell in re.findall(r"^\| (`[^|]*) \|", section, re.MULTILINE):
+        first, *others = map(Path, re.findall(r"`([^`]+)`", cell))
+        places += [first, *(first.parent / other for other in others)]
+    assert len(places) == 18
+    assert [place for place in places if not (ROOT / place).is_file()] == []

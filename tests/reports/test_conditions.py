@@ -11,7 +11,7 @@ import rockwobble as rw
 from rockwobble.compare.storage.results import Results
 from rockwobble.models import synthetic_motions
 from rockwobble.reports.pages import page_of
-from rockwobble.reports.pages.cases import conditions, describe
+from rockwobble.reports.pages.cases import case_lines, conditions
 
 BODY = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 FRAME = rw.WobblingFrame(BODY, slab_mass_ratio=0.3)
@@ -88,7 +88,7 @@ def test_a_page_states_them(
 
 def test_a_case_in_words_has_them() -> None:
     for options, words in STATED.values():
-        text = "\n".join(describe(case_of({"gravity": 3.75, **options}, MOTIONS[0])))
+        text = "\n".join(case_lines(case_of({"gravity": 3.75, **options}, MOTIONS[0])))
         for each in [*words, "3.75 m/s²"]:
             assert each in text, each
 
