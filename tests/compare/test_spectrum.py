@@ -213,7 +213,8 @@ def test_what_overturns_again_is_confirmed_and_what_stands_is_not(spectrum, monk
     assert not table.loc[(PLANAR_Y, 12.0), "confirmed"]
     # one that a slightly weaker record does not overturn is not
     with monkeypatch.context() as patch:
-        patch.setattr(verification, "NUDGE", 2.0 * spectrum.search_step / spectrum.lowest[SPATIAL][3])
+        nudge = 2.0 * spectrum.search_step / spectrum.lowest[SPATIAL][3]
+        patch.setattr(verification, "CONFIRMING", (1.0, 1.0 - nudge, 1.0 + nudge))
         weaker = confirm_lowest(spectrum).set_index(table.index)
     assert not weaker.loc[(SPATIAL, 12.0), "confirmed"]
     lower = {name: lowest - 2.0 * spectrum.search_step for name, lowest in spectrum.lowest.items()}
