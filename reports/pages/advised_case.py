@@ -52,7 +52,7 @@ def _at_rest(found: Advice) -> str:
     return f"{words}."
 
 
-def case_lines(found: Advice) -> Iterator[str]:
+def problem_lines(found: Advice) -> Iterator[str]:
     """Yield what was asked: cylinder or frame, ground motion or release, support, and what is not usual."""
     facts, cylinder = found.facts, found.cylinder
     if frame := facts["cylinder"] if "columns" in facts["cylinder"] else None:
@@ -129,7 +129,7 @@ def weight_words(found: Advice) -> str:
     return f"{words}; in the rows of the top, of this share alone" if frame else words
 
 
-def record_lines_of(found: Advice) -> Iterator[str]:
+def other_record_lines(found: Advice) -> Iterator[str]:
     """Yield what the other ground motions are, and what they were scaled to."""
     if records := found.facts["records"]:
         measured = "The 22 far-field pairs of FEMA P-695"

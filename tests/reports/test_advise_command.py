@@ -25,7 +25,7 @@ from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages import page, stored_page
 from rockwobble.reports.pages.advice import page_of
-from rockwobble.reports.pages.advised_case import assumptions, case_lines, opening, weight_words
+from rockwobble.reports.pages.advised_case import assumptions, opening, problem_lines, weight_words
 
 PAGE_LIMIT = 2e6  # bytes, of every page
 # lines: an answer, its grades, its numbers, what the recess must carry, the record, and what to do next
@@ -322,7 +322,7 @@ def test_the_case_and_its_assumptions_are_stated_as_they_were_asked(found):
     asked = changed(
         with_columns(found, 3), rolling_resistance=0.012, friction=None, support="flat", mass=45.0
     )
-    lines = list(case_lines(asked))
+    lines = list(problem_lines(asked))
     assert lines[0] == "3 columns under a slab of 0.5 times their mass:"
     assert "Flat ground, friction not given, rolling resistance 0.012 m." in lines
     assert weight_words(asked).startswith("weight of one column with its share of the slab, a mass of 67.5 t")
