@@ -107,6 +107,12 @@ def few_records() -> Iterator[None]:
         yield
 
 
+@pytest.fixture
+def no_records(few_records: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No other record, for what is said of the one that is given."""
+    monkeypatch.setattr(study, "other_records", lambda _: ({}, ""))
+
+
 @pytest.fixture(scope="module")
 def advice(few_records: None) -> Advice:
     return advise(Case(PIER, SHORT), copies=20)
@@ -372,14 +378,6 @@ def test_a_demand_is_the_largest_of_all_groups_and_of_weaker_shaking(advice):
     assert not len(demand_table(rows[:0], PIER, gravity=9.81, support="recess"))
 
 
-@pytest.mark.slow
-def test_a_mass_gives_kilonewtons_of_what_is_carried():
-    frame, mass, gamma = WobblingFrame(PIER, slab_mass_ratio=0.5), 40.0, 0.5
-    members = advise(Case(frame, SHORT), copies=20, mass=mass).demands.set_index("demand")
-    for name, carried in (("shear", 1.0 + gamma), ("top_shear", gamma)):
-        assert members["for_mass"][name] == pytest.approx(9.81 * carried * mass * members["value"][name])
-
-
 PULSE = synthetic_motions(1, peak=4.0, seed=3, duration=8.0)[0]
 
 
@@ -444,8 +442,14 @@ def test_top_and_slab_move_as_the_traces_say():
 
 
 @pytest.mark.slow
-def test_a_frame_has_demands_at_base_and_top():
-    found = advise(Case(WobblingFrame(PIER, slab_mass_ratio=0.5), SHORT, friction=0.15), copies=20)
+def test_a_frame_has_demands_at_base_and_top_and_a_mass_gives_kilonewtons_of_what_is_carried(no_records):
+    mass, gamma = 40.0, 0.5
+    found = advise(
+        Case(WobblingFrame(PIER, slab_mass_ratio=gamma), SHORT, friction=0.15), copies=20, mass=mass
+    )
+    members = found.demands.set_index("demand")
+    for name, carried in (("shear", 1.0 + gamma), ("top_shear", gamma)):
+        assert members["for_mass"][name] == pytest.approx(9.81 * carried * mass * members["value"][name])
     base = ["friction", "shear", "force"]
     assert list(found.demands["demand"])[:6] == [*base, *(f"top_{name}" for name in base)]
     trace = reduced.simulate(Case(WobblingFrame(PIER, slab_mass_ratio=0.5), SHORT, friction=0.15))
@@ -610,7 +614,7 @@ def test_what_only_the_vertical_moves_needs_no_recess() -> None:
 
 
 @pytest.mark.slow
-def test_a_fall_that_the_record_does_not_see_is_a_fall_in_all_that_is_run():
+def test_a_fall_that_the_record_does_not_see_is_a_fall_in_all_that_is_run(no_records):
     time = np.arange(121) * 0.01
     wave = 4.0 * 9.81 * 0.2 * np.sin(2.0 * np.pi * time / 1.2)  # one sine of 4 g tan(alpha) and 1.2 s
 
@@ -637,7 +641,7 @@ def test_a_fall_that_the_record_does_not_see_is_a_fall_in_all_that_is_run():
 
 
 @pytest.mark.slow
-def test_a_run_cut_short_ends_when_asked_unless_it_falls():
+def test_a_run_cut_short_ends_when_asked_unless_it_falls(no_records):
     fallen = advise(case(4.0, duration=5.0), copies=20)
     assert fallen.overturned
     assert fallen.facts["motion"]["samples"] == 501
@@ -647,7 +651,7 @@ def test_a_run_cut_short_ends_when_asked_unless_it_falls():
 
 
 @pytest.mark.slow
-def test_a_single_run_is_one_of_many_from_where_an_advice_says_so():
+def test_a_single_run_is_one_of_many_from_where_an_advice_says_so(no_records):
     # a cylinder whose largest tilt an input 1 % off changes by half of it and more
     slender = Cylinder(semidiagonal=6.0847320541999865, tan_alpha=0.08996054265853794)
     chaotic = Case(slender, el_centro_1940().scaled(1.28359029043245))
@@ -748,7 +752,7 @@ def test_a_tendon_is_graded_by_its_yield(
 
 
 @pytest.mark.slow
-def test_an_advice_says_what_a_tendon_does() -> None:
+def test_an_advice_says_what_a_tendon_does(no_records: None) -> None:
     """Uplift, initial stiffness and balance are those of the static couple; a demand is its tension."""
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     tendon = Tendon(prestress=0.5, stiffness=1.0, yield_force=0.6)

@@ -472,13 +472,13 @@ def scaled(name: str, scale: float) -> Callable[[Case, str], Trace]:
     return model
 
 
-@pytest.mark.parametrize("support", ["recess", "flat"])
 @pytest.mark.parametrize(
-    ("name", "scale", "words"),
+    ("support", "name", "scale", "words"),
     [
-        *[(name, scale, f"{name} {100.0 * (scale - 1.0):+.2g} %")
-          for name in CANDIDATES for scale in (1.05, 0.98)],
-        ("loss", 0.02, "a loss as of a rolling resistance of 0.02 b"),
+        *[(support, name, scale, f"{name} {100.0 * (scale - 1.0):+.2g} %")
+          for name in CANDIDATES for support, scale in (("recess", 1.05), ("flat", 0.98))],
+        *[(support, "loss", 0.02, "a loss as of a rolling resistance of 0.02 b")
+          for support in ("recess", "flat")],
     ],
 )  # fmt: skip
 def test_the_number_that_is_off_is_named(name: str, scale: float, words: str, support: str) -> None:

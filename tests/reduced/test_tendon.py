@@ -37,11 +37,17 @@ def apart(cylinder: rw.Cylinder, tendon: Tendon, gamma: float) -> Pier:
     )
 
 
+# each tendon with each body, and each of these with one slenderness: the reference takes more than a second
+RELEASED = [
+    (tendon, gamma, (0.12, 0.35, 0.9)[(place + turn) % 3])
+    for place, tendon in enumerate(TENDONS)
+    for turn, gamma in enumerate(BODIES.values())
+]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("gamma", BODIES.values(), ids=BODIES)
-@pytest.mark.parametrize("tendon", TENDONS, ids=repr)
-@pytest.mark.parametrize("tan_alpha", [0.12, 0.35, 0.9])
-def test_a_release_follows_springs_in_space(tan_alpha: float, tendon: Tendon, gamma: float) -> None:
+@pytest.mark.parametrize(("tendon", "gamma", "tan_alpha"), RELEASED)
+def test_a_release_follows_springs_in_space(tendon: Tendon, gamma: float, tan_alpha: float) -> None:
     cylinder = rw.Cylinder(semidiagonal=2.0, tan_alpha=tan_alpha)
     release = rw.InitialState(0.55 * cylinder.alpha, rolling_rate=0.8)
     case = rw.Case(body_of(cylinder, gamma), initial=release, duration=2.5, tendon=tendon)
