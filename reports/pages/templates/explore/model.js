@@ -31,13 +31,19 @@ const pull = (o, s, c) => o.q * Math.sqrt((1 + c) / 2) + o.k * s;
 // static couple over R: of the weight and of the tendon, whose gaps a tilt opens by 2 b sin(theta/2) each
 const couple = (o, s, c, gravity) => gravity * (o.sa * c - o.ca * s) + o.sa * pull(o, s, c);
 
+// last value before `f` is above zero, which it is at `high` and not at `low`
+function lastBelow(f, low, high) {
+  for (;;) {
+    const middle = (low + high) / 2;
+    if (middle <= low || middle >= high) return low;
+    if (f(middle) > 0) high = middle; else low = middle;
+  }
+}
+
 function balanceOf(o) {
-  const at = (tilt) => couple(o, Math.sin(tilt), Math.cos(tilt), o.g);
+  const falling = (tilt) => -couple(o, Math.sin(tilt), Math.cos(tilt), o.g);
   if (o.q === 0 && o.k === 0) return o.alpha;
-  if (at(HALF_PI) >= 0) return Infinity;
-  let low = o.alpha, high = HALF_PI;
-  for (let i = 0; i < 60; i++) { const middle = (low + high) / 2; if (at(middle) > 0) low = middle; else high = middle; }
-  return low;
+  return falling(HALF_PI) > 0 ? lastBelow(falling, o.alpha, HALF_PI) : Infinity;
 }
 
 // energy above upright; B of the rolling angle is s^2 H
@@ -114,13 +120,7 @@ function upliftIn(o, piece, from, end) {
   const f = (time) => excess(o, piece.x + piece.sx * time, piece.y + piece.sy * time, piece.z + piece.sz * time);
   if (f(from) > 0) return from;
   if (f(end) <= 0) return -1;
-  let low = from, high = end;
-  for (let i = 0; i < 100; i++) {
-    const middle = (low + high) / 2;
-    if (middle <= low || middle >= high) break;
-    if (f(middle) > 0) high = middle; else low = middle;
-  }
-  return low;
+  return lastBelow(f, from, end);
 }
 
 function upliftOf(o, piece, at) {

@@ -28,7 +28,6 @@
     find(name).addEventListener("change", () => { state[name] = name === "record" ? Number(find(name).value) : find(name).value; changed(); });
   }
 
-  const alphaOf = (at) => Math.atan2(at.diameter, at.height);
   // what the model takes, which has no tendon on flat ground
   const problemOf = (at) => {
     const released = at.record < 0, tendon = at.support !== "flat", lean = at.support === "planar" ? at.plane : at.lean;
@@ -98,7 +97,8 @@
   });
   const changed = () => {
     const at = { ...state }, beside = besideOf(at), released = at.record < 0;
-    find("follows").textContent = `R = ${number(Math.hypot(at.height, at.diameter) / 2)} m, tan α = ${number(at.diameter / at.height)}, α = ${number(alphaOf(at) * DEG)}°`;
+    find("follows").textContent = `R = ${number(Math.hypot(at.height, at.diameter) / 2)} m, tan α = ${number(at.diameter / at.height)}; beyond the tilt α = ${number(Math.atan2(at.diameter, at.height) * DEG)}° the weight overturns it`;
+    for (const name of ["ground", "map"]) root.querySelector(`.graph.${name}`).hidden = released;
     const hide = { intensity: released, tilt: !released, rate: !released || at.support === "planar", lean: !released || at.support === "planar", plane: at.support !== "planar" };
     for (const [name, hidden] of Object.entries(hide)) fields[name].field.hidden = hidden;
     const refused = (at.prestress || at.stiffness) && at.support === "flat";
@@ -118,7 +118,7 @@
   // -- what a run becomes: poses for the view, lines for the graphs
 
   const bodyOf = (at, run, colour, opacity) => {
-    const b = at.diameter / 2, body = { ...run, at, colour, opacity, alpha: alphaOf(at) };
+    const b = at.diameter / 2, body = { ...run, at, colour, opacity, alpha: run.body.alpha };
     let held = run.angle.find((angle) => !Number.isNaN(angle)) ?? 0;  // the view keeps it while the column stands
     body.rolling_angle = run.angle.map((angle) => { held = Number.isNaN(angle) ? held : angle; return held; });
     body.contact_x = run.x.map((x, i) => x + b * Math.cos(body.rolling_angle[i]));
@@ -140,7 +140,7 @@
   const rule = (axis, at, text, colour) => ({ kind: "rule", name: text, axis, at, until: null, text, colour, dash: "dash", side: "right" });
 
   const clock = rockwobbleClock(find, picture);
-  let drawn = false, laterTimer = 0;
+  let drawn = false, magnified = 1, laterTimer = 0;
   // a graph with a mark: in the map where the sliders stand, over time the moment that is seen
   class Graph extends Chart {
     draw() {
@@ -188,10 +188,8 @@
     clearTimeout(laterTimer);
     laterTimer = setTimeout(() => showFurther(main, motion, ends), first ? 0 : 80);  // once the sliders rest
 
-    const most = Math.max(...bodies.map((body) => (body.outcome === "overturned" ? Math.PI / 2 : body.peak))), chosen = find("magnify").dataset.chosen;
-    const factors = [1, 3, 10, 30].filter((factor) => factor === 1 || factor * most < 60 / DEG), best = factors.filter((factor) => factor === 1 || factor * most < 30 / DEG).at(-1);
-    find("magnify").replaceChildren(...factors.map((factor) => new Option(`${factor} ×`, factor)));
-    find("magnify").value = factors.includes(Number(chosen)) ? chosen : best;
+    const most = Math.max(...bodies.map((body) => (body.outcome === "overturned" ? Math.PI / 2 : body.peak)));
+    magnified = [30, 10, 3].find((factor) => factor * most < 30 / DEG) || 1;
     if (first || !clock.playing) clock.seek(first ? clock.start : clock.now);
     if (first && !matchMedia("(prefers-reduced-motion: reduce)").matches) clock.play();
   }
@@ -202,7 +200,7 @@
       graphs.ground.key = key;
       const axis = motion && Float64Array.from(motion.x, (_, i) => i * motion.dt);
       const shakes = motion ? [["x", "east", BLUE], ["y", "north", ORANGE], ["z", "up", "#009E73"]].filter(([key]) => motion[key]) : [];
-      redraw(graphs.ground, shakes.length ? shakes.map(([key, name, colour]) => line(thinned(axis, motion[key].map((value) => value * scale)), colour, name, { width: 1 })) : [line([ends, [0, 0]], GREY, "still")], ends);
+      redraw(graphs.ground, shakes.map(([key, name, colour]) => line(thinned(axis, motion[key].map((value) => value * scale)), colour, name, { width: 1 })), ends);
     }
     // a line is broken where the column stands, and where it jumps: in a pass
     const path = (body, x, y, jump, colour, name) => {
@@ -271,10 +269,10 @@
   }, () => picture());
   function picture() {
     if (!bodies[0]) return;
-    draw(bodies.map((body) => { const at = rockwobblePose(body, clock.now); return { body, at, first: at.sample - 400, last: at.sample }; }), Number(find("magnify").value));
+    draw(bodies.map((body) => { const at = rockwobblePose(body, clock.now); return { body, at, first: at.sample - 400, last: at.sample }; }), Number(find("magnify").value) || magnified);
     graphs.tilt.follow(); graphs.ground.follow();
   }
-  find("magnify").addEventListener("change", () => { find("magnify").dataset.chosen = find("magnify").value; picture(); });
+  find("magnify").addEventListener("change", picture);
   find("beside").addEventListener("change", changed);
   find("pin").addEventListener("click", () => {
     pinned = { ...state };
@@ -288,29 +286,25 @@
 
   const CELLS = 40, SIZES = [1 / 4, 4], palette = graphs.map.panel.legend.map((entry) => entry.colour);
   const classOf = (peak) => (peak === Infinity ? 6 : peak > 1 ? 5 : peak === 0 ? 0 : 1 + Math.min(3, Math.floor(peak * 4)));
-  let map = null, mapTimer = 0, mapKey = "", asked = 0;
+  let map = null, mapTimer = 0, asked = 0;
   const spread = (i) => (i + 0.5) / CELLS, geometric = (low, high, share) => low * (high / low) ** share;
   const cellOf = (column, row) => ({ ...map.at, height: map.at.height * geometric(...SIZES, spread(column)), diameter: map.at.diameter * geometric(...SIZES, spread(column)), intensity: geometric(...map.intensities, spread(row)) });
   function askMap(at) {
-    const { height, diameter, intensity, ...others } = at, key = JSON.stringify([others, diameter / height]);
-    document.querySelector(".graph.map").hidden = at.record < 0;
-    if (at.record < 0) { map = null; mapKey = ""; return; }
-    if (map && Math.abs(diameter / height / (map.at.diameter / map.at.height) - 1) < 1e-3 && JSON.stringify(others) === map.others) { graphs.map.follow(); return; }
-    if (key === mapKey) return;
-    mapKey = key;
+    const { height, diameter, intensity, ...varied } = at, others = JSON.stringify(varied);
+    clearTimeout(mapTimer);
+    if (map && Math.abs(diameter / height / (map.at.diameter / map.at.height) - 1) < 1e-3 && others === map.others) { graphs.map.follow(); return; }
     map = null;  // the worker stops after the row that it is at
     graphs.map.place.classList.add("stale");
-    clearTimeout(mapTimer);
-    mapTimer = setTimeout(() => {  // once the sliders rest
+    if (at.record >= 0) mapTimer = setTimeout(() => {  // once the sliders rest
       // around the uplift of the column: from half of it on
       const uplift = diameter / height / peaks[at.record];
-      map = { at, others: JSON.stringify(others), intensities: [0.5 * uplift, 16 * uplift], values: new Float64Array(CELLS * CELLS).fill(NaN), id: ++asked };
+      map = { at, others, intensities: [0.5 * uplift, 16 * uplift], values: new Float64Array(CELLS * CELLS).fill(NaN), id: ++asked };
       row(8, 0);
     }, 500);
   }
   const row = (level, place) => {
-    const size = level;
-    mapper.postMessage({ id: map.id, level, place, row: Array.from({ length: CELLS / size }, (_, i) => problemOf(cellOf(i * size + (size - 1) / 2, place * size + (size - 1) / 2))) });
+    const middle = (i) => i * level + (level - 1) / 2;
+    mapper.postMessage({ id: map.id, level, place, row: Array.from({ length: CELLS / level }, (_, i) => problemOf(cellOf(middle(i), middle(place)))) });
   };
   const mapper = workerOf(({ data }) => {
     if (!map || data.id !== map.id) return;
@@ -319,7 +313,7 @@
     const last = (place + 1) * level >= CELLS;
     if (last || place % (8 / level) === 0) drawMap();
     if (!last) row(level, place + 1);
-    else if (level > 1) row({ 8: 4, 4: 2, 2: 1 }[level], 0);
+    else if (level > 1) row(level / 2, 0);
   });
   function drawMap() {
     graphs.map.place.classList.remove("stale");
