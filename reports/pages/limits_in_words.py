@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
 
 from rockwobble.compare.metrics.statistics import MARGIN
 from rockwobble.compare.studies.validity.criteria import (
@@ -18,6 +17,7 @@ from rockwobble.compare.studies.validity.criteria import (
     model_verdict,
 )
 from rockwobble.compare.studies.validity.plan import Structure
+from rockwobble.models.plain_json import Facts
 from rockwobble.models.support import RECESSES_FIRST
 
 from .table import Row, number
@@ -251,7 +251,7 @@ def force_findings(limits: Limits, *, slab: bool) -> Iterator[str]:
     yield f"A recess that supplies κ = 0.1 weight × b is enough {slight}."
 
 
-def ring_findings(rings: Mapping[str, float], worst: Mapping[str, Any]) -> Iterator[str]:
+def ring_findings(rings: Mapping[str, float], worst: Facts) -> Iterator[str]:
     """Yield what a recess with clearance does to place, energy and peak."""
     yield (
         f"Tightest clearance, {number(rings['tightest'], 'g')} b: at the end at most "

@@ -67,7 +67,7 @@ def _findings(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> Iterato
     if failed := int(spectrum.failed().sum()):
         yield f"Cells that failed and are left out: {failed}."
     yield from _search(spectrum, tables["lowest"])
-    yield _repeated(tables["checked"])
+    yield _second_run_words(tables["checked"])
 
 
 def _boundary(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> Iterator[str]:
@@ -125,7 +125,7 @@ def _search(spectrum: TiltMaps, lowest: pd.DataFrame) -> Iterator[str]:
         )
 
 
-def _repeated(checked: pd.DataFrame) -> str:
+def _second_run_words(checked: pd.DataFrame) -> str:
     """How many of the cells that were run again agree, and why the others do not."""
     agree, chance = int(checked["agrees"].sum()), int((~checked["agrees"] & checked["sensitive"]).sum())
     words = (

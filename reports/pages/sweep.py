@@ -39,14 +39,14 @@ def page_of(found: Sweep) -> Page:
 
 def _of_grid(plan: Mapping[str, Any]) -> dict[str, object]:
     sizes, slendernesses, scales = (plan[name] for name in ("semidiagonals", "tan_alphas", "scales"))
-    motions = _counted(len(plan["motions"]), "ground motion")
+    motions = _count_of(len(plan["motions"]), "ground motion")
     return {
-        "size": f"{_counted(plan['runs'], 'run')} from rest, without sliding.",
+        "size": f"{_count_of(plan['runs'], 'run')} from rest, without sliding.",
         "axes": [
-            f"{_counted(len(plan['models']), 'model')}: {', '.join(plan['models'])}",
-            f"{_counted(len(sizes), 'size')}: R = {_span(sizes)} m",
-            f"{_counted(len(slendernesses), 'slenderness', 'es')}: tan α = {_span(slendernesses)}",
-            f"{motions} at {_counted(len(scales), 'scale')}: {_span(scales)}",
+            f"{_count_of(len(plan['models']), 'model')}: {', '.join(plan['models'])}",
+            f"{_count_of(len(sizes), 'size')}: R = {_span(sizes)} m",
+            f"{_count_of(len(slendernesses), 'slenderness', 'es')}: tan α = {_span(slendernesses)}",
+            f"{motions} at {_count_of(len(scales), 'scale')}: {_span(scales)}",
         ],
         "conditions": conditions(plan.get("options", plan)),
     }
@@ -54,12 +54,12 @@ def _of_grid(plan: Mapping[str, Any]) -> dict[str, object]:
 
 def _of_cases(plan: Mapping[str, Any]) -> dict[str, object]:
     """A suite of cases, of which each has conditions of its own."""
-    cases, runs = _counted(len(plan["cases"]), "case"), _counted(len(plan["runs of each"]), "run")
-    size = f"{_counted(plan['runs'], 'run')}: {cases}, {runs} of each."
+    cases, runs = _count_of(len(plan["cases"]), "case"), _count_of(len(plan["runs of each"]), "run")
+    size = f"{_count_of(plan['runs'], 'run')}: {cases}, {runs} of each."
     return {"size": size, "axes": [], "conditions": []}
 
 
-def _counted(count: int, what: str, ending: str = "s") -> str:
+def _count_of(count: int, what: str, ending: str = "s") -> str:
     return f"{count:,d} {what}{'' if count == 1 else ending}"
 
 
