@@ -100,6 +100,7 @@ class Case:
 
     Examples
     --------
+    >>> from rockwobble.models import Cylinder
     >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> release = InitialState(0.5 * pier.alpha, rolling_rate=0.5)
     >>> case = Case(pier, initial=release, duration=8.0, friction=0.6)
@@ -372,6 +373,7 @@ class Suite(Brief):
 
     Examples
     --------
+    >>> from rockwobble.models import Cylinder
     >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> low, high = InitialState(0.05), InitialState(0.1)
     >>> cases = [Case(pier, initial=start, duration=8.0, name=str(start)) for start in (low, high)]

@@ -29,6 +29,7 @@ def doubts_of_cases(cases: Iterable[Case]) -> list[dict[str, object]]:
 
     Examples
     --------
+    >>> from rockwobble.models import Cylinder
     >>> pier = Cylinder.from_dimensions(base_radius=800.0, height=9000.0)
     >>> [(each["record"], each["detail"]) for each in doubts_of_cases([Case(pier, duration=1.0)])]
     [('cylinder', 'mm')]

@@ -134,6 +134,7 @@ def clearance_needed(cylinder: RockingBody, tilt: float, inclination: float) -> 
 
     Examples
     --------
+    >>> from rockwobble.models import Cylinder
     >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> clearance_needed(pier, tilt=0.1, inclination=0.2)
     0.0
