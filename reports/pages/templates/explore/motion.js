@@ -6,8 +6,6 @@ const HAIR = 1e-6;  // of 1/p: an uplift so near to the next sample is taken up 
 const FIRST_STEP = 1e-3;  // of 1/p
 const FOLLOWED = 40;  // of 1/p: for so long a motion that goes on when its time is over is followed to a maximum
 const BUDGET = 400000;  // steps
-const LONG = 40000;  // steps: a motion of more rattles at tiny tilts, through so many passes that no tolerance repeats it;
-const CRUDE = 1e-6;  // from there on this relative tolerance does
 const COLUMNS = ["time", "tilt", "angle", "twist", "x", "y", "outward", "across", "normal"];
 
 // -- rolling resistance: what holds a body that is tilted and still, and what a pass without spin takes
@@ -199,7 +197,6 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
     if (pieceEnd - until < 1e-9 * dt) until = Math.min(pieceEnd, end);
     const stop = until >= pieceEnd ? piece.length : until - piece.begin;
     while (elapsed < stop) {
-      if (run.steps > LONG) o.rtol = Math.max(rtol, CRUDE);
       if (run.steps > BUDGET) { run.outcome = "undecided"; run.endTime = now; return finish(); }
       if (resting) {
         const at = upliftIn(o, piece, elapsed, stop);
