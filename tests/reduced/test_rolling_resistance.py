@@ -406,6 +406,7 @@ def test_the_rates_of_a_long_step_are_those_of_the_momenta(seed: int) -> None:
     assert slope[:9] == pytest.approx(np.array(wanted)[:9], rel=1e-5, abs=1e-8 * size)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_a_long_step_is_of_fourth_order(seed: int) -> None:
     body, y = rolling(seed, 0.3)

@@ -197,6 +197,7 @@ def complaints_of(solved: list[tuple[Problem, Trace, Trace]], runs: list[dict[st
     return wrong
 
 
+@pytest.mark.slow
 @needs_chromium
 def test_the_page_moves_as_the_reduced_models(solved, tmp_path: Path):
     assert len({trace.outcome for _, trace, _ in solved}) == 2
@@ -204,6 +205,7 @@ def test_the_page_moves_as_the_reduced_models(solved, tmp_path: Path):
     assert complaints_of(solved, runs) == []
 
 
+@pytest.mark.slow
 @needs_chromium
 @pytest.mark.parametrize(
     "broken",
