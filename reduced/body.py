@@ -143,6 +143,7 @@ def restitution_from_momentum(cylinder: RockingBody) -> float:
 
     Examples
     --------
+    >>> from rockwobble.models import Cylinder
     >>> round(restitution_from_momentum(Cylinder(semidiagonal=6.0, tan_alpha=0.2)), 5)
     0.94217
     """

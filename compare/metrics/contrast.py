@@ -229,17 +229,14 @@ def pairs_in(
 
 def pairs_of(traces: Sequence[Trace], against: Sequence[Trace]) -> Pairs:
     """Return the members of two sequences of traces (n,), in the same order; peak tilts in rad."""
-
-    def peaks(runs: Sequence[Trace]) -> Array:
-        return np.array([trace.peak_tilt for trace in runs])
-
-    def overturned(runs: Sequence[Trace]) -> Flags:
-        return np.array([trace.outcome == "overturned" for trace in runs])
-
+    peaks, peaks_against = (np.array([trace.peak_tilt for trace in part]) for part in (traces, against))
+    fell, fell_against = (
+        np.array([trace.outcome == "overturned" for trace in part]) for part in (traces, against)
+    )
     return Pairs(
         members=np.array([trace.case.name for trace in traces]),
-        peaks=peaks(traces),
-        against=peaks(against),
-        overturned=overturned(traces),
-        against_overturned=overturned(against),
+        peaks=peaks,
+        against=peaks_against,
+        overturned=fell,
+        against_overturned=fell_against,
     )

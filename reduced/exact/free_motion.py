@@ -48,6 +48,7 @@ class FreeResponse(Brief):
 
     Examples
     --------
+    >>> from rockwobble.models import Cylinder
     >>> can = Cylinder(semidiagonal=5.0**0.5, tan_alpha=0.5)
     >>> found = free_response(can, InitialState(0.5 * can.alpha, rolling_rate=0.1))
     >>> round(found.period, 6), round(math.degrees(found.angle_of_turn), 4)
@@ -179,6 +180,7 @@ def angle_of_turn(
 
     Examples
     --------
+    >>> from rockwobble.models import Cylinder
     >>> can = Cylinder(semidiagonal=5.0**0.5, tan_alpha=0.5)
     >>> round(math.degrees(angle_of_turn(can, InitialState(0.5 * can.alpha, rolling_rate=0.1))), 4)
     204.0166

@@ -109,6 +109,7 @@ def planar_quarter_period(
 
     Examples
     --------
+    >>> from rockwobble.models import Cylinder
     >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> planar_quarter_period(pier, [0.2 * pier.alpha, 0.8 * pier.alpha]).round(6)
     array([0.626609, 2.068604])

@@ -77,6 +77,7 @@ def intensity(
     Examples
     --------
     >>> from rockwobble.models import el_centro_1940
+    >>> from rockwobble.models import Cylinder
     >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> round(intensity("peak_acceleration", el_centro_1940(), pier), 3)
     1.432

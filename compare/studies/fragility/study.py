@@ -405,6 +405,7 @@ def fragility(
     Examples
     --------
     >>> from rockwobble.models import synthetic_motions
+    >>> from rockwobble.models import Cylinder
     >>> column = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
     >>> shaking = synthetic_motions(8, peak=1.0, seed=1)
     >>> found = fragility(column, shaking, methods=["recess"], levels=[1.5, 3, 6], resamples=50, workers=1)
