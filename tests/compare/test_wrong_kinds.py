@@ -20,9 +20,8 @@ def test_a_study_says_what_it_was_given_and_what_is_allowed(wrong: object) -> No
     with pytest.raises(ValueError, match="motions must be a sequence of GroundMotion or a mapping"):
         rw.fragility(PIER, wrong)  # type: ignore[arg-type]
     if wrong not in (PIER, [PIER]):
-        with pytest.raises(
-            ValueError, match=r"cylinders must be a Cylinder, a mapping .* or a sequence of Cylinder, got"
-        ):
+        allowed = "a Cylinder, a WobblingFrame, a mapping .* or a sequence of Cylinder or WobblingFrame"
+        with pytest.raises(ValueError, match=f"cylinders must be {allowed}, got"):
             rw.fragility(wrong, [rw.el_centro_1940()])  # type: ignore[arg-type]
 
 
