@@ -39,15 +39,22 @@ PATIENCE = 60.0  # for an answer of the browser [s]
 _WATCH = """
 let move = null;
 const Real = window.Worker, frame = window.requestAnimationFrame.bind(window);
+let solver = null;  // the first worker; what is compared and the map have others
 window.Worker = class extends Real {
+  constructor(...given) {
+    super(...given);
+    solver ??= this;
+  }
   postMessage(data, ...more) {
-    if (move && data.problem) move.posted = performance.now();
+    if (data.problem) this.posted = performance.now();
     super.postMessage(data, ...more);
   }
   set onmessage(answer) {
     super.onmessage = (event) => {
-      const { run, took } = event.data;
-      if (move && run) Object.assign(move, { arrived: performance.now(), solver: took });
+      const { run, took } = event.data, { posted } = this;
+      // not what was asked before the move, nor what comes after its frame
+      const counts = this === solver && move && run && !move.began && posted >= move.input;
+      if (counts) Object.assign(move, { posted, arrived: performance.now(), solver: took });
       answer(event);
     };
   }
