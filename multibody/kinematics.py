@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .protocol import Steps
+from .restraint import WEIGHT_ALONE, Restraint
 from .scene import Array, Body
-from .tendon import SceneTendon
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,14 +28,12 @@ class Kinematics:
     tilt, tilt_rate, azimuth, twist : ndarray
         The azimuth is phi between -pi and pi, the twist as the quaternion tells it: see `unwrap_twist`.
     energy : ndarray
-        Kinetic and potential, that of a tendon included, per unit of the driven mass, zero standing
+        Kinetic and potential, what a restraint stores included, per unit of the driven mass, zero standing
         [m^2/s^2].
     depth : ndarray
         Depth of the lowest point of the rim below the ground [m].
     slip_rate : ndarray
         Horizontal speed of the material point there [m/s].
-    elongation : ndarray, optional
-        Elongation of the tendon since rest [m]; None without one.
     """
 
     tilt: Array
@@ -45,11 +43,10 @@ class Kinematics:
     energy: Array
     depth: Array
     slip_rate: Array
-    elongation: Array | None = None
 
 
 def kinematics(
-    poses: Steps, after: Steps, body: Body, gravity: float, tendon: SceneTendon | None = None
+    poses: Steps, after: Steps, body: Body, gravity: float, restraint: Restraint = WEIGHT_ALONE
 ) -> Kinematics:
     """Return the quantities at `poses`, whose velocities are those of the step before.
 
@@ -59,7 +56,8 @@ def kinematics(
     """
     vx, vy, vz = mean_velocity(poses, after).T
     wx, wy, wz = mean_spin(poses, after).T
-    ax, ay, az = axis_of(poses.quaternion).T
+    axis = axis_of(poses.quaternion)
+    ax, ay, az = axis.T
     z = poses.position[:, 2]
     b, h = body.base_radius, body.mass_centre_height
     sine = np.sqrt(ax * ax + ay * ay)
@@ -76,10 +74,8 @@ def kinematics(
     energy = body.moved_mass * (vx * vx + vy * vy + vz * vz)
     energy += transverse * (wx * wx + wy * wy + wz * wz)
     energy += (axial - transverse) * along * along
-    elongation = None
-    if tendon is not None:
-        elongation = tendon.elongation(base_centre(poses, body))
-        energy += 2.0 * tendon.energy(elongation)
+    if restraint.holds:
+        energy += 2.0 * restraint.energy(poses.position, axis, h)
     return Kinematics(
         # atan2 of both, because the cosine alone loses a tilt below 1e-8
         tilt=np.arctan2(sine, az),
@@ -89,13 +85,7 @@ def kinematics(
         energy=0.5 * energy / body.driven_mass + gravity * (z - h),
         depth=-height,
         slip_rate=np.sqrt(slip_x * slip_x + slip_y * slip_y),
-        elongation=elongation,
     )
-
-
-def base_centre(poses: Steps, body: Body) -> Array:
-    """Return the places of the centre of the base, shape (n, 3) [m]."""
-    return np.asarray(poses.position - body.mass_centre_height * axis_of(poses.quaternion))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

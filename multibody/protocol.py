@@ -42,7 +42,7 @@ from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,10 +80,8 @@ class EngineFacts(Brief):
         Relative rounding error of its arithmetic, 2^-53 in double and 2^-24 in single precision.
     carries_slab : bool
         Whether its scenes hold the slab of a frame: one column, under a slab that only translates.
-    rolling_friction : bool
-        Whether it has a couple against rolling, of at most a length times the normal force.
-    tendons : bool
-        Whether it has a tendon along the axis, `Scene.tendon`; without, a case with one is refused.
+    terms : frozenset of str
+        Which of `Case.terms` its scenes have, by their names there; a case with any other is refused.
     contact_time : str
         Name of the setting that is the time in which contact removes a velocity [s]; empty without one.
     alternatives : mapping
@@ -101,27 +99,11 @@ class EngineFacts(Brief):
     smooth_uplift: bool = False
     rounding: float = 2.0**-53
     carries_slab: bool = False
-    rolling_friction: bool = False
-    tendons: bool = False
+    terms: frozenset[str] = frozenset()
     contact_time: str = ""
     alternatives: Mapping[str, Settings] = field(default_factory=lambda: _NOTHING)
     standing_alternatives: Mapping[str, Settings] = field(default_factory=lambda: _NOTHING)
 
-
-class _Term(NamedTuple):
-    """A term of a case that an engine may have; a case with one is refused by an engine without."""
-
-    fact: str  # the field of `EngineFacts` that says whether an engine has it
-    words: str
-    none: str  # value of a case without it
-    unit: str = ""
-
-
-# by their field in a case; any other is refused by every engine
-TERMS_OF_ENGINES = {
-    "tendon": _Term("tendons", "tendon", "None"),
-    "rolling_resistance": _Term("rolling_friction", "rolling friction", "0", " m"),
-}
 
 MEMBERS = ("supports", "uplifts", "facts", "version", "settings", "open")  # of an Engine
 

@@ -21,7 +21,7 @@ from rockwobble.models.plain_json import fields_of
 from .guard import EnergyWatch, couple_power, energy_scale, first_breach
 from .kinematics import (
     Kinematics,
-    base_centre,
+    axis_of,
     kinematics,
     rim,
     rolling_momentum,
@@ -168,8 +168,7 @@ class Recorder:
         count, wall = len(poses.position), steps.wall
         time: Array = self._scene.time_step * np.arange(self._count, self._count + count, dtype=float)
         body = self._scene.body
-        tendon = self._scene.tendon
-        state = kinematics(poses, after, body, self._scene.gravity, tendon)
+        state = kinematics(poses, after, body, self._scene.gravity, self._scene.restraint)
         state = replace(state, twist=unwrap_twist(state.twist, self._twist))
         gained = self.energy.error(state, poses, after, acceleration)
         # before the couple, whose part is not known well enough to end a run by
@@ -205,8 +204,7 @@ class Recorder:
             self._watch = None
         slip = self._slip(time, state)
         wall_contact, wall_impulse = self.walls.take(time, wall)
-        elongation = np.zeros(stop) if state.elongation is None else state.elongation
-        self._watch_tendon(time, elongation)
+        elongation = self._watch_tendon(time, poses)
 
         def rows(at: Indices) -> Array:
             some, later = _rows(poses, at), _rows(after, at)
@@ -283,10 +281,10 @@ class Recorder:
         """Force of contact (3, n) on each end that has a gain, over the weight that it carries."""
         scene = self._scene
         ends = [force_of_steps(poses, after, ground, scene.time_step, scene.gravity, gain) for gain in gains]
-        if scene.tendon is not None:
-            # of what the base carries, and of the slab, the tendon takes hold as well as contact does
-            place = base_centre(poses, scene.body)
-            pulls = scene.tendon.pulls(place, scene.tendon.elongation(place)) / scene.gravity
+        if scene.restraint.holds:
+            # of what the base carries, and of the slab, it takes hold as well as contact does
+            height = scene.body.mass_centre_height
+            pulls = scene.restraint.pulls(poses.position, axis_of(poses.quaternion), height) / scene.gravity
             for end, mass in zip(ends, self._carried_shares, strict=False):
                 end -= pulls / mass
         return ends
@@ -313,14 +311,17 @@ class Recorder:
                 setattr(self, name, float(time[np.argmax(happens)]))
         return slipped
 
-    def _watch_tendon(self, time: Array, elongation: Array) -> None:
-        """Follow the tendon; note where it would yield."""
-        if self._scene.tendon is None:
-            return
+    def _watch_tendon(self, time: Array, poses: Steps) -> Array:
+        """Return the elongations of the tendon, shape (n,) [m]; note where it would yield."""
+        restraint, height = self._scene.restraint, self._scene.body.mass_centre_height
+        if restraint.tendon is None:
+            return np.zeros(len(time))
+        elongation = restraint.elongation(poses.position, axis_of(poses.quaternion), height)
         self.elongation = max(self.elongation, float(elongation.max()))
-        yields = elongation > self._scene.tendon.yield_elongation
+        yields = elongation > restraint.tendon.yield_elongation
         if math.isnan(self.yield_time) and yields.any():
             self.yield_time = float(time[np.argmax(yields)])
+        return elongation
 
     def _stop(self, time: Array, state: Kinematics, gained: Array, wall: Wall | None) -> int:
         """Number of steps of this chunk that belong to the result."""

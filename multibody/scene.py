@@ -29,7 +29,7 @@ from rockwobble.models import InitialState, RockingBody
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.support import Support
 
-from .tendon import SceneTendon
+from .restraint import WEIGHT_ALONE, Restraint
 
 Array = NDArray[np.float64]
 
@@ -182,7 +182,7 @@ def default_step(semidiagonal: float, gravity: float) -> float:
     return REFERENCE_TIME_STEP * froude_scale(semidiagonal, gravity).time
 
 
-# of the slope of the couple of the weight: at a balance where that of a tendon takes nearly all of it,
+# of the slope of the couple of the weight: at a balance where that of a restraint takes nearly all of it,
 # nobody waits longer than ten times as long
 _LEAST_GROWTH = 0.01
 
@@ -209,8 +209,8 @@ class Scene:
         Components of the ground acceleration that are not absent, such as "xy" or "".
     unit_time : float
         User seconds in one second of the scene: settings that are times are in user seconds.
-    tendon : SceneTendon, optional
-        Along the axis; None for an engine without tendons.
+    restraint : Restraint, optional
+        What holds the body down besides its weight; nothing that is not among the terms of the engine.
     """
 
     body: Body
@@ -222,31 +222,27 @@ class Scene:
     components: str
     unit_time: float
     rolling_resistance: float = 0.0
-    tendon: SceneTendon | None = None
+    restraint: Restraint = WEIGHT_ALONE
 
     @property
     def tipping_gravity(self) -> float:
-        """Gravity whose weight would hold the base down as weight and prestress do [m/s^2].
+        """Gravity whose weight would hold the base down as weight and restraint do [m/s^2].
 
-        Without vertical motion the base opens at b/h of it: n P0/(1 + 2 gamma) above gravity, since what
-        tips a frame are twice the forces of its slab.
+        Without vertical motion the base opens at b/h of it; what tips a frame are twice the forces of its
+        slab.
         """
-        if self.tendon is None:
-            return self.gravity
-        return self.gravity + self.tendon.gaps * self.tendon.prestress / self.body.driven_mass
+        return self.gravity + self.restraint.closing_force / self.body.driven_mass
 
     @property
     def pressing_gravity(self) -> float:
-        """Gravity whose weight would press a closed base on the ground as weight and prestress do [m/s^2]."""
-        if self.tendon is None:
-            return self.gravity
-        return self.gravity + self.tendon.prestress / (1.0 + self.body.slab_mass_ratio)
+        """Gravity whose weight would press a closed base on the ground as weight and restraint do [m/s^2]."""
+        return self.gravity + self.restraint.pressing_force / (1.0 + self.body.slab_mass_ratio)
 
     @property
     def balance_tilt(self) -> float:
         """Tilt beyond which the base does not close by itself [rad]; infinite where there is none to pi/2."""
         alpha = math.atan(self.body.tan_alpha)
-        if self.tendon is None:
+        if not self.restraint.holds:
             return alpha
         low, high = alpha, OVERTURNED_TILT
         if self._couple(high) >= 0.0:
@@ -261,22 +257,16 @@ class Scene:
         body, b, h = self.body, self.body.base_radius, self.body.mass_centre_height
         inertia = (body.transverse_inertia + body.moved_mass * (h * h + b * b)) / body.driven_mass
         weight = growth = self.gravity * math.hypot(b, h)
-        tilt, tendon = self.balance_tilt, self.tendon
-        if tendon is not None and math.isfinite(tilt):
+        tilt = self.balance_tilt
+        if self.restraint.holds and math.isfinite(tilt):
             # the slope of the couple there, without its sign
-            growth = 0.5 * tendon.gaps * tendon.prestress * b * math.sin(0.5 * tilt)
-            growth -= tendon.gaps**2 * tendon.stiffness * b * b * math.cos(tilt)
-            growth /= body.driven_mass
-            growth += self.gravity * (b * math.sin(tilt) + h * math.cos(tilt))
+            growth = self.gravity * (b * math.sin(tilt) + h * math.cos(tilt))
+            growth -= self.restraint.couple_slope(tilt, b) / body.driven_mass
         return math.sqrt(inertia / max(growth, _LEAST_GROWTH * weight))
 
     def _couple(self, tilt: float) -> float:
-        """Couple of weight and tendon at a tilt [rad], towards upright, in a plane [m^2/s^2]."""
-        body, tendon = self.body, self.tendon
+        """Couple of weight and restraint at a tilt [rad], towards upright, in a plane [m^2/s^2]."""
+        body = self.body
         b, h = body.base_radius, body.mass_centre_height
-        couple = body.driven_mass * self.gravity * (b * math.cos(tilt) - h * math.sin(tilt))
-        if tendon is not None:
-            elongation = 2.0 * tendon.gaps * b * math.sin(0.5 * tilt)
-            tension = tendon.prestress + tendon.stiffness * elongation
-            couple += tension * tendon.gaps * b * math.cos(0.5 * tilt)
-        return couple
+        weight = body.driven_mass * self.gravity * (b * math.cos(tilt) - h * math.sin(tilt))
+        return weight + self.restraint.couple(tilt, b)

@@ -27,6 +27,7 @@ from .passes import STEPS_OF_A_PASS, TurningPoint, faint_openings, passes_betwee
 from .protocol import Engine, Settings, Stepper
 from .reaction import EARLY
 from .recorder import COLUMNS, Recorder
+from .restraint import scaled_restraint
 from .scene import (
     REFERENCE_GRAVITY,
     Array,
@@ -38,7 +39,6 @@ from .scene import (
     starting_state,
 )
 from .stepping import run_steps
-from .tendon import scaled_tendon
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -200,7 +200,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         "wall_contact": table["wall_contact"] * scale.time,
         "wall_impulse": table["wall_impulse"] * scale.length / scale.time,
     }
-    if scene.tendon is not None and not scene.support.guided:
+    if scene.restraint.tendon is not None and not scene.support.guided:
         # the base wanders from the anchor, and the tilt alone does not tell it
         sampled["elongation"] = table["elongation"] * scale.length
     if scene.rolling_resistance > 0.0:
@@ -343,7 +343,7 @@ def _statement(
     scale = froude_scale(*size)
     step = default_step(*size) if time_step is None else time_step
     check_time_step(step, scale.time)
-    body, motion, tendon = scaled_body(case.cylinder, scale.length), case.motion, case.tendon
+    body, motion = scaled_body(case.cylinder, scale.length), case.motion
     scene = Scene(
         body=body,
         start=starting_state(body, case.initial, scale.time),
@@ -354,15 +354,7 @@ def _statement(
         components="" if motion is None else "xyz" if motion.has_vertical else "xy",
         unit_time=scale.time,
         rolling_resistance=case.rolling_resistance / scale.length,
-        tendon=None
-        if tendon is None
-        else scaled_tendon(
-            tendon,
-            tendon.gaps(case.cylinder),
-            body.base_radius,
-            REFERENCE_GRAVITY,
-            backend.facts.rounding,
-        ),
+        restraint=scaled_restraint(case, body.base_radius, REFERENCE_GRAVITY, backend.facts.rounding),
     )
     return backend, scene, backend.settings(settings, scene)
 

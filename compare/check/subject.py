@@ -183,7 +183,7 @@ def engine(name: str, time_step: TimeStep | None = None, **settings: object) -> 
         source=_with_memory(source),
         supports=found.supports,
         knows=FIELDS.union(_ENGINE_FIELDS),
-        options=frozenset({"stepper", *(["rolling_resistance"] if facts.rolling_friction else [])}),
+        options=frozenset({"stepper", *({"rolling_resistance"} & facts.terms)}),
         tolerance=tolerance,
         repeatability=ENGINE_REPEATABILITY,
         rounding=facts.rounding,
@@ -197,7 +197,7 @@ def engine(name: str, time_step: TimeStep | None = None, **settings: object) -> 
         run=Run(name, found.supports[0], time_step, **settings),
         uplifts=found.uplifts,
         carries_slab=facts.carries_slab,
-        has_tendon=facts.tendons,
+        has_tendon="tendon" in facts.terms,
     )
 
 

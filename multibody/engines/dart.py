@@ -116,7 +116,7 @@ _FACTS = EngineFacts(
     uplift_error=5e-6,
     smooth_uplift=True,
     carries_slab=True,
-    tendons=True,
+    terms=frozenset({"tendon"}),
 )
 
 
@@ -217,7 +217,7 @@ class _DartStepper(Leapfrog):
         b, h, arm = body.base_radius, body.mass_centre_height, body.mass_centre_height / body.base_radius
         excited, gravity, heading = bool(self._scene.components), self._scene.gravity, self._heading
         # prestress holds the base down as weight does
-        tipping, tied = self._scene.tipping_gravity, self._scene.tendon is not None
+        tipping, tied = self._scene.tipping_gravity, self._scene.restraint.tendon is not None
         friction = self._scene.friction * self._scene.pressing_gravity / tipping
         followed = _LOADED * min(1.0, friction * arm)
         # where friction gives way before the base opens, the four contacts of a closed base slide: those of
@@ -304,7 +304,7 @@ class _DartStepper(Leapfrog):
 
     def _pull_tendon(self, place: Sequence[float], axis: Sequence[float]) -> None:
         """Apply the forces of the tendon in the next step, at a place of the mass centre and an axis."""
-        tendon, depth = self._scene.tendon, self._depth
+        tendon, depth = self._scene.restraint.tendon, self._depth
         if tendon is None:
             return
         x, y, z = place

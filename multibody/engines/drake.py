@@ -247,7 +247,7 @@ _FACTS = EngineFacts(
     uplift_error=5e-6,
     smooth_uplift=True,
     carries_slab=True,
-    tendons=True,
+    terms=frozenset({"tendon"}),
 )
 
 
@@ -352,7 +352,7 @@ class _DrakeStepper(Leapfrog):
 
     def _pull_of_tendon(self, force: Array) -> Array:
         """Return torque and forces of a step with those of the tendon."""
-        tendon, rim = self._scene.tendon, self._rim
+        tendon, rim = self._scene.restraint.tendon, self._rim
         if tendon is not None:
             _, x, y, _, *place = self._place[:7]
             place[2] += self._depth

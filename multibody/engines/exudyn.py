@@ -70,7 +70,9 @@ class ExudynSettings(EngineSettings):
         return {}
 
 
-_FACTS = EngineFacts(title="Exudyn", step_time=1.2e-5, order=2.0, carries_slab=True, tendons=True)
+_FACTS = EngineFacts(
+    title="Exudyn", step_time=1.2e-5, order=2.0, carries_slab=True, terms=frozenset({"tendon"})
+)
 
 
 class ExudynEngine(Declared):
@@ -237,7 +239,7 @@ class _ExudynStepper:
             _, slab = add_body(share, [share] * 3, above, [*2.0 * start.velocity, 0.0, 0.0, 0.0, 0.0])
             both = [still, add_rim(slab, -1.0)]
             system.AddObject(items.ObjectJointGeneric(markerNumbers=both, constrainedAxes=[0, 0, 0, 1, 1, 1]))
-        tendon = scene.tendon
+        tendon = scene.restraint.tendon
         if tendon is not None:
             # the rims do not slip, so both gaps open alike, and each has its share of the tension
             height = body.mass_centre_height

@@ -46,8 +46,7 @@ _FACTS = EngineFacts(
     uplift_error=5e-6,
     smooth_uplift=True,  # its corners turn under the load
     carries_slab=True,
-    rolling_friction=True,
-    tendons=True,
+    terms=frozenset({"tendon", "rolling_resistance"}),
     contact_time="contact_time_constant",
     alternatives={
         **{

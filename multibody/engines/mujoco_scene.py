@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
+from ..restraint import SceneTendon
 from ..ring import RingSettings, wall_feet, wall_orientations
 from ..scene import Array, Body, Scene, Start
 from ..settings import Count, EngineSettings, Positive, one_of, positive
-from ..tendon import SceneTendon
 
 if TYPE_CHECKING:
     import mujoco  # type: ignore[import-untyped]
@@ -115,8 +115,8 @@ def compile_scene(
     _set_body(spec, scene)
     if ring is not None:
         _set_walls(spec, ring, scene.body.base_radius)
-    if scene.tendon is not None:
-        _add_tendon(spec, scene.body, scene.tendon)
+    if scene.restraint.tendon is not None:
+        _add_tendon(spec, scene.body, scene.restraint.tendon)
     if scene.body.slab_mass_ratio > 0.0:
         _add_slab(spec, scene, standing and settings.standing_corners > 0)
     _set_contact(spec, scene, settings, standing, ring)
@@ -205,8 +205,8 @@ def _add_slab(spec: mujoco.MjSpec, scene: Scene, standing: bool) -> None:
             push = spec.add_actuator(name=f"push_slab_{name}", target=f"slab_{name}")
             push.trntype = mujoco.mjtTrn.mjTRN_JOINT
             push.gear[0] = shape.slab_mass_ratio
-    if scene.tendon is not None:
-        slab.add_site(name="tendon_slab", pos=[0.0, 0.0, scene.tendon.depth - _SLAB_THICKNESS])
+    if scene.restraint.tendon is not None:
+        slab.add_site(name="tendon_slab", pos=[0.0, 0.0, scene.restraint.tendon.depth - _SLAB_THICKNESS])
     spec.add_pair(geomname1="slab", geomname2="prism0" if standing else "cylinder")
     # two convex bodies: their point of contact is sought, to rounding, and is one: what a face and a rim next
     # to it have in common, which 4.0 looks for, is off by 4e-3 m at a tilt of 1e-4 rad

@@ -109,8 +109,7 @@ _FACTS = EngineFacts(
     uplift_error=5e-6,
     smooth_uplift=True,
     carries_slab=True,
-    rolling_friction=True,
-    tendons=True,
+    terms=frozenset({"tendon", "rolling_resistance"}),
 )
 
 
@@ -308,7 +307,7 @@ class _PybulletStepper(Leapfrog):
 
     def _pull_tendon(self, place: Sequence[float], turn: Sequence[float]) -> None:
         """Apply the forces of the tendon in the next step, at a place and a quaternion, scalar last."""
-        tendon = self._scene.tendon
+        tendon = self._scene.restraint.tendon
         if tendon is None:
             return
         x, y, z, w = turn
@@ -371,7 +370,7 @@ class _PybulletStepper(Leapfrog):
         ground, overshoot, (b, h) = self._ground, self._settings.friction_damping - 1.0, self._lengths
         slab, (slab_x, slab_y, slab_z) = self._slab, self._slab_velocity.tolist()
         atan2, sqrt, pull_tendon = math.atan2, math.sqrt, self._pull_tendon
-        tied = self._scene.tendon is not None
+        tied = self._scene.restraint.tendon is not None
         # numbers in one list, not tuples in one: those the garbage collector would go through again and again
         poses: list[float] = []
         beyond_x = beyond_y = 0.0

@@ -42,7 +42,7 @@ _FACTS = EngineFacts(
     uplift_error=7e-4,
     rounding=2.0**-24,
     carries_slab=True,
-    tendons=True,
+    terms=frozenset({"tendon"}),
 )
 
 
@@ -133,7 +133,7 @@ class _RapierStepper(Leapfrog):
         cosine, sine, root, stiffness = math.cos, math.sin, math.sqrt, -4.0 * self._stiffness
         x, y, z, w, i, j, k = self._pose
         slab, above = self._slab, self._slab_height
-        tendon, depth, carried = self._scene.tendon, self._depth, body if slab is None else slab
+        tendon, depth, carried = self._scene.restraint.tendon, self._depth, body if slab is None else slab
         rows: list[list[float]] = []
         lean = 2.0 * root((i * i + j * j) * (w * w + k * k))
         for ax, ay, az in acceleration:

@@ -12,15 +12,16 @@ import importlib.util
 import platform
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 
 from rockwobble.models import Case
+from rockwobble.models.shown import brief
 from rockwobble.models.support import SUPPORTS
 
-from ..protocol import MEMBERS, TERMS_OF_ENGINES, Engine, EngineFacts
+from ..protocol import MEMBERS, Engine, EngineFacts
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -50,6 +51,7 @@ class _Entry:
     libraries: Mapping[str, str] = field(default_factory=dict)
 
 
+_UNITS = {"rolling_resistance": " m"}  # of terms of a case, where a refusal says them
 # what draws, and is linked even where nothing is drawn; a container without a screen has none of it
 _GRAPHICS = {"libgl1": "libGL.so.1", "libx11-6": "libX11.so.6"}
 # of PyBullet; elsewhere DART takes its place in a default run
@@ -242,14 +244,11 @@ def _require_able(engine: Engine, name: str, case: Case, support: str) -> None:
         raise ValueError(
             f"{name} cannot uplift a cylinder that stands: give a release with a tilt, got a start at rest"
         )
+    none = {each.name: brief(each.default) for each in fields(case)}
     for term, value in case.terms.items():
-        known = TERMS_OF_ENGINES.get(term)
-        if known is None:
-            raise ValueError(f"{name} knows no {term}, got {value!r}")
-        if not getattr(engine.facts, known.fact):
-            raise ValueError(
-                f"{name} has no {known.words}: {term} must be {known.none}, got {value!r}{known.unit}"
-            )
+        if term not in engine.facts.terms:
+            words, unit = term.replace("_", " "), _UNITS.get(term, "")
+            raise ValueError(f"{name} has no {words}: {term} must be {none[term]}, got {value!r}{unit}")
 
 
 def engine_facts(name: str) -> EngineFacts:

@@ -30,9 +30,9 @@ def problems() -> Iterator[tuple[str, str, str]]:
             yield name, support, "column"
             if engine.facts.carries_slab:
                 yield name, support, "frame"
-            if engine.facts.rolling_friction:
+            if "rolling_resistance" in engine.facts.terms:
                 yield name, support, "resistance"
-            if engine.facts.tendons and support == RECESS:
+            if "tendon" in engine.facts.terms and support == RECESS:
                 yield name, support, "tendon"
                 if engine.facts.carries_slab:
                     yield name, support, "frame with tendon"

@@ -24,8 +24,8 @@ from rockwobble.models import (
 from rockwobble.models.support import SUPPORTS
 from rockwobble.multibody.engines.mujoco import MujocoEngine
 from rockwobble.multibody.engines.registry import engine_facts, find_engine
+from rockwobble.multibody.restraint import WEIGHT_ALONE, Restraint, SceneTendon, scaled_restraint
 from rockwobble.multibody.scene import Scene, scaled_body, starting_state
-from rockwobble.multibody.tendon import SceneTendon, scaled_tendon
 
 G = 9.81
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=1.0 / 3.0)
@@ -246,8 +246,10 @@ def test_a_swing_that_yields_the_tendon_says_so() -> None:
 
 
 def test_an_engine_without_tendons_refuses_one_in_a_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(MujocoEngine, "facts", dataclasses.replace(MujocoEngine.facts, tendons=False))
-    with pytest.raises(ValueError, match="mujoco has no tendon: tendon must be None") as refused:
+    monkeypatch.setattr(MujocoEngine, "facts", dataclasses.replace(MujocoEngine.facts, terms=frozenset()))
+    with pytest.raises(
+        ValueError, match=r"^mujoco has no tendon: tendon must be None, got Tendon"
+    ) as refused:
         multibody.simulate(released(TENDONS[0]), engine="mujoco")
     assert "\n" not in str(refused.value)
 
@@ -267,7 +269,7 @@ def test_beyond_the_balance_of_weight_and_tendon_it_falls_and_short_of_it_it_doe
         gravity=G,
         components="",
         unit_time=1.0,
-        tendon=scaled_tendon(tendon, 2 if gamma else 1, shape.base_radius, G),
+        restraint=scaled_restraint(Case(body, duration=1.0, tendon=tendon), shape.base_radius, G),
     )
     balance = scene.balance_tilt
     assert balance > 1.1 * PIER.alpha
@@ -276,9 +278,11 @@ def test_beyond_the_balance_of_weight_and_tendon_it_falls_and_short_of_it_it_doe
         for part in (0.99, 1.01)
     ]
     assert ends == ["stands", "overturned"]
-    assert dataclasses.replace(scene, tendon=None).balance_tilt == pytest.approx(PIER.alpha, rel=1e-14)
-    stiff = dataclasses.replace(scene, tendon=scaled_tendon(Tendon(stiffness=30.0), 1, shape.base_radius, G))
-    assert math.isinf(stiff.balance_tilt)
+    assert dataclasses.replace(scene, restraint=WEIGHT_ALONE).balance_tilt == pytest.approx(
+        PIER.alpha, rel=1e-14
+    )
+    stiff = scaled_restraint(Case(body, duration=1.0, tendon=Tendon(stiffness=30.0)), shape.base_radius, G)
+    assert math.isinf(dataclasses.replace(scene, restraint=stiff).balance_tilt)
 
 
 def test_the_pull_is_the_gradient_of_the_energy() -> None:
@@ -291,3 +295,18 @@ def test_the_pull_is_the_gradient_of_the_energy() -> None:
     assert 2.0 * np.array(tendon.pull(*place)) == pytest.approx(-slope, rel=1e-8)
     elongation = tendon.elongation(place[None])
     assert tendon.pulls(place[None], elongation)[:, 0] == pytest.approx(tendon.pull(*place), rel=1e-14)
+
+
+def test_the_couple_of_a_restraint_is_the_slope_of_its_energy() -> None:
+    # an anchor at the origin: its depth, 1e-9 of an elongation, is in the energy and not in the couple
+    restraint = Restraint(tendon=SceneTendon(prestress=3.0, stiffness=40.0, gaps=2, depth=1e-9))
+    b, h, tilt, d = 1.5, 4.0, 0.3, 1e-5
+    tilts = tilt + d * np.array([-1.0, 0.0, 1.0])
+    sine, cosine, zero = np.sin(tilts), np.cos(tilts), np.zeros(3)
+    axis = np.column_stack([sine, zero, cosine])
+    place = np.column_stack([b * (1.0 - cosine), zero, b * sine]) + h * axis
+    energy, couples = restraint.energy(place, axis, h), [restraint.couple(each, b) for each in tilts]
+    # differences over d^2, and rounding over d
+    assert restraint.couple(tilt, b) == pytest.approx((energy[2] - energy[0]) / (2.0 * d), rel=1e-8)
+    assert restraint.couple_slope(tilt, b) == pytest.approx((couples[2] - couples[0]) / (2.0 * d), rel=1e-8)
+    assert restraint.closing_force * b == pytest.approx(restraint.couple(0.0, b), rel=1e-15)

@@ -1,7 +1,12 @@
-"""The tendon of a scene: a spring between points, whatever the column does.
+"""The restraint of a scene: what holds a body down besides its weight, stated once for run and engines.
 
-It runs from an anchor a little below the origin O to the centre of the base, up the axis, and under a slab
-on to an anchor in the slab as far above its underside. Inside the column its forces cancel.
+A `Restraint` answers what scene, kinematics and recorder ask of everything that holds the body down: couple
+and its slope, forces on a closed base, energy and the pull on what the ends carry. A term that is new is a
+field of it, and a part of each answer. Engines take the fields, one by one.
+
+The tendon is a spring between points, whatever the column does. It runs from an anchor a little below the
+origin O to the centre of the base, up the axis, and under a slab on to an anchor in the slab as far above its
+underside. Inside the column its forces cancel.
 
 ======= ======= ==================================================================
 symbol  unit    meaning
@@ -27,6 +32,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.models import Case
 from rockwobble.models.shown import Brief
 from rockwobble.models.tendon import Tendon
 
@@ -97,6 +103,17 @@ class SceneTendon(Brief):
         """Return the energy that elongations (n,) [m] store, per unit mass of the column [m^2/s^2]."""
         return np.asarray((self.prestress + 0.5 * self.stiffness * elongation) * elongation)
 
+    def couple(self, tilt: float, base_radius: float) -> float:
+        """Return the couple on the column at a tilt [rad] in a plane, towards upright [m^2/s^2]."""
+        elongation = 2.0 * self.gaps * base_radius * math.sin(0.5 * tilt)
+        tension = self.prestress + self.stiffness * elongation
+        return tension * self.gaps * base_radius * math.cos(0.5 * tilt)
+
+    def couple_slope(self, tilt: float, base_radius: float) -> float:
+        """Return the derivative of the couple by the tilt [m^2/s^2]."""
+        slope = self.gaps**2 * self.stiffness * base_radius * base_radius * math.cos(tilt)
+        return slope - 0.5 * self.gaps * self.prestress * base_radius * math.sin(0.5 * tilt)
+
     def pulls(self, base_centre: Array, elongation: Array) -> Array:
         """Return the forces (3, n) on the base at places (n, 3) [m], and on the slab [m/s^2]."""
         way = base_centre.T + np.array([[0.0], [0.0], [self.depth]])
@@ -121,4 +138,75 @@ def scaled_tendon(
         gaps=gaps,
         depth=max(ANCHOR_DEPTH, _ROUNDINGS * rounding) * base_radius,
         yield_elongation=yields,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Restraint(Brief):
+    """What holds the body of a scene down besides its weight, per unit mass of the column.
+
+    Where an answer takes poses, they are n places of the mass centre (n, 3) [m], axes (n, 3), and the height
+    of the mass centre above the base [m].
+
+    Attributes
+    ----------
+    tendon : SceneTendon, optional
+        Along the axis.
+    """
+
+    tendon: SceneTendon | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether anything but the weight holds the body down."""
+        return self.tendon is not None
+
+    @property
+    def closing_force(self) -> float:
+        """Force down the axis that would keep the base closed as well: n P0 of a tendon [m/s^2]."""
+        return 0.0 if self.tendon is None else self.tendon.gaps * self.tendon.prestress
+
+    @property
+    def pressing_force(self) -> float:
+        """Force that presses a closed base on the ground: P0 of a tendon [m/s^2]."""
+        return 0.0 if self.tendon is None else self.tendon.prestress
+
+    def couple(self, tilt: float, base_radius: float) -> float:
+        """Return the couple at a tilt [rad] in a plane, towards upright [m^2/s^2]."""
+        return 0.0 if self.tendon is None else self.tendon.couple(tilt, base_radius)
+
+    def couple_slope(self, tilt: float, base_radius: float) -> float:
+        """Return the derivative of the couple by the tilt [m^2/s^2]."""
+        return 0.0 if self.tendon is None else self.tendon.couple_slope(tilt, base_radius)
+
+    def energy(self, place: Array, axis: Array, height: float) -> Array:
+        """Return the energy that is stored at poses, shape (n,) [m^2/s^2]."""
+        if self.tendon is None:
+            return np.zeros(len(place))
+        return self.tendon.energy(self.tendon.elongation(place - height * axis))
+
+    def pulls(self, place: Array, axis: Array, height: float) -> Array:
+        """Return the force (3, n) on the base at poses, and on a slab [m/s^2]; a couple is none."""
+        if self.tendon is None:
+            return np.zeros((3, len(place)))
+        base_centre = place - height * axis
+        return self.tendon.pulls(base_centre, self.tendon.elongation(base_centre))
+
+    def elongation(self, place: Array, axis: Array, height: float) -> Array:
+        """Return the elongation of the tendon at poses, shape (n,) [m]; zero without one."""
+        if self.tendon is None:
+            return np.zeros(len(place))
+        return self.tendon.elongation(place - height * axis)
+
+
+WEIGHT_ALONE = Restraint()
+
+
+def scaled_restraint(case: Case, base_radius: float, gravity: float, rounding: float = 0.0) -> Restraint:
+    """Return what holds the body of a case down, at the size of a scene; arguments as of `scaled_tendon`."""
+    tendon = case.tendon
+    return Restraint(
+        tendon=None
+        if tendon is None
+        else scaled_tendon(tendon, tendon.gaps(case.cylinder), base_radius, gravity, rounding)
     )
