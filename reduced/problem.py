@@ -6,7 +6,7 @@ import math
 from dataclasses import KW_ONLY, dataclass, fields, replace
 from functools import cached_property
 from numbers import Real
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +16,11 @@ from rockwobble.models.number_checks import quoted
 from rockwobble.models.support import MODELLED, RECESS, support_named
 
 from . import kernels
-from .body import Body, body_of, restitution_from_momentum
+from .body import Body, restitution_from_momentum
 from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
 from .integration.balance import decide
 from .integration.result import Driver, IntegrationResult, Options, Task
-from .restoring import balance, tied_body
+from .restoring import TERMS, balance, constants_of
 from .rolling import impact_ratio
 
 SUPPORTS: tuple[str, ...] = MODELLED
@@ -41,7 +41,6 @@ _BUDGET, _BUDGET_PER_SAMPLE, _BUDGET_PER_TIME = 500_000, 50, 100_000
 # A spin (over p) whose passes are as near to the upright position as numbers can be to zero. A weaker one
 # turns by the same angle, that of vanishing spin, and is solved as this one.
 _LEAST_SPIN = 1e-100
-_TERMS = {"rolling_resistance", "tendon"}  # of a case that the models have; any other is refused
 LARGEST_REST_TILT = 0.1  # tilt of the rest rule over alpha
 
 
@@ -105,7 +104,7 @@ class Problem:
             raise ValueError(f"restitution belongs to planar motion, got {factor!r} without a plane")
         if plane is not None and initial is not None:
             _require_in_plane(initial, plane)
-        for term in self.case.terms.keys() - _TERMS:
+        for term in self.case.terms.keys() - TERMS:
             raise ValueError(f"the reduced models know no {term}, got {self.case.terms[term]!r}")
         if self.case.anchor and self.free_twist:
             raise ValueError(
@@ -131,12 +130,8 @@ class Problem:
 
     @cached_property
     def body(self) -> Body:
-        """The constants of the equations; of a `TiedBody`, which has more, with a tendon that pulls."""
-        case = self.case
-        plain, tendon = body_of(case.cylinder, case.gravity, case.rolling_resistance), case.tendon
-        if tendon is None or tendon.prestress == tendon.stiffness == 0.0:  # to the bit
-            return plain
-        return cast("Body", tied_body(plain, case.cylinder, tendon))
+        """The constants of the equations."""
+        return constants_of(self.case.cylinder, self.case.gravity, **self.case.terms)
 
     def solve(
         self,

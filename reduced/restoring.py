@@ -30,16 +30,17 @@ Each function is there twice, for a body without a tendon and for one with it (`
 from __future__ import annotations
 
 from math import cos, inf, pi, sin, sqrt
-from typing import TypeVar
+from typing import TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import RockingBody
+from rockwobble.models.number_checks import require_positive
 from rockwobble.models.tendon import Tendon
 
 from ._compile import by_body, inlined, jit
-from .body import Body, TiedBody
+from .body import Body, TiedBody, body_of
 
 T = TypeVar("T", float, NDArray[np.float64])
 
@@ -412,8 +413,28 @@ def balance_tilt(body: TiedBody) -> float:
     return low
 
 
-def tied_body(body: Body, cylinder: RockingBody, tendon: Tendon) -> TiedBody:
-    """Return the constants of a body that a tendon holds."""
+TERMS = frozenset({"rolling_resistance", "tendon"})  # of a case that the models have, see `constants_of`
+
+
+def constants_of(
+    cylinder: RockingBody,
+    gravity: float,
+    *,
+    rolling_resistance: float = 0.0,
+    tendon: Tendon | None = None,
+) -> Body:
+    """Return the constants of `cylinder` under `gravity` [m/s^2], with the terms of a case (`Case.terms`).
+
+    Those of a `TiedBody`, which has more, where a tendon pulls. Raises ValueError unless gravity is positive
+    and finite.
+    """
+    body = body_of(cylinder, require_positive("gravity", gravity, "m/s^2"), rolling_resistance)
+    if tendon is None or tendon.prestress == tendon.stiffness == 0.0:  # to the bit
+        return body
+    return cast("Body", _tied_body(body, cylinder, tendon))
+
+
+def _tied_body(body: Body, cylinder: RockingBody, tendon: Tendon) -> TiedBody:
     gaps, w = tendon.gaps(cylinder), 1.0 + 2.0 * cylinder.slab_mass_ratio
     stiffness = gaps**2 * tendon.stiffness * body.g / w
     whole = TiedBody(

@@ -128,7 +128,7 @@ def cases_of(subject: Subject, longest: float = math.inf) -> list[ShortCase]:
         and short.case.length <= longest
         and (subject.uplifts or short.case.is_release)
         and (subject.carries_slab or not short.case.cylinder.carries_slab)
-        and (subject.has_tendon or short.case.tendon is None)
+        and subject.terms.issuperset(short.case.terms)
     ]
 
 

@@ -64,8 +64,8 @@ class Check:
         Whether it starts from a cylinder that stands.
     slab : bool
         Whether it is for subjects that know a wobbling frame.
-    tendon : bool
-        Whether it is for subjects that know a tendon.
+    terms : tuple of str
+        Terms of a case without which a subject is not asked.
     """
 
     measure: Measure
@@ -76,7 +76,7 @@ class Check:
     files: bool = False
     from_rest: bool = False
     slab: bool = False
-    tendon: bool = False
+    terms: tuple[str, ...] = ()
 
     def applies(self, subject: Subject) -> bool:
         """Return whether the check applies to a subject."""
@@ -86,7 +86,7 @@ class Check:
             and (subject.reference is not None or not self.reference)
             and (subject.uplifts or not self.from_rest)
             and (subject.carries_slab or not self.slab)
-            and (subject.has_tendon or not self.tendon)
+            and subject.terms.issuperset(self.terms)
         )
 
     def run(self, subject: Subject) -> Iterator[Result]:
@@ -118,7 +118,7 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
     ),
     "conserved": (
         Check(measure=lagrange.free_motion, knows=("energy",)),
-        Check(measure=lagrange.rolling_loss, supports=(RECESS,), options=("rolling_resistance",)),
+        Check(measure=lagrange.rolling_loss, supports=(RECESS,), terms=("rolling_resistance",)),
         Check(measure=lagrange.work_of_the_ground, knows=("energy", "centre_of_mass")),
         Check(
             measure=lagrange.work_of_a_record,
@@ -140,22 +140,25 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
         Check(measure=invariance.statement),
     ),
     "tendon": (
-        Check(measure=lagrange.residual_with_tendon, supports=(RECESS,), options=("rtol",), tendon=True),
-        Check(measure=restraint.releases, supports=(RECESS,), tendon=True),
-        Check(measure=restraint.rocking, supports=("planar",), tendon=True),
-        Check(measure=restraint.stored_energy, supports=(RECESS,), knows=("energy",), tendon=True),
-        Check(measure=restraint.second_gap, supports=(RECESS,), knows=("energy",), tendon=True, slab=True),
-        Check(measure=restraint.load_at_rest, supports=(RECESS,), knows=("contact_force",), tendon=True),
+        Check(measure=restraint.releases, supports=(RECESS,), terms=("tendon",)),
+        Check(measure=restraint.rocking, supports=("planar",), terms=("tendon",)),
+        Check(measure=restraint.stored_energy, supports=(RECESS,), knows=("energy",), terms=("tendon",)),
+        Check(
+            measure=restraint.second_gap, supports=(RECESS,), knows=("energy",), terms=("tendon",), slab=True
+        ),
+        Check(
+            measure=restraint.load_at_rest, supports=(RECESS,), knows=("contact_force",), terms=("tendon",)
+        ),
         Check(
             measure=restraint.raised_uplift,
             supports=(RECESS, "planar"),
             knows=("uplift_time",),
-            tendon=True,
+            terms=("tendon",),
             from_rest=True,
         ),
-        Check(measure=restraint.balance, supports=(RECESS,), knows=("outcome",), tendon=True),
-        Check(measure=restraint.size, supports=(RECESS,), tendon=True),
-        Check(measure=restraint.without_force, supports=(RECESS, "planar"), tendon=True),
+        Check(measure=restraint.balance, supports=(RECESS,), knows=("outcome",), terms=("tendon",)),
+        Check(measure=restraint.size, supports=(RECESS,), terms=("tendon",)),
+        Check(measure=restraint.without_force, supports=(RECESS, "planar"), terms=("tendon",)),
     ),
     "order": (Check(measure=agreement.order, options=("stepper",), reference=True),),
     "trace": (
@@ -167,7 +170,7 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
         Check(measure=agreement.fields, knows=("twist", "centre_of_mass"), reference=True),
         Check(measure=agreement.release, reference=True),
         Check(measure=agreement.frame, reference=True, slab=True),
-        Check(measure=agreement.tendon, supports=(RECESS,), reference=True, tendon=True),
+        Check(measure=agreement.tendon, supports=(RECESS,), reference=True, terms=("tendon",)),
         Check(measure=agreement.ramp, reference=True, from_rest=True),
         Check(measure=agreement.record, reference=True, from_rest=True),
         Check(measure=agreement.ring, supports=(RING,), options=("stepper",), reference=True),

@@ -28,7 +28,7 @@ term: many tilts and spins, and accelerations of the ground that change from sam
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import factorial
 from typing import Any
@@ -254,7 +254,11 @@ CYLINDERS = {
     "frame, tan alpha = 0.3": WobblingFrame(Cylinder(semidiagonal=3.0, tan_alpha=0.3), 1.5),
 }
 TENDON = Tendon(prestress=0.4, stiffness=2.0)
-_LIGHT = Tendon(prestress=0.1, stiffness=0.5)  # with which a motion is as slow as without, see _SAMPLE
+# terms of a case, each with a size with which a motion is as slow as without, see _SAMPLE
+_TERMS: Mapping[str, Mapping[str, Any]] = {
+    "": {},
+    ", with a tendon": {"tendon": Tendon(prestress=0.1, stiffness=0.5)},
+}
 # in 1/p: the fastest of these motions changes in about 1/(3 p), and 0.06^12 is below rounding
 _SAMPLE = 0.02
 _PIECE = 16  # samples of the run in one of the record
@@ -276,32 +280,30 @@ def residual(subject: Subject, support: str) -> Iterator[Result]:
     """Residuals of Lagrange's equations, of the tilt rate and of Newton's law, each over all cylinders.
 
     d/dt dT/dq' = d(T - V)/dq for the tilt, in g (b + h), and for the rolling angle; theta' in p; the contact
-    forces over the weight are the acceleration of mass centre or slab and that of ground and gravity.
+    forces over the weight are the acceleration of mass centre or slab and that of ground and gravity. Then
+    the same with each term that the subject knows: with a tendon its energy by places, and in the force its
+    pull from the base centre towards O.
     """
-    yield from _worst(subject, support, None)
-
-
-def residual_with_tendon(subject: Subject, support: str) -> Iterator[Result]:
-    """The same with a tendon: its energy by places, its pull from the base centre towards O in the force."""
-    yield from _worst(subject, support, _LIGHT)
-
-
-def _worst(subject: Subject, support: str, tendon: Tendon | None) -> Iterator[Result]:
-    errors = {place: _residuals(subject, support, body, tendon) for place, body in CYLINDERS.items()}
     bound = subject.tolerance_bound(1.0, _REASON, "of g (b + h), p and weights")
-    for at, name in enumerate(NAMES):
-        words = name if tendon is None else f"{name}, with a tendon"
-        yield worst_of(words, {place: found[at] for place, found in errors.items()}, bound)
+    for words, terms in _TERMS.items():
+        if not subject.terms.issuperset(terms):
+            continue
+        errors = {place: _residuals(subject, support, body, terms) for place, body in CYLINDERS.items()}
+        for at, name in enumerate(NAMES):
+            worst = {place: found[at] for place, found in errors.items()}
+            yield worst_of(f"{name}{words}", worst, bound)
 
 
-def _residuals(subject: Subject, support: str, cylinder: RockingBody, tendon: Tendon | None) -> list[float]:
-    shape = shape_of(cylinder, tendon)
+def _residuals(
+    subject: Subject, support: str, cylinder: RockingBody, terms: Mapping[str, Any]
+) -> list[float]:
+    shape = shape_of(cylinder, **terms)
     p = math.sqrt(GRAVITY * cylinder.semidiagonal / (shape.I1 + shape.h**2 + shape.b**2))
     step, inner = _SAMPLE / p, slice(REACH, -REACH)
     errors = []
     for initial, motion in _starts(p, step):
         found = subject.simulate(
-            Case(cylinder, motion, initial=initial, tendon=tendon),
+            Case(cylinder, motion, initial=initial, **terms),
             support,
             sample_step=step,
             rtol=1e-13,
@@ -327,7 +329,7 @@ def _residuals(subject: Subject, support: str, cylinder: RockingBody, tendon: Te
             force = carried * curve(found.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
             # of the column on its share of the slab
             on_slab = 2.0 * curve(found.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
-            if tendon is not None:
+            if "tendon" in terms:
                 away = base_centre(shape, *place)
                 opening = np.sqrt((away * away).sum(axis=-1))[:, None]
                 pull = shape.prestress + shape.stiffness * gaps(shape) * opening

@@ -19,6 +19,7 @@ from rockwobble.models.shown import Brief
 from rockwobble.models.support import MODELLED, RECESS
 from rockwobble.multibody.engines.registry import engine_facts, find_engine
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP
+from rockwobble.reduced.restoring import TERMS
 
 from ..external.trajectory import measurement
 from ..runs.execution import SAMPLE_STEP, simulate_run
@@ -59,8 +60,7 @@ class Subject(Brief):
     knows : frozenset of str
         Fields of a trace that it fills.
     options : frozenset of str
-        Further options of `source`; "stepper" says that it is an engine of the protocol, "rolling_resistance"
-        that it takes that of a case.
+        Further options of `source`; "stepper" says that it is an engine of the protocol.
     tolerance : float
         Relative accuracy that it claims: of alpha, of a time or of an energy.
     repeatability : float
@@ -83,8 +83,8 @@ class Subject(Brief):
         Whether it can start from a cylinder that stands.
     carries_slab : bool
         Whether it knows a wobbling frame.
-    has_tendon : bool
-        Whether it knows a tendon.
+    terms : frozenset of str
+        Terms of a case (`Case.terms`) that it knows.
     """
 
     label: str
@@ -103,7 +103,7 @@ class Subject(Brief):
     cases: tuple[Case, ...] | None = None
     uplifts: bool = True
     carries_slab: bool = False
-    has_tendon: bool = False
+    terms: frozenset[str] = frozenset()
 
     def simulate(
         self, case: Case, support: str, *, sample_step: float = SAMPLE_STEP, **options: object
@@ -144,11 +144,11 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
         source=_with_memory(source),
         supports=(*MODELLED, "planar"),
         knows=FIELDS,
-        options=frozenset({"rtol", "rest_tilt", "restitution", "plane", "rolling_resistance"}),
+        options=frozenset({"rtol", "rest_tilt", "restitution", "plane"}),
         tolerance=MODEL_TOLERANCE,
         repeatability=MODEL_TOLERANCE,
         carries_slab=True,
-        has_tendon=True,
+        terms=TERMS,
     )
 
 
@@ -183,7 +183,7 @@ def engine(name: str, time_step: TimeStep | None = None, **settings: object) -> 
         source=_with_memory(source),
         supports=found.supports,
         knows=FIELDS.union(_ENGINE_FIELDS),
-        options=frozenset({"stepper", *({"rolling_resistance"} & facts.terms)}),
+        options=frozenset({"stepper"}),
         tolerance=tolerance,
         repeatability=ENGINE_REPEATABILITY,
         rounding=facts.rounding,
@@ -197,7 +197,7 @@ def engine(name: str, time_step: TimeStep | None = None, **settings: object) -> 
         run=Run(name, found.supports[0], time_step, **settings),
         uplifts=found.uplifts,
         carries_slab=facts.carries_slab,
-        has_tendon="tendon" in facts.terms,
+        terms=facts.terms,
     )
 
 

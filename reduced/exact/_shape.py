@@ -27,16 +27,13 @@ With t1, t2 in place of energy and momentum, free response is
 
 from __future__ import annotations
 
-from typing import TypeVar, cast
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import RockingBody, Tendon
-from rockwobble.models.number_checks import require_positive
-
-from ..body import Body, body_of
-from ..restoring import sigma, sigma_slope, tied_body
+from ..body import Body
+from ..restoring import sigma, sigma_slope
 
 T = TypeVar("T", float, NDArray[np.float64])
 
@@ -92,9 +89,3 @@ def deflate(body: Body, R: float, gap2: float, t1: float, t2: float, t: T, drop:
     positive = sigma(body, R, gap2, t2, drop) * G_slope * beta12 * n1
     negative = G1 * (sigma_slope(body, t1, t2, t) * beta12 * n1 + sigma12 * beta_slope)
     return positive, negative
-
-
-def body_under(cylinder: RockingBody, gravity: float, tendon: Tendon | None = None) -> Body:
-    """Return the constants of `cylinder`, or raise ValueError unless gravity is positive and finite."""
-    body = body_of(cylinder, require_positive("gravity", gravity, "m/s^2"))
-    return body if tendon is None else cast("Body", tied_body(body, cylinder, tendon))

@@ -20,8 +20,8 @@ from rockwobble.models import InitialState, RockingBody, Tendon
 from rockwobble.models.shown import Brief
 
 from ..body import Body, TiedBody
-from ..restoring import balance, potential
-from ._shape import base_inertia, body_under
+from ..restoring import balance, constants_of, potential
+from ._shape import base_inertia
 from ._turning import highest_without_spin, turning_tilts
 from .periods import quarter_period
 from .quadrature import half_cycle
@@ -107,7 +107,7 @@ def free_response(
     >>> round(response.period, 6), round(response.angle_of_turn, 6)
     (2.37841, 3.193531)
     """
-    body = body_under(cylinder, gravity, tendon)
+    body = constants_of(cylinder, gravity, tendon=tendon)
     tilt, tilt_rate, rolling_rate = initial.tilt, initial.tilt_rate, initial.rolling_rate
     if tilt == 0.0:
         raise ValueError("initial must have a tilt above 0 for a free response, got 0: the cylinder stands")
@@ -210,7 +210,7 @@ def limiting_angle_of_turn(cylinder: RockingBody) -> float:
     >>> round(degrees(limiting_angle_of_turn(Cylinder(semidiagonal=6.0, tan_alpha=0.2))), 4)
     182.6602
     """
-    body = body_under(cylinder, 1.0)
+    body = constants_of(cylinder, 1.0)
     return math.pi * math.sqrt(body.A / body.J)
 
 

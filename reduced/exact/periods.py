@@ -29,8 +29,8 @@ from rockwobble.models import RockingBody, Tendon
 from rockwobble.models.bounds import OVERTURNED_TILT
 
 from ..body import Body, TiedBody
-from ..restoring import balance, couple
-from ._shape import body_under, inertia_growth
+from ..restoring import balance, constants_of, couple
+from ._shape import inertia_growth
 from ._turning import momentum_growth
 from .quadrature import half_period
 
@@ -64,7 +64,7 @@ def _of_tilts(function: Callable[..., Array]) -> _OfTilts:
     ) -> float | Array:
         theta, largest, name = np.asarray(tilt, dtype=float), cylinder.alpha, "alpha"
         if tendon is not None:
-            largest = min(balance(body_under(cylinder, gravity, tendon)), OVERTURNED_TILT)
+            largest = min(balance(constants_of(cylinder, gravity, tendon=tendon)), OVERTURNED_TILT)
             name = "the balance tilt" if largest < OVERTURNED_TILT else "pi/2"
         outside = ~((theta > 0.0) & (theta < largest))  # also where it is not a number
         if np.any(outside):
@@ -114,7 +114,7 @@ def planar_quarter_period(
     >>> planar_quarter_period(pier, [0.2 * pier.alpha, 0.8 * pier.alpha]).round(6)
     array([0.626609, 2.068604])
     """
-    body = body_under(cylinder, gravity, tendon)
+    body = constants_of(cylinder, gravity, tendon=tendon)
     return quarter_period(body, cylinder.semidiagonal, tilt, body.alpha - tilt)
 
 
@@ -209,7 +209,7 @@ def steady_wobble_rate(
     >>> round(steady_wobble_rate(pier, 0.5 * pier.alpha), 6)
     1.115452
     """
-    body = body_under(cylinder, gravity, tendon)
+    body = constants_of(cylinder, gravity, tendon=tendon)
     t = np.tan(0.5 * tilt)
     # 2 V'/B' with B' = 4 t K/n^2
     moment = couple(body, cylinder.semidiagonal, t, body.alpha - tilt)
@@ -253,7 +253,7 @@ def wobble_stability(
     >>> round(wobble_stability(pier, 0.9 * pier.alpha, tendon=Tendon(stiffness=5.0)), 4)
     3.9817
     """
-    body = body_under(cylinder, gravity, tendon)
+    body = constants_of(cylinder, gravity, tendon=tendon)
     t, R = np.tan(0.5 * tilt), cylinder.semidiagonal
     return np.asarray(momentum_growth(body, R, t, body.alpha - tilt) * (1.0 + t * t) / (2.0 * t * body.A))
 

@@ -83,7 +83,7 @@ def test_cases_have_names_claims_and_terms_of_their_own() -> None:
         ({}, {"ring"}),
         ({"supports": ("recess", "flat", "ring")}, set()),
         ({"carries_slab": False}, {"ring", "frame"}),
-        ({"has_tendon": False}, {"ring", "tendon"}),
+        ({"terms": frozenset()}, {"ring", "tendon"}),
         ({"supports": ("recess",)}, {"ring", "flat-ground"}),
         (
             {"uplifts": False, "supports": ("flat", "ring")},
@@ -123,7 +123,7 @@ def test_a_slab_of_one_percent_more_is_a_change_of_the_frame(certificate: dict[s
 def test_a_tendon_of_one_percent_more_is_a_change_of_its_case(
     certificate: dict[str, Any], field: str
 ) -> None:
-    wrong = scaled_argument("tied_body", "TiedBody", field, 1.01)
+    wrong = scaled_argument("_tied_body", "TiedBody", field, 1.01)
     with mutated(Fault(file="restoring.py", change=wrong)) as copy:
         answer = verify(certificate, models(copy))
     assert (answer.word, answer.case) == (CHANGED, "tendon")

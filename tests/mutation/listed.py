@@ -142,13 +142,13 @@ def _structure() -> list[Mutation]:
 def _tendons() -> list[Mutation]:
     """Constants and terms of a tendon; the balance tilt shortens runs alone, and a test looks at it."""
     changes = {
-        f"{factor} {field}": scaled_argument("tied_body", "TiedBody", field, number)
+        f"{factor} {field}": scaled_argument("_tied_body", "TiedBody", field, number)
         for factor, number in (("1 % off:", 1.01), ("sign:", -1.0))
         for field in ("prestress", "stiffness")
     }
     changes |= {
-        "1 % off: gaps of the force": scaled_argument("tied_body", "TiedBody", "gaps", 1.01),
-        "a gap missing": before_assignment("tied_body", "stiffness", "gaps = 1"),
+        "1 % off: gaps of the force": scaled_argument("_tied_body", "TiedBody", "gaps", 1.01),
+        "a gap missing": before_assignment("_tied_body", "stiffness", "gaps = 1"),
     }
     bodies = {
         "half angle: couple": ("_tendon(body, s, u)", "return without_fault(body, s, 2.0 * u * u - 1.0)"),

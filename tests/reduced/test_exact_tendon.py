@@ -12,8 +12,8 @@ from tendon import Pier, accelerations, inertia_about_the_vertical, potential
 import rockwobble as rw
 from rockwobble import reduced
 from rockwobble.models import Tendon
-from rockwobble.reduced.exact._shape import body_under
 from rockwobble.reduced.exact._turning import momentum_growth
+from rockwobble.reduced.restoring import constants_of
 
 G = 9.81
 STILL = np.zeros(3)
@@ -109,7 +109,7 @@ def test_a_release_turns_as_it_is_solved(
         assert exact.energy * (1.0 + 2.0 * pier.slab) == pytest.approx(
             potential(pier, share * top)
             + 0.5 * inertia_about_the_vertical(pier, share * top) * spin**2
-            + 0.5 * body_under(body, G).A * (1.0 + 2.0 * pier.slab) * tilt_rate**2,
+            + 0.5 * constants_of(body, G).A * (1.0 + 2.0 * pier.slab) * tilt_rate**2,
             rel=1e-11,
         )
 
@@ -159,7 +159,7 @@ def test_the_momentum_of_steady_wobble_has_one_maximum_at_most() -> None:
         tan_alpha = math.exp(random.uniform(math.log(0.08), math.log(1.5)))
         cylinder = rw.Cylinder(semidiagonal=2.0, tan_alpha=tan_alpha)
         tendon = Tendon(prestress=random.uniform(0, 1), stiffness=random.uniform(0, 2) / tan_alpha)
-        body = body_under(cylinder, G, tendon)
+        body = constants_of(cylinder, G, tendon=tendon)
         edge = math.tan(0.5 * min(body.balance, 0.5 * math.pi))  # type: ignore[attr-defined]
         t = np.linspace(1e-4, 1.0, 1000) * edge
         growth = momentum_growth(body, 2.0, t, body.alpha - 2.0 * np.arctan(t))
