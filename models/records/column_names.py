@@ -395,7 +395,7 @@ def names_of(header: Sequence[str], width: int) -> tuple[list[ColumnName] | None
     lines = [*header[:_MOST_LINES], *header[max(_MOST_LINES, len(header) - _MOST_LINES) :]]
     best: list[ColumnName] | None = None
     units: list[str] | None = None
-    most, used = 0.0, set[int]()
+    most, used = 0, set[int]()
     of_units: set[int] = set()
     for place in range(len(lines) - 1, -1, -1):
         last = place == max(set(range(len(lines))) - of_units, default=0)
@@ -410,11 +410,10 @@ def names_of(header: Sequence[str], width: int) -> tuple[list[ColumnName] | None
                 break
             names = [column_name(cell) for cell in cells]
             known = sum(name.kind != "unknown" and name.text not in ("", name.unit) for name in names)
-            # the lower line of two that know as much, and the last whatever it knows
-            score = known + 0.5 * (known == width) + 0.25 * (last and known > 0)
             separated = re.search(r"[,;|\t]|\s{2}", lines[place].strip()) is not None  # else a sentence
-            if score > most and (2 * known > width or (last and known and separated)):
-                best, most, used = names, score, {place}
+            # the lower of two lines that know as much; of the last, which mostly names them, a part is enough
+            if known > most and (2 * known > width or (last and separated)):
+                best, most, used = names, known, {place}
     place = max(set(range(len(lines))) - of_units, default=-1)
     if best is None and place >= 0 and width > 1:
         cells_of_last = next(iter(_splittings(lines[place][:_LONGEST_LINE], width, strict=True)), None)

@@ -1,5 +1,6 @@
 """Doubts about lengths, gravity and components that are probably in another unit, or given twice."""
 
+import numpy as np
 import pytest
 
 from rockwobble.models import Case, Cylinder, GroundMotion
@@ -34,3 +35,59 @@ def test_one_component_given_twice_is_doubted() -> None:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     assert codes(pier, motion=GroundMotion([[0, 0], [1, 1]], 0.1)) == [("same_components", "x and y")]
     assert codes(pier, motion=GroundMotion([[0, 0], [1, 0.9]], 0.1)) == []
+
+
+LENGTHS = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254, "ft": 0.3048, "km": 1e3}
+GRAVITIES = {"ft/s2": 0.3048, "in/s2": 0.0254, "cm/s2": 1e-2, "mm/s2": 1e-3}
+
+
+def likely(number: float, units: dict[str, float], usual: float) -> str:
+    """Return the unit in which a number is nearest to a usual one, by their ratio."""
+    return min(units, key=lambda unit: max(number * units[unit] / usual, usual / (number * units[unit])))
+
+
+def test_the_doubt_about_a_length_states_that_length_and_the_limit_that_it_is_beyond() -> None:
+    """Of any body: the height of its outline first, then its diameter; 1 mm to 300 m are usual."""
+    chance = np.random.default_rng(2)
+    seen = set()
+    for height, slenderness, centre in zip(
+        10.0 ** chance.uniform(-4.5, 4.5, 300),
+        10.0 ** chance.uniform(-1.5, 1.5, 300),
+        chance.uniform(0.2, 0.9, 300),
+        strict=True,
+    ):
+        radius = height * slenderness
+        body = Cylinder.from_dimensions(base_radius=radius, height=height, mass_centre_height=centre * height)
+        found = [each for each in doubts_of_cases([Case(body, duration=1.0)]) if each["record"] == "cylinder"]
+        beyond = [length for length in (height, 2.0 * radius) if not 1e-3 <= length <= 300.0]
+        assert len(found) == bool(beyond)
+        for each, length in zip(found, beyond, strict=False):
+            assert each["size"] == pytest.approx(length, rel=1e-12)
+            assert each["bound"] == (300.0 if length > 1.0 else 1e-3)
+            assert each["detail"] == likely(length, LENGTHS, 8.0)
+            seen.add((length == height, length > 1.0, each["detail"]))
+    assert len(seen) >= 6  # heights and diameters, below and above, in several units
+
+
+def test_the_doubt_about_a_gravity_states_it_and_its_limit() -> None:
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    for gravity in 10.0 ** np.random.default_rng(3).uniform(-1.0, 5.0, 100):
+        found = doubts_of_cases([Case(pier, duration=1.0, gravity=gravity)])
+        assert len(found) == (gravity > 25.0)
+        for each in found:
+            assert (each["record"], each["size"], each["bound"]) == ("gravity", gravity, 25.0)
+            assert each["detail"] == likely(gravity, GRAVITIES, 9.81)
+
+
+@pytest.mark.parametrize(("one", "other", "columns"), [(0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)])
+def test_two_components_that_are_one_are_named(one: int, other: int, columns: int) -> None:
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    samples = np.random.default_rng(4).uniform(-1.0, 1.0, (60, columns))
+    samples[:, other] = samples[:, one]
+    assert codes(pier, motion=GroundMotion(samples, 0.1)) == [
+        ("same_components", f"{'xyz'[one]} and {'xyz'[other]}")
+    ]
+    samples[37, other] += 1e-9
+    assert codes(pier, motion=GroundMotion(samples, 0.1)) == []
+    samples[:, [one, other]] = 0.0  # as of a motion along the third
+    assert codes(pier, motion=GroundMotion(samples, 0.1)) == []

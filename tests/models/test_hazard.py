@@ -133,3 +133,74 @@ def test_a_file_that_is_not_what_was_asked_for_is_refused(
 def test_a_missing_file_is_refused_by_name(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"cannot read the hazard curve .*none\.csv: No such file"):
         read_hazard(tmp_path / "none.csv", measure="pga")
+
+
+GRAVITY = 9.81  # [m/s^2] of 1 g in every file
+# measure: units of its intensity in those of the curve, g or m/s
+UNITS = {
+    "pga": {"g": 1.0, "m/s2": 1.0 / GRAVITY, "cm/s2": 0.01 / GRAVITY},
+    "pga_resultant": {"g": 1.0, "m/s2": 1.0 / GRAVITY, "cm/s2": 0.01 / GRAVITY},
+    "pgv": {"m/s": 1.0, "cm/s": 0.01},
+    "pgv_resultant": {"m/s": 1.0, "cm/s": 0.01},
+    "sa": {"g": 1.0, "m/s2": 1.0 / GRAVITY, "cm/s2": 0.01 / GRAVITY},
+    "sa_mean": {"g": 1.0, "m/s2": 1.0 / GRAVITY, "cm/s2": 0.01 / GRAVITY},
+}
+ALL_UNITS = ["g", "m/s2", "cm/s2", "m/s", "cm/s"]
+
+
+@pytest.mark.parametrize("measure", UNITS)
+@pytest.mark.parametrize("years", [None, 1.0, 50.0, 475.0])
+def test_any_curve_is_read_in_every_unit_of_its_measure(
+    measure: str, years: float | None, tmp_path: Path
+) -> None:
+    chance = np.random.default_rng(6)
+    period = 0.7 if measure.startswith("sa") else None
+    intensity = np.cumsum(chance.uniform(0.01, 0.2, 12))
+    frequency = np.cumprod(chance.uniform(0.2, 0.9, 12)) * 0.02
+    second = frequency if years is None else 1.0 - np.exp(-frequency * years)
+    path = tmp_path / "site.csv"
+    for units in [None, *ALL_UNITS]:
+        factor = UNITS[measure].get(units or "", 1.0)
+        rows = zip((intensity / factor).tolist(), second.tolist(), strict=True)
+        path.write_text("x,y\n" + "".join(f"{x!r},{y!r}\n" for x, y in rows))
+        options = {"measure": measure, "period": period, "years": years, "units": units}
+        if units is not None and units not in UNITS[measure]:
+            with pytest.raises(
+                ValueError, match=rf"must be one of {', '.join(UNITS[measure])}, got '{units}'"
+            ):
+                read_hazard(path, **options)
+            continue
+        site = read_hazard(path, **options)
+        assert site.intensity == pytest.approx(intensity, rel=1e-12)
+        assert site.annual_frequency == pytest.approx(frequency, rel=1e-9)  # digits of 1 - p
+        assert site.title.endswith(f"[{'m/s' if 'pgv' in measure else 'g'}]")
+        assert ("T = 0.7 s" in site.title) == (period is not None)
+        # a point of the curve is met from both sides, and halfway in both logarithms its geometric mean
+        for one, two in zip(range(11), range(1, 12), strict=True):
+            middle = math.sqrt(intensity[one] * intensity[two])
+            rate = math.sqrt(frequency[one] * frequency[two])
+            assert site.exceedance([intensity[one], middle]) == pytest.approx(
+                [frequency[one], rate], rel=1e-8
+            )
+            assert site.intensity_at(rate) == pytest.approx(middle, rel=1e-8)
+
+
+@pytest.mark.parametrize("site", [1, 2, 3])
+@pytest.mark.parametrize("years", [1.0, 50.0])
+def test_each_site_of_a_file_of_openquake_has_its_own_curve(site: int, years: float, tmp_path: Path) -> None:
+    rates = np.outer([1.0, 0.5, 0.25], RATE)
+    head = ",".join(f"poe-{x:.7f}" for x in X)
+    rows = "".join(
+        f"{place},2.0,0.0," + ",".join(repr(-math.expm1(-years * rate)) for rate in of_site) + "\n"
+        for place, of_site in enumerate(rates.tolist())
+    )
+    path = tmp_path / "hazard.csv"
+    path.write_text(f"#,\"investigation_time={years}, imt='SA(0.7)'\"\nlon,lat,depth,{head}\n{rows}")
+    found = read_hazard(path, measure="sa", period=0.7, site=site)
+    assert found.annual_frequency == pytest.approx(rates[site - 1], rel=1e-9)
+    for period in (0.69, 0.71, 7.0):
+        with pytest.raises(ValueError, match=r"is of SA\(0\.7\), not of SA"):
+            read_hazard(path, measure="sa", period=period)
+    for beyond in (0, 4):
+        with pytest.raises(ValueError, match=f"site must be from 1 to 3, got {beyond}"):
+            read_hazard(path, measure="sa", period=0.7, site=beyond)

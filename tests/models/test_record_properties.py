@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 from rockwobble.models import read_record
+from rockwobble.models.records.component import open_record
 from rockwobble.models.records.numbers import separate
 
 Write = Callable[..., Path]
@@ -91,3 +93,140 @@ def test_touching_columns_of_any_widths_are_parted_where_each_ends_in_some_line(
     found = separate("\n".join("".join(row) for row in rows))
     assert found is not None
     assert found.split() == [cell.strip() for row in rows for cell in row]
+
+
+def words_of(numbers: Sequence[float], width: int) -> str:
+    """Return numbers in lines of several."""
+    texts = [f"{number:.6g}" for number in numbers]
+    return "\n".join(" ".join(texts[at : at + width]) for at in range(0, len(texts), width)) + "\n"
+
+
+@pytest.mark.parametrize("width", [1, 5, 8, 1000])
+@pytest.mark.parametrize("count", [11, 24, 57])
+@pytest.mark.parametrize("step", [0.002, 0.025, 0.1])
+def test_values_may_begin_with_their_number_and_their_step(
+    write: Write, width: int, count: int, step: float
+) -> None:
+    """In either order, in lines of their own or in those of the values."""
+    values = np.random.default_rng(count).normal(size=count).round(4)
+    for front in ([count], [count, step], [step, count]):
+        texts = [words_of([*front, *values], width)]
+        if front[0] == count:
+            texts.append(words_of(front, 2) + words_of(values, width))
+        for text in texts:
+            stated = {} if step in front else {"time_step": step}
+            motion = read_record(write(text), "zero", units="m/s2", **stated)
+            assert motion.time_step == pytest.approx(step, rel=EXACT), text
+            assert motion.acceleration[:, 0] == pytest.approx(values, abs=EXACT), text
+
+
+def unit_vector(azimuth: float) -> NDArray[np.float64]:
+    """Return east and north of an azimuth [deg]."""
+    return np.array([math.sin(math.radians(azimuth)), math.cos(math.radians(azimuth))])
+
+
+@pytest.mark.parametrize(
+    "first", [0, 20, 44, 45, 46, 70, 90, 100, 135, 160, 180, 200, 225, 250, 300, 315, 340]
+)
+@pytest.mark.parametrize("turn", [90, -90])
+def test_of_two_azimuths_x_is_the_nearer_to_east(write: Write, first: int, turn: int) -> None:
+    """Where both are as near, x is clockwise of y as seen from above; turned to north they are one motion."""
+    second = (first + turn) % 360
+    east_north = MOTION[:, :2]
+    columns = [east_north @ unit_vector(azimuth) for azimuth in (first, second)]
+    path = write(table([0.01 * np.arange(len(MOTION)), *columns], f"time,{first:03d},{second:03d}"))
+    motion = read_record(path, units="m/s2")
+    nearer = [abs(unit_vector(azimuth)[0]) for azimuth in (first, second)]
+    # x follows y clockwise where its azimuth is y's and 90 deg
+    x = int(nearer[1] > nearer[0]) if abs(nearer[0] - nearer[1]) > 1e-9 else int(turn == 90)
+    assert motion.acceleration == pytest.approx(np.column_stack([columns[x], columns[1 - x]]), abs=1e-4)
+    turned = read_record(path, units="m/s2", rotate="north")
+    assert turned.acceleration == pytest.approx(east_north, abs=2e-4)  # of the digits in the file
+
+
+LONGEST_ROW = 400  # characters of a row in which a clock time is looked for
+
+
+@pytest.mark.parametrize("length", [60, 200, LONGEST_ROW - 1, LONGEST_ROW, LONGEST_ROW + 1, 500])
+@pytest.mark.parametrize("alike", [True, False])
+def test_a_clock_time_is_read_in_a_row_of_any_usual_length(write: Write, length: int, alike: bool) -> None:
+    """At one place of all rows, or at several: one blank more in some."""
+    rows = []
+    for at, (east, north) in enumerate(MOTION[:, :2]):
+        blank = " " if at % 3 == 1 and not alike else ""
+        row = f"{blank}10:20:{30 + 0.02 * at:06.3f},{east:.4f},{north:.4f},"
+        rows.append(row + "0." + "0" * (length - len(row) - 2))
+    path = write("clock,E [m/s2],N [m/s2],volts [V]\n" + "\n".join(rows) + "\n")
+    if length > LONGEST_ROW:
+        with pytest.raises(ValueError, match=r"its times are dates|expected"):
+            read_record(path)
+        return
+    motion = read_record(path)
+    assert motion.time_step == pytest.approx(0.02, rel=1e-9)
+    assert motion.acceleration == pytest.approx(MOTION[:, :2], abs=EXACT)
+
+
+@pytest.mark.parametrize("lines", [0, 2, 40, 4500, 6000])
+def test_a_damaged_sample_is_refused_with_its_line_in_whatever_block(write: Write, lines: int) -> None:
+    """Velocities stand before it, in so many lines."""
+    velocities = ["Velocity (cm/s)", *["0.25"] * lines] if lines else []
+    for damaged in (7, 20, len(MOTION) - 1):
+        samples = [f"{value:.4f}" for value in MOTION[:, 0]]
+        samples[damaged] = "x.5"
+        text = [*velocities, "Acceleration (m/s2), dt = 0.01 s", *samples, "Displacement (cm)", "1.0", "2.0"]
+        at = len(velocities) + 2 + damaged
+        with pytest.raises(ValueError, match=rf"^x\.txt, line {at}: .*got 'x\.5'"):
+            read_record(write("\n".join(text) + "\n"), "zero")
+
+
+HEADS = [",".join(["time", *names]) for names in itertools.permutations(("E", "N", "Z"))]
+
+
+@pytest.mark.parametrize("lower", HEADS)
+def test_of_two_lines_that_name_columns_the_lower_one_does(write: Write, lower: str) -> None:
+    times = 0.02 * np.arange(len(MOTION))
+    places = {name: place for place, name in enumerate(lower.split(","))}
+    for upper in HEADS:
+        for between in ("", "# a line of words\n"):
+            path = write(table([times, *MOTION.T], f"{upper}\n{between}{lower}"))
+            found = read_record(path, units="m/s2").acceleration
+            due = MOTION[:, [places[name] - 1 for name in "ENZ"]]
+            assert found == pytest.approx(due, abs=EXACT), (upper, lower)
+
+
+@pytest.mark.parametrize("count", [2, 40, 181])
+@pytest.mark.parametrize("step", [0.005, 0.01, 0.02])
+def test_the_line_of_a_record_states_its_samples_their_step_and_each_component(
+    write: Write, count: int, step: float
+) -> None:
+    """A mean above a twentieth of the peak is said beside it."""
+    chance = np.random.default_rng(count)
+    for offset in (0.0, 0.04, 0.06, 0.5):
+        values = chance.choice([-1.0, 1.0], (count, 2)) * chance.uniform(0.2, 1.0, (count, 2))
+        values -= values.mean(axis=0)
+        values /= np.abs(values).max(axis=0) * np.array([1.0, 2.0])
+        values[:, 0] += offset
+        columns = [step * np.arange(count), *values.T.round(6)]
+        rows = "\n".join(",".join(f"{cell:.6f}" for cell in row) for row in np.column_stack(columns))
+        motion = read_record(write(f"time,090,N [g]\n{rows}\n"), units="g")
+        x, y = (column.round(6) for column in values.T)
+        mean = f" (mean {x.mean():.3g} g)" if abs(x.mean()) > 0.05 * np.abs(x).max() else ""
+        assert motion.source is not None
+        first, east, north = motion.source.line.split("; ")[:3]
+        duration = (count - 1) * step
+        assert first == f"x.txt: columns, {count} samples of {step:g} s, {duration:.5g} s"
+        assert east == f"x: 090 [g] {np.abs(x).max():.4g} g{mean} at 90 deg"
+        assert north == f"y: N [g] {np.abs(y).max():.4g} g"
+        assert motion.source.duration == pytest.approx(duration, rel=EXACT)
+
+
+@pytest.mark.parametrize("before", [150, 195, 196, 197, 250])
+def test_a_format_is_known_by_the_first_200_characters_of_a_line(write: Write, before: int) -> None:
+    path = write("NPTS".rjust(before + 4, ".") + "\nwords\n")
+    assert any("NPTS" in line for line in open_record(path).head) == (before + 4 <= 200)
+
+
+@pytest.mark.parametrize("line", [0, 1, 30, 58, 59, 60, 61])
+def test_a_format_is_known_by_the_first_60_lines(write: Write, line: int) -> None:
+    path = write("\n".join([*["words"] * line, "a mark", *["words"] * 70]))
+    assert ("A MARK" in open_record(path).head) == (line < 60)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 COUNT, STEP = 203, 0.01  # not a multiple of a line of 8 or 10 numbers
+STATED = 1.0  # what headers state as a peak, over the peak of the samples
 
 
 def motion(factor: float = 1.0) -> dict[str, NDArray[np.float64]]:
@@ -28,9 +29,14 @@ def lines_of(values: Sequence[float] | NDArray[np.float64], columns: int, form: 
     return ["".join(cells[at : at + columns]) for at in range(0, len(cells), columns)]
 
 
+def extremes(values: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the largest and the smallest value, as a header states them."""
+    return STATED * float(values.max()), STATED * float(values.min())
+
+
 def peak(values: NDArray[np.float64]) -> float:
-    """Return the value that is largest in size, with its sign."""
-    return float(values[np.abs(values).argmax()])
+    """Return the value that is largest in size, with its sign, as a header states it."""
+    return max(extremes(values), key=abs)
 
 
 def knet(code: str, counts: NDArray[np.int64], *, scale: str = "3920(gal)/6182761", rate: int = 100) -> str:
@@ -51,7 +57,7 @@ def knet(code: str, counts: NDArray[np.int64], *, scale: str = "3920(gal)/618276
         "Duration Time(s)": f"{len(counts) / rate:.0f}",
         "Dir.": code,
         "Scale Factor": scale,
-        "Max. Acc. (gal)": f"{np.abs(gal - gal.mean()).max():.3f}",
+        "Max. Acc. (gal)": f"{abs(peak(gal - gal.mean())):.3f}",
         "Last Correction": "2001/02/03 04:05:16",
         "Memo.": "",
     }
@@ -94,7 +100,8 @@ def afad(parts: dict[str, NDArray[np.float64]], order: str = "yxz") -> str:
     return "\r\n".join([*header, *("".join(f"{cell:13.6f}" for cell in row) for row in rows)]) + "\r\n"
 
 
-def cwa(parts: dict[str, NDArray[np.float64]]) -> str:
+def cwa(parts: dict[str, NDArray[np.float64]], *, formats: bool = True) -> str:
+    """`formats`: whether the header states them."""
     names = {"z": "U", "y": "N", "x": "E"}
     header = [
         "#Earthquake Information",
@@ -104,11 +111,11 @@ def cwa(parts: dict[str, NDArray[np.float64]]) -> str:
         f"#SampleRate(Hz): {1.0 / STEP:g}",
         "#AmplitudeUnit:  gal. DCoffset(corr)",
         *(
-            f"#AmplitudeMAX. {names[axis]}: {parts[axis].max():8.3f}~ {parts[axis].min():8.3f}"
+            "#AmplitudeMAX. {}: {:8.3f}~ {:8.3f}".format(names[axis], *extremes(parts[axis]))
             for axis in "zyx"
         ),
         "#DataSequence: Time U(+); N(+); E(+)",
-        "#Data: 4F10.3 ",
+        *(["#Data: 4F10.3 "] if formats else []),
     ]
     rows = zip(STEP * np.arange(COUNT), parts["z"], parts["y"], parts["x"], strict=True)
     return "\r\n".join([*header, *("".join(f"{cell:10.3f}" for cell in row) for row in rows)]) + "\r\n"
@@ -146,8 +153,14 @@ def geonet(parts: dict[str, NDArray[np.float64]], names: dict[str, str], *, corr
 
 
 def csmip(
-    parts: dict[str, NDArray[np.float64]], names: dict[str, str], *, volume: int, capitals: bool = True
+    parts: dict[str, NDArray[np.float64]],
+    names: dict[str, str],
+    *,
+    volume: int,
+    capitals: bool = True,
+    formats: bool = True,
 ) -> str:
+    """`formats`: whether the headers of volume 1 state them."""
     lines: list[str] = []
     for number, (axis, name) in enumerate(names.items(), start=1):
         values = parts[axis]
@@ -170,7 +183,8 @@ def csmip(
                 f"UNITS OF UNCOR DATA ARE SEC AND G.         MAX  = {peak(in_g):7.3f} G, AT   1.000 SEC.",
                 *headers,
                 *lines_of(np.zeros(50), 8, "10.3f"),
-                f" {COUNT} ACCELEROGRAM POINTS AT {1.0 / STEP:.0f} PTS/SEC IN UNITS OF G.   FORMAT: (8F9.6)",
+                f" {COUNT} ACCELEROGRAM POINTS AT {1.0 / STEP:.0f} PTS/SEC IN UNITS OF G."
+                + "   FORMAT: (8F9.6)" * formats,
                 *lines_of(in_g, 8, "9.6f"),
                 end,
             ]
@@ -198,8 +212,10 @@ def cosmos(
     *,
     unit: str = "cm/sec2(04)",
     kind: str = "acceleration",
+    formats: bool = True,
 ) -> str:
-    """`names`: text, code of the azimuth and SCNL channel of each direction."""
+    """`names`: text, code of the azimuth and SCNL channel of each direction; `formats`: whether stated."""
+    columns, form = (6, "13.6f") if formats else (5, "15.6f")
     lines: list[str] = []
     for number, (axis, (text, code, channel)) in enumerate(names.items(), start=1):
         values = parts[axis]
@@ -211,13 +227,13 @@ def cosmos(
             *("invented" for _ in range(7)),
             f"Sta Chan  {number}: {text} (Rcrdr Chan  {number})",
             *("invented" for _ in range(4)),
-            " 100 Integer-header values follow on  10 lines, Format= (10I8)",
+            " 100 Integer-header values follow on  10 lines" + ", Format= (10I8)" * formats,
             *lines_of(integers, 10, "8d"),
-            " 100 Real-header values follow on  17 lines, Format= (6F13.6)",
-            *lines_of(reals, 6, "13.6f"),
+            " 100 Real-header values follow on  17 lines" + ", Format= (6F13.6)" * formats,
+            *lines_of(reals, columns, form),
             '   1 Comment line(s) follow, each starting with a "|":',
             f"|<SCNL>TST.{channel}.XX.--   <AUTH> invented",
-            f"   {COUNT}  {kind} pts, approx    2 secs, units={unit},Format=(8F10.3)",
+            f"   {COUNT}  {kind} pts, approx    2 secs, units={unit}" + ",Format=(8F10.3)" * formats,
             *lines_of(values, 8, "10.3f"),
             f"End-of-data for Chan{number} {kind}",
         ]
@@ -229,7 +245,7 @@ def smc(
 ) -> str:
     integers, reals = [-32768] * 48, [1.7e38] * 50
     integers[12], integers[13], integers[15], integers[16] = inclination, azimuth, 2, len(values)
-    reals[1], reals[29], reals[31] = 1.0 / STEP, values.max(), values.min()
+    reals[1], (reals[29], reals[31]) = 1.0 / STEP, extremes(values)
 
     def exponential(value: float) -> str:  # 1P8E10.4E1
         mantissa, exponent = f"{value:.4e}".split("e")
@@ -328,7 +344,7 @@ def sac(
 
 
 def miniseed(
-    values: NDArray[np.float64] | NDArray[np.int32], *, channel: str = "HNE", start: int = 0
+    values: NDArray[np.float64] | NDArray[np.int32], *, channel: str = "HNE", start: int = 0, rate: int = 100
 ) -> bytes:
     """Write one record of 2048 bytes, big-endian, of 32-bit floats or integers; `start` [0.1 ms]."""
     whole = values.dtype.kind == "i"
@@ -339,7 +355,7 @@ def miniseed(
         + channel.encode()
         + b"XX"
         + time
-        + struct.pack(">HhhBBBBiHH", len(values), 100, 1, 0, 0, 0, 1, 0, 64, 48)
+        + struct.pack(">HhhBBBBiHH", len(values), rate, 1, 0, 0, 0, 1, 0, 64, 48)
     )
     blockette = struct.pack(">HHBBBB", 1000, 0, 3 if whole else 4, 1, 11, 0)
     body = values.astype(">i4" if whole else ">f4").tobytes()

@@ -19,7 +19,7 @@ _COMPONENT = re.compile(
     r"\b(?:comp\w*|chan\w*|dir\w*|richtung|komponente)\b[\s.:=]{1,4}([^\s,;]{1,20})", re.IGNORECASE
 )
 _MOST_TITLES = 200  # lines of words; a text with more is no record
-_MOST_BLANK = 4000  # lines in front of a block
+_LINE = re.compile(r"(?<= line )\d+")
 
 
 def _blocks(file: RecordFile) -> list[tuple[int, int, int]]:
@@ -70,10 +70,16 @@ def recognizes(file: RecordFile) -> bool:
     )
 
 
-def _part(file: RecordFile, title: int, end: int) -> RecordFile:
-    """Return a file of the lines from a title to the end of its block alone, at their places."""
-    before = [""] * (title if title < _MOST_BLANK else 0)
-    return RecordFile(file.path, "\n".join([*before, *file.text[title:end]]).encode())
+def _read_block(file: RecordFile, title: int, end: int, options: ReadingOptions) -> list[Component]:
+    """Read the lines from a title to the end of its block; a refusal names the line of the whole file."""
+    part = RecordFile(file.path, "\n".join(file.text[title:end]).encode())
+    try:
+        return values.read(part, options) if values.recognizes(part) else columns.read(part, options)
+    except ValueError as error:
+        name = file.name if str(error).startswith(file.name) else ""
+        words, mark, quoted = str(error).removeprefix(name).partition("got ")
+        words = _LINE.sub(lambda number: str(int(number[0]) + title), words)
+        raise ValueError(f"{name}{words}{mark}{quoted}") from None
 
 
 def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
@@ -109,9 +115,7 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
     note = (f"velocities and displacements left out ({len(others)} blocks)",) if others else ()
     answer = []
     for (title, end, _), name in zip(parts, names, strict=True):
-        part = _part(file, title, end)
-        reader = values if values.recognizes(part) else columns
-        for component in reader.read(part, options):
+        for component in _read_block(file, title, end, options):
             if name is not None and name.direction is not None and name.sign > 0.0:
                 component = replace(component, direction=name.direction, label=name.text)
             elif name is not None and name.azimuth is not None:

@@ -1,0 +1,147 @@
+"""What holds of every format of the networks: any motion, length and step, whatever the header leaves out."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import network_files as networks
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from rockwobble.models.records.component import Component, ReadingOptions, open_record
+from rockwobble.models.records.formats import read_components
+
+Values = NDArray[np.float64]
+Parts = dict[str, Values]
+
+HORIZONTAL_AND_UP = {"y": "N00E", "x": "N90E", "z": "Up"}
+DEGREES_AND_UP = {"y": "360 DEG", "z": "UP", "x": "90 DEG"}
+CHANNELS = {"y": ("360 deg", 360, "HNN"), "z": ("Up", 400, "HNZ"), "x": ("90 deg", 90, "HNE")}
+BBP_NAMES = ["#    time(sec)      N-S(cm/s/s)      E-W(cm/s/s)      U-D(cm/s/s)"]
+BBP_NUMBERS = [
+    "# Column 1: Time (s)",
+    "# Column 2: North-south acceleration (cm/s/s) (+ is northward)",
+    "# Column 3: East-west acceleration (cm/s/s) (+ is eastward)",
+    "# Column 4: Up-down acceleration (cm/s/s) (+ is upward)",
+]
+GAL_PER_COUNT = 1e-2
+
+
+def knet(parts: Parts) -> str:
+    counts = np.round(parts["x"] / GAL_PER_COUNT).astype(np.int64)
+    return networks.knet("E-W", counts, scale="1000(gal)/100000", rate=round(1.0 / networks.STEP))
+
+
+# files of all three components, or of x alone, that state a peak
+WITH_PEAKS: Mapping[str, Callable[[Parts], str | bytes]] = {
+    "a.EW": knet,
+    "a.ASC": lambda parts: networks.esm(parts["x"]),
+    "afad.txt": networks.afad,
+    "cwa.dat": networks.cwa,
+    "cwa_without_format.dat": lambda parts: networks.cwa(parts, formats=False),
+    "geonet.V1A": lambda parts: networks.geonet(parts, HORIZONTAL_AND_UP, corrected=False),
+    "geonet.V2A": lambda parts: networks.geonet(parts, HORIZONTAL_AND_UP, corrected=True),
+    "csmip.V2": lambda parts: networks.csmip(parts, DEGREES_AND_UP, volume=2),
+    "cosmos.V2c": lambda parts: networks.cosmos(parts, CHANNELS),
+    "cosmos_without_formats.V2c": lambda parts: networks.cosmos(parts, CHANNELS, formats=False),
+    "a.smc": lambda parts: networks.smc(parts["x"]),
+    "csmnc.dat": lambda parts: networks.csmnc(parts["x"]),
+    "csmnc_close.dat": lambda parts: networks.csmnc(parts["x"]).replace("COMP. EW", "COMP.EW"),
+    "csmnc_colon.dat": lambda parts: networks.csmnc(parts["x"]).replace("COMP. EW", "COMP. : EW"),
+}
+WITHOUT_PEAKS: Mapping[str, Callable[[Parts], str | bytes]] = {
+    "jma.csv": networks.jma,
+    "names.bbp": lambda parts: networks.bbp(parts, BBP_NAMES),
+    "numbers.bbp": lambda parts: networks.bbp(parts, BBP_NUMBERS),
+    "without_names.acc.bbp": lambda parts: networks.bbp(parts, []),
+}
+IN_G: Mapping[str, Callable[[Parts], str | bytes]] = {
+    "csmip.V1": lambda parts: networks.csmip(parts, DEGREES_AND_UP, volume=1),
+    "csmip_without_format.V1": lambda parts: networks.csmip(parts, DEGREES_AND_UP, volume=1, formats=False),
+}
+BINARY: Mapping[str, Callable[[Parts], bytes]] = {
+    "a.sac": lambda parts: networks.sac(parts["x"]),
+    "a.mseed": lambda parts: networks.miniseed(parts["x"], rate=round(1.0 / networks.STEP)),
+}
+ALL = {**WITH_PEAKS, **WITHOUT_PEAKS, **IN_G, **BINARY}
+PRINTED = 5e-5  # relative to the peak; of the format with the fewest digits, SMC
+NOTE_OF_A_PEAK = re.compile(r"its header states a peak of (\S+) \S+, its samples have (\S+)")
+IN_GAL = {"cm/s2": 1.0, "g": 980.665, None: 1.0}
+
+
+def any_motion(chance: np.random.Generator) -> Parts:
+    """Return values of three directions [gal], the largest of either sign, in two digits."""
+    rise = np.minimum(1.0, 4.0 * np.arange(networks.COUNT) / networks.COUNT)
+    return {
+        axis: np.round(chance.uniform(20.0, 80.0) * rise * chance.uniform(-1.0, 1.0, networks.COUNT), 2)
+        for axis in "xyz"
+    }
+
+
+def read(folder: Path, name: str, content: str | bytes) -> list[Component]:
+    path = folder / name
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return read_components(open_record(path), ReadingOptions())
+
+
+# lengths that fill the last line and lengths that do not
+@pytest.mark.parametrize(("count", "step"), [(16, 0.02), (37, 0.01), (80, 0.005), (121, 0.02), (240, 0.01)])
+@pytest.mark.parametrize("name", ALL)
+def test_any_motion_is_read_and_turned_round_with_its_sign(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, count: int, step: float
+) -> None:
+    monkeypatch.setattr(networks, "COUNT", count)
+    monkeypatch.setattr(networks, "STEP", step)
+    parts = any_motion(np.random.default_rng(count))
+    for sign in (1.0, -1.0):
+        motion = {axis: sign * values for axis, values in parts.items()}
+        components = read(tmp_path, name, ALL[name](motion))
+        assert {part.direction for part in components} in ({"x"}, {"x", "y", "z"})
+        for part in components:
+            due = motion[str(part.direction)]
+            assert part.time_step == pytest.approx(step, rel=1e-7)  # of single precision
+            assert len(part.values) == count
+            error = PRINTED * np.abs(due).max()
+            assert part.values * IN_GAL[part.unit] == pytest.approx(due, abs=error)
+            assert part.notes == (("offset of the sensor not removed",) if name == "a.EW" else ())
+
+
+# the largest sample may be off by 2 % of the peak that is stated; by a factor of 2 the file is damaged
+@pytest.mark.parametrize(
+    ("ratio", "verdict"),
+    [
+        (0.49, "refused"),
+        (0.51, "noted"),
+        (0.97, "noted"),
+        (0.985, "agrees"),
+        (1.0, "agrees"),
+        (1.015, "agrees"),
+        (1.03, "noted"),
+        (1.95, "noted"),
+        (2.05, "refused"),
+        (-1.0, "agrees"),  # headers state it with either sign
+    ],
+)
+@pytest.mark.parametrize("name", WITH_PEAKS)
+def test_the_peak_of_the_header_is_compared_with_that_of_the_samples(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, ratio: float, verdict: str
+) -> None:
+    monkeypatch.setattr(networks, "STATED", ratio)
+    parts = any_motion(np.random.default_rng(5))
+    if verdict == "refused":
+        with pytest.raises(ValueError, match=r"the header states a peak of .*: the file is damaged"):
+            read(tmp_path, name, WITH_PEAKS[name](parts))
+        return
+    for part in read(tmp_path, name, WITH_PEAKS[name](parts)):
+        said = [match for note in part.notes if (match := NOTE_OF_A_PEAK.fullmatch(note))]
+        assert len(said) == (verdict == "noted")
+        due = parts[str(part.direction)]
+        largest = np.abs(
+            due - due.mean() if name == "a.EW" else due
+        ).max()  # which NIED states without the mean
+        for match in said:
+            assert float(match[1]) == pytest.approx(ratio * largest, rel=1e-3)
+            assert float(match[2]) == pytest.approx(largest, rel=1e-3)
