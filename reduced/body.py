@@ -23,10 +23,6 @@ g      m/s^2    gravity                                                         
 p      1/s      sqrt(g R/A), frequency parameter; p2 is its square              (23)
 delta  m        length of rolling resistance; 0 in the paper
 ====== ======== =============================================================== ========
-
-With a tendon (`restoring`) there are besides its prestress n P0 and its stiffness n^2 kt b over w m
-[m/s^2], the number n of its gaps, the balance tilt [rad] in the place of alpha, and the fastest rate of
-the couple near upright [1/s] in the place of p.
 """
 
 from __future__ import annotations
@@ -57,33 +53,6 @@ class Body(NamedTuple):
     mu: float
     nu: float
     delta: float
-
-
-class TiedBody(NamedTuple):
-    """Constants of a body that a tendon holds."""
-
-    b: float
-    h: float
-    I1: float
-    I2: float
-    A: float
-    J: float
-    C: float
-    E: float
-    g: float
-    p2: float
-    sin_alpha: float
-    cos_alpha: float
-    alpha: float
-    p: float
-    mu: float
-    nu: float
-    delta: float
-    prestress: float
-    stiffness: float
-    gaps: float
-    balance: float
-    fastest: float
 
 
 def body_of(cylinder: RockingBody, gravity: float, rolling_resistance: float = 0.0) -> Body:

@@ -24,9 +24,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._compile import jit, kernel
-from .body import Body, TiedBody
+from .body import Body
 from .equations import base_inertia, energy, flat_rhs
-from .restoring import tendon_pull
+from .restoring import TiedBody, tendon_pull
 from .rolling import couple_on, twist_share
 
 # columns of what `derived_quantities` returns

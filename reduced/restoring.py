@@ -30,7 +30,7 @@ Each function is there twice, for a body without a tendon and for one with it (`
 from __future__ import annotations
 
 from math import cos, inf, pi, sin, sqrt
-from typing import TypeVar, cast
+from typing import NamedTuple, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,9 +40,40 @@ from rockwobble.models.number_checks import require_positive
 from rockwobble.models.tendon import Tendon
 
 from ._compile import by_body, inlined, jit
-from .body import Body, TiedBody, body_of
+from .body import Body, body_of
 
 T = TypeVar("T", float, NDArray[np.float64])
+
+
+class TiedBody(NamedTuple):
+    """Constants of a body that a tendon holds, with those of `Body` first.
+
+    Its prestress n P0 and its stiffness n^2 kt b over w m [m/s^2], the number n of its gaps, the balance tilt
+    [rad] in the place of alpha, and the fastest rate of the couple near upright [1/s] in the place of p.
+    """
+
+    b: float
+    h: float
+    I1: float
+    I2: float
+    A: float
+    J: float
+    C: float
+    E: float
+    g: float
+    p2: float
+    sin_alpha: float
+    cos_alpha: float
+    alpha: float
+    p: float
+    mu: float
+    nu: float
+    delta: float
+    prestress: float
+    stiffness: float
+    gaps: float
+    balance: float
+    fastest: float
 
 
 @inlined

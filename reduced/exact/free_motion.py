@@ -19,8 +19,8 @@ import numpy as np
 from rockwobble.models import InitialState, RockingBody, Tendon
 from rockwobble.models.shown import Brief
 
-from ..body import Body, TiedBody
-from ..restoring import balance, constants_of, potential
+from ..body import Body
+from ..restoring import TiedBody, balance, constants_of, potential
 from ._shape import base_inertia
 from ._turning import highest_without_spin, turning_tilts
 from .periods import quarter_period

@@ -28,8 +28,8 @@ from numpy.typing import ArrayLike, NDArray
 from rockwobble.models import RockingBody, Tendon
 from rockwobble.models.bounds import OVERTURNED_TILT
 
-from ..body import Body, TiedBody
-from ..restoring import balance, constants_of, couple
+from ..body import Body
+from ..restoring import TiedBody, balance, constants_of, couple
 from ._shape import inertia_growth
 from ._turning import momentum_growth
 from .quadrature import half_period

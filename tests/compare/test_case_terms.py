@@ -128,5 +128,5 @@ def test_the_places_of_a_term_that_contributing_lists_are_there() -> None:
     for cell in re.findall(r"^\| (`[^|]*) \|", section, re.MULTILINE):
         first, *others = map(Path, re.findall(r"`([^`]+)`", cell))
         places += [first, *(first.parent / other for other in others)]
-    assert len(places) == 11
+    assert len(places) == 10
     assert [place for place in places if not (ROOT / place).is_file()] == []

@@ -61,7 +61,7 @@ def test_every_sum_has_faults_in_both_senses() -> None:
         ),
         (
             after_assignment("no_such", "A", "pass"),
-            "reduced/body.py: the source must have a function 'no_such', got Body, TiedBody, body_of",
+            "reduced/body.py: the source must have a function 'no_such', got Body, body_of",
         ),
         (
             scaled_argument("body_of", "Body", "no_such", 1.01),
