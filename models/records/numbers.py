@@ -171,13 +171,14 @@ def numbers_of_lines(file: RecordFile, lines: Sequence[str], begin: int) -> NDAr
         As `block_of_numbers`.
     """
     text = "\n".join(lines)
-    values = plain_numbers(text) if _MANY_DIGITS.search(text) is None else None
+    whole = _MANY_DIGITS.search(text) is None
+    values = plain_numbers(text) if whole else None
     if values is not None:
         return values
     damaged = damaged_line(lines)
     if damaged is None:
         refuse_long_touching(file, lines)
-        answer = separate(text)
+        answer = separate(text) if whole else None
         values = None if answer is None else plain_numbers(answer)
         if values is not None:
             return values

@@ -35,7 +35,7 @@ _PLACES = tuple(
     re.compile(place, re.IGNORECASE)
     for place in (
         rf"[\[(]\s*{_WORD}\s*[\])]",
-        rf"(?:units?|unidad(?:es)?|unité|unità|einheit|birim)\b(?:\s*[:=,]|\s+(?:of|in|are|is)\b)*\s*{_WORD}",
+        rf"(?:units?|unidad(?:es)?|unité|unità|einheit|birim)\b(?:\s*[:=,]|\s+(?:of|in|are|is)\b(?!/))*\s*{_WORD}",
         rf"\b(?:acc|acel|beschl|ivme|przysp)\w*\.?[\s,:]+(?:(?:in|en|em)\s+)?{_WORD}",
     )
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -73,12 +74,13 @@ IN_GAL = {"cm/s2": 1.0, "g": 980.665, None: 1.0}
 
 
 def any_motion(chance: np.random.Generator) -> Parts:
-    """Return values of three directions [gal], the largest of either sign, in two digits."""
+    """Return values of three directions [gal] in two digits, whose peaks to both sides are not alike."""
     rise = np.minimum(1.0, 4.0 * np.arange(networks.COUNT) / networks.COUNT)
-    return {
-        axis: np.round(chance.uniform(20.0, 80.0) * rise * chance.uniform(-1.0, 1.0, networks.COUNT), 2)
-        for axis in "xyz"
-    }
+    parts = {}
+    for axis in "xyz":
+        values = chance.uniform(20.0, 80.0) * rise * chance.uniform(-1.0, 1.0, networks.COUNT)
+        parts[axis] = np.round(np.where(values < 0.0, 0.7, 1.0) * values, 2)
+    return parts
 
 
 def read(folder: Path, name: str, content: str | bytes) -> list[Component]:
@@ -145,3 +147,74 @@ def test_the_peak_of_the_header_is_compared_with_that_of_the_samples(
         for match in said:
             assert float(match[1]) == pytest.approx(ratio * largest, rel=1e-3)
             assert float(match[2]) == pytest.approx(largest, rel=1e-3)
+
+
+SPELLINGS = {
+    "x": ("E", "EW", "E-W", "WE", "East", "East-West", "e_w"),
+    "y": ("N", "NS", "N-S", "S-N", "North", "North-South"),
+    "z": ("U", "UD", "U-D", "Z", "V", "Up", "Vert", "Vertical", "Up-Down"),
+}
+STREAMS = {f"{band}{kind}{axis}": axis for band in "HBE" for kind in "NLHG" for axis in "ENZ"}
+NO_DIRECTIONS = ("H1", "HN1", "HXE", "BDZ", "L", "T", "Radial", "")
+
+
+@pytest.mark.parametrize("key", ["STREAM", "COMPONENT"])
+def test_esm_names_a_component_by_its_direction_or_by_a_stream(tmp_path: Path, key: str) -> None:
+    """Of a stream the third letter is the direction, if the second is that of a seismic instrument."""
+    values = any_motion(np.random.default_rng(7))["x"]
+    names: dict[str, str | None] = {name: axis for axis, words in SPELLINGS.items() for name in words}
+    names |= {name: {"E": "x", "N": "y", "Z": "z"}[letter] for name, letter in STREAMS.items()}
+    names |= dict.fromkeys(NO_DIRECTIONS)
+    for name, direction in names.items():
+        (part,) = read(tmp_path, "a.ASC", networks.esm(values, key=key, name=name))
+        assert (part.direction, part.label) == (direction, name)
+
+
+@pytest.mark.parametrize(
+    ("axis", "name"), [(axis, name) for axis, words in SPELLINGS.items() for name in words]
+)
+def test_csmnc_names_a_component_by_its_direction(tmp_path: Path, axis: str, name: str) -> None:
+    values = any_motion(np.random.default_rng(7))["x"]
+    (part,) = read(tmp_path, "a.dat", networks.csmnc(values, name))
+    assert (part.direction, part.azimuth, part.label) == (axis, None, name.upper())
+
+
+QUADRANTS = [
+    (f"{a}{angle:02d}{b}", a, angle, b) for a in "NS" for angle in (0, 1, 30, 45, 89, 90) for b in "EW"
+]
+
+
+@pytest.mark.parametrize(("name", "first", "angle", "second"), QUADRANTS)
+def test_a_quadrant_is_the_azimuth_from_north_or_south_to_east_or_west(
+    tmp_path: Path, name: str, first: str, angle: int, second: str
+) -> None:
+    parts = {"x": any_motion(np.random.default_rng(7))["x"]}
+    north = math.cos(math.radians(angle)) * (1.0 if first == "N" else -1.0)
+    east = math.sin(math.radians(angle)) * (1.0 if second == "E" else -1.0)
+    for file, content in {
+        "a.V1A": networks.geonet(parts, {"x": name}, corrected=False),
+        "a.dat": networks.csmnc(parts["x"], name),
+        "a.V2": networks.csmip(parts, {"x": name}, volume=2),
+    }.items():
+        (part,) = read(tmp_path, file, content)
+        assert part.azimuth is not None
+        assert 0.0 <= part.azimuth < 360.0
+        assert math.cos(math.radians(part.azimuth)) == pytest.approx(north, abs=1e-12)
+        assert math.sin(math.radians(part.azimuth)) == pytest.approx(east, abs=1e-12)
+        assert part.direction == ("x" if east > 1.0 - 1e-12 else "y" if north > 1.0 - 1e-12 else None)
+
+
+def test_damage_is_refused_with_the_words_of_obspy_in_a_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import obspy
+
+    def fail(*args: object, **options: object) -> None:
+        raise RuntimeError("the header\n\tis 3 bytes\x00 too short " + 40 * "and short ")
+
+    monkeypatch.setattr(obspy, "read", fail)
+    for name, format_name in (("a.sac", "SAC"), ("a.mseed", "miniSEED")):
+        with pytest.raises(ValueError, match="is damaged") as caught:
+            read(tmp_path, name, BINARY[name](networks.motion()))
+        words = "the header is 3 bytes too short " + 40 * "and short "
+        assert str(caught.value) == f"{name} ({format_name}) is damaged: {words[:120]}"

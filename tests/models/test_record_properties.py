@@ -230,3 +230,167 @@ def test_a_format_is_known_by_the_first_200_characters_of_a_line(write: Write, b
 def test_a_format_is_known_by_the_first_60_lines(write: Write, line: int) -> None:
     path = write("\n".join([*["words"] * line, "a mark", *["words"] * 70]))
     assert ("A MARK" in open_record(path).head) == (line < 60)
+
+
+# one unit in m/s^2, and how files spell it; in capitals and with blanks and brackets as well
+SPELLINGS = {
+    "g": (9.81, "g G g's"),
+    "m/s2": (1.0, "m/s2 m/s^2 m/s² m/s/s m/sec2 m/sec/sec m/s**2 m·s⁻² ms-2"),
+    "cm/s2": (1e-2, "cm/s2 cm/s^2 cm/s² cm/s/s cm/sec2 cm/sec/sec cm/s**2 gal Gals cm/seg2 cm/sn2"),
+    "mm/s2": (1e-3, "mm/s2 mm/s^2 mm/s/s mm/sec2 mm·s⁻²"),
+    "µm/s2": (1e-6, "µm/s2 μm/s2 µm/s^2 µm/s/s"),
+    "mgal": (1e-5, "mGal mgal milligal"),
+    "%g": (9.81e-2, "%g"),
+    "mg": (9.81e-3, "mg milli-g mg's"),
+    "µg": (9.81e-6, "µg μg micro-g"),
+    "ft/s2": (0.3048, "ft/s2 ft/s^2 ft/s/s ft/sec2 feet/s2"),
+    "in/s2": (0.0254, "in/s2 in/s^2 in/s/s in/sec2 inches/s2"),
+}
+WORDS = [(unit, word) for unit, (_, words) in SPELLINGS.items() for word in words.split()]
+
+
+@pytest.mark.parametrize(("unit", "word"), WORDS)
+def test_numbers_are_in_the_unit_that_is_spelled_wherever_it_stands(
+    write: Write, unit: str, word: str
+) -> None:
+    """In the name of each column, in a row of units, in a line of words, or as the user gives it."""
+    due = SPELLINGS[unit][0] * MOTION[:, :2]
+    columns = [0.01 * np.arange(len(MOTION)), *MOTION[:, :2].T]
+    heads = [
+        f"time [s],E [{word}],N [{word}]",
+        f"time [s];E ({word});N ({word})",
+        f"# units: {word}\ntime,E,N",
+    ]
+    heads += [f"time,E,N\ns,{word},{word}"]
+    for head in heads:
+        motion = read_record(write(table(columns, head)))
+        assert motion.acceleration == pytest.approx(due, rel=1e-12, abs=0.0), head
+        assert motion.source is not None
+        assert [part.unit for part in motion.source.components] == [unit, unit]
+        assert [part.peak for part in motion.source.components] == pytest.approx(
+            np.abs(due).max(axis=0) / 9.81, rel=1e-12
+        )
+    silent = write(table(columns, "time,E,N"))
+    assert read_record(silent, units=word).acceleration == pytest.approx(due, rel=1e-12, abs=0.0)
+    # what the user gives beside it is the same unit, or contradicts it
+    for other in SPELLINGS:
+        path = write(table(columns, heads[0]))
+        if other == unit:
+            assert read_record(path, units=other).acceleration == pytest.approx(due, rel=1e-12, abs=0.0)
+        else:
+            with pytest.raises(ValueError, match="says that it is in"):
+                read_record(path, units=other)
+
+
+SECONDS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "msec": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9}
+
+
+@pytest.mark.parametrize("word", SECONDS)
+@pytest.mark.parametrize("step", [0.002, 0.01, 0.025])
+def test_times_are_in_the_unit_that_is_spelled(write: Write, word: str, step: float) -> None:
+    steps = step / SECONDS[word] * np.arange(len(MOTION))
+    for head in (f"time [{word}],E,N", f"t ({word}),E,N", f"Time in {word},E,N", f"time,E,N\n{word},g,g"):
+        motion = read_record(write(table([steps, *MOTION[:, :2].T], head)), units="g")
+        assert motion.time_step == pytest.approx(step, rel=1e-9), head
+        assert motion.source is not None
+        assert motion.source.time_step == pytest.approx(step, rel=1e-9)
+
+
+def of_times(times: NDArray[np.float64], values: NDArray[np.float64]) -> str:
+    return "".join(f"{t:.9g},{value!r}\n" for t, value in zip(times.tolist(), values.tolist(), strict=True))
+
+
+@pytest.mark.parametrize("drift", [-0.06, -0.04, 0.0, 0.04, 0.06])
+@pytest.mark.parametrize("count", [50, 400])
+def test_components_may_drift_apart_by_a_twentieth_of_a_step(write: Write, drift: float, count: int) -> None:
+    """Over the whole record, by their steps, or from the start."""
+    step, values = 0.01, np.random.default_rng(1).normal(size=count)
+    x = write("t,a [g]\n" + of_times(step * np.arange(count), values), "x")
+    other_step = step * (1.0 + drift / count)
+    slower = write("t,a [g]\n" + of_times(other_step * np.arange(count), values), "slower")
+    later = write("t,a [g]\n" + of_times(step * (np.arange(count) + drift), values), "later")
+    for y, words in ((slower, "one time step"), (later, "start at one time")):
+        if abs(drift) > 0.05:
+            with pytest.raises(ValueError, match=f"the components of a record must .*{words}, got"):
+                read_record(x, y)
+        else:
+            motion = read_record(x, y)
+            assert motion.time_step == pytest.approx(step, rel=EXACT)
+            assert motion.acceleration == pytest.approx(9.81 * np.column_stack([values, values]), rel=EXACT)
+
+
+@pytest.mark.parametrize(
+    ("more", "size"), [(4, 1.0), (5, 1.0), (5, 0.051), (5, 0.049), (300, 0.051), (300, 0.049)]
+)
+@pytest.mark.parametrize("longer", [0, 1])
+def test_what_is_left_of_a_longer_component_is_little_or_over(
+    write: Write, more: int, size: float, longer: int
+) -> None:
+    """A hundredth of its samples, or below a twentieth of its peak; else the user says what becomes of it."""
+    count = 400
+    values = np.random.default_rng(2).uniform(-1.0, 1.0, count + more)
+    values[7] = 1.0
+    values[count:] = size * np.where(np.arange(more) % 2, 1.0, -1.0)
+    texts = ["t,a [g]\n" + of_times(0.01 * np.arange(n), values[:n]) for n in (count + more, count)]
+    x, y = (write(texts[at != longer], "xy"[at]) for at in range(2))
+    cut = 9.81 * np.column_stack([values[:count]] * 2)
+    padded = np.zeros((count + more, 2))
+    padded[:, longer] = 9.81 * values
+    padded[:count, 1 - longer] = 9.81 * values[:count]
+    for way, due in (("cut", cut), ("pad", padded)):
+        motion = read_record(x, y, lengths=way)
+        assert motion.acceleration == pytest.approx(due, rel=EXACT)
+        assert f"{count}" in str(motion.source)
+    if more > 0.01 * (count + more) and size > 0.05:
+        with pytest.raises(
+            ValueError, match=rf"got {count + more} samples in .* {100 * size:.0f} % of its peak"
+        ):
+            read_record(x, y)
+    else:
+        assert read_record(x, y).acceleration == pytest.approx(cut, rel=EXACT)
+
+
+@pytest.mark.parametrize(
+    ("parts", "others"), [(1, 2), (1, 5), (2, 3), (3, 4), (7, 9), (19, 20), (20, 21), (21, 22)]
+)
+def test_components_are_resampled_to_the_largest_step_that_divides_theirs(
+    write: Write, parts: int, others: int
+) -> None:
+    """At least a twentieth of the smaller step; every sample stays, at its time."""
+    common = 0.04 / parts / others
+    steps = [parts * common, others * common]
+    known = [np.random.default_rng(3).normal(size=round(0.4 / step) + 1) for step in steps]
+    paths = [
+        write("t,a [m/s2]\n" + of_times(step * np.arange(len(values)), values), name)
+        for step, values, name in zip(steps, known, "xy", strict=True)
+    ]
+    with pytest.raises(ValueError, match="must have one time step"):
+        read_record(*paths)
+    if parts > 20:
+        with pytest.raises(ValueError, match="at least 1/20 of the smallest"):
+            read_record(*paths, resample=True, lengths="cut")
+        return
+    motion = read_record(*paths, resample=True, lengths="pad")
+    assert motion.time_step == pytest.approx(common, rel=1e-9)
+    for column, values, every in zip(motion.acceleration.T, known, (parts, others), strict=True):
+        assert column[: (len(values) - 1) * every + 1 : every] == pytest.approx(values, abs=EXACT)
+        if every > 1:
+            between = column[: (len(values) - 1) * every].reshape(-1, every)
+            slopes = np.diff(np.column_stack([between, values[1:]]), axis=1)
+            assert slopes == pytest.approx(np.repeat(slopes.mean(axis=1), every).reshape(-1, every), abs=1e-9)
+
+
+@pytest.mark.parametrize("digits", [1, 8, 15, 16, 17, 18, 25, 40])
+@pytest.mark.parametrize("head", ["UNITS OF G\nNPTS= 27, DT= .01 SEC\n", "dt=0.01 s, acc in g\n"])
+def test_more_digits_than_a_number_has_are_numbers_that_touch(write: Write, digits: int, head: str) -> None:
+    """Whole numbers of fixed columns without a blank between them cannot be parted."""
+    chance = np.random.default_rng(digits)
+    cells = ["".join(map(str, chance.integers(1, 10, digits))) for _ in range(27)]
+    rows = [" ".join(cells[at : at + 6]) for at in range(0, 27, 6)]
+    path = write(head + "\n".join(rows) + "\n")
+    if digits > 16:
+        with pytest.raises(ValueError, match=rf"^x\.txt, line {head.count(chr(10)) + 1}: its numbers touch"):
+            read_record(path, "zero")
+        return
+    found = read_record(path, "zero").acceleration[:, 0] / 9.81
+    assert found == pytest.approx([float(cell) for cell in cells], rel=1e-15)

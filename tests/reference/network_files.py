@@ -101,7 +101,7 @@ def afad(parts: dict[str, NDArray[np.float64]], order: str = "yxz") -> str:
 
 
 def cwa(parts: dict[str, NDArray[np.float64]], *, formats: bool = True) -> str:
-    """`formats`: whether the header states them."""
+    """`formats`: whether the header states them; without, numbers fill their columns."""
     names = {"z": "U", "y": "N", "x": "E"}
     header = [
         "#Earthquake Information",
@@ -117,8 +117,9 @@ def cwa(parts: dict[str, NDArray[np.float64]], *, formats: bool = True) -> str:
         "#DataSequence: Time U(+); N(+); E(+)",
         *(["#Data: 4F10.3 "] if formats else []),
     ]
+    digits = 3 if formats else 6
     rows = zip(STEP * np.arange(COUNT), parts["z"], parts["y"], parts["x"], strict=True)
-    return "\r\n".join([*header, *("".join(f"{cell:10.3f}" for cell in row) for row in rows)]) + "\r\n"
+    return "\r\n".join([*header, *("".join(f"{cell:10.{digits}f}" for cell in row) for row in rows)]) + "\r\n"
 
 
 def geonet(parts: dict[str, NDArray[np.float64]], names: dict[str, str], *, corrected: bool) -> str:
@@ -215,7 +216,7 @@ def cosmos(
     formats: bool = True,
 ) -> str:
     """`names`: text, code of the azimuth and SCNL channel of each direction; `formats`: whether stated."""
-    columns, form = (6, "13.6f") if formats else (5, "15.6f")
+    columns, form = (6, "13.6f") if formats else (5, "15.8E")
     lines: list[str] = []
     for number, (axis, (text, code, channel)) in enumerate(names.items(), start=1):
         values = parts[axis]
