@@ -47,9 +47,8 @@ from rockwobble.compare.studies.validity.shaken import FREE, HALVED
 from rockwobble.compare.studies.validity.study import PARTS, measure_all, measure_validity, validity_of
 from rockwobble.models import Cylinder, InitialState, Run, Tendon, WobblingFrame
 from rockwobble.models.support import RECESS
-from rockwobble.reduced import body, free_response, problem, simulate, steady_wobble_rate
+from rockwobble.reduced import body, free_response, restoring, simulate, steady_wobble_rate
 from rockwobble.reduced.body import Body
-from rockwobble.reduced.exact import _shape
 
 pytestmark = pytest.mark.slow
 
@@ -76,8 +75,7 @@ def heavier_models() -> Iterator[None]:
         return true._replace(I1=I1, A=A, J=J, p2=p2, p=p2**0.5)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(problem, "body_of", heavier_body)
-        patch.setattr(_shape, "body_of", heavier_body)
+        patch.setattr(restoring, "body_of", heavier_body)
         yield
 
 
