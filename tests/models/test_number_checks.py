@@ -96,3 +96,17 @@ def test_numbers_that_must_rise_are_refused_wherever_they_do_not(place: int) -> 
         bad[place] = wrong
         with pytest.raises(ValueError, match="levels must be positive, finite and increasing"):
             require_increasing("levels", bad)
+
+
+@pytest.mark.parametrize("length", [2, 30, 69, 70, 71, 300])
+def test_a_bad_value_is_quoted_where_a_line_has_room_for_it(length: int) -> None:
+    """Up to 70 characters; a longer text by its beginning, a list by its number of items."""
+    for value, longer in (
+        ("a" * (length - 2), repr("a" * 32 + "...")),
+        (["a" * (length - 4)] if length > 4 else [], "1 item"),
+    ):
+        assert len(repr(value)) == length
+        with pytest.raises(ValueError, match=r"^size must be a finite number, got") as caught:
+            require_finite("size", value, "")
+        got = repr(value) if length <= 70 else longer
+        assert str(caught.value) == f"size must be a finite number, got {got}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -204,8 +205,8 @@ def test_the_line_of_a_record_states_its_samples_their_step_and_each_component(
     for offset in (0.0, 0.04, 0.06, 0.5):
         values = chance.choice([-1.0, 1.0], (count, 2)) * chance.uniform(0.2, 1.0, (count, 2))
         values -= values.mean(axis=0)
-        values /= np.abs(values).max(axis=0) * np.array([1.0, 2.0])
-        values[:, 0] += offset
+        values /= np.abs(values).max(axis=0) * np.array([3.0, 2.0])
+        values[:, 0] += offset / 3.0
         columns = [step * np.arange(count), *values.T.round(6)]
         rows = "\n".join(",".join(f"{cell:.6f}" for cell in row) for row in np.column_stack(columns))
         motion = read_record(write(f"time,090,N [g]\n{rows}\n"), units="g")
@@ -394,3 +395,46 @@ def test_more_digits_than_a_number_has_are_numbers_that_touch(write: Write, digi
         return
     found = read_record(path, "zero").acceleration[:, 0] / 9.81
     assert found == pytest.approx([float(cell) for cell in cells], rel=1e-15)
+
+
+@pytest.mark.parametrize(("ratio", "refused"), [(1.0, False), (0.997e6, False), (1.003e6, True), (1e9, True)])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_spike_of_a_million_times_all_others_is_no_sample(
+    write: Write, ratio: float, refused: bool, sign: float
+) -> None:
+    """Among samples it is refused; behind the last it is left out, and said."""
+    others = MOTION[:, 0] / np.abs(MOTION[:, 0]).max() * 0.25
+    spike = sign * 0.25 * ratio
+    times = 0.01 * np.arange(len(others) + 1)
+    within, behind = np.insert(others, 20, spike), np.append(others, spike)
+    if refused:
+        with pytest.raises(
+            ValueError, match=rf"sample 21 of a is {re.escape(f'{spike:g}')}, which stands for a missing"
+        ):
+            read_record(write("t,a [m/s2]\n" + of_times(times, within)), "zero")
+    else:
+        found = read_record(write("t,a [m/s2]\n" + of_times(times, within)), "zero")
+        assert found.acceleration[:, 0] == pytest.approx(within, rel=EXACT)
+    motion = read_record(write("t,a [m/s2]\n" + of_times(times, behind)), "zero")
+    assert motion.acceleration[:, 0] == pytest.approx(others if refused else behind, rel=EXACT)
+    assert ("1 fill value of" in str(motion.source)) == refused
+
+
+@pytest.mark.parametrize(
+    "fill", ["-999", "999", "-9999.9", "9999", "99999", "-999.0", "-12345", "-998", "9990"]
+)
+@pytest.mark.parametrize("times", [4.9, 5.1])
+def test_a_number_that_fills_places_is_one_where_it_is_five_times_all_others(
+    write: Write, fill: str, times: float
+) -> None:
+    """Of nines alone, or -12345; where the motion itself is as large, it is a sample."""
+    value = float(fill)
+    others = MOTION[:, 0] / np.abs(MOTION[:, 0]).max() * abs(value) / times
+    samples = np.insert(others, 20, value)
+    path = write("t,a [cm/s2]\n" + of_times(0.01 * np.arange(len(samples)), samples))
+    if times > 5.0 and set(fill.lstrip("-").replace(".0", "")) in ({"9"}, {"9", "."}, set("12345")):
+        with pytest.raises(ValueError, match=r"sample 21 of a is .*, which stands for a missing one"):
+            read_record(path, "zero")
+    else:
+        found = read_record(path, "zero").acceleration[:, 0]
+        assert found == pytest.approx(0.01 * samples, rel=EXACT)

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import pytest
 
@@ -299,3 +300,45 @@ def test_importing_the_models_loads_no_pydantic():
     script = "import sys, rockwobble.models; print('pydantic' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
+
+
+WAYS = {
+    "units": '"g"', "record_columns": '"1,2,3"', "record_step": "0.01", "lengths": '"cut"',
+    "remove_mean": "true", "rotate": '"north"', "resample": "true",
+}  # fmt: skip
+OF_ALL = {"times_uplift": "2", "time_shift": "1"}
+# what tells a kind of motion: its own keys, which those of no other kind may stand beside
+KINDS = {
+    'record = "el_centro_1940"': {"vertical": "true", "rotation_deg": "30"},
+    'record = "p695", pair = 3': {"rotation_deg": "30"},
+    'x = "a.AT2", y = "b.AT2"': {"z": '"c.AT2"', "rotation_deg": "30"} | WAYS,
+    'files = "folder"': {"rotation_deg": "30"} | WAYS,
+    'pulse = "one-sine", period = 1': {"azimuth_deg": "30"},
+}
+KEYS = {
+    "record": '"el_centro_1940"', "vertical": "true", "pair": "3", "x": '"a"', "y": '"b"', "z": '"c"',
+    "files": '"folder"', "pulse": '"one-sine"', "amplitude": "2", "period": "1", "azimuth_deg": "30",
+    "rotation_deg": "30",
+} | WAYS  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_motion_has_the_keys_of_its_kind_and_of_no_other(write, kind):
+    for key, value in (KEYS | KINDS[kind] | OF_ALL).items():
+        scaled = "" if key in ("times_uplift", "amplitude") or "pulse" not in kind else ", times_uplift = 1"
+        if f"{key} =" in kind:
+            continue
+        text = replaced(STILL, f"motion = {{ {kind}{scaled}, {key} = {value} }}")
+        try:
+            read_suite(write(text, "a.suite.toml"))
+            said = ""
+        except ValueError as error:
+            said = str(error)
+        own = key in KINDS[kind] | OF_ALL or ("pulse" in kind and key == "amplitude")
+        if own:  # what it names may be missing
+            assert "must be" not in said, (key, said)
+        else:
+            assert re.search(r"cases\[0\]\.motion.*: must (be left out|have exactly one of)", said), (
+                key,
+                said,
+            )
