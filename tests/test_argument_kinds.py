@@ -77,9 +77,9 @@ VALID: dict[str, dict[str, Any]] = {
     "WobblingFrame": {"cylinder": PIER},
     "advise": {"case": CASE, "copies": 20},
     "check": {"model": lambda case, support: {}, "only": ["rest"]},
-    "comparison": {"case_or_suite": CASE, "runs": [rw.Run(None, "flat")]},
+    "comparison": {"case_or_suite": CASE, "runs": [rw.Run(None, "flat")], "workers": 1},
     "el_centro_1940": {},
-    "ensemble": {"case_or_members": [CASE, OTHER], "runs": []},
+    "ensemble": {"case_or_members": [CASE, OTHER], "runs": [], "workers": 1},
     "far_field_motions": {"peak": 3.0},
     "fragility": {
         "cylinders": PIER,

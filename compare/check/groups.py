@@ -381,7 +381,7 @@ def check(
     --------
     >>> import rockwobble as rw
     >>> rw.check(only=["equations"])
-    Checks(5 passed, reduced model)
+    Checks(10 passed, reduced model)
     """
     begun = time.monotonic()
     given = [engine, model, trajectory, suite]

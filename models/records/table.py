@@ -136,6 +136,28 @@ def first_row(lines: Sequence[str]) -> int:
     return len(lines) if candidate is None else candidate
 
 
+def notes_of_header(
+    lines: Sequence[str], first: int, width: int, step: float | None = None
+) -> tuple[str, ...]:
+    """Say which lines above the first row, and above words, are numbers as its rows are.
+
+    They are what is left of samples where a row below them is damaged. A count and the time step `step` [s]
+    of a record stand there by right.
+    """
+    notes = []
+    for number, line in enumerate(lines[:first], start=1):
+        text = line.replace('"', "").strip()
+        if is_comment(text) or not text or not _is_row(text) or _may_be_count(text):
+            continue
+        cells = cells_of(text)
+        at = float(cells[0].upper().replace("D", "E"))
+        if len(cells) == width and at != step:
+            notes.append(
+                f"line {number} holds numbers alone, {text[:30]!r}, above words: taken for the header"
+            )
+    return tuple(notes)
+
+
 def _may_be_count(line: str) -> bool:
     """Return whether a line may hold the number of samples, and their time step: "240", "4096 0.025"."""
     cells = cells_of(line)
@@ -211,7 +233,7 @@ def table_of(file: RecordFile) -> Table:
     if width == 2 and values[0, 0] == len(values) - 1 > _FEWEST_COUNTED and 0.0 < values[0, 1] < 1.0:
         header = (*header, rows[0].strip())  # "4096 0.025" above two columns
         return Table(header, values[1:], numbers[1:], notes)
-    return Table(header, values, numbers, notes)
+    return Table(header, values, numbers, (*notes, *notes_of_header(lines, first, width)))
 
 
 _FEWEST_COUNTED = 10  # rows; a number of fewer may be a sample by chance

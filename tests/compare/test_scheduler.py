@@ -46,6 +46,7 @@ def table_cache(folder, kind="study"):
     return open_table_cache(folder, kind, name=lambda task: f"{task:032d}")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_results_come_in_the_order_of_the_tasks(workers):
     told: list[Progress] = []
@@ -271,6 +272,7 @@ def _runs(pid: int) -> bool:
         return False
 
 
+@pytest.mark.slow
 def test_an_answer_that_cannot_travel_is_an_error_of_its_task():
     with pytest.raises((TypeError, AttributeError, RuntimeError), match="pickle"):
         run_tasks(memoryview, [b"", b""], workers=2)

@@ -140,6 +140,7 @@ def test_a_single_size_has_a_band():
     assert len(planar_contrast(made_up(["oX"], ["oo"], ["oo"]))) == 2
 
 
+@pytest.mark.slow
 def test_a_spectrum_shows_itself(tmp_path):
     maps = made_up(["ooXoOX"] * 3, ["......"] * 3, ["......"] * 3)
     found = spectrum_of(maps)

@@ -438,3 +438,26 @@ def test_a_number_that_fills_places_is_one_where_it_is_five_times_all_others(
     else:
         found = read_record(path, "zero").acceleration[:, 0]
         assert found == pytest.approx(0.01 * samples, rel=EXACT)
+
+
+@pytest.mark.parametrize("columns", [1, 2, 3])
+@pytest.mark.parametrize("place", [1, 2, 5, 20])
+def test_samples_above_a_damaged_row_do_not_vanish_in_silence(write: Write, columns: int, place: int) -> None:
+    """Words may end a header: what stands above them as samples do is refused or named."""
+    rows = table(list(MOTION.T[:columns])).splitlines()
+    rows[place] = "damaged"
+    path = write("\n".join(rows) + "\n")
+    given = (path, "zero") if columns == 1 else (path,)
+    places = [*range(1, columns + 1)] if columns > 1 else None
+    try:
+        said = str(read_record(*given, columns=places, units="m/s2", time_step=0.02).source)
+    except ValueError as error:
+        said = str(error)
+    assert re.search(r"line 1 holds numbers alone|x\.txt, line \d+: ", said)
+
+
+@pytest.mark.parametrize("head", ["0.02\nacceleration", "40\nacceleration", "acceleration\n40", "# 0.3\n"])
+def test_a_count_and_a_time_step_stand_in_a_header_by_right(write: Write, head: str) -> None:
+    motion = read_record(write(table([MOTION[:, 0]], head)), "zero", units="m/s2", time_step=0.02)
+    assert motion.acceleration[:, 0] == pytest.approx(MOTION[:, 0], abs=EXACT)
+    assert "holds numbers alone" not in str(motion.source)

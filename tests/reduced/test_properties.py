@@ -38,6 +38,7 @@ def test_the_same_function_of_time_sampled_finer():
     assert not off
 
 
+@pytest.mark.slow
 def test_coarse_samples_of_large_cylinders_are_the_same_function_of_time():
     """Within one sample the direction of the ground may turn right round; the first motion tells."""
     count = 0

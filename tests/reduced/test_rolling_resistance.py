@@ -385,6 +385,7 @@ def rolling(seed: int, speed: float) -> tuple[Body, State]:
     return body, (tilt, -speed, random.uniform(0.0, 6.0), Lambda, 0.0, S, 0.0, 0.0, 0.0, 1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_the_rates_of_a_long_step_are_those_of_the_momenta(seed: int) -> None:
     """By the law of moments in the angular velocity, and by (18), (19) and the twist."""

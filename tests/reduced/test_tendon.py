@@ -260,6 +260,7 @@ def test_what_is_not_modelled_is_refused_in_one_line() -> None:
         reduced.simulate(case, support="flat")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tendon", [None, *TENDONS], ids=repr)
 @pytest.mark.parametrize("gamma", BODIES.values(), ids=BODIES)
 def test_the_verdict_at_a_balance_has_the_acceleration_of_the_model(

@@ -156,6 +156,7 @@ def wrong(case, support):
 """
 
 
+@pytest.mark.slow
 def test_a_model_of_somebody_else_is_checked(
     run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

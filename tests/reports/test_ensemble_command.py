@@ -112,6 +112,7 @@ def test_words_say_what_is_equivalent_what_is_told_and_what_cannot_be_seen():
     assert "that takes at least 6 members that overturn by only one of two methods" in words
 
 
+@pytest.mark.slow
 def test_words_bound_what_failed_runs_leave_open_and_tables_of_before_have_no_bounds():
     found = made_up()
     members = found.members.copy()

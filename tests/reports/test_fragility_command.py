@@ -149,6 +149,7 @@ def test_files_of_a_small_study_and_its_page_again(tmp_path, capsys):
     )
 
 
+@pytest.mark.slow
 def test_a_cloud_by_another_measure(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(Page, "files", lambda _: {})  # of a page that is drawn the test above tells
     options = ["--synthetic", "8", "--scale", "3,6", "--measure", "pgv", "--model", "worse-plane"]
@@ -160,6 +161,7 @@ def test_a_cloud_by_another_measure(tmp_path, capsys, monkeypatch):
     assert set(counts["method"]) == {"planar x", "planar y", "worse plane"}
 
 
+@pytest.mark.slow
 def test_a_cloud_of_motions_of_one_peak_has_a_count_for_each_scale() -> None:
     motions = synthetic_motions(4, peak=1.0, seed=1)
     cloud = fragility(PIER, motions, methods=["recess"], scales=[2.0, 6.0], resamples=2, workers=1)

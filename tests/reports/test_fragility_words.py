@@ -118,6 +118,7 @@ def test_without_overturning_no_curve_is_spoken_of(found):
     assert "**Nothing overturns at these intensities.**" in words
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cylinders", [("pier",), ("pier", "tower")])
 def test_each_reason_for_no_curve_is_one_line_with_all_limits_of_it(cylinders):
     found = made_up(cylinders)
@@ -152,6 +153,7 @@ def test_each_reason_for_no_curve_is_one_line_with_all_limits_of_it(cylinders):
         assert np.isnan(row["dispersion_difference"]) == bool(of_step)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "exceeded", "why"),
     [

@@ -86,6 +86,7 @@ def test_the_content_of_a_record_is_part_of_the_plan(tmp_path: Path) -> None:
         assert call(*given) == code
 
 
+@pytest.mark.slow
 def test_a_file_that_is_no_report_is_not_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     check = ("check", "--only", "trace")
     for option, content in (("--json", "{}"), ("--junit", "<a/>")):

@@ -112,6 +112,7 @@ def test_a_run_that_fails_says_why(suite) -> None:
     result.stdout.fnmatch_lines(["*contact of mujoco*the engine gained energy*"])
 
 
+@pytest.mark.slow
 def test_a_wrong_file_is_an_error_of_its_own(suite) -> None:
     result = suite("[[cases]]\nname = 'x'\n").runpytest()
     result.assert_outcomes(errors=1)

@@ -83,6 +83,7 @@ def test_a_bad_file_of_a_folder_of_records_is_one_line(
         assert not (folder / "out").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("folder")
 def test_a_check_of_a_suite_states_its_records(capsys: pytest.CaptureFixture[str]) -> None:
     Path("a.suite.toml").write_text(

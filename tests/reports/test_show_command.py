@@ -114,6 +114,7 @@ def test_report_of_a_file_says_that_it_is_no_folder_of_results(tmp_path, capsys)
     assert f"{record} is not a folder of results" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_report_draws_again_here_or_elsewhere_and_leaves_the_results_as_they_are(stored, tmp_path, capsys):
     before = {path.name: path.read_bytes() for path in stored.iterdir()}
     assert call("report", str(stored), "--out", str(tmp_path)) == 0

@@ -161,6 +161,7 @@ def test_bands_of_sizes_in_which_planar_analysis_is_unconservative_are_listed(sp
     assert f"More cells unconservative than conservative: R = {listed}." in said(spectrum)
 
 
+@pytest.mark.slow
 def test_failed_cells_are_counted_and_left_out(spectrum):
     tilt = spectrum.peak_tilt[PLANAR_X].copy()
     tilt[3, 4] = tilt[5, 6] = np.nan
@@ -206,6 +207,7 @@ def test_gaps_are_counted_and_spanned_as_one_says_it(spectrum, cells, words):
     assert words in said(with_safe(spectrum, cells))
 
 
+@pytest.mark.slow
 def test_the_search_says_what_it_missed_and_what_is_chance(spectrum):
     none = dataclasses.replace(spectrum, below={name: np.zeros(12) for name in SERIES})
     found = int(np.isfinite(spectrum.lowest[SPATIAL]).sum())

@@ -11,7 +11,7 @@ from ..column_names import names_of, refuse_other_quantity, refuse_scale, unit_o
 from ..component import ALLOWED_UNITS, Component, ReadingOptions, RecordFile
 from ..fill import without_fill, without_missing_end
 from ..numbers import is_number, numbers_of_lines, separate, widths_of
-from ..table import bare_header, cells_of, first_row, is_comment
+from ..table import bare_header, cells_of, first_row, is_comment, notes_of_header
 from ..times import even_step, is_counting, rises_evenly, stated_step
 from ..units import stated_unit, unit_of
 
@@ -92,9 +92,10 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
     samples, of_pairs, step = _without_times(file, samples)
     values, count_step = _without_counts(samples)
     values, of_fill = without_fill(values)
-    notes = (*of_lines, *of_pairs, *of_fill, *of_end)
     step = step or count_step
     stated = stated_step(file, header, len(values)) or step
+    of_header = notes_of_header(file.text, first, 1, options.time_step if stated is None else stated)
+    notes = (*of_header, *of_lines, *of_pairs, *of_fill, *of_end)
     names, _ = names_of(header, 1)
     word = names[0].unit if names else ""
     if names and names[0].kind in _QUANTITIES and word and unit_of(word) is None and not unit_of_time(word):
