@@ -80,7 +80,22 @@ def test_the_limits_on_one_screen_are_the_published_ones() -> None:
     rows = re.findall(r"\| engine, flat ground \| 22 \| \S+ \| (\S+) \| (\S+) \|", page)
     assert len(rows) == 12
     low, high = min(float(each) for each, _ in rows), max(float(each) for _, each in rows)
-    assert f"interval of the median ratio of the peaks extends from {low:.1f} to {high:.1f}" in text
+    assert (
+        f"interval of the median ratio of the peaks extends from {low:.1f} to {high:.1f} by the engine"
+        in text
+    )
+    rows = re.findall(r"\| flat-ground model \| 22 \| \S+ \| (\S+) \|", page)
+    assert f"from {min(map(float, rows)):.1f} by the flat-ground model" in text
+    changed = [number["vertical", name] for name in ("vertical_other", "cells", "copy_other")]
+    assert (
+        "changes {:.0f} of {:.0f} verdicts, as many as chance (a record 1 % stronger changes {:.0f})".format(
+            *changed
+        )
+        in text
+    )
+    known = re.search(r"known within 5 % at (\d+ of \d+ points)", page)
+    assert known is not None
+    assert known[0] in text
     # the same peak within a thousandth in the median
     medians = [number["records", name] for name in ("recess_least", "recess_largest")]
     assert max(abs(each - 1.0) for each in medians) < 1e-3
