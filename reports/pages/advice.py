@@ -246,7 +246,7 @@ def _reason_of_intensity(found: Advice) -> str:
     if low == 0.0:
         return f"it stays at rest at some of {which.removeprefix('at ')}"
     low, peak = max(low, CLOSED_TILT), max(found.peak, CLOSED_TILT)
-    return f"the tilt changes up to {number(max(high / peak, peak / low))} times {which}"
+    return f"the tilt is {number(low / peak)} to {number(high / peak)} times as large {which}"
 
 
 def _reason_of_engine(found: Advice) -> str:

@@ -1,6 +1,6 @@
 """Make what is published here again, every study by its command, from one commit.
 
-    python reports/published/remake.py               # all of it, some three hours on two cores
+    python reports/published/remake.py               # all of it, some two hours on two cores
     python reports/published/remake.py tradeoff paper
     python reports/published/remake.py --redraw      # draw pages and figures again from their tables
     python reports/published/remake.py --check       # is anything damaged, or said without a table?

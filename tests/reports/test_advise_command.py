@@ -186,9 +186,9 @@ def test_a_reason_states_the_numbers_of_its_grade(found):
     needed = found.demands.set_index("demand")["value"]["friction"]
     assert numbers_in(reasons["friction"]) == [pytest.approx(needed, rel=PRINTED)]
     low, high = found.range_as_strong
-    times = max(high / found.peak, found.peak / low)
     assert numbers_in(reasons["intensity"]) == [
-        pytest.approx(times, rel=PRINTED),
+        pytest.approx(low / found.peak, rel=PRINTED),
+        pytest.approx(high / found.peak, rel=PRINTED),
         len(found.as_strong),
         11.0,
         12.0,

@@ -107,6 +107,9 @@ def test_for_how_long_traces_agree(page: str) -> None:
     recess = rows[(rows["support"] == "recess") & (rows["reference"] == "recess model")]
     (time,) = set(re.findall(r"for (\d+) s after uplift", words(page)))
     assert int(time) <= recess["agreement_time"].min() < int(time) + 1
+    own = rows[(rows["support"] == "flat") & (rows["reference"] == "flat-ground model")]
+    for time in re.findall(r"another model, for (\d+\.\d) s after uplift", words(page)):
+        assert time == f"{own['agreement_time'].min():.1f}"
 
 
 @pytest.mark.parametrize("page", ["docs/guide/frames.md", "docs/published/frames.md"])
