@@ -36,7 +36,11 @@ _BOUNDED = {
     EXTRAPOLATED: "outside the intensities that were run",
     ONE_MOTION: "all runs that stand are of one motion",
 }
-_QUESTIONS = {"planar": "Planar analysis:", "support": "Support:", "engine": "Engine:"}
+_QUESTIONS = {
+    "planar": "Planar analysis (worse plane: the larger peak of the two):",
+    "support": "Support:",
+    "engine": "Engine:",
+}
 _MOST_WITHIN = 10.0  # margin above which an interval bounds nothing
 # below this probability the counts do not follow a lognormal curve
 _POOR = 0.05
@@ -125,7 +129,7 @@ def _answers(fallen: Sequence[Row], unit: str, *, several: bool, few: bool, comp
         fewest = f"{FEWEST} motions and {FEWEST_LEVELS} levels"
         yield f"Too few for a curve: a median takes at least {fewest}. Counts only."
     elif compares:
-        mean = ", mean of the cylinders" if several else ""
+        mean = ", geometric mean of the cylinders" if several else ""
         yield (
             f"Ratios of the median overturning intensity (95 % interval){mean}: "
             "above 1 the first method is unconservative."
