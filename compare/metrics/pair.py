@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockwobble.models import AGREEMENT, GroundMotion, RockingBody, Trace
+from rockwobble.models import AGREEMENT, Case, GroundMotion, RockingBody, Trace
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.shown import Brief
 
@@ -149,13 +149,20 @@ def outcome_of_peak(peak: float) -> str:
     return "failed" if math.isnan(peak) else "overturned" if overturned(peak) else "stands"
 
 
+def balance_of(case: Case) -> float:
+    """Return the balance tilt of a case, at most pi/2 [rad]; alpha where no term of it moves the balance."""
+    from rockwobble import reduced
+
+    return min(reduced.balance_tilt_of_case(case), OVERTURNED_TILT)
+
+
 def outcome_of(trace: Trace) -> str:
     """Return the outcome of a run for a study; rest on a wall beyond balance counts as overturned.
 
     One that leans on a wall beyond its balance at the end of its run counts as overturned: after it the
     ground is still, as where a fall is decided.
     """
-    leans = trace.run.support.walls and len(trace.tilt) and trace.tilt[-1] > trace.case.cylinder.alpha
+    leans = trace.run.support.walls and len(trace.tilt) and trace.tilt[-1] > balance_of(trace.case)
     return "overturned" if leans and trace.outcome != "failed" else trace.outcome
 
 

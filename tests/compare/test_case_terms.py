@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import rockwobble as rw
+from rockwobble.compare.metrics.pair import balance_of
 from rockwobble.compare.runs.execution import case_inputs
 from rockwobble.compare.storage.provenance import fingerprint
 from rockwobble.compare.studies.plans import SpectrumPlan
@@ -72,6 +73,12 @@ def test_the_reduced_models_refuse_an_unknown_term(options: dict[str, object]) -
     case = replace(PADDED, initial=rw.InitialState(0.1))
     with pytest.raises(ValueError, match=r"^the reduced models know no pad_stiffness, got 0\.25$"):
         rw.simulate(case, **options)
+
+
+def test_nobody_takes_alpha_for_the_balance_of_an_unknown_term() -> None:
+    assert balance_of(replace(PLAIN, rolling_resistance=0.01)) == PIER.alpha  # to the bit
+    with pytest.raises(ValueError, match=r"^the reduced models know no pad_stiffness, got 0\.25$"):
+        balance_of(PADDED)
 
 
 @pytest.mark.parametrize("engine", engine_names())

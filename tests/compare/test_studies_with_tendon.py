@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import rockwobble as rw
-from rockwobble import reduced
+from rockwobble import multibody, reduced
+from rockwobble.compare.metrics.pair import balance_of, outcome_of
 from rockwobble.compare.studies.fragility.runs import default_levels
 from rockwobble.compare.studies.plans import FragilityPlan
 from rockwobble.models import synthetic_motions
@@ -76,3 +77,32 @@ def test_the_balance_of_a_case_is_alpha_without_a_tendon() -> None:
     assert tilts[0] == tilts[1] == PIER.alpha
     assert PIER.alpha < tilts[2] < 0.5 * math.pi
     assert np.isinf(tilts[3])
+
+
+@pytest.mark.parametrize("gravity", [1.62, 9.81])
+def test_the_balance_without_a_term_is_alpha_to_the_bit(gravity: float) -> None:
+    for tan_alpha in np.geomspace(0.02, 1.5, 40).tolist():
+        pier = rw.Cylinder(semidiagonal=3.0, tan_alpha=tan_alpha)
+        for body in (pier, rw.WobblingFrame(pier, 0.7)):
+            case = rw.Case(body, initial=rw.InitialState(0.01), duration=1.0, gravity=gravity)
+            assert balance_of(case) == body.alpha
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("share", "duration", "outcome"), [(1.4, 0.3, "stands"), (1.7, 3.0, "overturned")])
+def test_what_a_tendon_still_rights_has_not_overturned_in_a_ring(
+    share: float, duration: float, outcome: str
+) -> None:
+    """The tendon moves the balance to 1.63 alpha: a wall holds what leans by more, and not what swings."""
+    case = rw.Case(
+        PIER,
+        initial=rw.InitialState(share * PIER.alpha),
+        duration=duration,
+        tendon=rw.Tendon(stiffness=2.0),
+    )
+    trace = multibody.simulate(
+        case, engine="mujoco", support="ring", time_step=1e-3, ring_clearance=0.01, ring_inclination=0.5
+    )
+    assert trace.outcome == "stands"
+    assert trace.tilt[-1] > PIER.alpha
+    assert outcome_of(trace) == outcome

@@ -22,13 +22,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockwobble import reduced
-from rockwobble.models import Case, RockingBody, Trace
+from rockwobble.models import RockingBody, Trace
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.support import support_named
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody.ring import rim_overhang
 
+from ...metrics.pair import balance_of
 from ...metrics.statistics import FEWEST, covering
 
 Array = NDArray[np.float64]
@@ -68,13 +68,6 @@ def fall_of(trace: Trace) -> float:
         return math.inf
     below = trace.time[trace.tilt <= balance_of(trace.case)]
     return float(below[-1]) if len(below) else 0.0
-
-
-def balance_of(case: Case) -> float:
-    """Return the balance tilt, at most pi/2 [rad]."""
-    if case.tendon is None:
-        return case.cylinder.alpha
-    return min(reduced.balance_tilt_of_case(case), OVERTURNED_TILT)
 
 
 def demands_of(trace: Trace) -> dict[str, float]:
