@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from rockwobble.compare import TILTED, Comparison
-from rockwobble.compare.metrics.pair import make_pair
+from rockwobble.compare.metrics.pair import balance_of, make_pair
 from rockwobble.models import AGREEMENT, Trace
 from rockwobble.models.support import Support
 from rockwobble.reduced import limiting_angle_of_turn
@@ -64,7 +64,7 @@ def _tilts(view: CaseView, runs: Sequence[str], support: Support) -> Panel:
         )
         for label in shown
     ]
-    y = tilt_axis([line.y for line in layers])
+    y = tilt_axis([line.y for line in layers], balance_of(view.case) / view.case.cylinder.alpha)
     return Panel(
         x=TIME,
         y=y,
@@ -215,11 +215,11 @@ _SIDES = ("east-west / b", "north-south / b")
 
 
 def _reach(view: CaseView) -> float:
-    cylinder = view.case.cylinder
+    cylinder, balance = view.case.cylinder, balance_of(view.case)
     largest = 0.0
     for trace in view.traces.values():
         # a fallen cylinder would leave nothing to be seen of the rest
-        upright = trace.tilt <= 1.2 * cylinder.alpha
+        upright = trace.tilt <= 1.2 * balance
         beside = np.abs(trace.centre_of_mass[upright, :2])
         largest = max(largest, float(np.nanmax(beside, initial=0.0)))
     return min(1.08 * largest, 6.0 * cylinder.semidiagonal) / cylinder.base_radius or 1.0

@@ -79,13 +79,19 @@ def list_axis(names: Sequence[str], label: str = "") -> Axis:
 
 TIME = Axis(label="time", unit="s")
 TILT = Axis(label="tilt / α", unit="-", low=0.0)
-CUT = 1.5  # [alpha] where an axis of tilts ends if one goes farther: a fall would leave nothing of the rest
+CUT = (
+    1.5  # [balance tilt] where an axis of tilts that go farther ends: a fall would leave nothing of the rest
+)
 
 
-def tilt_axis(tilts: Iterable[Array]) -> Axis:
-    """Return the axis of some tilts over alpha, cut where one goes beyond what a body that stands has."""
-    beyond = any(float(np.nanmax(tilt, initial=0.0)) > CUT for tilt in tilts)
-    return replace(TILT, high=CUT if beyond else None)
+def tilt_axis(tilts: Iterable[Array], balance: float) -> Axis:
+    """Return the axis of some tilts over alpha, cut where one goes beyond what a body that stands has.
+
+    `balance` is the balance tilt [alpha].
+    """
+    cut = CUT * balance
+    beyond = any(float(np.nanmax(tilt, initial=0.0)) > cut for tilt in tilts)
+    return replace(TILT, high=cut if beyond else None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.compare.metrics.pair import balance_of
 from rockwobble.models import Trace
 
 from .case_view import CaseView
@@ -122,5 +123,5 @@ def _start(view: CaseView) -> float:
 def _largest_upright_tilt(view: CaseView) -> float:
     """Return the largest tilt of what does not fall [rad]."""
     tilts = [trace.tilt for trace in view.traces.values()]
-    upright = [tilt[np.isfinite(tilt) & (tilt < 1.2 * view.case.cylinder.alpha)] for tilt in tilts]
+    upright = [tilt[np.isfinite(tilt) & (tilt < 1.2 * balance_of(view.case))] for tilt in tilts]
     return max((float(tilt.max(initial=0.0)) for tilt in upright), default=0.0)

@@ -6,8 +6,10 @@ import math
 
 import numpy as np
 
+from rockwobble.compare.metrics.pair import balance_of
 from rockwobble.compare.studies.advice.demands import fall_of
 from rockwobble.models import Trace
+from rockwobble.models.bounds import OVERTURNED_TILT
 
 from .palette import GREY, ORDER, Style
 from .picture import TIME, Array, Axis, Layer, Line, Panel, Picture, Rule, tilt_axis
@@ -29,15 +31,16 @@ def pictures(trace: Trace) -> list[Picture]:
     tilt: list[Layer] = [Line(x=trace.time, y=tilts, style=_PATH)]
     if trace.uplift_time > 0.0:
         tilt.append(Rule(at=trace.uplift_time, axis="x", text="uplift", side="right"))
-    falls = fall_of(trace)
-    if math.isfinite(falls):
-        tilt.append(Rule(at=falls, axis="x", text="passes α for good", side="left"))
+    falls, balance = fall_of(trace), balance_of(trace.case)
+    if math.isfinite(falls) and balance < OVERTURNED_TILT:
+        name = "α" if balance == cylinder.alpha else "its balance"
+        tilt.append(Rule(at=falls, axis="x", text=f"passes {name} for good", side="left"))
     path = [
         Line(x=np.cos(turn), y=np.sin(turn), style=_CIRCLE, name="original circle", width=1.0),
         Line(x=x, y=y, style=_PATH if rolls else _PLACES, name="contact point", width=1.0),
     ]
     panels = [
-        Panel(x=TIME, y=tilt_axis([tilts]), layers=tilt, title="tilt", height=3.4),
+        Panel(x=TIME, y=tilt_axis([tilts], balance / cylinder.alpha), layers=tilt, title="tilt", height=3.4),
         Panel(
             x=Axis(label="x / b", unit="-"),
             y=Axis(label="y / b", unit="-"),

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from rockwobble.compare.metrics.pair import balance_of
 from rockwobble.compare.studies.advice.demands import fall_of
 from rockwobble.compare.studies.single_run import SingleRun
-from rockwobble.models import Diagnostic, Trace
+from rockwobble.models import Case, Diagnostic, Trace
+from rockwobble.models.bounds import OVERTURNED_TILT
 
 from ..figures.trace import pictures
 from .cases import case_lines
@@ -57,9 +59,8 @@ def _outcome(trace: Trace) -> str:
     falls, peak, alpha = fall_of(trace), trace.peak_tilt, trace.case.cylinder.alpha
     if math.isfinite(falls):
         uplift = "" if trace.case.initial else f" it uplifts at {number(trace.uplift_time, '.4g')} s,"
-        passes = f"its tilt passes α = {math.degrees(alpha):.4f} deg for good at {number(falls, '.4g')} s"
         return (
-            f"The cylinder overturns:{uplift} {passes if falls else 'it starts beyond α'}, and its side is "
+            f"The cylinder overturns:{uplift} {_passes(trace.case, falls)}, and its side is "
             f"down at {number(float(trace.time[-1]), '.4g')} s."
         )
     if math.isfinite(peak):
@@ -71,6 +72,22 @@ def _outcome(trace: Trace) -> str:
             "tilt is unknown."
         )
     return "The run failed: its peak tilt is unknown."
+
+
+def _passes(case: Case, falls: float) -> str:
+    """When a cylinder that falls passes its balance for good, and what that is: alpha without a tendon."""
+    alpha, balance = case.cylinder.alpha, balance_of(case)
+    if balance >= OVERTURNED_TILT:
+        return "though at rest it would come back from any tilt"
+    name, tilt = "α", f"α = {math.degrees(alpha):.4f} deg"
+    if balance != alpha:
+        name = "the balance tilt"
+        tilt = f"{name} {math.degrees(balance):.4f} deg = {balance / alpha:.4f} α"
+    return (
+        f"its tilt passes {tilt} for good at {number(falls, '.4g')} s"
+        if falls
+        else f"it starts beyond {name}"
+    )
 
 
 def _not_reproducible(found: SingleRun) -> Iterator[str]:

@@ -10,7 +10,8 @@ from rockwobble.compare.comparison.result import View
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.case_view import case_views
-from rockwobble.reports.figures.playback import playback
+from rockwobble.reports.figures.comparison import _reach
+from rockwobble.reports.figures.playback import _largest_upright_tilt, playback
 from rockwobble.reports.pages.view import page_of
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -77,6 +78,15 @@ def test_the_motion_starts_at_uplift_so_that_one_sees_it_with_slab_and_tendon():
     largest = max(float(trace.tilt.max()) for trace in found.traces.values())
     assert spec["shown"] * largest < np.radians(25.0) or spec["shown"] == 1
     assert all(factor * largest >= np.radians(25.0) for factor in spec["magnify"] if factor > spec["shown"])
+
+
+def test_what_a_tendon_brings_back_is_no_fall():
+    release, tendon = InitialState(tilt=1.55 * PIER.alpha), rw.Tendon(stiffness=2.0)
+    case = Case(PIER, initial=release, duration=0.5, tendon=tendon)
+    view = case_views(rw.comparison(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1))[0]
+    assert _largest_upright_tilt(view) == release.tilt
+    beside = max(np.hypot(*trace.centre_of_mass[:, :2].T).max() for trace in view.traces.values())
+    assert _reach(view) == pytest.approx(1.08 * beside / PIER.base_radius, rel=1e-12)
 
 
 def test_nothing_is_played_where_nothing_moves():

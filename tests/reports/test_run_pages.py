@@ -13,6 +13,7 @@ from browser import complaints_of_all, needs_chromium
 
 import rockwobble as rw
 import rockwobble.compare as rc
+from rockwobble.compare.metrics.pair import balance_of
 from rockwobble.compare.runs import execution
 from rockwobble.compare.studies.single_run import single_run_of
 from rockwobble.reports import pages as registry
@@ -20,6 +21,7 @@ from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures import sweep as figure
 from rockwobble.reports.figures import trace as trace_figure
 from rockwobble.reports.figures.heat import Heat
+from rockwobble.reports.figures.picture import Rule
 from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.run import page_of
 
@@ -104,6 +106,45 @@ def test_a_run_that_fails_or_falls_says_so():
     assert facts(page)["friction demand"].endswith(", until it falls")
     soft = rw.Run("mujoco", "recess", contact_damping_ratio=0.01)
     assert "its peak tilt is unknown" in page_of_run(RELEASE, soft).markdown()
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "share", "words", "mark"),
+    [
+        (0.0, 0.9, "its tilt passes α = 11.3099 deg for good at", "passes α for good"),
+        (
+            2.0,
+            0.9,
+            "its tilt passes the balance tilt 18.4349 deg = 1.6300 α for good at",
+            "passes its balance for good",
+        ),
+        (2.0, 1.1, "it starts beyond the balance tilt, and", "passes its balance for good"),
+        (6.0, 0.9, "though at rest it would come back from any tilt, and", None),
+    ],
+)
+def test_a_fall_passes_the_balance_which_a_tendon_moves(stiffness, share, words, mark):
+    tendon = rw.Tendon(stiffness=stiffness) if stiffness else None
+    case = rw.Case(PIER, duration=3.0, tendon=tendon)
+    release = rw.InitialState(share * balance_of(case), tilt_rate=1.0 if stiffness < 6.0 else 3.0)
+    trace = rw.simulate(dataclasses.replace(case, initial=release))
+    assert trace.outcome == "overturned"
+    assert f"**The cylinder overturns: {words}" in page_of(single_run_of(trace).made_by()).markdown()
+    panel = trace_figure.pictures(trace)[0].panels[0]
+    marks = {layer.text: layer.at for layer in panel.layers if isinstance(layer, Rule)}
+    assert list(marks) == ([] if mark is None else [mark])
+    if mark and share < 1.0:
+        tilts = np.interp([marks[mark], marks[mark] + 0.02], trace.time, trace.tilt)
+        assert tilts[0] <= balance_of(case) < tilts[1]
+
+
+def test_an_axis_shows_what_a_tendon_brings_back():
+    case = rw.Case(
+        PIER, initial=rw.InitialState(1.6 * PIER.alpha), duration=1.0, tendon=rw.Tendon(stiffness=2.0)
+    )
+    assert trace_figure.pictures(rw.simulate(case))[0].panels[0].y.high is None
+    fallen = dataclasses.replace(case, initial=rw.InitialState(1.7 * PIER.alpha), duration=3.0)
+    high = trace_figure.pictures(rw.simulate(fallen))[0].panels[0].y.high
+    assert high == pytest.approx(1.5 * balance_of(case) / PIER.alpha, rel=1e-15)
 
 
 def test_a_run_that_its_rounding_decides_is_undecided():

@@ -118,7 +118,7 @@
   // -- what a run becomes: poses for the view, lines for the graphs
 
   const bodyOf = (at, run, colour, opacity) => {
-    const b = at.diameter / 2, body = { ...run, at, colour, opacity, alpha: run.body.alpha };
+    const b = at.diameter / 2, body = { ...run, at, colour, opacity, alpha: run.body.alpha, balance: Math.min(run.body.balance, Math.PI / 2) };
     let held = run.angle.find((angle) => !Number.isNaN(angle)) ?? 0;  // the view keeps it while the column stands
     body.rolling_angle = run.angle.map((angle) => { held = Number.isNaN(angle) ? held : angle; return held; });
     body.contact_x = run.x.map((x, i) => x + b * Math.cos(body.rolling_angle[i]));
@@ -182,7 +182,7 @@
 
     const ends = [0, clock.length];
     const tilts = (body, colour, name) => line(thinned(body.time, body.tilt.map((tilt) => tilt * DEG)), colour, name);
-    const top = Math.max(...bodies.map((body) => Math.min(body.peak, 1.6 * body.alpha))), alpha = main.alpha * DEG, near = top > 0.25 * main.alpha;
+    const top = Math.max(...bodies.map((body) => Math.min(body.peak, 1.6 * body.balance))), alpha = main.alpha * DEG, near = top > 0.25 * main.alpha;
     graphs.tilt.panel.y.high = Math.max(1.08 * top * DEG, near ? 1.15 * alpha : 0, 1e-9);
     redraw(graphs.tilt, [...(beside ? [tilts(beside, GREY, "beside it")] : []), tilts(main, main.colour, "tilt"), ...(near ? [rule("y", alpha, `α = ${number(alpha)}°`, RED)] : [])], ends);
     clearTimeout(laterTimer);
@@ -215,7 +215,7 @@
     };
     const b = at.diameter / 2, circle = Array.from({ length: 73 }, (_, i) => i * Math.PI / 36), paths = [];
     for (const body of [...bodies].reverse()) {
-      const top = body.tilt.map((tilt) => (tilt < 1.3 * body.alpha ? at.height * Math.sin(tilt) + b * (1 - Math.cos(tilt)) : NaN));  // not the fall
+      const top = body.tilt.map((tilt) => (tilt < 1.3 * body.balance ? at.height * Math.sin(tilt) + b * (1 - Math.cos(tilt)) : NaN));  // not the fall
       body.thin = Math.ceil(body.tilt.length / 2500);
       const own = body === main ? [ORANGE, "top of the column"] : [GREY, "beside it"];
       paths.push(path(body, body.contact_x, body.contact_y, b, body === main ? BLUE : GREY, "contact point"));
@@ -232,7 +232,7 @@
   const results = (body, motion) => {
     const { at, peak, alpha, normal, outward, across } = body, o = body.body, fell = body.outcome === "overturned", moved = !Number.isNaN(body.upliftTime);
     let friction = 0, least = Infinity;
-    for (let i = 0; i < normal.length; i++) if (body.tilt[i] > 1e-3 * alpha && !(fell && body.tilt[i] > 1.2 * alpha)) {
+    for (let i = 0; i < normal.length; i++) if (body.tilt[i] > 1e-3 * alpha && !(fell && body.tilt[i] > 1.2 * body.balance)) {
       friction = Math.max(friction, normal[i] > 0 ? Math.hypot(outward[i], across[i]) / normal[i] : Infinity);
       least = Math.min(least, normal[i] / GRAVITY);
     }
