@@ -7,8 +7,11 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import pandas as pd
 
+from rockwobble.compare.metrics.statistics import FEWEST as FEWEST_OF_A_QUANTILE
 from rockwobble.compare.studies.validity.limits import (
+    CONFIRMS,
     CONTRASTS,
+    FEWEST,
     POINT,
     Tables,
     cells,
@@ -42,13 +45,17 @@ _LINES = (
 )
 
 
-# name, title, caption, column of the cells, shades
+# of how many records a cell is, and which has none
+_PAIRED = "Each cell: up to {{members}} records, without those that overturn by both; gray: {few} left."
+_STANDING = f"Each cell: up to {{members}} such records; gray: fewer than {FEWEST}."
+# name, title, caption, its end, column of the cells, shades
 _MAPS = (
     (
         "bias",
         "Where rolling out changes the peak: bias",
         "Median over the records of the ratio of the peaks on flat ground and in an ideal recess, minus "
-        "1, by the reduced models: red, higher on flat ground; blue, lower.",
+        "1, by the reduced models: red, higher on flat ground; blue, lower; beyond ±50 % as at ±50 %.",
+        _PAIRED.format(few=f"fewer than {FEWEST_OF_A_QUANTILE}"),
         "flat_percent",
         Shades(label="flat ground / recess − 1, median", unit="%", low=-50.0, high=50.0, centre=0.0),
     ),
@@ -57,6 +64,7 @@ _MAPS = (
         "Where rolling out changes the peak: spread",
         "90th percentile over the records of the ratio of the peaks on flat ground and in the recess, or its "
         "inverse; darkest: 10 and more, or it overturns on one of the two supports alone.",
+        _PAIRED.format(few="none"),
         "flat_90",
         Shades(label="90th percentile of the ratio", unit="-", low=1.0, high=10.0, log=True),
     ),
@@ -65,6 +73,7 @@ _MAPS = (
         "Sensitivity: the recess model under a record 1 % stronger",
         "The same ratio between the recess model and itself under a record 1 % stronger: where it is as "
         "large, neither model predicts the peak under one record.",
+        _PAIRED.format(few="none"),
         "copy_90",
         Shades(label="90th percentile of the ratio", unit="-", low=1.0, high=10.0, log=True),
     ),
@@ -72,6 +81,7 @@ _MAPS = (
         "need-friction",
         "Friction demand of the recess model",
         "90th percentile of the friction demand over the records that rock without overturning.",
+        _STANDING,
         "friction_90",
         Shades(label="friction demand / tan α", unit="-", low=1.0, high=3.0),
     ),
@@ -80,6 +90,7 @@ _MAPS = (
         "Least normal force",
         "10th percentile of the least normal force over the records that rock without overturning; "
         "below zero (red) the ground would have to pull.",
+        _STANDING,
         "normal_10",
         Shades(label="normal force / weight", unit="-", low=-1.0, high=1.0, centre=0.0, reverse=True),
     ),
@@ -88,6 +99,7 @@ _MAPS = (
         "Restraining moment of the recess",
         "90th percentile of κ, of the restraining moment κ (vertical + axis), over the records that rock "
         "without overturning.",
+        _STANDING,
         "moment_90",
         Shades(label="κ / (weight × b)", unit="-", low=0.01, high=1.0, log=True),
     ),
@@ -98,7 +110,7 @@ def map_pictures(tables: Tables) -> list[Picture]:
     """Return the maps in which anything is known: of peaks over records, of needs, and of free response."""
     table, free = cells(tables), tables["free_response"]
     table = table.assign(flat_percent=100.0 * (table["flat_ratio"] - 1.0))
-    found = [_shaken(table, *given) for given in _MAPS if table[given[3]].notna().any()]
+    found = [_shaken(table, *given) for given in _MAPS if table[given[4]].notna().any()]
     two = free["flat_turn"].notna().any()  # models of free response, which are compared
     for name, what in (("turn", "Azimuth change"), ("period", "Period")) if two else ():
         off = 100.0 * (free[f"flat_{name}"] / free[name] - 1.0)
@@ -106,7 +118,9 @@ def map_pictures(tables: Tables) -> list[Picture]:
     return found
 
 
-def _shaken(table: pd.DataFrame, name: str, title: str, caption: str, column: str, shades: Shades) -> Picture:
+def _shaken(
+    table: pd.DataFrame, name: str, title: str, caption: str, counted: str, column: str, shades: Shades
+) -> Picture:
     panels = []
     for tan_alpha, own in table.groupby("tan_alpha"):
         (x, x_ticks), (y, y_ticks) = (
@@ -134,7 +148,7 @@ def _shaken(table: pd.DataFrame, name: str, title: str, caption: str, column: st
     return Picture(
         name=name,
         title=title,
-        caption=f"{caption} Each cell: {int(table['members'].max())} records.",
+        caption=f"{caption} {counted.format(members=int(table['members'].max()))}",
         panels=panels,
         columns=len(panels) if len(panels) < 4 else 2,
         shades=shades,
@@ -288,13 +302,18 @@ def _verification(table: pd.DataFrame) -> Picture:
     groups = {f"engine, {name}": rows for name, rows in table.groupby("support", sort=False)}
     layers = group_lines(groups, "apart", "off", lines=False, filled="resolved")
     ends = table["apart"].agg(["min", "max"]).to_numpy(dtype=np.float64)
-    layers.append(Line(x=ends, y=ends, name="difference of the models", width=0.8))
+    layers.append(Line(x=ends, y=CONFIRMS * ends, name="half of the difference", width=0.8))
+    unresolved = (
+        ""
+        if table["resolved"].all()
+        else " Open marks: near-upright passes that its contact does not resolve."
+    )
     return Picture(
         name="verification",
         title="The engine distinguishes the models of recess and flat ground",
-        caption="Each mark is a release: error of the azimuth change in the engine, against the "
-        "difference of the two models. Below the line the engine decides between them. Open "
-        "marks: near-upright passes that its contact does not resolve.",
+        caption="Each mark is a run: error of the azimuth change in the engine, against the difference of "
+        "the two models. Below the line, half of that difference, the engine decides between them."
+        f"{unresolved}",
         panels=[
             Panel(
                 x=Axis(label="recess − flat model", unit="deg", log=True),

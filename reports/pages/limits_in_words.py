@@ -50,7 +50,7 @@ def _contradiction(limits: Limits) -> str:
     reasons = []
     if free["contradicted"]:
         reasons.append(
-            f"the engine contradicts it at {free['contradicted']:.0f} of {free['points']:.0f} releases"
+            f"the engine contradicts it in {free['contradicted']:.0f} of {free['points']:.0f} runs"
         )
     if records["recess_beyond"]:
         reasons.append(
@@ -106,9 +106,11 @@ def _single_records(records: Mapping[str, float]) -> str:
     if not strays:
         return ""
     alone = " (∞: it overturns by one of the two alone)" if any("∞" in each for each in strays) else ""
+    unknown = "" if records["strays_bounded"] else "; no upper bound is known"
     return (
         "The peak of one record is another matter: by point, one record in twenty exceeds the model's by a "
-        f"factor of more than\n{', '.join(strays)}{alone}."
+        f"factor of more than\n{', '.join(strays)}{alone},\n"
+        f"in samples of {records['members']:.0f} records{unknown}."
     )
 
 
@@ -116,7 +118,10 @@ def clearance_words(limits: Limits) -> str:
     """Whether the model is safe for a recess with clearance; empty where it is, or too few records know."""
     if not clearance_is_unconservative(limits):
         return ""
-    return "A recess with clearance is another system, and the model is not on the safe side of it."
+    return (
+        "A recess with clearance is another system, and the model is not on the safe side of it: this is of "
+        "single peaks, not of overturning."
+    )
 
 
 def requirements(limits: Limits) -> Iterator[Row]:
@@ -124,12 +129,12 @@ def requirements(limits: Limits) -> Iterator[Row]:
     friction, contact, moment = (limits[name] for name in ("friction", "contact", "restraining_moment"))
     yield {
         "need": "Friction",
-        "limit": f"at most {number(friction['shaken'])} tan α in all motions, by slenderness and intensity "
-        "below; under tan α it slides first",
+        "limit": f"at most {number(friction['shaken'], 'most .3g')} tan α in all motions, by slenderness and "
+        "intensity below; under tan α it slides first",
     }
     kept = (
         f"kept in all {contact['runs']:.0f} motions that rock without overturning, with at least "
-        f"{number(contact['least_held'], '.2g')} of the weight"
+        f"{number(contact['least_held'], 'least .2g')} of the weight"
     )
     lost = (
         f"lost in {contact['lost']:.0f} of {contact['runs']:.0f} motions, from tan α = "
@@ -138,27 +143,39 @@ def requirements(limits: Limits) -> Iterator[Row]:
     yield {"need": "Contact", "limit": lost if contact["lost"] else kept}
     yield {
         "need": "Recess",
-        "limit": f"supplies κ, at most {number(moment['shaken'], '.2g')} weight × b in all motions; (1 + "
-        "cos θ) κ about the vertical",
+        "limit": f"supplies κ, at most {number(moment['shaken'], 'most .2g')} weight × b in all motions; (1 "
+        "+ cos θ) κ about the vertical",
     }
     if tendon := limits.get("tendon"):
         yield {
             "need": "Tendon",
-            "limit": f"carries at most {number(tendon['shaken'])} weights of a column in all motions that do "
-            "not overturn it; it must not yield",
+            "limit": f"carries at most {number(tendon['shaken'], 'most .3g')} weights of a column in all "
+            "motions that do not overturn it; it must not yield",
         }
     soft = limits["soft_contact"]
     stiff = "at no contact tried is the peak within 5 %"
     if math.isfinite(soft["held_up_to"]):
         stiff = (
-            f"a time constant of at most {number(soft['held_up_to'], '.2g')}/p: there the peak is off by at "
-            f"most {number(soft['held_peak'], 'percent')}"
+            f"a time constant of at most {number(soft['held_up_to'], 'least .2g')}/p: there the peak is off "
+            f"by at most {number(soft['held_peak'], 'most percent')}{_ended(soft)}"
         )
     yield {"need": "Stiffness of contact", "limit": stiff}
     yield {
         "need": "Question",
         "limit": "a distribution over records, or one peak as a draw of many; not one trace on flat ground",
     }
+
+
+def _ended(soft: Mapping[str, float]) -> str:
+    """Of how many runs a contact that is stiff enough is known, and which of them failed."""
+    if soft["held_ended"] == soft["held_runs"]:
+        return f" in all {soft['held_runs']:.0f} runs"
+    dampings = dict.fromkeys(number(soft[f"failed_damping_{end}"], "g") for end in ("least", "largest"))
+    return (
+        f" in the {soft['held_ended']:.0f} of {soft['held_runs']:.0f} runs that ended; the others failed, "
+        f"with up to {number(soft['failed_up_to'], 'most .2g')}/p and damping ratios of "
+        f"{' to '.join(dampings)}"
+    )
 
 
 def record_findings(limits: Limits, *, slab: bool) -> Iterator[str]:
@@ -171,13 +188,21 @@ def record_findings(limits: Limits, *, slab: bool) -> Iterator[str]:
             f"large, one record in twenty {_range(records, 'halved_95', '.2f')}: {converged} record by "
             "record."
         )
+    if not slab and records["ring_passed"]:
+        yield (
+            f"In a recess with clearance {records['ring_passed']:.0f} of the "
+            f"{records['ring_standing']:.0f} runs counted as standing pass α and reach up to "
+            f"{number(records['ring_passed_largest'], 'most .2f')} α: its walls lean by α and hold them."
+        )
     if not slab:
         yield (
             f"Runs that touch its walls: {records['touched']:.0f}, which lose at most "
-            f"{number(records['ring_loss_worst'], 'percent')} of their largest energy."
+            f"{number(records['ring_loss_worst'], 'most percent')} of their largest energy."
         )
-    if records["failed"]:
-        yield f"Failed and left out: {records['failed']:.0f} of {records['runs']:.0f} runs."
+    if records["failed"]:  # all without a peak
+        ends = {"failed": records["failed"] - records["undecided"], "undecided": records["undecided"]}
+        left_out = " and ".join(f"{count:.0f} {end}" for end, count in ends.items() if count)
+        yield f"Left out of {records['runs']:.0f} runs: {left_out}."
 
 
 def agreement_rows(traces: Mapping[str, float], *, tendon: bool) -> Iterator[Row]:
@@ -200,10 +225,11 @@ def _trace_row(traces: Mapping[str, float], name: str, place: str, model: str, *
 
 def free_findings(free: Mapping[str, float], *, tendon: bool) -> Iterator[str]:
     """Yield how recess and flat ground differ in free response, and what an engine confirms of it."""
-    against = f", contradicts it at {free['contradicted']:.0f}" if free["contradicted"] else ""
-    count = f"at {free['confirmed']:.0f} of {free['points']:.0f} releases{against}"
+    against = f", contradicts it in {free['contradicted']:.0f}" if free["contradicted"] else ""
+    runs = f"in {free['confirmed']:.0f} of {free['points']:.0f} runs"
+    releases = f"{free['releases']:.0f} releases"
     if tendon:
-        yield f"The engine confirms the model {count}."
+        yield f"The engine confirms the model {runs} ({releases}){against}."
         return
     alike = "for no slenderness mapped"
     if math.isfinite(free["alike_up_to"]):
@@ -213,18 +239,22 @@ def free_findings(free: Mapping[str, float], *, tendon: bool) -> Iterator[str]:
         number(free[f"worst_{name}"], "g") for name in ("tan_alpha", "release", "spin")
     )
     yield (
-        f"Off by at most: period {number(free['period_largest'], 'percent')}; peak in ten periods "
-        f"{number(free['peak_gain'], 'percent')};\nangle of turn {number(free['turn_largest'], 'percent')}, "
-        f"or {number(free['turn_largest_deg'], '.2g')}°,\nat tan α = {tan_alpha}, release {release} α, "
+        f"Off by at most: period {number(free['period_largest'], 'most percent')}; peak in ten periods "
+        f"{number(free['peak_gain'], 'most percent')};\nangle of turn "
+        f"{number(free['turn_largest'], 'most percent')}, "
+        f"or {number(free['turn_largest_deg'], 'most .2g')}°,\nat tan α = {tan_alpha}, release {release} α, "
         f"{spin} of the steady rate."
     )
-    yield f"The engine confirms the right one of the two models {count}."
+    open_runs = free["points"] - free["confirmed"] - free["contradicted"]
+    unsure = f"; in {open_runs:.0f} its error exceeds half of their difference" if open_runs else ""
+    known = f"{runs} ({releases} on two supports){against}{unsure}"
+    yield f"The engine confirms the right one of the two models {known}."
 
 
 def force_findings(limits: Limits, *, slab: bool) -> Iterator[str]:
     """Yield what friction, contact and recess must supply, and what less of it does."""
     friction, contact, moment = (limits[name] for name in ("friction", "contact", "restraining_moment"))
-    yield f"Friction demand in free response: at most {number(friction['free_response'], '.2g')} tan α."
+    yield f"Friction demand in free response: at most {number(friction['free_response'], 'most .2g')} tan α."
     if math.isfinite(friction["slips_at"]):
         words = f"At {number(friction['slips_at'], 'g')} of the demand the engine "
         words += (
@@ -239,8 +269,10 @@ def force_findings(limits: Limits, *, slab: bool) -> Iterator[str]:
     else:
         yield "The engine did not slip at any friction tried."
     words = (
-        f"Least normal force: {number(contact['least'], '.2g')} weights, in free response "
-        f"{number(contact['free_least'], '.2g')}"
+        "Least normal force, in weights: of the shaken motions that do not overturn "
+        f"{number(contact['shaken_least'], 'least .2g')}; of free response "
+        f"{number(contact['free_least'], 'least .2g')}, at tan α = "
+        f"{number(contact['free_least_tan_alpha'], 'g')}"
     )
     if math.isfinite(contact["free_lost_from"]):
         words += f", lost there from tan α = {number(contact['free_lost_from'], 'g')} on"
@@ -254,13 +286,14 @@ def force_findings(limits: Limits, *, slab: bool) -> Iterator[str]:
 def ring_findings(rings: Mapping[str, float], worst: Facts) -> Iterator[str]:
     """Yield what a recess with clearance does to place, energy and peak."""
     yield (
-        f"Tightest clearance, {number(rings['tightest'], 'g')} b: at the end at most "
-        f"{number(rings['tightest_at_end'], '.2g')} b from its place; residual twist of all up to "
-        f"{number(rings['twist'], '.2g')} rad."
+        f"Tightest clearance, {number(rings['tightest'], 'g')} b, under El Centro: at the end at most "
+        f"{number(rings['tightest_at_end'], 'most .2g')} b from its place. Residual twist of all: up to "
+        f"{number(rings['twist'], 'most .2g')} rad under El Centro, "
+        f"{number(rings['free_twist'], 'most .2g')} rad in free response."
     )
     yield (
         f"Walls are touched in {rings['touched']:.0f} of {rings['runs']:.0f} runs, which lose at most "
-        f"{number(rings['loss_worst'], 'percent')} of their largest energy."
+        f"{number(rings['loss_worst'], 'most percent')} of their largest energy."
     )
     lean = f"{worst['inclination']:g} rad" if worst["inclination"] else "α"
     yield (
@@ -268,11 +301,12 @@ def ring_findings(rings: Mapping[str, float], worst: Facts) -> Iterator[str]:
         f"by {number(worst['turn'], 'g')} rad,\nclearance {number(worst['clearance'], 'g')} b, walls that "
         f"lean by {lean},\nfriction {number(worst['friction'], 'g')}."
     )
-    failed = f"; {rings['failed']:.0f} runs failed" if rings["failed"] else ""
+    runs = "run" if rings["failed"] == 1.0 else "runs"
+    failed = f"; {rings['failed']:.0f} {runs} failed" if rings["failed"] else ""
     yield (
         f"At half the step the peak is the same within 5 % in {rings['halved_alike']:.0f} of "
-        f"{rings['halved_known']:.0f} runs, and changes by at most {number(rings['halved_worst'], 'percent')}"
-        f"{failed}."
+        f"{rings['halved_known']:.0f} runs, and changes by at most "
+        f"{number(rings['halved_worst'], 'most percent')}{failed}."
     )
 
 

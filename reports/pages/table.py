@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +22,8 @@ NONE = "–"
 def number(value: object, form: str = ".3g") -> str:
     """Return a value in words: a format of Python, or "percent", "duration", "words" or "tag" (as it is).
 
-    What is not known, NaN and None, is a dash.
+    After "most " a format of so many digits (".3g", ".2f", "percent") rounds up, after "least " down: a bound
+    that is stated holds. What is not known, NaN and None, is a dash.
 
     Examples
     --------
@@ -29,6 +31,8 @@ def number(value: object, form: str = ".3g") -> str:
     ('0.123', '1e-7', '–', 'yes')
     >>> number(0.0312, "percent"), number(5400.0, "duration")
     ('3.1 %', '1.5 h')
+    >>> number(0.2022, ".2g"), number(0.2022, "most .2g"), number(0.0494, "most percent")
+    ('0.2', '0.21', '5 %')
     """
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return NONE
@@ -39,11 +43,32 @@ def number(value: object, form: str = ".3g") -> str:
     found = float(value)  # type: ignore[arg-type]
     if math.isinf(found):
         return "∞" if found > 0.0 else "-∞"
+    bound, _, plain = form.rpartition(" ")
+    if bound:
+        found, form = _rounded(found, plain, _BOUNDS[bound]), plain
     if form in _FORMS:
         return _FORMS[form](found)
     if form.endswith("d"):
         return format(int(found), form)
     return _short(format(found, form))
+
+
+# how a number is rounded that others do not exceed, and one that others do not fall below
+_BOUNDS: Mapping[str, str] = {"most": ROUND_CEILING, "least": ROUND_FLOOR}
+_EXACT = 12  # digits beyond are those of binary arithmetic
+
+
+def _rounded(value: float, form: str, rounding: str) -> float:
+    """Return a number rounded to one side, to the digits that a format shows."""
+    exact = Decimal(f"{value:.{_EXACT}g}")
+    if form == "percent":
+        whole = abs(exact) >= Decimal("0.1")  # as `_percent` shows it
+        last = -2 if whole else exact.adjusted() - 1
+    elif form.endswith("g"):
+        last = exact.adjusted() - int(form[1:-1]) + 1
+    else:
+        last = -int(form[1:-1])
+    return float(exact.quantize(Decimal(1).scaleb(last), rounding)) if exact else 0.0
 
 
 def _percent(share: float) -> str:

@@ -15,6 +15,7 @@ from rockwobble.compare.studies.validity.study import Validity
 from rockwobble.models.support import SUPPORTS
 
 from ..figures.validity import METHODS, has_walls, pictures
+from .limit_counts import faint_factors, with_counts
 from .limits_in_words import (
     agreement_rows,
     clearance_words,
@@ -70,7 +71,11 @@ _WITH_TENDON: Mapping[str, object] = {
 
 def page_of(found: Validity) -> Page:
     """Return the report."""
-    tables, structure, limits = found.tables, found.structure, limits_of(found.tables)
+    tables, structure, limits = (
+        found.tables,
+        found.structure,
+        with_counts(limits_of(found.tables), found.tables),
+    )
     drawn = pictures(found)
     names = [picture.name for picture in drawn]
     tendon, slab = structure.tendon is not None, bool(structure.slab_mass_ratio)
@@ -83,6 +88,7 @@ def page_of(found: Validity) -> Page:
         "contrasts": _contrasts(contrasts(tables)),
         "record_findings": list(record_findings(limits, slab=slab)),
         "summary": _summary(cells(tables)),
+        "faint": faint_factors(tables),
         **(_WITH_TENDON if tendon else _WITHOUT_TENDON),
         "map_pictures": [name for name in ("bias", "spread", "sensitivity") if name in names],
         "trace_rows": list(agreement_rows(limits["traces"], tendon=tendon)),
@@ -159,7 +165,7 @@ def _needs(table: pd.DataFrame) -> dict[str, object]:
         if name in table
         for tan_alpha, own in table.groupby("tan_alpha")
     ]
-    columns = [["tan_alpha", "tan α", "g"], *([name, f"{name} g tan α", ".3g"] for name in intensities)]
+    columns = [["tan_alpha", "tan α", "g"], *([name, f"{name} g tan α", "most .3g"] for name in intensities)]
     return {"needs": rows, "needed_columns": columns}
 
 

@@ -16,6 +16,7 @@ from rockwobble.compare.studies.validity.limits import needs
 from rockwobble.compare.studies.validity.study import Validity
 from rockwobble.models.diagnostic import CODES, codes_in
 from rockwobble.reports.cli.main import main
+from rockwobble.reports.pages.table import number
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
 STUDY = "extremes"
@@ -88,7 +89,7 @@ def test_the_guide_states_the_needs_of_the_published_limits() -> None:
         heads = [f"{each:g}" for each in sorted(found["intensity"].unique())]
         lines = [["tan α", *heads]]
         for tan_alpha, own in found.groupby("tan_alpha"):
-            known = {f"{row['intensity']:g}": f"{row[name]:.3g}" for row in own.to_dict("records")}
+            known = {f"{row['intensity']:g}": number(row[name], "most .3g") for row in own.to_dict("records")}
             lines.append([f"{tan_alpha:g}", *(known.get(head, "–") for head in heads)])
         head, *rows = (f"| {' | '.join(line)} |" for line in lines)
         assert head in guide

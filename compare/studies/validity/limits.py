@@ -43,7 +43,7 @@ SLIGHT = 0.1
 ALIKE = 0.01  # of period, angle of turn or peak: below what a test on a shake table would see
 SMALL = 0.05  # of the peak tilt: less cannot be told from chance
 # an engine confirms a model if it is nearer to it than this share of the difference of the models
-_CONFIRMS = 0.5
+CONFIRMS = 0.5
 # and contradicts it where turn or period is off by more than this; the step of an engine errs by less
 _CONTRADICTS = 1e-3
 _ROUNDING = 1e-9  # relative, of a peak that was stored over alpha
@@ -345,7 +345,7 @@ def _confirmations(table: pd.DataFrame) -> Numbers:
     period_off = np.abs(quotient(resolved, "engine_half_period", "half_period") - 1.0)
     contradicts = ~((turn_off <= _CONTRADICTS) & (period_off <= _CONTRADICTS))
     apart = column(resolved, "apart")
-    confirms = ~contradicts & (np.isnan(apart) | (error < _CONFIRMS * apart))
+    confirms = ~contradicts & (np.isnan(apart) | (error < CONFIRMS * apart))
     return {
         "confirmed": float(confirms.sum()),
         "contradicted": float(contradicts.sum()),
