@@ -39,7 +39,7 @@ from .subject import TOLERANCE, Subject
 from .suite import SuiteRuns, check_suite
 
 Measure = Callable[[Subject, str], Iterator[Result]]
-_ENDS = Bound(0.0, "a check must reach its end")
+ENDS = Bound(0.0, "a check must reach its end")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,7 +103,7 @@ class Check:
             except Exception as error:  # whatever a model or engine raises is said in its place
                 words = f"{type(error).__name__}: {' '.join(str(error).split())}"
                 if subject.options or subject.cases:  # ours, or read here: it must not
-                    yield at_most(f"{name}, {support}", math.nan, _ENDS, note=words)
+                    yield at_most(f"{name}, {support}", math.nan, ENDS, note=words)
                 else:
                     yield not_run(f"{name}, {support}", words)
 

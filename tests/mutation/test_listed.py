@@ -12,9 +12,11 @@ from mutation.places import Change, after_assignment, appended, before_assignmen
 from mutation.term_faults import SUMS, term_faults
 from rockwobble import reduced
 from rockwobble.compare.check import lagrange
+from rockwobble.models import Case, Cylinder, InitialState
 
 # its inertias are no function of its shape, so that its motions alone tell all terms apart
 ONE = "own inertias, tan alpha = 0.5"
+PLAIN = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), initial=InitialState(0.1), duration=0.5)
 
 
 @pytest.fixture(autouse=True)
@@ -107,3 +109,21 @@ def test_a_fault_that_nothing_finds_is_said(
     monkeypatch.setattr("mutation.listed.INTERPRETED", ("equations", "exact"))
     assert run() == 1
     assert "nothing wrong: MISSED" in capsys.readouterr().out
+
+
+def test_a_fault_whose_own_code_raises_is_not_found(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A wrapper with a parameter too few ends every run in a TypeError: no check has found what it plants."""
+    wrapper = "def body_of(cylinder): return without_fault(cylinder)"
+    stale = Mutation(
+        name="stale signature",
+        faults=(Fault(file="body.py", change=wrapped("body_of", wrapper)),),
+        group="exact",
+    )
+    with mutated(*stale.faults) as copy, pytest.raises(TypeError, match=r"^body_of\(\) takes 1 positional"):
+        copy.simulate(PLAIN)
+    monkeypatch.setattr("mutation.listed.mutations", lambda: (stale,))
+    monkeypatch.setattr("mutation.listed.INTERPRETED", ("equations", "exact"))
+    assert run() == 1
+    assert "stale signature: MISSED" in capsys.readouterr().out
