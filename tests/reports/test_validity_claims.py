@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble.compare.studies.validity.limits import cells
+from rockwobble.compare.studies.validity.limits import cells, contrasts
 from rockwobble.compare.studies.validity.study import Validity
 from rockwobble.reports.figures.picture import Picture
 from rockwobble.reports.figures.validity import map_pictures, pictures
@@ -165,6 +165,24 @@ def test_upper_bounds_are_rounded_up(found: Validity, said: str) -> None:
         assert value <= float(stated) < 1.1 * value, words
     (low,) = re.findall(r"with at least (\S+) of the weight", said)
     assert 0.9 * limits["contact", "least_held"] < float(low) <= limits["contact", "least_held"]
+
+
+def test_the_guide_says_of_contact_and_of_clearance_what_the_tables_bear(found: Validity) -> None:
+    guide = (PUBLISHED.parents[2] / "docs" / "guide" / "limits.md").read_text(encoding="utf-8")
+    table = found.tables["contact"]
+    failed = (table[["free_outcome", "outcome"]] != "stands").any(axis="columns")
+    stiffer, stiff = (table[np.isclose(table["time_constant"], each)] for each in (2e-4, 2e-3))
+    off = (stiff["peak"] / stiff["recess_peak"] - 1.0).abs().max()
+    assert not failed[stiff.index].any()
+    assert f"errs by at most {number(off, 'most percent')} in all {len(stiff)} runs" in guide
+    ended = stiffer[~failed[stiffer.index]]
+    (damping,) = set(ended["damping"])
+    words = f"only {len(ended)} of {len(stiffer)} ended, all at a damping ratio of {damping:g}"
+    assert f"with 0.2 ms {words}" in guide
+    table = contrasts(found.tables)
+    ring = table[table["method"] == "ring"]
+    assert np.isposinf(ring["ratio_95_high"]).all()
+    assert f"in samples of {ring['count'].max()} records (no upper bound is known)" in guide
 
 
 SIZES = [1.0, 0.07, 0.0996, 0.2, 9.96, 150.0, *10.0 ** np.random.default_rng(7).uniform(-9.0, 9.0, 200)]
