@@ -12,6 +12,7 @@ import pandas as pd
 from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.studies.advice.advice import Advice
 from rockwobble.compare.studies.spectrum.parts import SERIES
+from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.trace import NO_PEAK
 
 from .ensemble import peak_shares
@@ -20,7 +21,7 @@ from .picture import TIME, Array, Axis, Band, Line, Panel, Picture, Rule
 from .spectrum import NAMES, series_styles
 
 SHORT = {"copies": "copies", "acceleration": "same acceleration", "velocity": "same velocity"}
-_STANDS, _SIDE = 1.2, 1.3  # [alpha] where tilts are cut, and where overturned runs are drawn
+_STANDS, _SIDE = 1.2, 1.3  # [balance tilt] where tilts are cut, and where overturned runs are drawn
 _SCALES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 
 
@@ -74,8 +75,8 @@ def _tilt(found: Advice) -> Panel:
     layers: list[Band | Line | Rule] = [
         Band(
             x=band["time"].to_numpy(float),
-            low=_cut(band["low"]),
-            high=_cut(band["high"]),
+            low=_cut(found, band["low"]),
+            high=_cut(found, band["high"]),
             name="90 % of the copies",
         )
     ]
@@ -83,12 +84,18 @@ def _tilt(found: Advice) -> Panel:
         label = found.verification.label
         style = run_styles([label])[label]
         layers.append(
-            Line(x=engine["time"].to_numpy(float), y=_cut(engine["tilt"]), name=label, style=style, width=1.8)
+            Line(
+                x=engine["time"].to_numpy(float),
+                y=_cut(found, engine["tilt"]),
+                name=label,
+                style=style,
+                width=1.8,
+            )
         )
     layers.append(
         Line(
             x=trace["time"].to_numpy(float),
-            y=_cut(trace["tilt"]),
+            y=_cut(found, trace["tilt"]),
             name=found.facts["model"],
             style=model_style(found.facts["model"]),
             width=1.1,
@@ -102,14 +109,15 @@ def _tilt(found: Advice) -> Panel:
 
 
 def _scales(found: Advice) -> Panel:
-    scales, styles = found.scales, series_styles(found.facts["model"])
+    scales, styles, balance = found.scales, series_styles(found.facts["model"]), _balance(found)
+    side = _SIDE * balance
     layers: list[Line | Rule] = [Rule(at=1.0, axis="x", text="as given")]
     for name in SERIES:
         rows = scales[scales["series"] == name]
         if not len(rows):
             continue
         peaks = rows["peak_tilt"].to_numpy(float)
-        tilt = np.where(overturned(peaks), _SIDE, np.minimum(peaks / found.cylinder.alpha, _STANDS))
+        tilt = np.where(overturned(peaks), side, np.minimum(peaks / found.cylinder.alpha, _STANDS * balance))
         marked = replace(styles[name], symbol="circle")
         layers.append(
             Line(
@@ -127,7 +135,11 @@ def _scales(found: Advice) -> Panel:
             ticks=[(tick, f"{tick:g}") for tick in _SCALES],
         ),
         y=Axis(
-            label="largest tilt / α", unit="-", low=-0.02, high=1.4, ticks=[*levels, (_SIDE, "overturns")]
+            label="largest tilt / α",
+            unit="-",
+            low=-0.02,
+            high=1.4 * balance,
+            ticks=[*levels, (side, "overturns")],
         ),
         layers=layers,
         title="Other scales of this shaking",
@@ -156,5 +168,11 @@ def _friction(found: Advice) -> Panel:
     )
 
 
-def _cut(tilts: pd.Series[float]) -> Array:
-    return np.minimum(tilts.to_numpy(float), _STANDS)
+def _balance(found: Advice) -> float:
+    """Balance tilt, at most pi/2 [alpha]."""
+    tendon = found.facts.get("tendon")
+    return min(tendon["balance_tilt"], OVERTURNED_TILT / found.cylinder.alpha) if tendon else 1.0
+
+
+def _cut(found: Advice, tilts: pd.Series[float]) -> Array:
+    return np.minimum(tilts.to_numpy(float), _STANDS * _balance(found))

@@ -79,9 +79,7 @@ def list_axis(names: Sequence[str], label: str = "") -> Axis:
 
 TIME = Axis(label="time", unit="s")
 TILT = Axis(label="tilt / α", unit="-", low=0.0)
-CUT = (
-    1.5  # [balance tilt] where an axis of tilts that go farther ends: a fall would leave nothing of the rest
-)
+CUT = 1.5  # [balance tilt] where an axis ends if a tilt goes farther: a fall would leave nothing of the rest
 
 
 def tilt_axis(tilts: Iterable[Array], balance: float) -> Axis:

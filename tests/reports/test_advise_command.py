@@ -23,6 +23,8 @@ from rockwobble.models import Case, Cylinder, InitialState, WobblingFrame, el_ce
 from rockwobble.models.diagnostic import CODES
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
+from rockwobble.reports.figures.advice import pictures
+from rockwobble.reports.figures.picture import Line
 from rockwobble.reports.pages import page, stored_page
 from rockwobble.reports.pages.advice import page_of
 from rockwobble.reports.pages.advised_case import assumptions, opening, problem_lines, weight_words
@@ -366,6 +368,19 @@ def test_a_failed_run_gets_no_advice(found, tmp_path):
     again = changed(found, response=failed)
     assert again.grades == {"trace": "not satisfied"}
     assert "no advice, the recess model failed" in page_of(again).markdown()
+
+
+@pytest.mark.parametrize(("balance", "drawn"), [(None, 1.2), (1.63, 1.5), (1.2, 1.2 * 1.2), (math.inf, 1.5)])
+def test_the_picture_cuts_no_tilt_that_a_tendon_brings_back(
+    found: Advice, balance: float | None, drawn: float
+) -> None:
+    leans = found.scales.assign(peak_tilt=1.5 * found.cylinder.alpha)
+    tendon = None if balance is None else {"balance_tilt": balance}
+    tied = changed(dataclasses.replace(found, tables={**found.tables, "scales": leans}), tendon=tendon)
+    panel = next(each for each in pictures(tied)[0].panels if each.title.startswith("Other scales"))
+    tilts = np.concatenate([layer.y for layer in panel.layers if isinstance(layer, Line)])
+    assert tilts == pytest.approx(drawn, rel=1e-12)
+    assert tilts.max() < max(tick for tick, _ in panel.y.ticks) < panel.y.high
 
 
 def test_the_page_of_a_release_is_the_golden_one():
