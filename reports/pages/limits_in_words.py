@@ -157,7 +157,7 @@ def requirements(limits: Limits) -> Iterator[Row]:
     if math.isfinite(soft["held_up_to"]):
         stiff = (
             f"a time constant of at most {number(soft['held_up_to'], 'least .2g')}/p: there the peak is off "
-            f"by at most {number(soft['held_peak'], 'most percent')}{_ended(soft)}"
+            f"by at most {number(soft['held_peak'], 'most percent')}{_runs_that_end(soft)}"
         )
     yield {"need": "Stiffness of contact", "limit": stiff}
     yield {
@@ -166,7 +166,7 @@ def requirements(limits: Limits) -> Iterator[Row]:
     }
 
 
-def _ended(soft: Mapping[str, float]) -> str:
+def _runs_that_end(soft: Mapping[str, float]) -> str:
     """Of how many runs a contact that is stiff enough is known, and which of them failed."""
     if soft["held_ended"] == soft["held_runs"]:
         return f" in all {soft['held_runs']:.0f} runs"
