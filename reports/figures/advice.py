@@ -124,7 +124,9 @@ def _scales(found: Advice) -> Panel:
                 x=rows["factor"].to_numpy(float), y=tilt, name=NAMES[name], style=marked, size=2.5, width=1.0
             )
         )
-    levels = [(level, f"{level:g}") for level in (0.0, 0.25, 0.5, 0.75, 1.0)]
+    # at most five above zero, so that they do not collide
+    step = 0.25 * 2.0 ** max(0, math.ceil(math.log2(balance / 1.25)))
+    levels = [(step * place, f"{step * place:g}") for place in range(int(balance / step) + 1)]
     return Panel(
         x=Axis(
             label="scale of the ground motion",

@@ -11,9 +11,11 @@ from tendon import Pier, accelerations, potential, released
 import rockwobble as rw
 from rockwobble import reduced
 from rockwobble.models import Case, GroundMotion, Tendon
+from rockwobble.reduced.body import Body
 from rockwobble.reduced.equations import recess_rhs
 from rockwobble.reduced.integration.balance import free_acceleration
 from rockwobble.reduced.problem import Problem
+from rockwobble.reduced.restoring import TiedBody
 
 G = 9.81
 PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -295,3 +297,8 @@ def test_a_slender_column_moves_as_a_larger_one_without_a_tendon(tan_alpha: floa
     assert free.max() > 0.25
     # what is left is of the order of alpha^2, measured 0.05 to 0.16 of it
     assert np.abs(tied * (1.0 - share) / raised - free).max() < 0.3 * tan_alpha**2
+
+
+def test_the_constants_of_a_tied_body_begin_with_those_of_the_body() -> None:
+    """They are handed over by place."""
+    assert TiedBody._fields[: len(Body._fields)] == Body._fields
