@@ -150,8 +150,8 @@ def notes_of_header(
         if is_comment(text) or not text or not _is_row(text) or _may_be_count(text):
             continue
         cells = cells_of(text)
-        at = float(cells[0].upper().replace("D", "E"))
-        if len(cells) == width and at != step:
+        alike = len(cells) == width and all(map(is_number, cells))  # numbers may touch in a row
+        if alike and float(cells[0].upper().replace("D", "E")) != step:
             notes.append(
                 f"line {number} holds numbers alone, {text[:30]!r}, above words: taken for the header"
             )

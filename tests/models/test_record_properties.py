@@ -456,8 +456,74 @@ def test_samples_above_a_damaged_row_do_not_vanish_in_silence(write: Write, colu
     assert re.search(r"line 1 holds numbers alone|x\.txt, line \d+: ", said)
 
 
-@pytest.mark.parametrize("head", ["0.02\nacceleration", "40\nacceleration", "acceleration\n40", "# 0.3\n"])
-def test_a_count_and_a_time_step_stand_in_a_header_by_right(write: Write, head: str) -> None:
+@pytest.mark.parametrize(
+    "head",
+    [
+        "0.02\nacceleration",
+        "2.0D-02\nacceleration",
+        "40\nacceleration",
+        "acceleration\n40",
+        "# 0.3\n",
+        "0.12-0.34\nacceleration",
+        ";\nacceleration",
+        ",\nacceleration",
+        "-\nacceleration",
+    ],
+)
+def test_what_is_no_lone_sample_stands_in_a_header_by_right(write: Write, head: str) -> None:
     motion = read_record(write(table([MOTION[:, 0]], head)), "zero", units="m/s2", time_step=0.02)
     assert motion.acceleration[:, 0] == pytest.approx(MOTION[:, 0], abs=EXACT)
     assert "holds numbers alone" not in str(motion.source)
+
+
+_SCRAPS = [
+    "0.12",
+    "-0.3",
+    "1e-3",
+    "2.0D-02",
+    "40",
+    ",",
+    ";",
+    "-",
+    "+",
+    ".",
+    "nan",
+    "inf",
+    "words",
+    "m/s2",
+    "g",
+    "#",
+    "%",
+    "0.12-0.34",
+    "12:00:01",
+    "2024-01-02",
+    "|",
+    '"',
+    "{",
+    "}",
+    "()",
+]
+
+
+@pytest.mark.slow
+def test_whatever_stands_in_a_text_it_is_read_or_refused_in_one_line(write: Write) -> None:
+    random = np.random.default_rng(57)
+
+    def scraps(most: int) -> str:
+        return " ".join(random.choice(_SCRAPS, random.integers(1, most)))
+
+    for _ in range(1500):
+        width, separator = random.integers(1, 5), random.choice([" ", ",", ";", "\t"])
+        rows = [scraps(5) for _ in range(random.integers(0, 7))]
+        samples = random.normal(size=(random.integers(0, 40), width))
+        rows += [separator.join(f"{value:.4f}" for value in row) for row in samples]
+        if random.random() < 0.3:
+            rows.insert(random.integers(len(rows) + 1), scraps(5))
+        path = write("\n".join(rows) + "\n")
+        given = (path, "zero") if random.random() < 0.5 else (path,)
+        try:
+            read_record(*given, units="g", time_step=0.01 if random.random() < 0.7 else None)
+        except ValueError as error:
+            said = str(error)
+            if "\n" in said or "could not convert" in said or len(said) > 500:  # of the inside of Python
+                pytest.fail(f"{said}: {rows[:8]}")

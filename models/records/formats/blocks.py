@@ -19,7 +19,7 @@ _COMPONENT = re.compile(
     r"\b(?:comp\w*|chan\w*|dir\w*|richtung|komponente)\b[\s.:=]{1,4}([^\s,;]{1,20})", re.IGNORECASE
 )
 _MOST_TITLES = 200  # lines of words; a text with more is no record
-_LINE = re.compile(r"(?<= line )\d+")
+_LINE = re.compile(r"(?<=\bline )\d+")
 
 
 def _blocks(file: RecordFile) -> list[tuple[int, int, int]]:
@@ -71,15 +71,19 @@ def recognizes(file: RecordFile) -> bool:
 
 
 def _read_block(file: RecordFile, title: int, end: int, options: ReadingOptions) -> list[Component]:
-    """Read the lines from a title to the end of its block; a refusal names the line of the whole file."""
+    """Read the lines from a title to the end of its block; what is said names lines of the whole file."""
     part = RecordFile(file.path, "\n".join(file.text[title:end]).encode())
+
+    def in_whole(words: str) -> str:
+        return _LINE.sub(lambda number: str(int(number[0]) + title), words)
+
     try:
-        return values.read(part, options) if values.recognizes(part) else columns.read(part, options)
+        components = values.read(part, options) if values.recognizes(part) else columns.read(part, options)
     except ValueError as error:
         name = file.name if str(error).startswith(file.name) else ""
         words, mark, quoted = str(error).removeprefix(name).partition("got ")
-        words = _LINE.sub(lambda number: str(int(number[0]) + title), words)
-        raise ValueError(f"{name}{words}{mark}{quoted}") from None
+        raise ValueError(f"{name}{in_whole(words)}{mark}{quoted}") from None
+    return [replace(each, notes=tuple(map(in_whole, each.notes))) for each in components]
 
 
 def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
