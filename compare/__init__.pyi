@@ -12,16 +12,3 @@ from .runs.execution import simulate as simulate
 from .runs.progress import IncompleteError as IncompleteError
 from .runs.progress import Progress as Progress
 from .storage.results import Results as Results
-from .studies.advice.advice import Advice as Advice
-from .studies.advice.advice import advise as advise
-from .studies.ensemble import Ensemble as Ensemble
-from .studies.ensemble import ensemble as ensemble
-from .studies.fragility.intensity import MEASURES as MEASURES
-from .studies.fragility.study import Fragility as Fragility
-from .studies.fragility.study import fragility as fragility
-from .studies.fragility.tables import LIMITS as LIMITS
-from .studies.grid import Grid as Grid
-from .studies.spectrum.study import OverturningSpectrum as OverturningSpectrum
-from .studies.spectrum.study import spectrum as spectrum
-from .studies.sweep import Sweep as Sweep
-from .studies.sweep import sweep as sweep

@@ -38,7 +38,7 @@ class Entry:
     group : str
         Module of `cli` with the command, a key of `HEADINGS`; empty without a command.
     results : str
-        Class of the results below `rockwobble`, such as "compare.studies.ensemble.Ensemble"; empty where the
+        Class of the results below `rockwobble`, such as "studies.ensemble.Ensemble"; empty where the
         command writes none.
     command, kind : str
         Name of the command, and kind of the results. Default: the name.
@@ -69,25 +69,25 @@ ENTRIES = (
     Entry(
         name="comparison", command="compare", group="single", results="compare.comparison.result.Comparison"
     ),
-    Entry(name="advice", command="advise", group="single", results="compare.studies.advice.advice.Advice"),
-    Entry(name="run", command="simulate", group="single", results="compare.studies.single_run.SingleRun"),
+    Entry(name="advice", command="advise", group="single", results="studies.advice.advice.Advice"),
+    Entry(name="run", command="simulate", group="single", results="studies.single_run.SingleRun"),
     Entry(name="explore", group="play"),
     Entry(
         name="spectrum",
         kind="overturning spectrum",
         group="many",
-        results="compare.studies.spectrum.study.OverturningSpectrum",
+        results="studies.spectrum.study.OverturningSpectrum",
     ),
-    Entry(name="sweep", group="many", results="compare.studies.sweep.Sweep"),
-    Entry(name="ensemble", group="many", results="compare.studies.ensemble.Ensemble"),
-    Entry(name="fragility", group="many", results="compare.studies.fragility.study.Fragility"),
+    Entry(name="sweep", group="many", results="studies.sweep.Sweep"),
+    Entry(name="ensemble", group="many", results="studies.ensemble.Ensemble"),
+    Entry(name="fragility", group="many", results="studies.fragility.study.Fragility"),
     Entry(name="show", group="results"),
     Entry(name="report", group="results"),
     Entry(name="view", group="results", results="compare.comparison.result.View"),
     Entry(name="check", group="trust", results="compare.check.groups.Checks"),
     Entry(name="certify", group="trust"),
     Entry(name="verify", group="trust"),
-    Entry(name="validity", group="published", results="compare.studies.validity.study.Validity"),
+    Entry(name="validity", group="published", results="studies.validity.study.Validity"),
     Entry(
         name="paper",
         command="figures",
@@ -95,8 +95,8 @@ ENTRIES = (
         results="reports.paper.page.Paper",
         page="paper.page",
     ),
-    Entry(name="tradeoff", group="published", results="compare.studies.tradeoff.study.Tradeoff"),
-    Entry(name="extremes", group="published", results="compare.studies.extremes.Extremes"),
+    Entry(name="tradeoff", group="published", results="studies.tradeoff.study.Tradeoff"),
+    Entry(name="extremes", group="published", results="studies.extremes.Extremes"),
     Entry(name="versions", kind="engine versions", results="reports.pages.versions.EngineVersions"),
 )
 COMMANDS: Mapping[str, Entry] = {entry.command: entry for entry in ENTRIES if entry.group}

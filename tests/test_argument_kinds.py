@@ -105,7 +105,7 @@ VALID: dict[str, dict[str, Any]] = {
     "with_motions": {"case": CASE, "motions": [STILL]},
 }
 # results, which only the package makes; and the parts
-MADE_HERE = {"Comparison", "Trace", "compare", "models", "multibody", "reduced", "reports"}
+MADE_HERE = {"Comparison", "Trace", "compare", "models", "multibody", "reduced", "reports", "studies"}
 # how much work is asked for is no kind, and ends a test late
 COSTLY = {("Grid", "huge")}
 # what runs whole studies where a value is right after all takes fewer

@@ -10,7 +10,7 @@ import pytest
 
 import rockwobble
 
-FOLDERS = ["models", "reduced", "multibody", "compare", "reports"]
+FOLDERS = ["models", "reduced", "multibody", "compare", "studies", "reports"]
 
 
 def examples(folder: str) -> list[doctest.DocTest]:

@@ -17,7 +17,7 @@ import rockwobble
 from rockwobble.multibody.engines.registry import engine_packages
 
 CHECKOUT = Path(__file__).parents[1]
-FOLDERS = ["models", "reduced", "multibody", "compare", "reports"]
+FOLDERS = ["models", "reduced", "multibody", "compare", "studies", "reports"]
 ENGINES = [*engine_packages().values(), "pydrake"]  # the name by which Drake is imported
 HEAVY = [*ENGINES, "pandas", "pyarrow", "matplotlib", "jinja2", "scipy", "sympy"]
 

@@ -14,8 +14,8 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.compare.storage.provenance import fingerprint
-from rockwobble.compare.studies.validity.plan import QUICK, Ring
-from rockwobble.compare.studies.validity.study import Validity, measure_all, validity_of
+from rockwobble.studies.validity.plan import QUICK, Ring
+from rockwobble.studies.validity.study import Validity, measure_all, validity_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -160,7 +160,7 @@ def commit() -> str:
 
 def code_digests() -> dict[str, str]:
     """Return a hash of the sources of each folder that numbers come from."""
-    return {name: _source_digest(name) for name in ("models", "reduced", "multibody", "compare")}
+    return {name: _source_digest(name) for name in ("models", "reduced", "multibody", "compare", "studies")}
 
 
 def result_fingerprint(inputs: object, made_with: Mapping[str, str]) -> str:

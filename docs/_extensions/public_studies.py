@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import rockwobble
-from rockwobble import compare
+from rockwobble import studies
 from rockwobble.reports.registry import COMMANDS
 
 GROUP = "many"
@@ -15,8 +15,7 @@ def public_studies() -> dict[str, tuple[str, str]]:
     for name, entry in COMMANDS.items():
         if entry.group == GROUP and name in rockwobble.__all__:
             made = entry.results_class()
-            function = f"rockwobble.compare.{name}" if name in compare.__all__ else f"rockwobble.{name}"
-            public = made.__name__ in compare.__all__
-            module = "rockwobble.compare" if public else made.__module__
-            found[name] = function, f"{module}.{made.__name__}"
+            public = made.__name__ in studies.__all__
+            module = "rockwobble.studies" if public else made.__module__
+            found[name] = f"rockwobble.{name}", f"{module}.{made.__name__}"
     return found

@@ -13,7 +13,7 @@ import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
-from rockwobble.compare.studies.plans import Copies, FragilityPlan, SpectrumPlan
+from rockwobble.studies.plans import Copies, FragilityPlan, SpectrumPlan
 
 from ..console import echo, interruptible, save_with_page, show_and_save, shown_progress, user_input
 from ..pages.cases import case_lines, case_warnings, record_lines, warnings_about
@@ -82,7 +82,7 @@ def fragility(
     """
     with interruptible(out):
         with user_input():
-            from rockwobble.compare.studies.fragility.runs import methods_of
+            from rockwobble.studies.fragility.runs import methods_of
 
             claim_folder(context)
             if cylinder:
@@ -169,7 +169,7 @@ def spectrum(
         with user_input():
             import numpy as np
 
-            from rockwobble.compare.studies.spectrum.maps import intensity_unit, require_cases
+            from rockwobble.studies.spectrum.maps import intensity_unit, require_cases
 
             tan_alpha = _slenderness(tan_alpha, diameter, height)
             motion = record.motion()
@@ -363,7 +363,7 @@ def sweep(
     Example: rockwobble sweep --semidiagonal 0.5:30:100 --scale 1,2,4 --out grid
     """
     with user_input():
-        plan: rc.Grid | rw.Suite
+        plan: rw.Grid | rw.Suite
         if suite is None:
             made = grid.grid(model)
             bodies = [
@@ -394,9 +394,9 @@ def sweep(
 
 
 def _suite(name: str, models: list[str] | None) -> rw.Suite:
-    from rockwobble.compare.studies.sweep import runnable_suite
     from rockwobble.models.number_checks import require_one_of
     from rockwobble.models.support import RECESS
+    from rockwobble.studies.sweep import runnable_suite
 
     for model in models or ():
         require_one_of("--model", model, rw.reduced.MODELS)
@@ -410,12 +410,12 @@ def _suite(name: str, models: list[str] | None) -> rw.Suite:
     return runnable_suite(rw.Suite(suite.cases, runs))
 
 
-def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
+def _echo(plan: rw.Grid | rw.Suite) -> list[str]:
     from rockwobble.models.doubts import doubts_of_cases
 
     from ..pages.diagnostics import warnings
 
-    if isinstance(plan, rc.Grid):
+    if isinstance(plan, rw.Grid):
         doubts = plan.doubts()
         ends: list[RockingBody] = [
             rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
@@ -442,7 +442,7 @@ def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
             )
         ),
         f"Runs: {runs:,} ({what})",
-        *record_lines(plan.motions if isinstance(plan, rc.Grid) else [case.motion for case in plan.cases]),
+        *record_lines(plan.motions if isinstance(plan, rw.Grid) else [case.motion for case in plan.cases]),
         *warnings(doubts),
     ]
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from rockwobble.compare.studies.plans import SUPPORT_WORDS
+from rockwobble.studies.plans import SUPPORT_WORDS
 
 if TYPE_CHECKING:
     from rockwobble.models.case import TimeStep as Step

@@ -12,7 +12,7 @@ import typer
 
 import rockwobble as rw
 from rockwobble.compare.runs.plan import OptionsIn, Plan, option
-from rockwobble.compare.studies.plans import MASS, TendonPlan
+from rockwobble.studies.plans import MASS, TendonPlan
 
 from ..pages.command_line import command_line
 from . import options

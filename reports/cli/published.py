@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rockwobble.compare.studies.plans import QuickPlan, ValidityPlan
+from rockwobble.studies.plans import QuickPlan, ValidityPlan
 
 from ..console import FAILED, show_and_save, user_input
 from . import options
@@ -39,7 +39,7 @@ def validity(
     Example: rockwobble validity --quick --out validity
     """
     with user_input(), results_in(context, "tasks") as progress:
-        from rockwobble.compare.studies.validity.study import measure_validity
+        from rockwobble.studies.validity.study import measure_validity
 
         found = measure_validity(out, plan, workers=workers, progress=progress)
     show_and_save(found, out)
@@ -63,7 +63,7 @@ def tradeoff(
     Example: rockwobble tradeoff --quick --out tradeoff
     """
     with results_in(context, "rounds", resumes=False) as progress:
-        from rockwobble.compare.studies.tradeoff.study import measure_tradeoff
+        from rockwobble.studies.tradeoff.study import measure_tradeoff
 
         found = measure_tradeoff(plan, progress=progress)
     show_and_save(found, out)
@@ -88,7 +88,7 @@ def extremes(
     Example: rockwobble extremes --quick --out extremes
     """
     with user_input(), results_in(context) as progress:
-        from rockwobble.compare.studies.extremes import measure_extremes
+        from rockwobble.studies.extremes import measure_extremes
 
         found = measure_extremes(out, plan, workers=workers, progress=progress)
     show_and_save(found, out)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import rockwobble as rw
 import rockwobble.compare as rc
 from rockwobble.compare.runs.plan import OptionsIn, Plan
-from rockwobble.compare.studies.plans import GridPlan
+from rockwobble.studies.plans import GridPlan
 
 from . import options
 from .options import settings
@@ -139,8 +139,8 @@ class ManyMethods:
             If an engine has none of the supports, or nothing has a setting.
         """
         from rockwobble.compare.runs.choice import with_settings
-        from rockwobble.compare.studies.fragility.runs import MODEL_LABELS, models_with_tendon
         from rockwobble.multibody.engines.registry import find_engine
+        from rockwobble.studies.fragility.runs import MODEL_LABELS, models_with_tendon
 
         given, supports = settings(self.setting), self.support
         chosen: list[str | rw.Run] = (

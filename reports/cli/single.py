@@ -14,7 +14,7 @@ import typer
 import rockwobble as rw
 import rockwobble.compare as rc
 from rockwobble.compare.runs.plan import OptionsIn, Plan
-from rockwobble.compare.studies.plans import AdvicePlan, ModelPlan
+from rockwobble.studies.plans import AdvicePlan, ModelPlan
 
 from ..console import FAILED, complain, echo, interruptible, show_and_save, shown_progress, user_input
 from ..pages.cases import case_lines, case_warnings, record_lines
@@ -228,7 +228,7 @@ def simulate(
     from rockwobble.compare.runs.choice import require_runnable
 
     with interruptible():
-        from rockwobble.compare.studies.single_run import single_run
+        from rockwobble.studies.single_run import single_run
 
         from ..pages.diagnostics import remarks
 
@@ -306,7 +306,7 @@ def advise(
     """
     with interruptible():
         with user_input():
-            from rockwobble.compare.studies.advice.advice import require_judged
+            from rockwobble.studies.advice.advice import require_judged
 
             case = problem.case()
             require_judged(case, plan.support)

@@ -10,10 +10,10 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare.metrics.pair import overturned
-from rockwobble.compare.studies.advice.advice import Advice
-from rockwobble.compare.studies.spectrum.parts import SERIES
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.trace import NO_PEAK
+from rockwobble.studies.advice.advice import Advice
+from rockwobble.studies.spectrum.parts import SERIES
 
 from .ensemble import peak_shares
 from .palette import GREY, Style, model_style, run_styles

@@ -9,11 +9,11 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare import Ensemble
 from rockwobble.compare.metrics.contrast import pairs_in
 from rockwobble.compare.metrics.statistics import MARGIN
-from rockwobble.compare.studies.fragility.study import Row
 from rockwobble.models.trace import NO_PEAK
+from rockwobble.studies import Ensemble
+from rockwobble.studies.fragility.study import Row
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles
 from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, ecdf, list_axis, log_ticks

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rockwobble.compare.studies.extremes import Extremes
+from rockwobble.studies.extremes import Extremes
 
 from .palette import GREY, ORDER, PALE
 from .picture import Axis, Bars, Panel, Picture, list_axis

@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare import Fragility
-from rockwobble.compare.studies.fragility.intensity import MEASURES
-from rockwobble.compare.studies.fragility.study import Row, main_contrasts
-from rockwobble.compare.studies.fragility.tables import ALL, OVERTURNED
 from rockwobble.models.support import SUPPORTS
+from rockwobble.studies import Fragility
+from rockwobble.studies.fragility.intensity import MEASURES
+from rockwobble.studies.fragility.study import Row, main_contrasts
+from rockwobble.studies.fragility.tables import ALL, OVERTURNED
 
 from .ensemble import margin_rules, ratio_axes
 from .palette import DARK, GREY, ORDER, Style, mark_styles, pale

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockwobble.compare import Fragility
+from rockwobble.studies import Fragility
 
 from .palette import DARK, GREY, ORDER, Style, mark_styles
 from .picture import Axis, Line, Panel, Picture, Rule

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from rockwobble.compare.studies.spectrum.maps import TiltMaps, safe_gaps
-from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, TITLES
-from rockwobble.compare.studies.spectrum.study import OverturningSpectrum
 from rockwobble.models import Run
+from rockwobble.studies.spectrum.maps import TiltMaps, safe_gaps
+from rockwobble.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, TITLES
+from rockwobble.studies.spectrum.study import OverturningSpectrum
 
 from .heat import PEAKS, Heat, peak_map
 from .palette import Style, model_style, run_styles

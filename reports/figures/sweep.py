@@ -8,8 +8,8 @@ from itertools import islice
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare import Sweep
 from rockwobble.models.case import REDUCED
+from rockwobble.studies import Sweep
 
 from .ensemble import distributions
 from .heat import PEAKS, names, peak_map

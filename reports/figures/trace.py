@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from rockwobble.compare.metrics.pair import balance_of
-from rockwobble.compare.studies.advice.demands import fall_of
 from rockwobble.models import Trace
 from rockwobble.models.bounds import OVERTURNED_TILT
+from rockwobble.studies.advice.demands import fall_of
 
 from .palette import GREY, ORDER, Style
 from .picture import TIME, Array, Axis, Layer, Line, Panel, Picture, Rule, tilt_axis

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.studies.tradeoff.study import Tradeoff
 from rockwobble.models.support import RECESS, SUPPORTS
+from rockwobble.studies.tradeoff.study import Tradeoff
 
 from .palette import DARK, GREY, Style, mark_styles
 from .picture import Axis, Line, Panel, Picture, Rule, bar_ends

@@ -8,7 +8,8 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare.metrics.statistics import FEWEST as FEWEST_OF_A_QUANTILE
-from rockwobble.compare.studies.validity.limits import (
+from rockwobble.models.support import FLAT, RECESS, RECESSES_FIRST, RING, SUPPORTS
+from rockwobble.studies.validity.limits import (
     CONFIRMS,
     CONTRASTS,
     FEWEST,
@@ -19,9 +20,8 @@ from rockwobble.compare.studies.validity.limits import (
     contrasts,
     models_apart,
 )
-from rockwobble.compare.studies.validity.shaken import FREE, INTENSITY, PERTURBED, STRONG
-from rockwobble.compare.studies.validity.study import Validity
-from rockwobble.models.support import FLAT, RECESS, RECESSES_FIRST, RING, SUPPORTS
+from rockwobble.studies.validity.shaken import FREE, INTENSITY, PERTURBED, STRONG
+from rockwobble.studies.validity.study import Validity
 
 from .heat import Gap, Heat, Shades, contour, names
 from .palette import DARK, GREY, ORDER, PALE, Style, mark_styles

@@ -8,20 +8,20 @@ from typing import Any
 
 from rockwobble.compare.comparison.prediction import UNTESTED
 from rockwobble.compare.metrics.statistics import FEWEST
-from rockwobble.compare.studies.advice.advice import Advice
-from rockwobble.compare.studies.advice.demands import SPIKES
-from rockwobble.compare.studies.advice.grades import CRITERIA, NEAR
-from rockwobble.compare.studies.advice.members import ACCELERATION, COPIES, HORIZONTAL, VELOCITY, VERTICAL
-from rockwobble.compare.studies.advice.scales import planar_shares
-from rockwobble.compare.studies.advice.trust import Verification
-from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
-from rockwobble.compare.studies.spectrum.study import CHECK_RTOL, NUDGE
 from rockwobble.models import AGREEMENT, CLOSED_TILT
 from rockwobble.models.diagnostic import CODES, codes_in
 from rockwobble.models.records import p695
 from rockwobble.models.support import FLAT, RECESS, RING, support_named
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody import DEFAULT_ENGINE
+from rockwobble.studies.advice.advice import Advice
+from rockwobble.studies.advice.demands import SPIKES
+from rockwobble.studies.advice.grades import CRITERIA, NEAR
+from rockwobble.studies.advice.members import ACCELERATION, COPIES, HORIZONTAL, VELOCITY, VERTICAL
+from rockwobble.studies.advice.scales import planar_shares
+from rockwobble.studies.advice.trust import Verification
+from rockwobble.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.studies.spectrum.study import CHECK_RTOL, NUDGE
 
 from ..figures.advice import pictures
 from .advised_case import (

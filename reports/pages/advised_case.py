@@ -8,12 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from rockwobble.compare.studies.advice.advice import WEAKER_COUNT, Advice
-from rockwobble.compare.studies.advice.demands import PASSED
-from rockwobble.compare.studies.advice.scales import AS_STRONG
 from rockwobble.models.diagnostic import CODES
 from rockwobble.models.support import support_named
 from rockwobble.reduced.body import restitution_from_momentum
+from rockwobble.studies.advice.advice import WEAKER_COUNT, Advice
+from rockwobble.studies.advice.demands import PASSED
+from rockwobble.studies.advice.scales import AS_STRONG
 
 from .cases import conditions
 from .table import number

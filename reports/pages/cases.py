@@ -34,7 +34,7 @@ def case_lines(case: Case) -> list[str]:
     lines += conditions({name: value for name, value in stated.items() if name != "rolling_resistance"})
     if motion is not None:
         # here, because the help of the command line needs no numpy
-        from rockwobble.compare.studies.spectrum.maps import uplift_factor
+        from rockwobble.studies.spectrum.maps import uplift_factor
 
         threshold = cylinder.tan_alpha * (1.0 + resistance)  # over g
         factor = uplift_factor(motion, threshold, case.gravity, until=case.length)

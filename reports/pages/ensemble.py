@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from rockwobble.compare import Ensemble
 from rockwobble.compare.metrics.statistics import (
     FEWEST,
     MARGIN,
@@ -15,8 +14,9 @@ from rockwobble.compare.metrics.statistics import (
     least_significant_count,
     value_if_enough,
 )
-from rockwobble.compare.studies.fragility.study import Row
 from rockwobble.models.diagnostic import codes_in
+from rockwobble.studies import Ensemble
+from rockwobble.studies.fragility.study import Row
 
 from ..figures.ensemble import main_pairs, pictures
 from .page import Page

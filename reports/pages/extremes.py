@@ -7,8 +7,8 @@ from collections.abc import Mapping
 
 import pandas as pd
 
-from rockwobble.compare.studies.extremes import FINE, Extremes
 from rockwobble.models.diagnostic import CODES, codes_in
+from rockwobble.studies.extremes import FINE, Extremes
 
 from .page import Page
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
-from rockwobble.compare import Fragility
 from rockwobble.compare.metrics.statistics import FEWEST
-from rockwobble.compare.studies.fragility.fit import (
+from rockwobble.models.support import SUPPORTS
+from rockwobble.studies import Fragility
+from rockwobble.studies.fragility.fit import (
     ALWAYS,
     EXTRAPOLATED,
     FALLING,
@@ -17,10 +18,9 @@ from rockwobble.compare.studies.fragility.fit import (
     SEPARATED,
     TOO_FEW,
 )
-from rockwobble.compare.studies.fragility.intensity import MEASURES
-from rockwobble.compare.studies.fragility.study import FEWEST_LEVELS, Row, known_ratio, main_contrasts
-from rockwobble.compare.studies.fragility.tables import ALL, OVERTURNED
-from rockwobble.models.support import SUPPORTS
+from rockwobble.studies.fragility.intensity import MEASURES
+from rockwobble.studies.fragility.study import FEWEST_LEVELS, Row, known_ratio, main_contrasts
+from rockwobble.studies.fragility.tables import ALL, OVERTURNED
 
 from ..figures.fragility import pictures
 from ..figures.risk import risk_pictures

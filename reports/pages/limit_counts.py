@@ -8,8 +8,10 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.studies.validity.criteria import Limits
-from rockwobble.compare.studies.validity.limits import (
+from rockwobble.models.support import FLAT, RECESS, RING
+from rockwobble.models.trace import NO_PEAK
+from rockwobble.studies.validity.criteria import Limits
+from rockwobble.studies.validity.limits import (
     POINT,
     Numbers,
     Tables,
@@ -20,10 +22,8 @@ from rockwobble.compare.studies.validity.limits import (
     least,
     quotient,
 )
-from rockwobble.compare.studies.validity.plan import EL_CENTRO, RELEASE
-from rockwobble.compare.studies.validity.shaken import FREE
-from rockwobble.models.support import FLAT, RECESS, RING
-from rockwobble.models.trace import NO_PEAK
+from rockwobble.studies.validity.plan import EL_CENTRO, RELEASE
+from rockwobble.studies.validity.shaken import FREE
 
 from ..figures.validity import METHODS, has_walls
 

@@ -9,16 +9,16 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 
 from rockwobble.compare.metrics.statistics import MARGIN
-from rockwobble.compare.studies.validity.criteria import (
+from rockwobble.models.plain_json import Facts
+from rockwobble.models.support import RECESSES_FIRST
+from rockwobble.studies.validity.criteria import (
     Limits,
     Verdict,
     clearance_is_unconservative,
     converges_by_record,
     model_verdict,
 )
-from rockwobble.compare.studies.validity.plan import Structure
-from rockwobble.models.plain_json import Facts
-from rockwobble.models.support import RECESSES_FIRST
+from rockwobble.studies.validity.plan import Structure
 
 from .table import Row, number
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from rockwobble.compare import Fragility
-from rockwobble.compare.studies.fragility.risk import FAR, TARGET
+from rockwobble.studies import Fragility
+from rockwobble.studies.fragility.risk import FAR, TARGET
 
 from ..figures.risk import risk_pictures
 from .table import number

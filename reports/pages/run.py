@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterator
 
 from rockwobble.compare.metrics.pair import balance_of
-from rockwobble.compare.studies.advice.demands import fall_of
-from rockwobble.compare.studies.single_run import SingleRun
 from rockwobble.models import Case, Diagnostic, Trace
 from rockwobble.models.bounds import OVERTURNED_TILT
+from rockwobble.studies.advice.demands import fall_of
+from rockwobble.studies.single_run import SingleRun
 
 from ..figures.trace import pictures
 from .cases import case_lines

@@ -8,17 +8,17 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.studies.spectrum.maps import TiltMaps
-from rockwobble.compare.studies.spectrum.parts import SPATIAL
-from rockwobble.compare.studies.spectrum.search import gap_bound
-from rockwobble.compare.studies.spectrum.study import (
+from rockwobble.models.support import support_named
+from rockwobble.studies.spectrum.maps import TiltMaps
+from rockwobble.studies.spectrum.parts import SPATIAL
+from rockwobble.studies.spectrum.search import gap_bound
+from rockwobble.studies.spectrum.study import (
     CHECK_RTOL,
     NUDGE,
     SAME_PEAK,
     OverturningSpectrum,
     unconservative_from,
 )
-from rockwobble.models.support import support_named
 
 from ..figures.spectrum import pictures
 from .page import Page

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rockwobble.compare import Sweep
+from rockwobble.studies import Sweep
 
 from ..figures.sweep import pictures
 from .cases import conditions

@@ -6,7 +6,7 @@ import math
 
 import pandas as pd
 
-from rockwobble.compare.studies.tradeoff.study import (
+from rockwobble.studies.tradeoff.study import (
     ROUNDS,
     Tradeoff,
     costs,

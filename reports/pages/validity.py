@@ -8,11 +8,11 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.studies.validity.limits import cells, contrasts, damping, limits_of, needs
-from rockwobble.compare.studies.validity.plan import LARGEST_PEAK
-from rockwobble.compare.studies.validity.shaken import FREE, INTENSITY
-from rockwobble.compare.studies.validity.study import Validity
 from rockwobble.models.support import SUPPORTS
+from rockwobble.studies.validity.limits import cells, contrasts, damping, limits_of, needs
+from rockwobble.studies.validity.plan import LARGEST_PEAK
+from rockwobble.studies.validity.shaken import FREE, INTENSITY
+from rockwobble.studies.validity.study import Validity
 
 from ..figures.validity import METHODS, has_walls, pictures
 from .limit_counts import faint_factors, with_counts

@@ -13,10 +13,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.compare.studies.plans import SpectrumPlan
-from rockwobble.compare.studies.spectrum.maps import TiltMaps
-from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
-from rockwobble.compare.studies.spectrum.study import planar_contrast, unconservative_from
+from rockwobble.studies.plans import SpectrumPlan
+from rockwobble.studies.spectrum.maps import TiltMaps
+from rockwobble.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.studies.spectrum.study import planar_contrast, unconservative_from
 
 from . import Statement, verdict_of
 

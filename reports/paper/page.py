@@ -16,12 +16,12 @@ from rockwobble.compare.runs.progress import ProgressCallback, stages
 from rockwobble.compare.storage.manifest import Number
 from rockwobble.compare.storage.provenance import package_makers, result_fingerprint
 from rockwobble.compare.storage.results import Results
-from rockwobble.compare.studies.spectrum.maps import TiltMaps, maps_of, tilt_maps
-from rockwobble.compare.studies.spectrum.parts import SERIES
-from rockwobble.compare.studies.spectrum.study import tables_of
 from rockwobble.models import Run, el_centro_1940
 from rockwobble.models.cylinder import PIER
 from rockwobble.models.plain_json import plain
+from rockwobble.studies.spectrum.maps import TiltMaps, maps_of, tilt_maps
+from rockwobble.studies.spectrum.parts import SERIES
+from rockwobble.studies.spectrum.study import tables_of
 
 from ..figures.palette import DARK, ORDER, SHADED, Style
 from ..figures.picture import TIME, Axis, Layer, Line, Panel, Picture, Rule

@@ -3,17 +3,12 @@ from . import models as models
 from . import multibody as multibody
 from . import reduced as reduced
 from . import reports as reports
+from . import studies as studies
 from .compare.check import check as check
 from .compare.comparison.driver import comparison as comparison
 from .compare.comparison.result import Comparison as Comparison
 from .compare.external.trajectory import External as External
 from .compare.runs.execution import simulate as simulate
-from .compare.studies.advice.advice import advise as advise
-from .compare.studies.ensemble import ensemble as ensemble
-from .compare.studies.fragility.study import fragility as fragility
-from .compare.studies.grid import Grid as Grid
-from .compare.studies.spectrum.study import spectrum as spectrum
-from .compare.studies.sweep import sweep as sweep
 from .models import Case as Case
 from .models import Cylinder as Cylinder
 from .models import Diagnostic as Diagnostic
@@ -38,5 +33,11 @@ from .models import read_suite as read_suite
 from .models import shipped_suites as shipped_suites
 from .models import synthetic_motions as synthetic_motions
 from .models import with_motions as with_motions
+from .studies.advice.advice import advise as advise
+from .studies.ensemble import ensemble as ensemble
+from .studies.fragility.study import fragility as fragility
+from .studies.grid import Grid as Grid
+from .studies.spectrum.study import spectrum as spectrum
+from .studies.sweep import sweep as sweep
 
 __version__: str

@@ -20,16 +20,16 @@ import numpy as np
 from rockwobble import reduced
 from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.runs.progress import stages
-from rockwobble.compare.studies.plans import PROBES, STEP
-from rockwobble.compare.studies.spectrum.maps import intensity_unit, uplift_factor
-from rockwobble.compare.studies.spectrum.parts import RTOL
-from rockwobble.compare.studies.spectrum.search import (
+from rockwobble.models import GroundMotion, el_centro_1940
+from rockwobble.studies.plans import PROBES, STEP
+from rockwobble.studies.spectrum.maps import intensity_unit, uplift_factor
+from rockwobble.studies.spectrum.parts import RTOL
+from rockwobble.studies.spectrum.search import (
     gap_bound,
     probe_below,
     run_searches,
     search_lowest,
 )
-from rockwobble.models import GroundMotion, el_centro_1940
 
 from .console import options_of, show, tell
 

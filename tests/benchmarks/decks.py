@@ -19,14 +19,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.compare.studies.fragility.fit import interval, resamples
-from rockwobble.compare.studies.fragility.study import Fragility, fragility
-from rockwobble.compare.studies.fragility.tables import blocks_of, curves_of
 from rockwobble.models import Case, Cylinder, GroundMotion, RockingBody, WobblingFrame, synthetic_motions
 from rockwobble.reduced.body import body_of
 from rockwobble.reports.figures.palette import run_styles
 from rockwobble.reports.figures.picture import Axis, Band, Line, Panel, Picture
 from rockwobble.reports.figures.svg import svg
+from rockwobble.studies.fragility.fit import interval, resamples
+from rockwobble.studies.fragility.study import Fragility, fragility
+from rockwobble.studies.fragility.tables import blocks_of, curves_of
 
 from .console import options_of, show
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockwobble.compare.studies.fragility.fit import (
+from rockwobble.studies.fragility.fit import (
     Array,
     Sample,
     interval,

@@ -18,10 +18,10 @@ import numpy as np
 
 from rockwobble import reduced
 from rockwobble.compare.runs.progress import stages
-from rockwobble.compare.studies.validity.limits import needs
-from rockwobble.compare.studies.validity.plan import AMPLE, GRAVITY, motion_named, record_names
-from rockwobble.compare.studies.validity.study import Validity
 from rockwobble.models import Case, Cylinder, GroundMotion, synthetic_motions
+from rockwobble.studies.validity.limits import needs
+from rockwobble.studies.validity.plan import AMPLE, GRAVITY, motion_named, record_names
+from rockwobble.studies.validity.study import Validity
 
 from .console import options_of, tell
 

@@ -17,9 +17,9 @@ from rockwobble.compare.metrics.pair import make_pair, tilt_rms_relative
 from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.runs.progress import Lost
 from rockwobble.compare.runs.scheduler import run_tasks
-from rockwobble.compare.studies.validity.plan import EL_CENTRO, shaken_case
-from rockwobble.compare.studies.validity.shaken import has_room, losses, release_of
 from rockwobble.models import Case, Run, Trace
+from rockwobble.studies.validity.plan import EL_CENTRO, shaken_case
+from rockwobble.studies.validity.shaken import has_room, losses, release_of
 
 from .console import options_of, tell
 

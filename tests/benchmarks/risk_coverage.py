@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockwobble.compare.studies.fragility.fit import interval, resamples
-from rockwobble.compare.studies.fragility.risk import Exposure, Resampled, frequencies_of, resampled
 from rockwobble.models import HazardCurve
+from rockwobble.studies.fragility.fit import interval, resamples
+from rockwobble.studies.fragility.risk import Exposure, Resampled, frequencies_of, resampled
 
 from .console import options_of, show
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rockwobble.compare.runs.progress import stages
-from rockwobble.compare.studies.scene_cost import ROUNDS, STEPS, scene_costs
+from rockwobble.studies.scene_cost import ROUNDS, STEPS, scene_costs
 
 from .console import options_of
 

@@ -19,12 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.compare.studies.tradeoff.methods import SOLVERS, TOLERANCE_SCALE, SolverName, start_of
 from rockwobble.models import Case, Cylinder, WobblingFrame, el_centro_1940
 from rockwobble.reduced.body import body_of
 from rockwobble.reduced.problem import Problem as ReducedProblem
 from rockwobble.reduced.simulation import make_ready
 from rockwobble.reduced.solution import Solution
+from rockwobble.studies.tradeoff.methods import SOLVERS, TOLERANCE_SCALE, SolverName, start_of
 
 from .console import options_of, show
 

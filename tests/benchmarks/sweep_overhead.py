@@ -21,9 +21,9 @@ from pathlib import Path
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.compare.studies.grid import Grid
-from rockwobble.compare.studies.sweep import sweep
 from rockwobble.models import el_centro_1940
+from rockwobble.studies.grid import Grid
+from rockwobble.studies.sweep import sweep
 
 from .console import options_of
 

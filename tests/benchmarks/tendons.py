@@ -23,13 +23,13 @@ import numpy as np
 
 from rockwobble import multibody, reduced
 from rockwobble.compare.metrics.statistics import quantile_interval
-from rockwobble.compare.studies.fragility.fit import Curves, Sample, interval, resamples
-from rockwobble.compare.studies.fragility.study import fragility
-from rockwobble.compare.studies.fragility.tables import Key, blocks_of, curves_of
 from rockwobble.models import Case, Cylinder, GroundMotion, RockingBody, Tendon, WobblingFrame
 from rockwobble.reports.figures.palette import run_styles
 from rockwobble.reports.figures.picture import Axis, Band, Line, Panel, Picture
 from rockwobble.reports.figures.svg import svg
+from rockwobble.studies.fragility.fit import Curves, Sample, interval, resamples
+from rockwobble.studies.fragility.study import fragility
+from rockwobble.studies.fragility.tables import Key, blocks_of, curves_of
 
 from .console import options_of, show
 from .decks import METHODS, RESAMPLES, SEED, motions_of

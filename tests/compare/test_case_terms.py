@@ -13,11 +13,11 @@ import rockwobble as rw
 from rockwobble.compare.metrics.pair import balance_of
 from rockwobble.compare.runs.execution import case_inputs
 from rockwobble.compare.storage.provenance import fingerprint
-from rockwobble.compare.studies.plans import SpectrumPlan
-from rockwobble.compare.studies.spectrum import parts
 from rockwobble.models import case as case_module
 from rockwobble.multibody.engines.registry import engine_for, engine_named, engine_names
 from rockwobble.reports.pages.cases import conditions
+from rockwobble.studies.plans import SpectrumPlan
+from rockwobble.studies.spectrum import parts
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -45,7 +45,7 @@ def test_what_was_written_is_read_again(tmp_path):
     assert (made.command, made.seeds, made.headline) == ("rockwobble study", {"members": 3}, {"largest": 0.1})
     assert (made.about, made.pages) == ({"extent": [1.0, 2.0]}, ("study.md",))
     assert {"python", "numpy", "rockwobble"} <= set(made.versions)
-    assert set(made.code) == {"models", "reduced", "multibody", "compare"}
+    assert set(made.code) == {"models", "reduced", "multibody", "compare", "studies"}
     assert re.fullmatch(r"([0-9a-f]{40}\+?)?", made.commit)
     assert read_about(tmp_path / "points.parquet")["inputs"] == "0" * 32
 

@@ -11,7 +11,7 @@ import pytest
 
 import rockwobble as rw
 from rockwobble.compare.runs.plan import Plan, options_of
-from rockwobble.compare.studies.plans import AdvicePlan, Copies, FragilityPlan, SpectrumPlan
+from rockwobble.studies.plans import AdvicePlan, Copies, FragilityPlan, SpectrumPlan
 
 STUDIES = {
     rw.advise: AdvicePlan,

@@ -22,8 +22,8 @@ from rockwobble.reports.registry import COMMANDS
 
 DOCS = Path(__file__).parents[2] / "docs"
 API = DOCS / "reference" / "api"
-PACKAGES = ["models", "reduced", "multibody", "compare", "compare.check"]
-PARTS = {"models", "reduced", "multibody", "compare", "reports"}
+PACKAGES = ["models", "reduced", "multibody", "compare", "compare.check", "studies"]
+PARTS = {"models", "reduced", "multibody", "compare", "studies", "reports"}
 # full names of function and results, by the name at the top
 STUDIES = runpy.run_path(str(DOCS / "_extensions" / "public_studies.py"))["public_studies"]()
 NOTEBOOKS = sorted((DOCS / "notebooks").glob("*.ipynb"))

@@ -9,9 +9,9 @@ import pickle
 import pytest
 
 from rockwobble.compare.storage.provenance import fingerprint
-from rockwobble.compare.studies.plans import SUPPORT_WORDS
 from rockwobble.models.plain_json import plain
 from rockwobble.models.support import EXTERNAL, MODELLED, SUPPORTS, Support, support_named
+from rockwobble.studies.plans import SUPPORT_WORDS
 
 ALL = [*SUPPORTS.values(), EXTERNAL]
 

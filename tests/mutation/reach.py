@@ -20,7 +20,7 @@ from typing import Any
 
 import pytest
 
-PACKAGES = ("models", "reduced", "multibody", "compare")
+PACKAGES = ("models", "reduced", "multibody", "compare", "studies")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -14,9 +14,9 @@ from rockwobble.compare import Comparison
 from rockwobble.compare.comparison import driver
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
-from rockwobble.compare.studies.advice import scales
 from rockwobble.models import Case, Cylinder, Run, Trace, el_centro_1940
 from rockwobble.models.records import p695
+from rockwobble.studies.advice import scales
 
 RESOLUTION = 2e-5  # [rad]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare import Fragility
-from rockwobble.compare.studies.fragility.study import fragility_of
+from rockwobble.studies import Fragility
+from rockwobble.studies.fragility.study import fragility_of
 
 LEVELS = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
 MOTIONS = 15

@@ -15,10 +15,8 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from rockwobble.compare import Advice, advise
+from rockwobble import advise
 from rockwobble.compare.comparison.prediction import UNTESTED, Prediction, verdict
-from rockwobble.compare.studies.advice import scales
-from rockwobble.compare.studies.advice.trust import Trust
 from rockwobble.models import Case, Cylinder, InitialState, WobblingFrame, el_centro_1940
 from rockwobble.models.diagnostic import CODES
 from rockwobble.models.records import p695
@@ -28,6 +26,9 @@ from rockwobble.reports.figures.picture import Line
 from rockwobble.reports.pages import page, stored_page
 from rockwobble.reports.pages.advice import page_of
 from rockwobble.reports.pages.advised_case import assumptions, opening, problem_lines, weight_words
+from rockwobble.studies import Advice
+from rockwobble.studies.advice import scales
+from rockwobble.studies.advice.trust import Trust
 
 PAGE_LIMIT = 2e6  # bytes, of every page
 # lines: an answer, its grades, its numbers, what the recess must carry, the record, and what to do next

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from browser import complaints, needs_chromium
 
-from rockwobble import compare
+import rockwobble as rw
 from rockwobble.compare import Comparison
 from rockwobble.compare.comparison.result import View
 from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests
@@ -40,7 +40,7 @@ def ensemble() -> str:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
     case = Case(pier, initial=release, duration=1.0, name="release")
-    found = compare.ensemble(case, runs=[], copies=8, workers=1)
+    found = rw.ensemble(case, runs=[], copies=8, workers=1)
     return ensemble_page(found.made_by()).html()
 
 

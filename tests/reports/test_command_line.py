@@ -413,7 +413,7 @@ def test_a_run_that_takes_its_process_with_it_is_one_line_and_exit_code_1(folder
     def died(jobs: list[Job], **_: Any) -> list[Trace]:
         return [lost_trace(job.case, job.run, "status -11") for job in jobs]
 
-    monkeypatch.setattr("rockwobble.compare.studies.single_run.simulate_all", died)
+    monkeypatch.setattr("rockwobble.studies.single_run.simulate_all", died)
     assert call("simulate", "--engine", "mujoco") == 1
     shown = capsys.readouterr().err.splitlines()
     assert shown[-1] == "rockwobble: mujoco recess left no result: the run ended its process: status -11"

@@ -11,10 +11,8 @@ import pandas as pd
 import pytest
 from rich.console import Console
 
-from rockwobble.compare import Ensemble
 from rockwobble.compare.metrics.statistics import FEWEST
 from rockwobble.compare.storage.manifest import read_manifests
-from rockwobble.compare.studies.ensemble import KIND, ensemble_of
 from rockwobble.models import Run
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
@@ -23,6 +21,8 @@ from rockwobble.reports.figures.picture import Line, Text, log_ticks
 from rockwobble.reports.pages import stored_page
 from rockwobble.reports.pages.ensemble import page_of
 from rockwobble.reports.pages.page import Page
+from rockwobble.studies import Ensemble
+from rockwobble.studies.ensemble import KIND, ensemble_of
 
 FALLEN = 7.9  # [alpha]
 RELEASE = ["--release-tilt-deg", "5", "--duration", "0.5", "--engine", "none", "--copies", "3"]

@@ -11,12 +11,12 @@ import pytest
 from showing import loads_as_it_was, shows_itself
 from typer.testing import CliRunner
 
-from rockwobble.compare.studies import extremes as scan
-from rockwobble.compare.studies.extremes import Extremes, Verdict, measure_extremes
-from rockwobble.compare.studies.plans import QuickPlan
 from rockwobble.reports.cli.main import app
 from rockwobble.reports.pages import extremes as pages
 from rockwobble.reports.pages.page import Page
+from rockwobble.studies import extremes as scan
+from rockwobble.studies.extremes import Extremes, Verdict, measure_extremes
+from rockwobble.studies.plans import QuickPlan
 
 
 def given(worst: Verdict) -> Extremes:

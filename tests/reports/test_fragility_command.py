@@ -13,9 +13,8 @@ from browser import complaints, needs_chromium
 from fragility_example import LEVELS, MOTIONS, made_up
 from showing import loads_as_it_was, shows_itself
 
-from rockwobble.compare import Fragility, fragility
+from rockwobble import fragility
 from rockwobble.compare.storage.manifest import read_manifests
-from rockwobble.compare.studies.fragility.study import KIND, fragility_of, main_contrasts
 from rockwobble.models import Cylinder, synthetic_motions
 from rockwobble.models.records import p695
 from rockwobble.reports.cli import many as command
@@ -24,6 +23,8 @@ from rockwobble.reports.figures.fragility import pictures
 from rockwobble.reports.figures.picture import Band, Line
 from rockwobble.reports.pages import page_of, stored_page
 from rockwobble.reports.pages.page import Page
+from rockwobble.studies import Fragility
+from rockwobble.studies.fragility.study import KIND, fragility_of, main_contrasts
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 SMALL = [

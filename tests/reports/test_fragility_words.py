@@ -12,14 +12,14 @@ import pandas as pd
 import pytest
 from fragility_example import METHODS, made_up
 
-from rockwobble.compare import Fragility
 from rockwobble.compare.metrics.statistics import Interval
-from rockwobble.compare.studies.fragility.study import fragility_of, main_contrasts
-from rockwobble.compare.studies.fragility.tables import margin_of
 from rockwobble.reports.figures.fragility import pictures
 from rockwobble.reports.pages import page_of
 from rockwobble.reports.pages.fragility import fragility_values
 from rockwobble.reports.pages.risk import risk_values
+from rockwobble.studies import Fragility
+from rockwobble.studies.fragility.study import fragility_of, main_contrasts
+from rockwobble.studies.fragility.tables import margin_of
 
 
 @pytest.fixture(scope="module")

@@ -19,7 +19,7 @@ MOST = 8  # places of a new study
 
 # what is new in each place, for the study of a name
 STUDY = {
-    "compare/studies/plans.py": '''
+    "studies/plans.py": '''
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThresholdPlan(Plan):
@@ -30,7 +30,7 @@ class ThresholdPlan(Plan):
     )
     gravity: float = option(9.81, "Gravitational acceleration g, in m/s2.", above=0.0)
 ''',
-    "compare/studies/NAME.py": '''"""Ground acceleration at which a cylinder uplifts."""
+    "studies/NAME.py": '''"""Ground acceleration at which a cylinder uplifts."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def thresholds(*, tan_alphas: Sequence[float] | None = None, gravity: float = 9.
 
 from __future__ import annotations
 
-from rockwobble.compare.studies.thresholds import Thresholds
+from rockwobble.studies.thresholds import Thresholds
 
 from .picture import Axis, Line, Panel, Picture
 
@@ -79,7 +79,7 @@ def pictures(found: Thresholds) -> list[Picture]:
 
 from __future__ import annotations
 
-from rockwobble.compare.studies.thresholds import Thresholds
+from rockwobble.studies.thresholds import Thresholds
 
 from ..figures.thresholds import pictures
 from .page import Page
@@ -100,7 +100,7 @@ def page_of(found: Thresholds) -> Page:
 """,
     "reports/cli/many.py": '''
 
-from rockwobble.compare.studies.plans import ThresholdPlan  # noqa: E402
+from rockwobble.studies.plans import ThresholdPlan  # noqa: E402
 
 
 @takes_options
@@ -116,13 +116,13 @@ def thresholds(
     """
     with interruptible():
         with user_input():
-            from rockwobble.compare.studies.thresholds import thresholds
+            from rockwobble.studies.thresholds import thresholds
 
             claim_folder(context)
         show_and_save(thresholds(**dataclasses.asdict(plan)), out)
 ''',
     "reports/registry.py": """
-    Entry(name="thresholds", group="many", results="compare.studies.thresholds.Thresholds"),
+    Entry(name="thresholds", group="many", results="studies.thresholds.Thresholds"),
 """,
     "tests/reports/test_NAME.py": """from __future__ import annotations
 
@@ -131,7 +131,7 @@ from pathlib import Path
 import pytest
 from showing import loads_as_it_was, shows_itself
 
-from rockwobble.compare.studies.thresholds import Thresholds, thresholds
+from rockwobble.studies.thresholds import Thresholds, thresholds
 from rockwobble.reports.cli.main import main
 
 

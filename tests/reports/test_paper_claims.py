@@ -11,8 +11,6 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.studies.spectrum.maps import TiltMaps
-from rockwobble.compare.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.models import Case, Cylinder, InitialState, Trace, el_centro_1940
 from rockwobble.models.cylinder import PIER
 from rockwobble.reports.paper import (
@@ -27,6 +25,8 @@ from rockwobble.reports.paper import (
     to_frame,
     verdict_of,
 )
+from rockwobble.studies.spectrum.maps import TiltMaps
+from rockwobble.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
 
 FALL = 0.5 * math.pi
 

@@ -12,11 +12,11 @@ import pandas as pd
 import pytest
 
 from rockwobble.compare.check.verdict import CHANGED
-from rockwobble.compare.studies.validity.limits import needs
-from rockwobble.compare.studies.validity.study import Validity
 from rockwobble.models.diagnostic import CODES, codes_in
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.table import number
+from rockwobble.studies.validity.limits import needs
+from rockwobble.studies.validity.study import Validity
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
 STUDY = "extremes"

@@ -12,10 +12,9 @@ import pytest
 from browser import complaints_of_all, needs_chromium
 
 import rockwobble as rw
-import rockwobble.compare as rc
+import rockwobble.studies as rs
 from rockwobble.compare.metrics.pair import balance_of
 from rockwobble.compare.runs import execution
-from rockwobble.compare.studies.single_run import single_run_of
 from rockwobble.reports import pages as registry
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures import sweep as figure
@@ -24,10 +23,11 @@ from rockwobble.reports.figures.heat import Heat
 from rockwobble.reports.figures.picture import Rule
 from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.run import page_of
+from rockwobble.studies.single_run import single_run_of
 
 PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = rw.Case(PIER, initial=rw.InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.5), duration=1.0)
-GRID = rc.Grid(
+GRID = rs.Grid(
     semidiagonals=[1.0, 2.0, 20.0],
     tan_alphas=[0.1, 0.2],
     scales=[0.3, 1.0, 2.0],

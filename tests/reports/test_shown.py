@@ -9,13 +9,14 @@ from showing import loads_as_it_was, shows_itself
 
 import rockwobble as rw
 import rockwobble.compare as rc
+import rockwobble.studies as rs
 from rockwobble.compare.comparison.result import View
 from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.compare.runs.execution import Job
-from rockwobble.compare.studies.single_run import single_run
 from rockwobble.models import Bounds
 from rockwobble.models.shown import LONGEST, Brief
 from rockwobble.multibody.engines.registry import engine_facts, engine_names
+from rockwobble.studies.single_run import single_run
 
 PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = rw.Case(PIER, initial=rw.InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.5), duration=1.0)
@@ -51,7 +52,7 @@ def test_sweep_shows_itself(tmp_path):
     found = rw.sweep([RELEASE], workers=1)
     shows_itself(found, "runs 1, stands 1")
     loads_as_it_was(found, tmp_path / "cases")
-    grid = rc.Grid(semidiagonals=[1, 6], tan_alphas=[0.2], scales=[0.1, 2], motions=[rw.el_centro_1940()])
+    grid = rs.Grid(semidiagonals=[1, 6], tan_alphas=[0.2], scales=[0.1, 2], motions=[rw.el_centro_1940()])
     found = rw.sweep(grid, workers=1)
     shows_itself(found, "runs 4, stands 2, overturned 2")
     loads_as_it_was(found, tmp_path / "grid")
@@ -101,7 +102,7 @@ def test_values_are_a_line(comparison):
             [rw.Case(PIER, record.scaled(scale), name=str(scale)) for scale in (1.0, 2.0, 3.0, 4.0)], []
         ),
         rw.External(path="shake table.csv"),
-        rc.Grid(semidiagonals=range(1, 100), tan_alphas=[0.2], scales=[1.0], motions=[record]),
+        rs.Grid(semidiagonals=range(1, 100), tan_alphas=[0.2], scales=[1.0], motions=[record]),
         Job(case=RELEASE, run=trace.run),
         *trace.diagnostics,
         trace.source,
@@ -141,7 +142,7 @@ def test_a_line_says_of_what_is_long_how_much_there_is():
 
 def test_names_are_told_to_whoever_completes_them():
     assert {"simulate", "Case", "comparison", "compare", "__version__"} <= set(dir(rw))
-    for part in (rw.compare, rw.models, rw.reduced, rw.multibody):
+    for part in (rw.compare, rw.studies, rw.models, rw.reduced, rw.multibody):
         assert dir(part) == sorted(part.__all__)
     for name in rc.__all__:
         assert getattr(rw.compare, name) is not None

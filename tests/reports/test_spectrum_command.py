@@ -13,10 +13,6 @@ import pytest
 from rich.console import Console
 
 from rockwobble import reduced
-from rockwobble.compare.studies.plans import SpectrumPlan
-from rockwobble.compare.studies.spectrum.maps import TiltMaps, record_frame, safe_gaps, tilt_maps
-from rockwobble.compare.studies.spectrum.parts import PLANAR_X, SERIES, SPATIAL
-from rockwobble.compare.studies.spectrum.study import KIND, OverturningSpectrum, planar_contrast
 from rockwobble.models import GroundMotion, el_centro_1940
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.heat import Heat
@@ -24,6 +20,10 @@ from rockwobble.reports.figures.spectrum import picture_of
 from rockwobble.reports.figures.svg import svg
 from rockwobble.reports.pages import page_of, stored_page
 from rockwobble.reports.pages.page import Page
+from rockwobble.studies.plans import SpectrumPlan
+from rockwobble.studies.spectrum.maps import TiltMaps, record_frame, safe_gaps, tilt_maps
+from rockwobble.studies.spectrum.parts import PLANAR_X, SERIES, SPATIAL
+from rockwobble.studies.spectrum.study import KIND, OverturningSpectrum, planar_contrast
 
 # the factors on the record differ by a rounding, grown by a few passes
 SAME_RUN = 1e-6

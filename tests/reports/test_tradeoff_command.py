@@ -12,10 +12,10 @@ import pytest
 from showing import loads_as_it_was, shows_itself
 from typer.testing import CliRunner
 
-from rockwobble.compare.studies.tradeoff import study
-from rockwobble.compare.studies.tradeoff.study import Tradeoff
 from rockwobble.reports.cli.main import app
 from rockwobble.reports.pages.tradeoff import page_of
+from rockwobble.studies.tradeoff import study
+from rockwobble.studies.tradeoff.study import Tradeoff
 
 TABLES = ("points", "problems", "scenes")
 

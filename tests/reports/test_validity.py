@@ -12,13 +12,13 @@ import pytest
 from tiny_validity import TINY, tiny_validity
 from typer.testing import CliRunner
 
-from rockwobble.compare.studies.validity import study
-from rockwobble.compare.studies.validity.study import Validity, validity_of
 from rockwobble.models.support import RECESS
 from rockwobble.reports.cli.main import app, main
 from rockwobble.reports.pages import page as page_module
 from rockwobble.reports.pages import page_of
 from rockwobble.reports.pages.page import Page
+from rockwobble.studies.validity import study
+from rockwobble.studies.validity.study import Validity, validity_of
 
 pytestmark = pytest.mark.slow
 

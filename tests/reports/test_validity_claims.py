@@ -11,13 +11,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble.compare.studies.validity.limits import cells, contrasts
-from rockwobble.compare.studies.validity.study import Validity
 from rockwobble.reports.figures.picture import Picture
 from rockwobble.reports.figures.validity import map_pictures, pictures
 from rockwobble.reports.pages import page_of
 from rockwobble.reports.pages.limit_counts import faint_factors
 from rockwobble.reports.pages.table import number
+from rockwobble.studies.validity.limits import cells, contrasts
+from rockwobble.studies.validity.study import Validity
 
 pytestmark = pytest.mark.slow
 

@@ -17,7 +17,7 @@ TESTS = Path(__file__).resolve().parents[1]
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the trial that is asked for; return 1 if its table differs from that of an undisturbed sweep."""
-    from rockwobble.compare import sweep
+    from rockwobble import sweep
     from stress.sweep_trial import (
         CHUNK_SIZE,
         DASK_CHUNK_SIZE,

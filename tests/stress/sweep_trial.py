@@ -17,9 +17,9 @@ import numpy as np
 
 from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.storage.claim import CACHE
-from rockwobble.compare.studies.grid import Grid
-from rockwobble.compare.studies.sweep import KIND, sweep
 from rockwobble.models import el_centro_1940
+from rockwobble.studies.grid import Grid
+from rockwobble.studies.sweep import KIND, sweep
 
 if TYPE_CHECKING:
     import pandas as pd

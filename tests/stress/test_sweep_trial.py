@@ -8,9 +8,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from rockwobble.compare import sweep
+from rockwobble import sweep
 from rockwobble.compare.storage.claim import CACHE
-from rockwobble.compare.studies.sweep import KIND
+from rockwobble.studies.sweep import KIND
 from stress.sweep_trial import CHUNK_SIZE, dask_sweep_with_a_death, killed_sweep, trial_grid
 
 

@@ -1,1 +1,0 @@
-"""Studies: many runs and what follows from them, one folder each."""

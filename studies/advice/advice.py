@@ -1,0 +1,738 @@
+"""Advice on one case before its results are used: all of its runs, and the numbers that they come to."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal, TypedDict
+
+import numpy as np
+import pandas as pd
+
+from rockwobble import reduced
+from rockwobble.compare.metrics.contrast import pairs_of
+from rockwobble.compare.metrics.pair import overturned, tolerance_of
+from rockwobble.compare.runs.choice import require_runnable
+from rockwobble.compare.runs.execution import Job, job_fingerprint, simulate_run
+from rockwobble.compare.runs.progress import ProgressCallback, stages
+from rockwobble.compare.storage.manifest import Number
+from rockwobble.compare.storage.provenance import fingerprint
+from rockwobble.compare.storage.results import Results
+from rockwobble.models import (
+    CLOSED_TILT,
+    Case,
+    GroundMotion,
+    RockingBody,
+    Run,
+    Trace,
+    el_centro_1940,
+)
+from rockwobble.models.argument_kinds import with_argument_kinds
+from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL, TERMS
+from rockwobble.models.cylinder import WobblingFrame, cylinder_of
+from rockwobble.models.doubts import doubts_of_cases
+from rockwobble.models.plain_json import plain
+from rockwobble.models.records.units import sources_of
+from rockwobble.models.support import RECESS, support_named
+from rockwobble.models.trace import NO_PEAK
+from rockwobble.models.trace_file import motion_facts
+
+from ..plans import AdvicePlan
+from ..spectrum.maps import uplift_factor
+from ..spectrum.parts import SPATIAL
+from .demands import demand_table, demands_of, fall_of, weaker_factors
+from .grades import (
+    EVENLY_LOADED,
+    POOR,
+    STABILITY,
+    USE,
+    Grade,
+    grade_chance,
+    grade_engine,
+    grade_intensity,
+    grade_overturning,
+    grade_share,
+    grade_tendon,
+    grade_trace,
+    overall,
+)
+from .members import (
+    BESIDE_THE_PROBLEM,
+    COPIES,
+    DEMAND_STEP,
+    HORIZONTAL,
+    OTHER,
+    VELOCITY,
+    VERTICAL,
+    group_table,
+    member_rows,
+    other_records,
+    ratios_of,
+    run_rows,
+    top_displacement,
+    with_vertical,
+    without_vertical,
+)
+from .scales import held_by, planar_runs, scan_as_strong, scan_scales
+from .trust import (
+    BAND_STEP,
+    Trust,
+    Verification,
+    band_of,
+    model_prediction,
+    spread_from,
+    trust_of,
+    verify_run,
+    with_time_to_fall,
+)
+
+KIND = "advice"
+VERTICAL_COUNT = 20  # pairs of copies with and without the vertical component
+# members of each group that are run at each intensity of weaker shaking: all other records, and as many
+# copies, of which 95 % are all but one
+WEAKER_COUNT = 22
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Vertical:
+    """What is known of the vertical component of the ground motion.
+
+    Attributes
+    ----------
+    source : {"", "own", "shipped", "other"}
+        The ground motion has it; the shipped record has it, which the case takes without; neither, and
+        another record was run in its place; or there is no horizontal shaking.
+    record : str
+        Of which it is.
+    uplift_factor : float
+        Factor on the ground motion with it at which the cylinder uplifts.
+    ratios : dict, optional
+        Largest tilts of the copies with it over those without it, see `ratios_of`.
+    """
+
+    source: Literal["", "own", "shipped", "other"] = ""
+    record: str = ""
+    uplift_factor: float = math.inf
+    ratios: Mapping[str, float] | None = None
+
+
+class Response(TypedDict):
+    """Facts of the run of the reduced model as given: times in s, tilts in alpha, demands as in `demands_of`.
+
+    diagnostics are their codes; end is that of the run or of the fall, tolerance that of an agreement.
+    """
+
+    outcome: str
+    diagnostics: list[str]
+    uplift_time: float
+    peak_tilt: float
+    peak_time: float
+    end: float
+    in_one_plane: bool
+    largest_normal_force: float
+    slip: float
+    tension: float  # of a tendon, largest until it falls [weights of one column]; NaN without one
+    lost: float
+    tolerance: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Advice(Results, kind=KIND):
+    """Advice on one case.
+
+    Attributes
+    ----------
+    members : DataFrame
+        A row for each run of the groups, see `member_rows`.
+    groups, demands : DataFrame
+        Percentiles of the groups, see `group_table`, and the design demands, see `demand_table`.
+    band : DataFrame
+        Band of the tilts of the copies, see `band_of`.
+    weaker : DataFrame
+        Rows of `member_rows` under weaker shaking by the same records, see `weaker_factors`.
+    scales, lowest, planar : DataFrame
+        Other scales of the ground motion and the lowest that overturns, see `scan_scales`; and planar
+        analysis of other records, see `planar_runs`.
+    as_strong : DataFrame
+        Shaking as strong as that given: scales close to 1, see `scan_as_strong`.
+    trace, engine : DataFrame
+        time [s], tilt [alpha] and, of the reduced model, friction_needed [-]; no row without an engine.
+
+    Its facts are the problem (case, cylinder, motion, release, length, gravity, rolling_resistance, tendon,
+    friction: None unless it was given), the support with its model and the other_model; the response of the
+    model; trust, prediction and verification as in `Trust`, `Prediction` and `Verification`; other_support,
+    ratios of the largest tilts there (`ratios_of`), None where there are none; vertical, as in `Vertical`;
+    what the other records are; mass of a cylinder [t] or None; perturbation and seed of the copies, and the
+    hash of
+    all inputs. options are those of the command line that stated the problem, None where it was not used.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> found = rw.advise(rw.Case(pier, rw.el_centro_1940()), copies=20)
+    >>> found.trust.kind, found.grades["overturning"]
+    ('statistics', 'caution')
+    """
+
+    def headline(self) -> dict[str, Number]:
+        """Return outcome, grade, the shares that overturn, and the largest tilt as given."""
+        return {
+            "case": self.facts["case"],
+            "outcome as given": self.response["outcome"],
+            "grade": overall(self.grades.values()),
+            **{f"overturning, {row['group']}": row["chance"] for row in self.groups.to_dict("records")},
+            "largest tilt as given [deg]": math.degrees(self.peak * self.cylinder.alpha),
+            "displacement of the top as given [m]": self.top(self.peak),
+        }
+
+    @property
+    def cylinder(self) -> RockingBody:
+        """The cylinder, or the frame."""
+        return cylinder_of(self.facts["cylinder"])
+
+    @property
+    def response(self) -> Response:
+        """Facts of the run of the reduced model as given."""
+        found: Response = self.facts["response"]
+        return found
+
+    @property
+    def trust(self) -> Trust:
+        """Time until which the trace can be trusted."""
+        return Trust(**self.facts["trust"])
+
+    @property
+    def verification(self) -> Verification | None:
+        """The run of the engine."""
+        found = self.facts["verification"]
+        return None if found is None else Verification(**found)
+
+    @property
+    def moves(self) -> bool:
+        """Whether the cylinder ever tilts."""
+        return _moves(self.response["outcome"], self.response["uplift_time"])
+
+    @property
+    def slides_at_rest(self) -> bool:
+        """Whether the friction given does not keep a base in its place that stays closed."""
+        motion, friction = self.facts["motion"], self.facts["friction"]
+        if self.moves or self.response["outcome"] in NO_PEAK or motion is None or friction is None:
+            return False
+        # an earlier version stated none
+        return bool(friction < motion.get("friction_at_rest", 0.0))
+
+    @property
+    def overturned(self) -> bool:
+        """Whether it overturns as given."""
+        return self.response["outcome"] == "overturned"
+
+    @property
+    def copies_differ(self) -> bool:
+        """Whether perturbing the case changes it."""
+        return _differ(self.groups)
+
+    @property
+    def copies_part(self) -> float:
+        """Time from which on copies are spread over half of the peak tilt [s]; inf where they never are."""
+        return spread_from(self.band, self.peak)
+
+    @property
+    def peak(self) -> float:
+        """Largest tilt of the case as given [alpha]."""
+        return self.response["peak_tilt"]
+
+    def top(self, tilt: float) -> float:
+        """Return the displacement of the top at a tilt [alpha], infinite where it overturns [m]."""
+        return float(top_displacement(self.cylinder, tilt * self.cylinder.alpha))
+
+    @property
+    def lowest_factor(self) -> float:
+        """Lowest scale of the ground motion found to overturn; NaN where none is."""
+        searched = self.lowest["factor"][self.lowest["series"] == SPATIAL].max()
+        beside = self.as_strong
+        return float(np.fmin(searched, beside["factor"][overturned(beside["peak_tilt"])].min()))
+
+    @property
+    def overturning_as_strong(self) -> tuple[float, float]:
+        """Lowest factor of shaking as strong at which it overturns, and the share of the range that does.
+
+        The share is of the logarithm of the factor, each scale standing for what is nearer to it than to
+        another: counts would say too much, since most scales are run about the largest tilts.
+        """
+        factors = self.as_strong["factor"].to_numpy(float)
+        fell = overturned(self.as_strong["peak_tilt"].to_numpy(float))
+        if not fell.any():
+            return math.nan, 0.0
+        share = np.trapezoid(fell.astype(float), np.log(factors)) / np.log(factors[-1] / factors[0])
+        return float(factors[fell].min()), float(share)
+
+    @property
+    def range_as_strong(self) -> tuple[float, float]:
+        """Least and largest peak tilt [alpha] under shaking as strong as that given; infinite: overturned."""
+        if not len(self.as_strong):
+            return math.nan, math.nan
+        tilts = self.as_strong["peak_tilt"].to_numpy(float)
+        tilts = np.where(overturned(tilts), math.inf, tilts / self.cylinder.alpha)
+        return float(np.nanmin(tilts)), float(np.nanmax(tilts))
+
+    @property
+    def counting(self) -> pd.DataFrame:
+        """The groups that grades rest on."""
+        return self.groups[self.groups["counts"]] if len(self.groups) else self.groups
+
+    @property
+    def vertical(self) -> Vertical:
+        """The part of the vertical component."""
+        return Vertical(**self.facts["vertical"])
+
+    @property
+    def missing(self) -> tuple[float, float]:
+        """Shares of the moving time in which friction and contact are missing.
+
+        Those that 95 % of the runs of each group do not exceed or, where too few differ, those as given.
+        """
+        worst = self.counting.max(numeric_only=True)
+        if math.isnan(worst.get("lost_95", math.nan)):
+            return self.response["slip"], self.response["lost"]
+        return float(worst["slip_95"]), float(worst["lost_95"])
+
+    @property
+    def grades(self) -> dict[str, Grade]:
+        """Grade of each topic that there is something to say about; the criteria are in `grades`."""
+        response, facts, verification = self.response, self.facts, self.verification
+        tendon = facts.get("tendon")  # none in what an earlier version saved
+        if response["outcome"] in NO_PEAK:
+            return {"trace": "not satisfied"}
+        if not self.moves:
+            return {"friction": "not satisfied"} if self.slides_at_rest else {}
+        shaken, friction = facts["motion"] is not None, facts["friction"]
+        (slip, lost), spread = (
+            self.missing,
+            bool((~self.counting["single"] & self.counting["lost_95"].notna()).any()),
+        )
+        slides = friction is not None and friction < self.cylinder.tan_alpha and response["uplift_time"] > 0.0
+        found: dict[str, Grade] = {
+            "overturning": grade_overturning(
+                self.overturned,
+                self.lowest_factor,
+                self.counting["chance"],
+                tested=len(self.lowest) > 0 or (not shaken and self.copies_differ),
+            ),
+            "friction": grade_share(
+                0.0 if friction is None else slip,
+                asked=friction is not None,
+                tested=spread,
+                slides=slides,
+            ),
+            "contact": grade_share(lost, tested=spread),
+            "trace": grade_trace(self.trust.kind, tested=self.copies_differ),
+        }
+        if tendon is not None:
+            found["tendon"] = grade_tendon(
+                self.largest_tension, tendon["yield_force"], tested=self.copies_differ
+            )
+        if shaken and not self.overturned:
+            low, high = self.range_as_strong
+            found["intensity"] = grade_intensity(*map(_opened, (low, self.peak, high)))
+        found["engine"] = "not tested"
+        if verification is not None:
+            differs = (verification.outcome == "overturned") != self.overturned or not verification.moves
+            found["engine"] = grade_engine(verification.outcome, verification.divergence, differs=differs)
+        return found
+
+    @property
+    def largest_tension(self) -> float:
+        """Design demand on the tendon [weights of one column]; NaN without one."""
+        values = self.demands.set_index("demand")["value"]
+        found = float(values.get("tendon", math.nan))
+        return found if math.isfinite(found) else self.response["tension"]
+
+    @property
+    def verdict(self) -> str:
+        """One sentence on the cylinder and on the model."""
+        model = self.facts["model"]
+        if self.response["outcome"] == "failed":
+            return f"no advice, the {model} failed"
+        if self.response["outcome"] in NO_PEAK:
+            return f"no advice, the {model} is undecided: it stays by its balance"
+        if self.slides_at_rest:
+            return f"the cylinder does not uplift, it slides; {USE['not satisfied'].format(model)}"
+        if not self.moves:
+            return "the cylinder stays at rest"
+        ends = "it overturns as given" if self.overturned else STABILITY[self.grades["overturning"]]
+        return f"{ends}; {USE[self.model_grade].format(model)}"
+
+    @property
+    def vertical_matters(self) -> bool:
+        """Whether copies with the vertical component have another grade than those without it."""
+        if not len(self.groups):
+            return False
+        chances = self.groups.set_index("group")["chance"]
+        pair = [chances[name] for name in (COPIES, VERTICAL, HORIZONTAL) if name in chances]
+        return len(pair) == 2 and len(set(map(grade_chance, pair))) == 2
+
+    @property
+    def shares_load_unevenly(self) -> bool:
+        """Whether it is a frame of so many columns that their ends do not share the load evenly."""
+        return isinstance(self.cylinder, WobblingFrame) and self.cylinder.columns > EVENLY_LOADED
+
+    @property
+    def next_steps(self) -> list[str]:
+        """What to do next, by name, the most urgent first; pages have the words and the commands."""
+        grades, friction = self.grades, self.facts["friction"]
+        holds = support_named(self.facts["support"])
+        slides = friction is not None and friction < self.cylinder.tan_alpha
+        steps = {
+            "friction unknown": friction is None,
+            "slides": slides and self.facts["release"] is None,
+            "more friction": friction is not None and not slides and grades.get("friction") in POOR,
+            "contact": grades.get("contact") in POOR,
+            "budget": grades.get("engine") == "not satisfied",
+            "engine": self.verification is None,
+            "spectrum": grades.get("overturning") != "satisfied" and self.facts["motion"] is not None,
+            "ensemble": self.trust.kind == "statistics",
+            "clearance": holds.guided and self.facts.get("tendon") is None,
+            "in a recess": not holds.is_recess,
+            "vertical": self.vertical.source == "other",
+            "records": self.facts["records"] == "synthetic",
+        }
+        return [name for name, due in steps.items() if due] if self.moves else []
+
+    @property
+    def model_grade(self) -> Grade:
+        """Whether the model may be used, whatever becomes of the cylinder."""
+        return overall(grade for topic, grade in self.grades.items() if topic != "overturning")
+
+
+@with_argument_kinds
+def advise(
+    case: Case,
+    run: Run | None = None,
+    *,
+    support: str | None = None,
+    copies: int = 100,
+    perturbation: float = 0.01,
+    seed: int = 1,
+    mass: float | None = None,
+    friction_given: bool = True,
+    progress: ProgressCallback | None = None,
+) -> Advice:
+    """Run what it takes to say how far the results of one case can be trusted.
+
+    Parameters
+    ----------
+    case : Case
+        Case of a cylinder or of a frame.
+    run : Run, optional
+        Engine that verifies the prediction; without one it stays unverified.
+    support : {"recess", "flat", "ring"}, optional
+        That is built. Default: that of the run, else "recess".
+    copies : int, optional
+        Number of perturbed copies.
+    perturbation : float, optional
+        Relative standard deviation of the copies: of tilt and rolling rate at release, or of both components
+        of the ground motion.
+    seed : int, optional
+        Seed of the perturbations.
+    mass : float, optional
+        Mass of the cylinder, or of one column without a slab [t]: forces in kN and moments in kNm.
+    friction_given : bool, optional
+        Whether the friction of the case is known, not a default.
+    progress : callable, optional
+        Called with a `Progress` at the start and at the end of each stage.
+
+    Returns
+    -------
+    Advice
+
+    Raises
+    ------
+    ValueError
+        If the engine cannot run the case, or an option is out of range.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> found = rw.advise(rw.Case(pier, initial=release, duration=4.0), copies=20)
+    >>> found.trust.kind, found.grades["engine"]
+    ('trace', 'not tested')
+    """
+    plan = AdvicePlan(
+        support=support or (RECESS if run is None else run.support),
+        copies=copies,
+        perturbation=perturbation,
+        seed=seed,
+        mass=mass,
+    )
+    require_judged(case, plan.support)
+    if run is not None:
+        if run.support != plan.support:
+            raise ValueError(f"support must be that of the run, {run.support}, got {plan.support}")
+        require_runnable(case, run)
+    model, other = Run(None, plan.support).compared_with[-1], FLAT_MODEL
+    if model == other:
+        other = RECESS_MODEL
+    stage = stages(progress, [1.0] * (5 if run is None else 6))
+    inputs = fingerprint(
+        [*(job_fingerprint(Job(case=case, run=each)) for each in (model, run) if each), plan]
+    )
+    with stage("both reduced models (compiled on their first run)"):
+        trace = simulate_run(case, model)
+        if trace.time[-1] > case.length:
+            case = with_time_to_fall(case, trace)
+            trace = simulate_run(case, model)
+    moves = _moves(trace.outcome, trace.uplift_time)
+    perturbed: list[Trace] = []
+    others: list[Trace] = []
+    groups: dict[str, list[Case]] = {}
+    with stage(f"{plan.copies} perturbed copies"):
+        if moves:  # in this process: other ones take longer to begin than hundreds of reduced runs
+            groups[COPIES] = plan.perturbed(case)
+            perturbed = [simulate_run(each, model, sample_step=DEMAND_STEP) for each in groups[COPIES]]
+            # the other model has no anchor; and where the base never opens, chatter takes it minutes
+            if not case.anchor and trace.peak_tilt > CLOSED_TILT * case.cylinder.alpha:
+                others = [simulate_run(each, other, sample_step=BAND_STEP) for each in groups[COPIES]]
+        rows = [*member_rows(COPIES, perturbed), *member_rows(OTHER, others)]
+    with stage("other records as strong, planar analysis and the vertical component"):
+        records, source = ({}, "") if trace.outcome in NO_PEAK else other_records(case)
+        groups |= records
+        for name, cases in records.items():
+            rows += run_rows(name, cases, model)
+        planar = planar_runs(records[VELOCITY], model.support) if records else pd.DataFrame()
+        vertical, shaken = vertical_effect(case, model, plan if moves else None)
+        for name, traces in shaken.items():
+            rows += member_rows(name, traces)
+            if name == VERTICAL:
+                groups[name] = [each.case for each in traces]
+    with stage("weaker shaking by the same records"):
+        weaker = weaker_rows(case, groups, model)
+    with stage("other scales of the ground motion"):
+        scales, lowest = scan_scales(case, model.support)
+        as_strong = scan_as_strong(case, model.support, trace.peak_tilt)
+    prediction, verification, engine = model_prediction(case, trace, run), None, None
+    if run is not None:
+        with stage(str(run)):
+            if moves:
+                verification, prediction, engine = verify_run(case, run, trace)
+    alpha, band = case.cylinder.alpha, band_of(case, perturbed)
+    trust = Trust(kind="trace", until=case.length, because="")
+    if moves:
+        methods = trace.uplift_time + prediction.length if prediction.reason else math.inf
+        if verification is not None and verification.outcome != "failed":
+            methods = verification.agreed_until if verification.diverged else math.inf
+        data = spread_from(band, trace.peak_tilt / alpha)
+        trust = trust_of(methods, data, trace.peak_time, float(trace.time[-1]))
+    members = pd.DataFrame(rows, columns=None if rows else ["group", "outcome", "peak_tilt", "member"])
+    tables = {
+        "members": members,
+        "band": band,
+        "weaker": pd.DataFrame(weaker, columns=None if weaker else list(members.columns)),
+        "scales": scales,
+        "as_strong": as_strong,
+        "lowest": lowest,
+        "planar": planar,
+        "trace": _samples(trace, alpha).assign(friction_needed=trace.friction_needed),
+        "engine": _samples(engine, alpha),
+    }
+    form = pairs_of(others, perturbed).contrast() if others and _differ(group_table(members)) else None
+    facts = {
+        **_problem(case),
+        "friction": case.friction if friction_given else None,
+        "support": plan.support,
+        "model": str(model),
+        "other_model": str(other),
+        "response": _response(trace),
+        "trust": dataclasses.asdict(trust),
+        "prediction": dataclasses.asdict(prediction),
+        "verification": None if verification is None else dataclasses.asdict(verification),
+        "other_support": None if form is None else ratios_of(form),
+        "vertical": dataclasses.asdict(vertical),
+        "records": source,
+        "mass": plan.mass,
+        "options": None,
+        "doubts": doubts_of_cases([case]),
+        "record_sources": sources_of([case.motion]),
+        "perturbation": plan.perturbation,
+        "seed": plan.seed,
+        "inputs": inputs,
+    }
+    return advice_of(tables, facts)
+
+
+def require_judged(case: Case, support: str) -> None:
+    """Refuse a case that no advice judges.
+
+    Raises
+    ------
+    ValueError
+        If it has an anchor, such as a tendon, on a support whose reduced model has none.
+    """
+    if case.anchor and not support_named(support).guided:
+        raise ValueError(
+            f"an advice on a body with {case.anchor} is for support {str(RECESS)!r}, got {support!r}"
+        )
+
+
+def _threshold(case: Case, motion: GroundMotion) -> float:
+    """Return the factor on a ground motion at which a case uplifts [-]."""
+    alone = uplift_factor(motion, case.cylinder.tan_alpha, case.gravity, until=case.length)
+    return alone * held_by(case)
+
+
+def _restraint(case: Case) -> dict[str, object] | None:
+    """Facts of the tendon of a case; None without one.
+
+    uplift_factor, by which it raises the threshold of uplift; initial_stiffness [m g b], and balance_tilt
+    [alpha], infinite where the couple brings the body back from every tilt.
+    """
+    tendon, body = case.tendon, case.cylinder
+    if tendon is None:
+        return None
+    return {
+        **dataclasses.asdict(tendon),
+        "gaps": tendon.gaps(body),
+        "uplift_factor": tendon.uplift_factor(body),
+        "initial_stiffness": tendon.initial_stiffness(body),
+        "balance_tilt": reduced.balance_tilt_of_case(case) / body.alpha,
+    }
+
+
+def advice_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, object]) -> Advice:
+    """Return the advice of its runs, with the tables that are concluded from them."""
+    found = Advice(tables=tables, facts=plain(facts))
+    counting = found.members[~found.members["group"].isin(BESIDE_THE_PROBLEM)]
+    demands = demand_table(
+        pd.concat([counting, found.weaker]) if len(found.weaker) else counting,
+        found.cylinder,
+        gravity=found.facts["gravity"],
+        support=found.facts["support"],
+        mass=found.facts["mass"],
+    )
+    return dataclasses.replace(
+        found, tables={**tables, "groups": group_table(found.members), "demands": demands}
+    )
+
+
+def _opened(tilt: float) -> float:
+    """Return a tilt [alpha], at least that at which a base counts as open: chatter below is no response."""
+    return max(tilt, CLOSED_TILT)  # in this order NaN stays NaN
+
+
+def _moves(outcome: str, uplift_time: float) -> bool:
+    return math.isfinite(uplift_time) and outcome not in NO_PEAK
+
+
+def _differ(groups: pd.DataFrame) -> bool:
+    copies = groups[groups["group"] == COPIES] if len(groups) else groups
+    return bool(len(copies) and copies["chance"].notna().all())
+
+
+def _samples(trace: Trace | None, alpha: float) -> pd.DataFrame:
+    time, tilt = np.empty((2, 0)) if trace is None else (trace.time, trace.tilt / alpha)
+    return pd.DataFrame({"time": time, "tilt": tilt})
+
+
+def _problem(case: Case) -> dict[str, object]:
+    """Facts of a case, without the samples of its motion."""
+    motion, cylinder = case.motion, case.cylinder
+    shaking = motion and {
+        **motion_facts(motion),
+        "has_vertical": motion.has_vertical,
+        "friction_at_rest": case.friction_at_rest,
+        "uplift_factor": held_by(case)
+        * uplift_factor(motion, cylinder.tan_alpha, case.gravity, until=case.length),
+    }
+    return {
+        "case": case.name,
+        "cylinder": dataclasses.asdict(cylinder),
+        "motion": shaking,
+        "release": dataclasses.asdict(case.initial) if case.is_release and case.initial else None,
+        "length": case.length,
+        "gravity": case.gravity,
+        **{name: getattr(case, name) for name in TERMS},
+        "tendon": _restraint(case),
+    }
+
+
+def _response(trace: Trace) -> Response:
+    moves = _moves(trace.outcome, trace.uplift_time)
+    assumed = trace.assumptions_until(fall_of(trace)) if moves else None
+    own = demands_of(trace)
+    return {
+        "outcome": trace.outcome,
+        "diagnostics": [fact.code for fact in trace.facts],
+        "uplift_time": trace.uplift_time,
+        "peak_tilt": trace.peak_tilt / trace.case.cylinder.alpha,
+        "peak_time": trace.peak_time,
+        "end": float(trace.time[-1]),
+        "in_one_plane": moves and not trace.rolling_rate.any(),
+        "largest_normal_force": assumed.largest_normal_force if assumed else math.nan,
+        "slip": own["slip"],
+        "tension": own.get("tendon", math.nan),
+        "lost": own["lost"],
+        "tolerance": tolerance_of(trace),
+    }
+
+
+def vertical_effect(
+    case: Case, model: Run, plan: AdvicePlan | None
+) -> tuple[Vertical, dict[str, list[Trace]]]:
+    """Run copies with and without the vertical component of ground motion.
+
+    Of the record itself, or as it is shipped where the case leaves it out; of a record that has none, El
+    Centro 1940 as strong is run in its place, whose runs belong to no group: what it usually changes. Nothing
+    is run without a plan.
+
+    Returns
+    -------
+    Vertical
+    dict of str to list of Trace
+        Runs of the group `VERTICAL` or `HORIZONTAL`, those that the case itself is not; none of a record that
+        has no vertical component.
+    """
+    motion = case.motion
+    if motion is None or motion.peak == 0.0:
+        return Vertical(), {}
+    source: Literal["own", "shipped", "other"] = "own" if motion.has_vertical else "shipped"
+    record, duration = with_vertical(motion), case.duration
+    if record is None:
+        record = el_centro_1940(vertical=True)
+        source, record, duration = "other", record.scaled(motion.peak / record.peak), None
+    threshold = held_by(case) * uplift_factor(
+        record, case.cylinder.tan_alpha, case.gravity, until=case.length
+    )
+    about = Vertical(source=source, record=record.name, uplift_factor=threshold)
+    if plan is None:
+        return about, {}
+    runs: dict[str, list[Trace]] = {}
+    for name, each in ((VERTICAL, record), (HORIZONTAL, without_vertical(record))):
+        shaken = dataclasses.replace(case, motion=each, duration=duration)
+        copies = plan.perturbed(shaken, VERTICAL_COUNT)
+        runs[name] = [simulate_run(copy, model, sample_step=DEMAND_STEP) for copy in copies]
+    found = pairs_of(*runs.values()).contrast()
+    ratios = None if found is None or not found.compared else ratios_of(found)
+    kept = {"own": HORIZONTAL, "shipped": VERTICAL}.get(source, "")
+    return dataclasses.replace(about, ratios=ratios), {
+        name: traces for name, traces in runs.items() if name == kept
+    }
+
+
+def weaker_rows(case: Case, groups: Mapping[str, Sequence[Case]], model: Run) -> list[dict[str, float | str]]:
+    """Run the groups under weaker shaking, at most `WEAKER_COUNT` of each; none of what is only released."""
+    motion = case.motion
+    if motion is None or motion.peak == 0.0:
+        return []
+    threshold = held_by(case) * uplift_factor(
+        motion, case.cylinder.tan_alpha, case.gravity, until=case.length
+    )
+    return [
+        row
+        for factor in weaker_factors(threshold)
+        for name, cases in groups.items()
+        for row in run_rows(name, cases[:WEAKER_COUNT], model, factor)
+    ]

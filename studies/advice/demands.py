@@ -1,0 +1,307 @@
+"""Demands on ground, recess and slab: of one run, of a group of runs, and of shaking up to an intensity.
+
+A demand of a run is what it does not exceed in 99 % of its time in motion; where the run overturns, of the
+motion up to overturning. A demand of a group is what 95 % of its runs do not exceed, the order statistic of
+that rank. The design demand is the largest of all groups, under the shaking as given and under weaker shaking
+of the same records (`weaker_factors`): weaker shaking may ask more, as where a cylinder rocks for long that
+stronger shaking overturns at once, and a recess meets both.
+
+What acts together is the largest shear, and the largest moment, of any run at a time at which nothing else is
+beyond its demand: at the very time at which a run reaches a demand, another force may be in the hundredth of
+the time, or in the twentieth of the runs, that its own demand leaves out.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockwobble.compare.metrics.pair import balance_of
+from rockwobble.compare.metrics.statistics import FEWEST, covering
+from rockwobble.models import RockingBody, Trace
+from rockwobble.models.bounds import OVERTURNED_TILT
+from rockwobble.models.support import support_named
+from rockwobble.models.trace import NO_PEAK
+from rockwobble.multibody.ring import rim_overhang
+
+Array = NDArray[np.float64]
+
+# what is not exceeded in 99 % of the moving time leaves out the spikes of the nearest passes
+SPIKES = 0.01
+# share of the runs of a group that do not exceed its demand
+COVERED = 0.95
+# ratio of neighbouring intensities of weaker shaking
+LEVEL_RATIO = 2.0**0.25
+# [alpha] tilt that a run asks of a wall at least if it passes the balance, whether it overturns or comes back
+PASSED = 1.25
+ROUNDING = 1e-12  # relative, of sums and ratios of what acts together
+_FIRST_LEVEL = -4  # steps from the threshold of uplift
+
+_BASE = {"friction": "-", "shear": "weights", "force": "weights"}
+_TOP = {f"top_{name}": unit for name, unit in _BASE.items()}
+_SUMS = ("moment", "shear_and_wall")  # forces on a wall, alone and beside shear
+_RECESS = {"moment": "weights × b", "shear_and_wall": "weights", "tilt": "alpha"}
+# demands of a run with their units
+_TENDON = "tendon"  # tension, in weights of a column alone
+UNITS: Mapping[str, str] = {**_BASE, **_TOP, **_RECESS, _TENDON: "weights"}
+# what else there is of each run
+SHARES = ("slip", "lost")
+# demands of which is said what acts together with them, and what that is
+_LEADING = ("shear", "moment")
+_TOGETHER = ("shear", "force", "moment")
+_NOT_PLANE = "all runs stay in one plane, in which no moment arises: a real motion leaves it"
+
+
+def fall_of(trace: Trace) -> float:
+    """Return when a run that overturns last passes its balance [s], inf where it does not.
+
+    A fall asks nothing.
+    """
+    if trace.outcome != "overturned":
+        return math.inf
+    below = trace.time[trace.tilt <= balance_of(trace.case)]
+    return float(below[-1]) if len(below) else 0.0
+
+
+def demands_of(trace: Trace) -> dict[str, float]:
+    """Return the demands of a run on ground, recess and slab, until it last passes its balance if it falls.
+
+    Samples at which the base is closed, see `Trace.open_base`, ask nothing.
+
+    Returns
+    -------
+    dict
+        friction [-], shear and (normal) force [weights] at the base and, as top_friction, top_shear and
+        top_force, under the slab of a frame [weights of the share of the slab]; moment, of the recess about
+        the vertical through the contact point, (1 + cos(tilt)) |kappa| [weights times b]; shear_and_wall,
+        the sum at one time of shear and of the force on a wall that supplies the moment over the lever arm b
+        [weights]: each not exceeded in 99 % of the moving time. shear_with_shear, shear_with_force and
+        shear_with_moment: what acts together where the shear is largest of all times at which contact is
+        kept and none of these is exceeded; moment_with_shear and so on, where the moment is. tilt, the
+        largest [alpha]: at least `PASSED` of the balance where it passes that. tendon, the largest tension
+        [weights of one column], with a tendon. slip and lost, shares of that time
+        in which the friction of the case does not suffice and in which contact is lost, at base or top. All
+        zero, and a force of one weight, where nothing moves.
+    """
+    cylinder = trace.case.cylinder
+    moving = trace.open_base & (trace.time <= fall_of(trace))
+    ends = [(_BASE, trace.contact_force, trace.friction_needed)]
+    if cylinder.slab_mass_ratio > 0.0:
+        ends.append((_TOP, trace.top_contact_force, trace.top_friction_needed))
+    found: dict[str, float] = {}
+    largest = trace.peak_tilt / cylinder.alpha
+    if trace.outcome == "overturned":
+        largest = float(trace.tilt[moving].max()) / cylinder.alpha if moving.any() else 0.0
+    balance = balance_of(trace.case) / cylinder.alpha
+    if trace.outcome == "overturned" or largest > balance:
+        largest = max(PASSED * balance, largest)
+    tendon = trace.case.tendon
+    pull = {}
+    if tendon is not None:
+        pull = {_TENDON: tendon.tension(cylinder, min(largest * cylinder.alpha, OVERTURNED_TILT))}
+    if not moving.any():
+        for names, *_ in ends:
+            found |= dict(zip(names, (0.0, 0.0, 1.0), strict=True))
+        together = {f"{name}_with_{part}": float(part == "force") for name, part in _pairs()}
+        return found | {
+            **{"moment": 0.0, "shear_and_wall": 0.0, "tilt": largest},
+            **{**pull, **together, **_none_missing()},
+        }
+    lengths = np.diff(trace.time, append=trace.time[-1])[moving]
+    lost, slips = np.zeros((2, len(lengths)), dtype=bool)
+    series: dict[str, Array] = {}
+    for names, force, friction in ends:
+        x, y, normal = force[moving].T
+        series |= dict(zip(names, (friction[moving], np.hypot(x, y), normal), strict=True))
+        lost |= normal <= 0.0
+        slips |= friction[moving] > trace.case.friction
+    kappa = np.abs(trace.restraining_moment[moving]) / cylinder.base_radius
+    series["moment"] = (1.0 + np.cos(trace.tilt[moving])) * kappa
+    series["shear_and_wall"] = series["shear"] + series["moment"]
+    places = {name: _usual(values) for name, values in series.items()}
+    found = {name: float(series[name][place]) for name, place in places.items()}
+    usual = np.logical_and.reduce([series[name] <= found[name] for name in (*_BASE, *_SUMS)])
+    usual &= series["force"] > 0.0
+    for name, part in _pairs():
+        place = int(np.where(usual, series[name], -math.inf).argmax())
+        found[f"{name}_with_{part}"] = float(series[part][place]) if usual.any() else math.nan
+    time = max(float(lengths.sum()), 1e-300)
+    shares = {"slip": lengths[slips & ~lost].sum() / time, "lost": lengths[lost].sum() / time}
+    return found | {"tilt": largest, **pull, **shares}
+
+
+def weaker_factors(threshold: float) -> list[float]:
+    """Return the factors below 1 on a record at which demands are also evaluated.
+
+    They are a fixed series of intensities in steps of `LEVEL_RATIO`, so that those of stronger shaking by the
+    same record contain those of weaker: its demands do not fall. The threshold of uplift, at which models
+    chatter for long, lies between two of them.
+
+    Parameters
+    ----------
+    threshold : float
+        Factor at which the record uplifts.
+
+    Examples
+    --------
+    >>> [round(factor, 3) for factor in weaker_factors(0.5)]
+    [0.273, 0.324, 0.386, 0.459, 0.545, 0.648, 0.771, 0.917]
+    """
+    if not 0.0 < threshold < math.inf:
+        return []
+    # other records of the same peak velocity may move from below the threshold of this one
+    levels = (threshold * LEVEL_RATIO ** (step + 0.5) for step in itertools.count(_FIRST_LEVEL))
+    return list(itertools.takewhile(lambda factor: factor < 1.0, levels))
+
+
+def demand_table(
+    members: pd.DataFrame, cylinder: RockingBody, *, gravity: float, support: str, mass: float | None = None
+) -> pd.DataFrame:
+    """Return the design demands on ground, recess and slab: the largest of all groups and intensities.
+
+    Parameters
+    ----------
+    members : DataFrame
+        Rows of `member_rows` that count, with the factor on the ground motion.
+    cylinder : Cylinder or WobblingFrame
+    gravity : float
+        [m/s^2]
+    support : str
+        That is built.
+    mass : float, optional
+        Mass of one cylinder or column [t].
+
+    Returns
+    -------
+    DataFrame
+        demand, value, unit; per_tonne, the value for a mass of 1 t of what is carried, the cylinder or, in a
+        frame, a column with its share of the slab or, at the top, this share, and for_mass, for that of
+        `mass` [kN, kNm]; group and factor, of which it is, with runs, those of them that differ, covered, how
+        many of these do not exceed it, and overturned, how many fall; with_shear, with_force and with_moment
+        of shear and of moment: what acts together where one of them is largest and none is beyond its value
+        [weights, weights times b]; reason, why a value is NaN.
+
+        Demands: those of `demands_of` and, of the tilt, wall_height, at which the rim stands out farthest and
+        a wall takes its force, and clearance, by which a vertical wall of this height must stand back [m].
+    """
+    facts, b = support_named(support), cylinder.base_radius
+    groups = list(_groups(members))
+    if not groups:
+        return pd.DataFrame(columns=[*_COLUMNS, "per_tonne", "for_mass"])
+    rows: list[dict[str, Any]] = []
+    for name, unit in UNITS.items():
+        if name in _TOP and not cylinder.slab_mass_ratio > 0.0:
+            continue
+        if name in _RECESS and not facts.is_recess:
+            continue
+        if name == _TENDON and name not in members:
+            continue
+        rows.append({"demand": name, "unit": unit, **_largest(name, groups)})
+        if (
+            name == "moment"
+            and rows[-1]["value"] == 0.0
+            and any(runs["tilt"].gt(0.0).any() for *_, runs in groups)
+        ):
+            rows[-1] |= {"value": math.nan, "reason": _NOT_PLANE}
+    recess = {row["demand"]: row for row in rows}
+    limits = {name: row["value"] for name, row in recess.items() if not math.isnan(row["value"])}
+    for name in _LEADING:
+        if name in limits:
+            recess[name] |= _together(name, groups, limits)
+    if "tilt" in recess:
+        if math.isnan(recess["moment"]["value"]):
+            lone = {name: recess["moment"][name] for name in ("value", "reason")}
+            recess["shear_and_wall"] |= lone
+        theta = recess["tilt"]["value"] * cylinder.alpha
+        overhang, height = (b * part for part in rim_overhang(theta))
+        walls = {"wall_height": height, "clearance": max(overhang, height * math.tan(theta))}
+        rows += [
+            recess["tilt"] | {"demand": name, "unit": "m", "value": each} for name, each in walls.items()
+        ]
+    table = pd.DataFrame(rows, columns=_COLUMNS)
+    arms = table["unit"].map({"weights": gravity, "weights × b": gravity * b}).astype(float)
+    table["per_tonne"] = table["value"] * arms
+    top = table["demand"].isin(_TOP)
+    carried = np.where(top, cylinder.slab_mass_ratio, 1.0 + cylinder.slab_mass_ratio)
+    carried = np.where(table["demand"] == _TENDON, 1.0, carried)
+    table["for_mass"] = table["per_tonne"] * carried * (math.nan if mass is None else mass)
+    return table
+
+
+_COLUMNS = [
+    *("demand", "value", "unit", "group", "factor", "runs", "covered", "overturned"),
+    *("with_shear", "with_force", "with_moment", "reason"),
+]
+
+
+def _groups(members: pd.DataFrame) -> Iterator[tuple[str, float, pd.DataFrame]]:
+    """Groups of runs that may be stated, at each intensity: of fewer than `FEWEST` that differ none is."""
+    if not len(members):
+        return
+    for (group, _), runs in members.groupby(["group", "factor"], sort=False):
+        known = runs[~runs["outcome"].isin(NO_PEAK)]
+        if all_alike(known):
+            known = known[:1]
+        elif len(known) < FEWEST:
+            continue
+        yield str(group), float(known["factor"].iloc[0]) if len(known) else 1.0, known
+
+
+def all_alike(runs: pd.DataFrame) -> bool:
+    """Return whether several runs that move are one: of records that differ many may not move at all."""
+    numbers = [name for name in ("peak_tilt", *UNITS) if name in runs.columns]
+    return len(runs) > 1 and runs["peak_tilt"].min() > 0.0 and bool(runs[numbers].nunique().max() == 1)
+
+
+def _largest(name: str, groups: list[tuple[str, float, pd.DataFrame]]) -> dict[str, Any]:
+    """The largest demand of a name of all groups, and of which."""
+    best: dict[str, Any] = {"value": math.nan, "reason": f"fewer than {FEWEST} runs differ"}
+    for group, factor, runs in groups:
+        value, covered = covering(runs[name].to_numpy(float), COVERED)
+        if value <= best["value"]:  # not where the best is none yet, NaN
+            continue
+        best = {
+            **{"value": value, "group": group, "factor": factor, "runs": len(runs), "covered": covered},
+            "overturned": int((runs["outcome"] == "overturned").sum()),
+            "reason": "",
+        }
+    return best
+
+
+def _together(
+    name: str, groups: list[tuple[str, float, pd.DataFrame]], limits: Mapping[str, float]
+) -> dict[str, float]:
+    """Actions at the time of the largest shear or moment of a run, while nothing is beyond its limit."""
+    runs = pd.concat([each for *_, each in groups])
+    load = pd.DataFrame({part: runs[f"{name}_with_{part}"].astype(float) for part in _TOGETHER})
+    acting = {part: load[part] for part in _TOGETHER}
+    acting["friction"] = load["shear"] / load["force"].where(load["force"] > 0.0)
+    acting["shear_and_wall"] = load["shear"] + load["moment"]
+    within = pd.DataFrame(
+        {part: values <= limits[part] * (1.0 + ROUNDING) for part, values in acting.items() if part in limits}
+    )
+    usual = load[within.all(axis=1)]
+    if not len(usual):
+        return {}
+    place = int(usual[name].to_numpy().argmax())
+    return {f"with_{part}": float(usual[part].iloc[place]) for part in _TOGETHER}
+
+
+def _pairs() -> list[tuple[str, str]]:
+    return list(itertools.product(_LEADING, _TOGETHER))
+
+
+def _none_missing() -> dict[str, float]:
+    return dict.fromkeys(SHARES, 0.0)
+
+
+def _usual(values: Array) -> int:
+    """Index of the sample that is not exceeded in 99 % of the time: a mean with infinity would be none."""
+    rank = max(math.ceil((1.0 - SPIKES) * len(values)) - 1, 0)
+    return int(np.argpartition(values, rank)[rank])

@@ -1,0 +1,234 @@
+"""Many runs of one problem: copies of it, each a little different, and other records as strong as its own."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterable, Sequence
+from functools import partial
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
+
+from rockwobble.compare.metrics.contrast import Contrast
+from rockwobble.compare.metrics.statistics import (
+    FEWEST,
+    Interval,
+    covering,
+    quantile_interval,
+    share_interval,
+    value_if_enough,
+)
+from rockwobble.compare.runs.execution import simulate_run
+from rockwobble.models import (
+    Case,
+    GroundMotion,
+    RockingBody,
+    Run,
+    Trace,
+    el_centro_1940,
+    far_field_motions,
+    synthetic_motions,
+)
+from rockwobble.models.cpus import in_threads
+from rockwobble.models.records import p695
+from rockwobble.models.trace import NO_PEAK
+
+from ..fragility import intensity
+from .demands import COVERED, SHARES, UNITS, all_alike, demands_of
+
+Array = NDArray[np.float64]
+
+COPIES, ACCELERATION, VELOCITY = "copies", "acceleration", "velocity"
+OTHER = "other support"  # group of the copies on the other support
+# groups of copies with the vertical component of a record that the case leaves out, and without the one
+# that it has
+VERTICAL, HORIZONTAL = "with vertical", "without vertical"
+# groups of what is not the problem as stated: they are shown and count for no grade and no demand
+BESIDE_THE_PROBLEM = (OTHER, HORIZONTAL)
+# [s] of the samples of demands: of a short motion 99 % of the time at 0.02 s are all but its largest spike,
+# which rounding moves by a fifth; at 0.005 s they are within 2 % of those at 0.002 s
+DEMAND_STEP = 0.005
+_SEED = 1  # of synthetic ground motions where the records are not installed
+_QUANTILES = {"05": 0.05, "50": 0.5}
+# those of which there are percentiles over the members
+DEMANDS = (*UNITS, *SHARES)
+
+
+def top_displacement(cylinder: RockingBody, tilt: ArrayLike) -> Array:
+    """Return the horizontal displacement of the top, over a circle of contact that stays [m].
+
+    Of the centre of the top of a cylinder or, in a frame, of the slab: over it the rim of the top rolls as
+    that of the base rolls over the ground.
+
+    Parameters
+    ----------
+    cylinder : Cylinder or WobblingFrame
+    tilt : array_like
+        [rad]; infinite where it overturns, and so is then the displacement.
+    """
+    theta = np.asarray(tilt, dtype=np.float64)
+    ends = 2.0 if cylinder.carries_slab else 1.0
+    stands = np.where(np.isinf(theta), 0.0, theta)
+    moved = ends * cylinder.base_radius * (1.0 - np.cos(stands)) + 2.0 * cylinder.half_height * np.sin(stands)
+    return np.where(np.isinf(theta), math.inf, moved)
+
+
+def peak_velocity(motion: GroundMotion) -> float:
+    """Return the peak horizontal resultant of the ground velocity [m/s], of the record without its mean."""
+    return intensity.largest_resultant(intensity.velocity(motion, centred=True))
+
+
+def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
+    """Return the case under other records, as strong as its own by peak acceleration and by peak velocity.
+
+    Those of FEMA P-695 where they are installed, else synthetic ones; and "p695" or "synthetic". None for a
+    release and without a ground motion.
+    """
+    motion = case.motion
+    if motion is None or motion.peak == 0.0 or case.is_release:
+        return {}, ""
+    if p695.missing_packages():
+        source, motions = "synthetic", synthetic_motions(p695.PAIRS, peak=motion.peak, seed=_SEED)
+    else:
+        source, motions = "p695", far_field_motions(peak=motion.peak)
+    velocity = peak_velocity(motion)
+    as_fast = [each.scaled(velocity / peak_velocity(each)) for each in motions]
+    return {
+        name: [dataclasses.replace(case, motion=each, duration=None, name=each.name) for each in found]
+        for name, found in ((ACCELERATION, motions), (VELOCITY, as_fast))
+    }, source
+
+
+def member_row(group: str, trace: Trace, factor: float = 1.0) -> dict[str, float | str]:
+    """Return the row of a run: group, member, factor [-], model, outcome, peak_tilt [alpha], demands."""
+    return {
+        "group": group,
+        "member": trace.case.name,
+        "factor": factor,
+        "model": str(trace.run),
+        "outcome": trace.outcome,
+        "peak_tilt": trace.peak_tilt / trace.case.cylinder.alpha,
+        **(demands_of(trace) if trace.outcome not in NO_PEAK else {}),
+    }
+
+
+def member_rows(group: str, traces: Iterable[Trace], factor: float = 1.0) -> list[dict[str, float | str]]:
+    """Return the rows of some runs, see `member_row`."""
+    return list(in_threads(partial(member_row, group, factor=factor), traces))
+
+
+def run_rows(
+    group: str, cases: Sequence[Case], model: Run, factor: float = 1.0
+) -> list[dict[str, float | str]]:
+    """Run cases of one group by a reduced model, with a factor on their ground motions; return their rows."""
+
+    def row(case: Case) -> dict[str, float | str]:
+        trace = simulate_run(scaled(case, factor), model, sample_step=DEMAND_STEP)
+        return member_row(group, trace, factor)
+
+    return list(in_threads(row, cases))
+
+
+def scaled(case: Case, factor: float) -> Case:
+    """Return a case with its ground motion scaled."""
+    if factor == 1.0 or case.motion is None:
+        return case
+    return dataclasses.replace(case, motion=case.motion.scaled(factor))
+
+
+def with_vertical(motion: GroundMotion) -> GroundMotion | None:
+    """Return a ground motion with its vertical component: its own, or that of the record that is shipped.
+
+    None where it has none and is no scaled part of the shipped record from its start.
+    """
+    if motion.has_vertical:
+        return motion
+    record = el_centro_1940(vertical=True)
+    count = len(motion.acceleration)
+    if motion.time_step != record.time_step or count > len(record.acceleration):
+        return None
+    samples = record.acceleration[:count]
+    largest = float(np.abs(samples[:, :2]).max())
+    factor = float(np.abs(motion.acceleration[:, :2]).max()) / largest if largest else 0.0
+    if not factor or not np.allclose(
+        motion.acceleration[:, :2], factor * samples[:, :2], rtol=0.0, atol=1e-9 * factor * largest
+    ):
+        return None
+    return motion.with_samples(factor * samples, "with the vertical component of the record")
+
+
+def without_vertical(motion: GroundMotion) -> GroundMotion:
+    """Return the two horizontal components of a ground motion."""
+    if not motion.has_vertical:
+        return motion
+    return motion.with_samples(motion.acceleration[:, :2], "without the vertical component")
+
+
+def ratios_of(found: Contrast) -> dict[str, float]:
+    """Return statistics of the ratio of the largest tilts of copies by two methods.
+
+    Returns
+    -------
+    dict
+        members, copies run both ways; overturned and against_overturned, those that overturn; count, copies
+        with a ratio, higher and lower, those with one above and below 1; ratio, low and high, the median and
+        its interval, ratio_05 and ratio_95: NaN where they may not be stated, see `stated`.
+    """
+    names = {"ratio": found.ratio, "ratio_05": found.ratio_05, "ratio_95": found.ratio_95}
+    return {
+        "members": found.count,
+        "overturned": found.overturned,
+        "against_overturned": found.against_overturned,
+        "count": found.compared,
+        "higher": found.higher,
+        "lower": found.lower,
+        **{name: value_if_enough(each.value, found.compared, ratio=True) for name, each in names.items()},
+        "low": found.ratio.low,
+        "high": found.ratio.high,
+    }
+
+
+def group_table(members: pd.DataFrame) -> pd.DataFrame:
+    """Return one row for each group of members but the other support: how many overturn, and percentiles.
+
+    Columns: group, runs, failed, overturned; single, whether all moved alike, which makes them one run;
+    counts, whether grades and demands rest on it; chance with chance_low and chance_high; covered, how many
+    of the runs that did not fail make 95 % of them; and for peak_tilt [alpha], inf where it overturns, and
+    each of `DEMANDS` the percentiles _05 and _50, and _95, which `covered` of the runs do not exceed. NaN
+    where too few runs differ, see `stated`.
+    """
+    rows = []
+    numbers = ["peak_tilt", *(name for name in DEMANDS if name in members.columns)]
+    for group, runs in members[members["group"] != OTHER].groupby("group", sort=False):
+        known = runs[~runs["outcome"].isin(NO_PEAK)]
+        fell = known["outcome"] == "overturned"
+        single = all_alike(known)
+        chance = Interval(value=math.nan, low=math.nan, high=math.nan)
+        if not single:
+            chance = share_interval(int(fell.sum()), len(known))
+        values = known[numbers].assign(peak_tilt=known["peak_tilt"].mask(fell, math.inf))
+        values = values[:1] if single else values
+        upper = dict.fromkeys(numbers, (math.nan, 0))
+        if single or len(values) >= FEWEST:
+            upper = {name: covering(values[name].to_numpy(float), COVERED) for name in numbers}
+        rows.append(
+            {
+                "group": group,
+                "runs": len(runs),
+                "failed": len(runs) - len(known),
+                "overturned": int(fell.sum()),
+                "single": single,
+                "counts": group not in BESIDE_THE_PROBLEM,
+                **chance.columns("chance"),
+                "covered": upper["peak_tilt"][1],
+                **{
+                    f"{name}_{label}": quantile_interval(values[name].to_numpy(float), share).value
+                    for name in numbers
+                    for label, share in _QUANTILES.items()
+                },
+                **{f"{name}_95": value for name, (value, _) in upper.items()},
+            }
+        )
+    return pd.DataFrame(rows)

@@ -1,0 +1,541 @@
+"""Runs of a fragility: its methods, its plan, and the tasks of which each can be kept and repeated singly."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from numbers import Real
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from rockwobble.compare.metrics.pair import outcome_of, outcome_of_peak
+from rockwobble.compare.runs.choice import require_runnable, run_labels
+from rockwobble.compare.runs.execution import (
+    all_makers,
+    case_inputs,
+    engine_time,
+    makers_of,
+    run_tables,
+    simulate_run,
+)
+from rockwobble.compare.runs.progress import ProgressCallback
+from rockwobble.compare.storage.provenance import result_fingerprint
+from rockwobble.models import Case, GroundMotion, RockingBody, Run
+from rockwobble.models.bounds import OVERTURNED_TILT
+from rockwobble.models.case import REDUCED_MODELS
+from rockwobble.models.number_checks import quoted, require_each, require_increasing, require_one_of
+from rockwobble.models.support import MODELLED, RECESS, SUPPORTS
+from rockwobble.models.trace import NO_PEAK
+from rockwobble.multibody.scene import default_step
+
+from ..plans import FragilityPlan
+from .intensity import intensity, measures_of, uplift_scale
+from .tables import CONTACT_LOST
+
+Row = dict[str, float | str]  # of a run
+# The worse plane is no run of its own: of both planes, for each motion, the one that tilts more.
+WORSE_PLANE = "worse-plane"
+_PLANES = {"planar-x": 0.0, "planar-y": 0.5 * math.pi}
+MODEL_LABELS: Mapping[str, str] = {
+    **{support: support.model for support in MODELLED},
+    "planar-x": "planar x",
+    "planar-y": "planar y",
+    WORSE_PLANE: "worse plane",
+}
+
+
+def models_with_tendon() -> tuple[str, ...]:
+    """Return the names of the models with a tendon: on flat ground the base wanders from its anchor."""
+    return tuple(name for name in MODEL_LABELS if name not in MODELLED or SUPPORTS[name].guided)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Method:
+    """One method.
+
+    Attributes
+    ----------
+    label : str
+        Different for each method.
+    run : Run or None
+        None for the worse of both planes.
+    """
+
+    label: str
+    run: Run | None
+
+    @property
+    def support(self) -> str:
+        """What holds the cylinder: "recess", "flat", "ring" or "planar"."""
+        if self.run is None or self.run.is_planar:
+            return "planar"
+        return self.run.support
+
+
+def methods_of(given: Iterable[str | Run], *, restitution: float | str = 1.0) -> tuple[Method, ...]:
+    """Return the methods, in their order; both planes besides where the worse of them is asked for.
+
+    Parameters
+    ----------
+    given : iterable of str or Run
+        Names in `MODEL_LABELS`, and runs of engines or of reduced models with settings.
+    restitution : float or "momentum", optional
+        Restitution of the planar models, see `reduced.simulate`.
+
+    Raises
+    ------
+    ValueError
+        If a name is unknown, two methods are alike, there is none, or no planar one for a restitution.
+    """
+    chosen: list[str | Run] = []
+    for method in given:
+        if isinstance(method, Run):
+            chosen.append(method)
+            continue
+        require_one_of("a reduced model", method, MODEL_LABELS)
+        needed = (*_PLANES, method) if method == WORSE_PLANE else (method,)
+        chosen += [each for each in needed if each not in chosen]
+    if not chosen:
+        raise ValueError("a fragility needs at least one method, got none")
+    if restitution != 1.0 and not any(method in _PLANES for method in chosen):
+        raise ValueError(f"restitution is of planar models, got {restitution!r} without one")
+    loss = {} if restitution == 1.0 else {"restitution": restitution}
+    planar = {name: Run(None, RECESS, None, plane=azimuth, **loss) for name, azimuth in _PLANES.items()}
+    models: dict[str, Run] = {**{model.support: model for model in REDUCED_MODELS}, **planar}
+    labels = iter(run_labels([method for method in chosen if isinstance(method, Run)]))
+    found = tuple(
+        Method(label=next(labels), run=method)
+        if isinstance(method, Run)
+        else Method(label=MODEL_LABELS[method], run=models.get(method))
+        for method in chosen
+    )
+    for name, count in Counter(method.label for method in found).items():
+        if count > 1:
+            raise ValueError(f"the methods must differ, got {name!r} twice")
+    return found
+
+
+def own_model(method: Method, methods: Sequence[Method]) -> str:
+    """Return the label of the reduced model of the support of an engine, if there is one among the methods.
+
+    No reduced model knows the walls of a ring.
+    """
+    if method.run is None or method.run.is_model:
+        return ""
+    reduced = [other for other in methods if other.run is not None and other.run.is_model]
+    return next((other.label for other in reduced if other.support == method.support), "")
+
+
+# Computing time of a reduced run for each second of its motion, forces included or not, on one core [s]: a
+# rough mean of the models.
+_KERNEL_TIME, _SOLUTION_TIME = 3e-5, 1e-3
+# facts of a run that mean that the ground would have to pull, or did not touch the cylinder
+_LOST = ("tension", "lift_off")
+_RTOL = 1e-7
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Shaking:
+    """A cylinder under a ground motion as it is, the factors on the motion, and their places (levels)."""
+
+    case: Case
+    scales: tuple[float, ...]
+    steps: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Task:
+    """One cylinder by one method under some motions, each with some factors.
+
+    Attributes
+    ----------
+    name, label : str
+        Name and label of the cylinder and of the method.
+    run : Run
+    shakings : tuple of Shaking
+    contact : bool
+        Whether it is asked if a reduced model keeps its contact: that takes its forces.
+    """
+
+    name: str
+    label: str
+    run: Run
+    shakings: tuple[Shaking, ...]
+    contact: bool
+
+    @property
+    def points(self) -> list[tuple[str, int]]:
+        """Name of the motion and place of the level of each run."""
+        return [(shaking.case.name, step) for shaking in self.shakings for step in shaking.steps]
+
+    @property
+    def title(self) -> str:
+        """Description of the task, for the progress callback."""
+        more = f" and {len(self.shakings) - 1} more" if len(self.shakings) > 1 else ""
+        first = self.shakings[0]
+        scale = f" × {first.scales[0]:.3g}" if len(first.scales) == 1 else ""
+        return f"{self.name}, {self.label}, {first.case.name}{scale}{more}"
+
+    @property
+    def cost(self) -> float:
+        """Rough computing time [s]."""
+
+        def time(case: Case) -> float:
+            if self.run.is_model:
+                return case.length * (_KERNEL_TIME if self._of_peaks else _SOLUTION_TIME)
+            return engine_time(case, self.run)
+
+        return sum(time(shaking.case) * len(shaking.scales) for shaking in self.shakings)
+
+    def key(self) -> str:
+        """Return what identifies the results."""
+        own = {"contact": self.contact, "rtol": _RTOL} if self.run.is_model else {}
+        shakings = [case_inputs(shaking.case) | {"scales": shaking.scales} for shaking in self.shakings]
+        return result_fingerprint({"shakings": shakings, "run": self.run, **own}, makers_of(self.run))
+
+    @property
+    def _of_peaks(self) -> bool:
+        """Whether the batch kernel suffices: peaks of homogeneous cylinders, with or without a slab."""
+        own = self.shakings[0].case.cylinder
+        homogeneous = (own.height, own.transverse_inertia, own.axial_inertia) == (None, None, None)
+        return self.run.is_model and homogeneous and not self.contact
+
+    def rows(self) -> list[Row]:
+        """Return a row for each motion and factor, in their order."""
+        if self._of_peaks:
+            return [row for shaking in self.shakings for row in self._peaks(shaking)]
+        return [self._simulate(each.case, scale) for each in self.shakings for scale in each.scales]
+
+    def _peaks(self, shaking: Shaking) -> list[Row]:
+        from rockwobble import reduced
+
+        case, cylinder = shaking.case, shaking.case.cylinder
+        assert case.motion is not None
+        peaks = reduced.peak_tilts(
+            [cylinder.semidiagonal],
+            cylinder.tan_alpha,
+            case.motion,
+            shaking.scales,
+            workers=1,  # the processes share the cores already
+            gravity=case.gravity,
+            slab_mass_ratio=cylinder.slab_mass_ratio,
+            support=self.run.support,
+            **case.terms,
+            **{"rtol": _RTOL, **self.run.settings},
+        )[0]
+        return [
+            # of one without a peak its run says why
+            self._simulate(case, scale)
+            if math.isnan(peak)
+            else _row(peak / cylinder.alpha, outcome_of_peak(peak))
+            for peak, scale in zip(peaks.tolist(), shaking.scales, strict=True)
+        ]
+
+    def _simulate(self, case: Case, scale: float) -> Row:
+        assert case.motion is not None
+        run = self.run
+        if run.is_model:
+            run = Run(None, run.support, **{"rtol": _RTOL, **run.settings})
+        trace = simulate_run(replace(case, motion=case.motion.scaled(scale)), run)
+        lost = math.nan
+        if trace.outcome not in NO_PEAK and (self.contact or not run.is_model):
+            lost = float(any(fact.code in _LOST for fact in trace.diagnostics))
+        return _row(trace.peak_tilt / case.cylinder.alpha, outcome_of(trace), lost)
+
+
+def _row(peak_tilt: float, outcome: str, contact_lost: float = math.nan) -> Row:
+    """Row of a run; contact_lost is 1 or 0, NaN where nobody asked or the run failed."""
+    return {"peak_tilt": peak_tilt, "outcome": outcome, "contact_lost": contact_lost}
+
+
+def run_task(task: Task) -> pd.DataFrame:
+    """Return the table of a task: peak_tilt [alpha], outcome, contact_lost."""
+    return pd.DataFrame(task.rows())
+
+
+# The reduced runs of a task take about a second together: little is lost with it.
+_CHUNK_TIME = 1.0
+# of the default levels, as peak resultant over g tan(alpha): from a little above uplift to where a slender
+# body of ten metres has fallen under most records
+_LOWEST, _HIGHEST, LEVELS = 1.25, 12.0, 20
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RunPlan:
+    """Every cylinder under every motion at every level by every method.
+
+    Parameters
+    ----------
+    cylinders : mapping of str to Cylinder
+    motions : sequence of GroundMotion
+        At least two, with different names: they are what is resampled.
+    methods : sequence of Method
+    options : FragilityPlan
+        With levels (stripes: every motion is scaled to each of these intensities), or with scales or neither
+        (a cloud: factors on the motions as they are). A step factor is of runs that state no step.
+    stripes : mapping of str to tuple of int, optional
+        Places of the levels at which each motion is run, by its name. Default: every motion at every level.
+
+    Raises
+    ------
+    ValueError
+        If an axis is empty, repeats a value or holds one that is out of range, or an engine cannot run.
+    """
+
+    cylinders: Mapping[str, RockingBody]
+    motions: Sequence[GroundMotion]
+    methods: Sequence[Method]
+    options: FragilityPlan
+    stripes: Mapping[str, tuple[int, ...]] | None = None
+
+    def __post_init__(self) -> None:
+        asked = self.options
+        if not self.cylinders:
+            raise ValueError("a fragility needs at least one cylinder, got none")
+        names = [motion.name for motion in self.motions]
+        if len(set(names)) < 2 or len(set(names)) < len(names):
+            raise ValueError(
+                f"a fragility needs at least two ground motions with different names, got {len(names)} "
+                f"with {len(set(names))} names"
+            )
+        if asked.step_factor != 1.0 and not any(map(_has_default_step, self.methods)):
+            raise ValueError(
+                f"step_factor is for engines at their default time step, got {asked.step_factor!r}"
+            )
+        for cylinder in self.cylinders.values():
+            shakings = [self._shaking(cylinder, motion) for motion in self.motions]
+            for method in self.methods:
+                if method.run is not None:
+                    require_runnable(shakings[0].case, self._with_step(method.run, cylinder))
+
+    def motions_of_levels(self) -> list[int]:
+        """Return the number of motions at each level."""
+        counts = Counter(step for steps in (self.stripes or {}).values() for step in steps)
+        return [counts[step] for step in range(len(self.options.levels or ()))]
+
+    @property
+    def scales(self) -> tuple[float, ...]:
+        """Factors on the motions of a cloud."""
+        return (1.0,) if self.options.scales is None else tuple(map(float, self.options.scales))
+
+    def factors(self, cylinder: RockingBody, motion: GroundMotion) -> dict[int, float]:
+        """Return the factors on a motion by their place: one for each level of its, or of the cloud."""
+        asked = self.options
+        if asked.levels is None:
+            return dict(enumerate(self.scales))
+        own = intensity(asked.measure, motion, cylinder, gravity=asked.gravity, period=asked.period)
+        steps = range(len(asked.levels)) if self.stripes is None else self.stripes[motion.name]
+        return {step: float(asked.levels[step]) / own for step in steps}
+
+    def _shaking(self, cylinder: RockingBody, motion: GroundMotion) -> Shaking:
+        case = Case(
+            cylinder,
+            motion,
+            gravity=self.options.gravity,
+            friction=self.options.friction,
+            rolling_resistance=self.options.rolling_resistance,
+            tendon=self.options.tendon,
+            name=motion.name,
+        )
+        factors = self.factors(cylinder, motion)
+        return Shaking(case=case, scales=tuple(factors.values()), steps=tuple(factors))
+
+    @cached_property
+    def points(self) -> pd.DataFrame:
+        """One row for each cylinder, motion and level of it.
+
+        Place, factor, factor of uplift, whether the motion is synthetic, all intensities.
+        """
+        rows, asked = [], self.options
+        for name, cylinder in self.cylinders.items():
+            own = measures_of(self.motions, cylinder, gravity=asked.gravity, period=asked.period)
+            lifts = [uplift_scale(motion, cylinder, asked.gravity, asked.tendon) for motion in self.motions]
+            for index, motion in enumerate(self.motions):
+                for step, scale in self.factors(cylinder, motion).items():
+                    found = {measure: scale * values[index] for measure, values in own.items()}
+                    if asked.levels is not None:  # to the last bit one level for all
+                        found[asked.measure] = float(asked.levels[step])
+                    place = {"cylinder": name, "motion": motion.name, "step": step, "scale": scale}
+                    about = {"uplift_scale": lifts[index], "synthetic": motion.synthetic}
+                    rows.append(place | about | found)
+        return pd.DataFrame(rows)
+
+    def tasks(self) -> Iterator[Task]:
+        """Yield the runs: engines singly, reduced models some motions together."""
+        contact = CONTACT_LOST in (self.options.limits or ())
+        for name, cylinder in self.cylinders.items():
+            shakings = [self._shaking(cylinder, motion) for motion in self.motions]
+            single = [
+                replace(shaking, scales=(scale,), steps=(step,))
+                for shaking in shakings
+                for step, scale in zip(shaking.steps, shaking.scales, strict=True)
+            ]
+            for method in self.methods:
+                if method.run is None:
+                    continue
+                run = self._with_step(method.run, cylinder)
+                tasks = [
+                    Task(name=name, label=method.label, run=run, shakings=(shaking,), contact=contact)
+                    for shaking in (shakings if run.is_model else single)
+                ]
+                yield from _together(tasks) if run.is_model else tasks
+
+    def _with_step(self, run: Run, cylinder: RockingBody) -> Run:
+        if run.is_model or run.time_step is not None or self.options.step_factor == 1.0:
+            return run
+        step = self.options.step_factor * default_step(cylinder.semidiagonal, self.options.gravity)
+        return Run(run.engine, run.support, step, **run.settings)
+
+
+def motions_by_level(
+    given: Mapping[float, Sequence[GroundMotion]],
+) -> tuple[tuple[float, ...], list[GroundMotion], dict[str, tuple[int, ...]]]:
+    """Return the levels, all motions, and the places of the levels of each motion by its name.
+
+    Raises
+    ------
+    ValueError
+        If a level is none, a name comes twice at a level, or is that of another motion at another.
+    """
+    if not all(isinstance(level, Real) for level in given):
+        raise ValueError(f"motions must be a sequence of GroundMotion, or such by level, got {quoted(given)}")
+    levels = tuple(float(level) for level in require_increasing("levels", sorted(given)))
+    motions: dict[str, GroundMotion] = {}
+    places: dict[str, tuple[int, ...]] = {}
+    for place, level in enumerate(sorted(given)):
+        require_each(f"motions at {level:g}", given[level], GroundMotion)
+        for motion in given[level]:
+            known = motions.setdefault(motion.name, motion)
+            same = known.time_step == motion.time_step and np.array_equal(
+                known.acceleration, motion.acceleration
+            )
+            if place in places.get(motion.name, ()) or not same:
+                raise ValueError(f"motions must have different names, got {motion.name!r} twice")
+            places[motion.name] = (*places.get(motion.name, ()), place)
+    return levels, list(motions.values()), places
+
+
+def default_levels(
+    cylinders: Mapping[str, RockingBody], motions: Sequence[GroundMotion], asked: FragilityPlan
+) -> tuple[float, ...]:
+    """Return levels from a little above uplift to where most overturn, each the same factor above the last.
+
+    A tendon raises the lowest as it raises uplift, and the highest by its way to the balance besides. In
+    another measure than the peak acceleration: what the median motion has at these levels.
+    """
+    over = [
+        intensity(asked.measure, motion, cylinder, gravity=asked.gravity, period=asked.period)
+        / intensity("peak_acceleration", motion, cylinder, gravity=asked.gravity)
+        for cylinder in cylinders.values()
+        for motion in motions
+    ]
+    held = [_hold_of(body, asked) for body in cylinders.values()]
+    low, high = _LOWEST * min(of for of, _ in held), _HIGHEST * max(of * barrier for of, barrier in held)
+    middle = float(np.median(over))
+    return tuple(float(f"{middle * level:.3g}") for level in np.geomspace(low, high, LEVELS))
+
+
+def _hold_of(body: RockingBody, asked: FragilityPlan) -> tuple[float, float]:
+    """Return the factors by which a tendon raises the couple at uplift and the velocity to reach balance."""
+    from rockwobble import reduced
+
+    tendon = asked.tendon
+    if tendon is None:
+        return 1.0, 1.0
+    balance = reduced.balance_tilt_of_case(Case(body, duration=1.0, gravity=asked.gravity, tendon=tendon))
+    return tendon.uplift_factor(body), math.sqrt(min(balance, OVERTURNED_TILT) / body.alpha)
+
+
+def _together(singles: Sequence[Task]) -> Iterator[Task]:
+    """Join tasks of the same cylinder and method until they take about a second."""
+    size = max(1, round(_CHUNK_TIME / max(task.cost for task in singles)))
+    for i in range(0, len(singles), size):
+        part = singles[i : i + size]
+        yield replace(part[0], shakings=tuple(shaking for task in part for shaking in task.shakings))
+
+
+def _has_default_step(method: Method) -> bool:
+    return method.run is not None and not method.run.is_model and method.run.time_step is None
+
+
+# a task whose process died is tried this often: the process may have been ended from outside
+_TRIES = 2
+KEYS = ["cylinder", "motion", "step"]
+
+
+def run_plan(
+    plan: RunPlan,
+    kind: str,
+    *,
+    folder: str | Path | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    progress: ProgressCallback | None = None,
+) -> pd.DataFrame:
+    """Run all that a plan holds.
+
+    Parameters
+    ----------
+    plan : RunPlan
+    kind : str
+        Kind of the results, for the folder of finished tasks.
+    folder : str or Path, optional
+        Keeps each finished task: a second call, after whatever ended the first, repeats none.
+    workers, scheduler, progress : optional
+        As in `run_tasks`.
+
+    Returns
+    -------
+    DataFrame
+        One row for each cylinder, method, motion and level: cylinder, motion, step (place of the level),
+        method, peak_tilt [alpha], outcome, contact_lost (1, 0, or NaN where nobody asked). A run whose
+        process died failed.
+    """
+    tasks = list(plan.tasks())
+    with run_tables(
+        run_task,
+        tasks,
+        kind=kind,
+        key=Task.key,
+        label=lambda task: task.title,
+        folder=folder,
+        lost=lambda task: pd.DataFrame([_row(math.nan, "failed")] * len(task.points)),
+        cost=lambda task: task.cost,
+        tries=_TRIES,
+        makers=partial(all_makers, tuple(method.run for method in plan.methods if method.run is not None)),
+        workers=workers,
+        scheduler=scheduler,
+        progress=progress,
+    ) as found:
+        tables = [_with_labels(task, each) for task, each in zip(tasks, found, strict=True)]
+    table = pd.concat(tables, ignore_index=True)
+    worse = [worse_plane(table)] if any(method.run is None for method in plan.methods) else []
+    return pd.concat([table, *worse], ignore_index=True)
+
+
+def _with_labels(task: Task, table: pd.DataFrame) -> pd.DataFrame:
+    motions, steps = zip(*task.points, strict=True)
+    whole = table.assign(cylinder=task.name, motion=motions, step=steps, method=task.label)
+    return whole[[*KEYS, "method", "peak_tilt", "outcome", "contact_lost"]]
+
+
+def worse_plane(runs: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of the worse plane: the larger tilt of both, overturned where one is."""
+    parts = [runs[runs["method"] == MODEL_LABELS[name]].set_index(KEYS) for name in _PLANES]
+    of = {name: pd.concat([part[name] for part in parts], axis=1) for name in parts[0]}
+    ends = [(of["outcome"] == name).any(axis=1) for name in (*NO_PEAK, "overturned")]
+    return (
+        parts[0]
+        .assign(
+            method=MODEL_LABELS[WORSE_PLANE],
+            peak_tilt=of["peak_tilt"].max(axis=1, skipna=False),  # NaN where one failed
+            outcome=np.select(ends, [*NO_PEAK, "overturned"], parts[0]["outcome"]),
+            contact_lost=of["contact_lost"].max(axis=1, skipna=False),
+        )
+        .reset_index()
+    )

@@ -1,0 +1,497 @@
+"""Fragility: how probable it is that shaking of an intensity exceeds a limit, by several methods."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from rockwobble.compare.metrics.statistics import FEWEST
+from rockwobble.compare.runs.progress import ProgressCallback
+from rockwobble.compare.storage.manifest import Number
+from rockwobble.compare.storage.provenance import fingerprint
+from rockwobble.compare.storage.results import Results
+from rockwobble.models import GroundMotion, HazardCurve, RockingBody, Run
+from rockwobble.models.argument_kinds import with_argument_kinds
+from rockwobble.models.doubts import doubts_about
+from rockwobble.models.number_checks import require_each, require_positive
+from rockwobble.models.plain_json import Facts, fields_of, plain
+from rockwobble.models.records.units import sources_of
+from rockwobble.models.support import RECESS
+from rockwobble.models.trace import NO_PEAK
+
+from ..plans import FragilityPlan
+from .fit import TOO_FEW
+from .intensity import velocity_unit
+from .risk import RARE, exposures_of, measure_factor, risk_tables
+from .runs import (
+    MODEL_LABELS,
+    Method,
+    RunPlan,
+    default_levels,
+    methods_of,
+    models_with_tendon,
+    motions_by_level,
+    own_model,
+    run_plan,
+)
+from .tables import (
+    DEFAULT_LIMITS,
+    LIMITS,
+    OVERTURNED,
+    blocks_of,
+    contrast_table,
+    count_table,
+    curve_table,
+    curves_of,
+    efficiency_table,
+    fit_table,
+    gap_table,
+)
+
+KIND = "fragility"
+FEWEST_LEVELS = 2  # of one level a curve has no slope
+_COUNTED = ("cylinder", "method", "limit", "runs", "exceeded", "failed")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Fragility(Results, kind=KIND):
+    """Probabilities of exceeding limits by several methods, under the same motions.
+
+    Intervals are of 95 %, by resampling the motions; their ends are in columns NAME_low and NAME_high.
+
+    Attributes
+    ----------
+    runs : DataFrame
+        One row for each cylinder, motion, step (place of the level) and method: peak_tilt [alpha], outcome,
+        contact_lost (1, 0, NaN where nobody asked).
+    points : DataFrame
+        One row for each cylinder, motion and step: scale, and every intensity of `MEASURES`.
+    counts : DataFrame
+        n runs and k that exceed a limit, by cylinder, method, limit and intensity.
+    fits : DataFrame
+        One row for each cylinder, method and limit: kind ("fitted", "never", "always", "separated", "not
+        increasing"; "extrapolated", where the median lies beyond the intensities that were run; "one motion",
+        where all that exceed the limit, or all that do not, are of one; of fewer motions or levels than a
+        curve takes "too few", and no number but counts; then the tables below are empty), median (infinite or
+        0 where it lies beyond the intensities that were run, and so is that end of its interval),
+        median_if_exceeded and median_if_not (were all failed runs to exceed the limit, or none), dispersion,
+        runs, exceeded, failed, extrapolated, without_curve (share of the resamples), and of the goodness of
+        fit deviance, degrees, p and largest (difference of share and curve).
+    curves : DataFrame
+        The curves point by point: intensity, probability, low, high.
+    contrasts : DataFrame
+        One row for each two methods: ratio of the medians, dispersion_difference, within (least margin that
+        holds the interval of the ratio), verdict for the margin of the facts, ratio_least and ratio_most
+        (whatever the failed runs of both would have done).
+    efficiency : DataFrame
+        Dispersion of the first method by each measure, and over that of the best.
+    gaps : DataFrame
+        Gaps in the overturning region: motions that overturn a cylinder which stands under the same motion
+        made stronger, and bias of the median of an analysis that stops at the first overturning.
+
+    Its facts are cylinders, methods, measure, levels, margin, seed, and the hash of all inputs.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> shaking = rw.synthetic_motions(6, peak=1.0, seed=1)
+    >>> found = rw.fragility(pier, shaking, methods=["recess"], levels=[2, 4, 8], resamples=20, workers=1)
+    >>> overturned = found.fits[found.fits["limit"] == "overturned"]
+    >>> overturned[["method", "runs", "exceeded"]].to_dict("records")
+    [{'method': 'recess model', 'runs': 18, 'exceeded': 10}]
+    """
+
+    def headline(self) -> dict[str, Number]:
+        """Return the medians of overturning, of too few motions its counts, and the ratios of the medians."""
+        fits, contrasts = (
+            [row for row in table.to_dict("records") if row["limit"] == OVERTURNED]
+            for table in (self.fits, self.contrasts)
+        )
+        return {
+            f"{row['cylinder']}, {row['method']}, overturned of {row['runs']}": row["exceeded"]
+            if row["kind"] == TOO_FEW
+            else self.median_or_bound(row["cylinder"], row["median"])
+            for row in fits
+        } | {
+            f"{row['cylinder']}, {row['method']} / {row['against']}": known_ratio(row["ratio"])
+            for row in contrasts
+        }
+
+    def median_or_bound(self, cylinder: str, median: float) -> float | str:
+        """Return a median; of one that lies beyond the intensities that were run the bound, as "> 12"."""
+        if math.isnan(median) or 0.0 < median < math.inf:
+            return float(median)
+        run = self.counts.loc[self.counts["cylinder"] == cylinder, "intensity"]
+        return f"> {run.max():.3g}" if median > 0.0 else f"< {run.min():.3g}"
+
+    def risk(
+        self, hazard: HazardCurve, years: float = 50.0, *, total_dispersion: float | None = None
+    ) -> pd.DataFrame:
+        """Return the mean annual frequency of overturning at a site, with and without a fitted curve.
+
+        The first is the integral of the share of the motions that overturn over the hazard curve, exact for
+        a hazard that is a power law between its points and shares that are linear in the logarithm between
+        levels; so safe gaps count as they are.
+
+        Parameters
+        ----------
+        hazard : HazardCurve
+            Hazard of a measure that the motions of this fragility have.
+        years : float, optional
+            For the probability [years].
+        total_dispersion : float, optional
+            Dispersion of the lognormal curves, as that of FEMA P-695 which holds uncertainty of design, tests
+            and modelling. Default: that of the motions.
+
+        Returns
+        -------
+        DataFrame
+            For each cylinder and method annual_frequency [1/year] and its 95 % interval by resampling the
+            motions (where fewer than three overturn: from 0 to the bound of Clopper and Pearson at each
+            level); annual_frequency_most, if all motions overturned beyond the last level or the last point
+            of the hazard; annual_frequency_fit by the lognormal curve; probability of one or more in so many
+            years; margin, the median over the intensity that is exceeded with 2 % in 50 years; tail_share,
+            the part that rests on intensities beyond the last level or point; far_share, on factors above 5
+            on the motions; ratio to the first method, its interval of the same resamples; motions,
+            overturning_motions, failed (runs).
+
+        Raises
+        ------
+        ValueError
+            If the hazard is of a measure or a period that this fragility does not have.
+        """
+        return self._risk_tables(hazard, years, total_dispersion)[0]
+
+    def with_risk(
+        self, hazard: HazardCurve, years: float = 50.0, *, total_dispersion: float | None = None
+    ) -> Fragility:
+        """Return the same with the tables risk and contributions, and the hazard among its facts."""
+        risk, contributions = self._risk_tables(hazard, years, total_dispersion)
+        site = {"name": hazard.name, "title": hazard.title, "years": years, "rare": hazard.intensity_at(RARE)}
+        return replace(
+            self,
+            tables={**self.tables, "risk": risk, "contributions": contributions},
+            facts=plain({**self.facts, "hazard": site | {"total_dispersion": total_dispersion}}),
+            manifest=None,
+        )
+
+    def _risk_tables(
+        self, hazard: HazardCurve, years: float, total_dispersion: float | None
+    ) -> tuple[pd.DataFrame, pd.DataFrame]:
+        require_positive("years", years, "years")
+        if total_dispersion is not None:
+            require_positive("total_dispersion", total_dispersion)
+        facts = self.facts
+        of_hazard = {
+            name: measure_factor(hazard, body, facts["period"]) for name, body in facts["cylinders"].items()
+        }
+        blocks = blocks_of(self.runs, self.points, facts["limits"], str(facts["measure"]))
+        exposures, curves = exposures_of(blocks, self.points, of_hazard, total_dispersion)
+        weights = blocks.weights(int(facts["resamples"]), int(facts["seed"]))
+        return risk_tables(blocks, exposures, curves, hazard, weights=weights, years=years)
+
+    def sheets(self) -> dict[str, bytes]:
+        """Return the counts as CSV and as JSON, for tools that fit curves of their own."""
+        rows = self.counts.to_dict("records")
+        return {
+            "counts.csv": self.counts.to_csv(index=False).encode(),
+            "counts.json": (json.dumps(rows, indent=0, ensure_ascii=False) + "\n").encode(),
+        }
+
+    def _main_facts(self) -> dict[str, str]:
+        runs = self.runs
+        return {
+            "cylinders": str(runs["cylinder"].nunique()),
+            "motions": str(runs["motion"].nunique()),
+            "runs": str(len(runs)),
+            "failed": str(int(runs["outcome"].isin(NO_PEAK).sum())),
+            "methods": ", ".join(dict.fromkeys(runs["method"])),
+        }
+
+
+def known_ratio(ratio: float) -> float | None:
+    """Return a ratio of medians; None where one of them is only bounded."""
+    return float(ratio) if 0.0 < ratio < math.inf else None
+
+
+def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Facts) -> Fragility:
+    """Return the fragility by the runs of the plan that `facts` state."""
+    if runs["outcome"].isin(NO_PEAK).all():
+        raise ValueError(f"a fragility needs runs that do not fail, got {len(runs)} runs that all failed")
+    blocks = blocks_of(runs, points, facts["limits"], str(facts["measure"]))
+    weights = blocks.weights(int(facts["resamples"]), int(facts["seed"]))
+    fitted, drawn = curves_of(blocks), curves_of(blocks, weights)
+    tables = {
+        "runs": runs,
+        "points": points,
+        "counts": count_table(blocks),
+        "fits": fit_table(blocks, fitted, drawn),
+        "curves": curve_table(blocks, fitted, drawn),
+        "contrasts": contrast_table(blocks, fitted, drawn, weights, float(facts["margin"])),
+        "efficiency": efficiency_table(blocks, blocks.methods[0], weights),
+        "gaps": gap_table(blocks, weights),
+    }
+    levels = points.groupby("cylinder")[blocks.measure].nunique()
+    if blocks.fewest < FEWEST or levels.min() < FEWEST_LEVELS:
+        tables |= _counts_alone(tables)
+    return Fragility(tables=tables, facts=plain(facts))
+
+
+def _counts_alone(tables: Mapping[str, pd.DataFrame]) -> dict[str, pd.DataFrame]:
+    """Return the tables of too few motions or levels that differ: counts, and nothing fitted."""
+    fits = tables["fits"].assign(kind=TOO_FEW, extrapolated=False)
+    fitted = fits.columns.difference([*_COUNTED, "kind", "extrapolated"])
+    fits[fitted] = float("nan")
+    return {"fits": fits} | {
+        name: tables[name].iloc[:0] for name in ("curves", "contrasts", "efficiency", "gaps")
+    }
+
+
+Row = dict[str, Any]
+
+
+def main_contrasts(found: Fragility) -> dict[str, list[Row]]:
+    """Return the rows of the contrasts that answer the three questions on overturning, by question.
+
+    "planar": each planar method against the recess model; "support": the same method on another support
+    against the recess; "engine": an engine against the model of its support, and another engine on it.
+    """
+    methods: Mapping[str, Mapping[str, Any]] = found.facts["methods"]
+    answers: dict[str, list[Row]] = {"planar": [], "support": [], "engine": []}
+    rows = found.contrasts.to_dict("records") if len(found.contrasts) else []
+    for row in rows:
+        if row["limit"] != OVERTURNED:
+            continue
+        question, turned = _question(methods, str(row["method"]), str(row["against"]))
+        if question:
+            named = {str(name): value for name, value in row.items()}
+            answers[question].append(_inverse(named) if turned else named)
+    return answers
+
+
+def _question(methods: Mapping[str, Mapping[str, Any]], method: str, against: str) -> tuple[str, bool]:
+    """Return the question that a pair answers, and whether the pair is the other way round; "" for none."""
+    one, other = methods[method], methods[against]
+    engines, supports = ([each[name] for each in (one, other)] for name in ("engine", "support"))
+    if engines[0] == engines[1]:
+        recess = [support == RECESS for support in supports]
+        question = "planar" if engines[0] is None and "planar" in supports else "support"
+        return (question, recess[0]) if recess[0] != recess[1] else ("", False)
+    if None in engines:
+        turned = engines[0] is None
+        model, engine = (method, other) if turned else (against, one)
+        return ("engine", turned) if engine["own_model"] == model else ("", False)
+    return ("engine", False) if supports[0] == supports[1] else ("", False)
+
+
+def _inverse(row: Row) -> Row:
+    """Return a contrast with its methods exchanged."""
+
+    def inverse(value: float) -> float:
+        return math.inf if value == 0.0 else 1.0 / value
+
+    return row | {
+        "method": row["against"],
+        "against": row["method"],
+        "ratio": inverse(row["ratio"]),
+        "ratio_low": inverse(row["ratio_high"]),
+        "ratio_high": inverse(row["ratio_low"]),
+        # tables of earlier versions have no bounds
+        "ratio_least": inverse(row.get("ratio_most", math.nan)),
+        "ratio_most": inverse(row.get("ratio_least", math.nan)),
+        "dispersion_difference": -row["dispersion_difference"],
+        "dispersion_difference_low": -row["dispersion_difference_high"],
+        "dispersion_difference_high": -row["dispersion_difference_low"],
+    }
+
+
+_ALL = tuple(MODEL_LABELS)
+
+
+@with_argument_kinds
+def fragility(
+    cylinders: RockingBody | Mapping[str, RockingBody] | Sequence[RockingBody],
+    motions: Sequence[GroundMotion] | Mapping[float, Sequence[GroundMotion]],
+    *,
+    methods: Iterable[str | Run] = _ALL,
+    measure: str = "peak_acceleration",
+    levels: Sequence[float] | None = None,
+    scales: Sequence[float] | None = None,
+    period: float = 1.0,
+    limits: Sequence[str] | None = None,
+    margin: float = 0.1,
+    resamples: int = 1000,
+    seed: int = 0,
+    restitution: float | str = 1.0,
+    step_factor: float = 1.0,
+    friction: float = 1.0,
+    rolling_resistance: float = 0.0,
+    tendon_prestress: float = 0.0,
+    tendon_stiffness: float = 0.0,
+    gravity: float = 9.81,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    progress: ProgressCallback | None = None,
+    resume: str | Path | None = None,
+    source: str = "ground motions",
+) -> Fragility:
+    """Fit the probability of exceeding limits by several methods under the same motions.
+
+    Parameters
+    ----------
+    cylinders : Cylinder, or mapping of names or sequence of them
+    motions : sequence of GroundMotion, or mapping of levels to them
+        At least two, with different names, each scaled to every level. A mapping gives each level motions of
+        its own, which are scaled to it (multiple stripes): at least two a level, and no `levels` beside it.
+    methods : iterable of str or Run, optional
+        Reduced models by name, "recess", "flat", "planar-x", "planar-y", "worse-plane" (of the two, motion
+        by motion), and runs of engines with any support. Default: all five models, with a tendon all but
+        flat. The first is the one whose efficient measure is sought. In a ring, whose walls have no top, a
+        cylinder that leans on a wall beyond its balance at the end has overturned.
+    measure : str, optional
+        Intensity, one of `MEASURES`.
+    levels : sequence of float, optional
+        Intensities to which every motion is scaled (stripes). Default: 20, from a little above uplift to
+        where most overturn.
+    scales : sequence of float, optional
+        Factors on the motions as they are (a cloud), in the place of levels.
+    period : float, optional
+        Period of "sa" and "sa_mean" [s].
+    limits : sequence of str, optional
+        Limits, from `LIMITS`. Default: all but contact_lost.
+    margin : float, optional
+        Relative difference within which two medians are equivalent.
+    resamples, seed : int, optional
+        Number of resamples, and seed, of the bootstrap.
+    restitution : float or "momentum", optional
+        Restitution of the planar models.
+    step_factor : float, optional
+        On the default time step of engines.
+    friction : float, optional
+        Coefficient of cylinder and ground.
+    rolling_resistance : float, optional
+        Length of the couple against rolling [m].
+    tendon_prestress, tendon_stiffness : float, optional
+        Tendon prestress and tendon stiffness of a tendon in each body [weights of one column, and these per
+        base radius].
+    gravity : float, optional
+        g [m/s^2].
+    workers, scheduler, progress : optional
+        As in `run_tasks`.
+    resume : str or Path, optional
+        Folder that keeps each finished run: a second call, after whatever ended the first, repeats none.
+    source : str, optional
+        Name of the set of motions.
+
+    Returns
+    -------
+    Fragility
+        Failed runs are left out and counted, with bounds of what they may have changed.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, or an engine cannot run.
+    IncompleteError
+        If the Dask cluster cannot do the runs, as where a worker has another version of an engine.
+
+    Examples
+    --------
+    >>> from rockwobble.models import synthetic_motions
+    >>> from rockwobble.models import Cylinder
+    >>> column = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
+    >>> shaking = synthetic_motions(8, peak=1.0, seed=1)
+    >>> found = fragility(column, shaking, methods=["recess"], levels=[1.5, 3, 6], resamples=50, workers=1)
+    >>> overturned = found.counts[found.counts["limit"] == "overturned"]
+    >>> list(zip(overturned["intensity"], overturned["k"], overturned["n"]))
+    [(1.5, 0, 8), (3.0, 6, 8), (6.0, 8, 8)]
+    """
+    stripes: dict[str, tuple[int, ...]] | None = None
+    if isinstance(motions, Mapping):
+        if levels is not None or scales is not None:
+            raise ValueError("motions by level state the levels themselves: got levels or scales besides")
+        levels, motions, stripes = motions_by_level(motions)
+    require_each("motions", motions, GroundMotion)
+    bodies = _by_name(cylinders)
+    asked = FragilityPlan(
+        measure=measure,
+        levels=levels,
+        scales=scales,
+        period=period,
+        limits=limits,
+        margin=margin,
+        resamples=resamples,
+        seed=seed,
+        restitution=restitution,
+        step_factor=step_factor,
+        friction=friction,
+        rolling_resistance=rolling_resistance,
+        tendon_prestress=tendon_prestress,
+        tendon_stiffness=tendon_stiffness,
+        gravity=gravity,
+    )
+    if methods is _ALL and asked.tendon is not None:
+        methods = models_with_tendon()
+    chosen = methods_of(methods, restitution=asked.restitution)
+    if asked.levels is None and asked.scales is None and motions:  # without, the plan says what is missing
+        asked = replace(asked, levels=default_levels(bodies, motions, asked))
+    plan = RunPlan(cylinders=bodies, motions=motions, methods=chosen, options=asked, stripes=stripes)
+    doubts = doubts_about(motions=motions, cylinders=bodies.values(), gravities=[asked.gravity])
+    facts = _facts(plan) | {"source": source, "doubts": doubts, "record_sources": sources_of(motions)}
+    runs = run_plan(plan, KIND, folder=resume, workers=workers, scheduler=scheduler, progress=progress)
+    return fragility_of(runs, plan.points, facts)
+
+
+def _facts(plan: RunPlan) -> dict[str, object]:
+    asked = plan.options
+    named = ("measure", "period", "margin", "resamples", "seed", "gravity", "friction", "step_factor")
+    return {
+        "cylinders": {
+            name: {
+                "semidiagonal": body.semidiagonal,
+                "tan_alpha": body.tan_alpha,
+                "velocity_unit": velocity_unit(body, asked.gravity),
+            }
+            | ({"slab_mass_ratio": body.slab_mass_ratio} if body.slab_mass_ratio else {})
+            for name, body in plan.cylinders.items()
+        },
+        "motions": len(plan.motions),
+        "methods": {method.label: _description(method, plan.methods) for method in plan.methods},
+        "levels": None if asked.levels is None else list(map(float, asked.levels)),
+        "scales": list(plan.scales) if asked.levels is None else None,
+        # by level, where each has motions of its own
+        "motions_of_levels": None if plan.stripes is None else plan.motions_of_levels(),
+        "limits": [name for name in LIMITS if name in (asked.limits or DEFAULT_LIMITS)],
+        **{name: getattr(asked, name) for name in named},
+        **({"rolling_resistance": asked.rolling_resistance} if asked.rolling_resistance else {}),
+        **({} if asked.tendon is None else {"tendon": fields_of(asked.tendon)}),
+        "inputs": fingerprint([(task.name, task.label, task.key()) for task in plan.tasks()]),
+    }
+
+
+def _description(method: Method, methods: Sequence[Method]) -> dict[str, object]:
+    return {
+        "support": method.support,
+        "engine": method.run.engine if method.run is not None else None,
+        "own_model": own_model(method, methods),
+        "run": None if method.run is None else fields_of(method.run),
+    }
+
+
+def _by_name(
+    cylinders: RockingBody | Mapping[str, RockingBody] | Sequence[RockingBody],
+) -> dict[str, RockingBody]:
+    if isinstance(cylinders, Mapping):
+        return dict(cylinders)
+    several = [cylinders] if isinstance(cylinders, RockingBody) else cylinders
+    found = {f"R = {each.semidiagonal:g} m, tan α = {each.tan_alpha:g}": each for each in several}
+    if len(found) < len(several):
+        raise ValueError("cylinders of the same size and slenderness need names: give them as a mapping")
+    return found

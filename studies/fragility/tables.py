@@ -1,0 +1,508 @@
+"""The tables of a fragility: counts, fits with their bands, methods beside each other, gaps, efficiency.
+
+They are of blocks of motions and levels: where each run exceeds each limit. A gap in the overturning region
+is a level at which a motion leaves a cylinder standing that the same motion made weaker overturns. An
+incremental analysis raises each motion until the cylinder overturns and stops. What it takes for overturned
+above that level may stand, so its curve lies to the left of the one of all levels.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockwobble.compare.metrics.statistics import Interval
+from rockwobble.models.trace import NO_PEAK
+
+from .fit import (
+    EXTRAPOLATED,
+    FITTED,
+    KINDS,
+    ONE_MOTION,
+    Array,
+    Curves,
+    Sample,
+    bands,
+    goodness,
+    interval,
+    resamples,
+    spread_interval,
+)
+from .intensity import MEASURES
+
+OVERTURNED, CONTACT_LOST = "overturned", "contact_lost"
+# name: the tilt that is reached [alpha]; NaN where it is no tilt that decides
+LIMITS: Mapping[str, float] = {
+    "uplift": 0.0,
+    "0.1 alpha": 0.1,
+    "0.25 alpha": 0.25,
+    "0.5 alpha": 0.5,
+    "1 alpha": 1.0,
+    OVERTURNED: math.nan,
+    CONTACT_LOST: math.nan,
+}
+DEFAULT_LIMITS = tuple(name for name in LIMITS if name != CONTACT_LOST)
+
+
+def exceedance(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
+    """Return 1 where a run exceeds a limit, 0 where it does not, NaN where that is not known.
+
+    Overturned is what the run itself says: the side reaches the ground, or no later ground motion can stop
+    it. Such a run exceeds every limit: when in its fall it leaves the ground depends on where a method ends
+    the fall. A cylinder at rest has not uplifted; any tilt above zero is uplift.
+
+    Parameters
+    ----------
+    runs : DataFrame
+        Columns peak_tilt [alpha], outcome, contact_lost.
+    limit : str
+        One of `LIMITS`.
+    """
+    failed = (runs["outcome"].isin(NO_PEAK) | runs["outcome"].isna()).to_numpy(bool)
+    fell = (runs["outcome"] == "overturned").to_numpy(bool)
+    if limit == CONTACT_LOST:
+        lost = runs["contact_lost"].to_numpy(float)
+        found = np.where(fell & ~np.isnan(lost), 1.0, lost)
+    elif limit == OVERTURNED:
+        found = fell.astype(float)
+    else:
+        peaks = runs["peak_tilt"].to_numpy(float)
+        bound = LIMITS[limit]
+        found = (fell | (peaks > 0.0 if bound == 0.0 else peaks >= bound)).astype(float)
+    return np.where(failed, np.nan, found)
+
+
+Key = tuple[str, str, str]  # cylinder, method, limit
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Blocks:
+    """The runs as blocks of motions and levels.
+
+    Attributes
+    ----------
+    cylinders, methods, motions : list of str
+        In the order in which they were run.
+    intensities : mapping of (str, str) to ndarray, shape (R, S)
+        Logarithms by cylinder and measure; of a stripe the same for all motions.
+    made : ndarray of bool, shape (R, S)
+        Whether a motion is run at a level.
+    runs : mapping of (str, str) to DataFrame
+        By cylinder and method, the S levels of each of R motions one after the other; a row of NaN where
+        none is made.
+    limits : sequence of str
+        That are asked about.
+    measure : str
+        Intensity of the levels.
+    """
+
+    cylinders: list[str]
+    methods: list[str]
+    motions: list[str]
+    intensities: Mapping[tuple[str, str], Array]
+    made: NDArray[np.bool_]
+    runs: Mapping[tuple[str, str], pd.DataFrame]
+    limits: Sequence[str]
+    measure: str
+
+    @property
+    def fewest(self) -> int:
+        """Number of motions at the level that has fewest."""
+        return int(self.made.sum(axis=0).min())
+
+    def weights(self, count: int, seed: int) -> Array:
+        """Return resamples (count, R) of the motions, those with the same levels among themselves."""
+        strata = np.unique(self.made, axis=0, return_inverse=True)[1].ravel()
+        return resamples(len(self.motions), count, seed, strata=strata)
+
+    def known_keys(self) -> Iterator[Key]:
+        """Yield cylinder, method and limit where anything is known."""
+        for key in itertools.product(self.cylinders, self.methods, self.limits):
+            if not np.isnan(self.exceedance(*key)).all():
+                yield key
+
+    def sample(self, cylinder: str, method: str, limit: str, measure: str | None = None) -> Sample:
+        """Return the sample of a method and a limit, by one intensity; default: that of the levels."""
+        x = self.intensities[cylinder, measure or self.measure]
+        return Sample(x=x, y=self.exceedance(cylinder, method, limit))
+
+    def exceedance(self, cylinder: str, method: str, limit: str) -> Array:
+        """Return 1, 0 or NaN for each motion and level (R, S)."""
+        return exceedance(self.runs[cylinder, method], limit).reshape(len(self.motions), -1)
+
+    def of_points(self, points: pd.DataFrame, cylinder: str, column: str) -> Array:
+        """Return a column of the points of a cylinder for each motion and level (R, S)."""
+        own = points[points["cylinder"] == cylinder]
+        return _grid(own, self.motions, self.made.shape[1])[column].to_numpy(float).reshape(self.made.shape)
+
+    def has_measure(self, cylinder: str, measure: str) -> bool:
+        """Whether every motion has an intensity of this measure."""
+        return bool(np.isfinite(self.intensities[cylinder, measure]).all())
+
+
+def _grid(table: pd.DataFrame, motions: Sequence[str], steps: int) -> pd.DataFrame:
+    """Return a row for each motion and step, NaN where the table has none."""
+    whole = pd.MultiIndex.from_product([motions, range(steps)], names=["motion", "step"])
+    return table.set_index(["motion", "step"]).reindex(whole).reset_index()
+
+
+def blocks_of(runs: pd.DataFrame, points: pd.DataFrame, limits: Sequence[str], measure: str) -> Blocks:
+    """Return the blocks of a table of runs and of the table of the points at which they were made."""
+    cylinders, methods, motions = (
+        list(dict.fromkeys(table[name]))
+        for table, name in ((runs, "cylinder"), (runs, "method"), (points, "motion"))
+    )
+    shape = len(motions), int(points["step"].max()) + 1
+    own = {name: _grid(part, motions, shape[1]) for name, part in points.groupby("cylinder", sort=False)}
+    with np.errstate(divide="ignore"):
+        intensities = {
+            (str(name), measure): _whole(np.log(part[measure].to_numpy(float)).reshape(shape))
+            for name, part in own.items()
+            for measure in MEASURES
+        }
+    made = np.isfinite(next(iter(own.values()))["scale"].to_numpy(float)).reshape(shape)
+    grouped = runs.groupby(["cylinder", "method"], sort=False)
+    return Blocks(
+        cylinders=cylinders,
+        methods=methods,
+        motions=motions,
+        intensities=intensities,
+        made=made,
+        runs={(str(key[0]), str(key[1])): _grid(part, motions, shape[1]) for key, part in grouped},
+        limits=limits,
+        measure=measure,
+    )
+
+
+def _whole(x: Array) -> Array:
+    """Return intensities (R, S) with the mean of a level where a motion is not run at it."""
+    made = ~np.isnan(x)
+    if made.all():
+        return x
+    means = np.where(made, x, 0.0).sum(axis=0) / np.maximum(made.sum(axis=0), 1)
+    return np.where(made, x, means)
+
+
+# of a curve: from half of the lowest intensity to twice the highest
+_POINTS, _BEYOND = 60, 2.0
+ALL = "all"  # cylinders
+_KEY = ("cylinder", "method", "limit")
+_NO_FIT = {"deviance": math.nan, "degrees": 0, "p": math.nan, "largest": math.nan}
+
+
+def count_table(blocks: Blocks) -> pd.DataFrame:
+    """Return n runs and k exceedances at each intensity, from which other tools can fit curves of their own.
+
+    Of a cloud each run is a row with n = 1.
+    """
+    rows = []
+    for key in blocks.known_keys():
+        x, n, k = blocks.sample(*key).counts()
+        for place, (runs, over) in enumerate(zip(n[0], k[0], strict=True)):
+            rows.append(
+                {
+                    **dict(zip(_KEY, key, strict=True)),
+                    "measure": blocks.measure,
+                    "intensity": float(f"{math.exp(x[place]):.12g}"),
+                    "n": int(runs),
+                    "k": int(over),
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def fit_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, Curves]) -> pd.DataFrame:
+    """Return the curve of each cylinder, method and limit with its intervals and its goodness of fit."""
+    rows = []
+    motions = blocks.fewest
+    for key, found in fitted.items():
+        sample, many = blocks.sample(*key), drawn[key]
+        x, n, k = sample.counts()
+        centre, dispersion = float(found.centre[0]), float(found.dispersion[0])
+        kind, middle = KINDS[found.kinds[0]], float(found.median[0])
+        median = interval(middle, many.low, motions, above=many.high)
+        spread = spread_interval(dispersion, many.dispersion, motions)
+        held = goodness(x, n[0], k[0], centre, dispersion) if kind in (FITTED, EXTRAPOLATED) else _NO_FIT
+        rows.append(
+            {
+                **dict(zip(_KEY, key, strict=True)),
+                "kind": kind,
+                "runs": int(n.sum()),
+                "exceeded": int(k.sum()),
+                "failed": int((np.isnan(sample.y) & blocks.made).sum()),
+                **median.exponential().columns("median"),
+                **dict(zip(MEDIANS_OF_FAILED, _bounds_of_failed(sample, blocks.made), strict=True)),
+                **spread.columns("dispersion"),
+                # beyond the intensities that were run
+                "extrapolated": not x.min() <= middle <= x.max(),
+                "without_curve": float((many.kinds != KINDS.index(FITTED)).mean()),
+                **held,
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+# medians if all runs that failed exceed the limit, and if none does
+MEDIANS_OF_FAILED = ("median_if_exceeded", "median_if_not")
+# the least and the largest ratio of two medians, whatever the runs that failed would have done
+RATIOS_OF_FAILED = ("ratio_least", "ratio_most")
+
+
+def _bounds_of_failed(sample: Sample, made: NDArray[np.bool_] | bool = True) -> tuple[float, float]:
+    """Return the medians if all runs that were made and failed exceed the limit, and if none does."""
+    failed = np.isnan(sample.y) & made
+    least, most = (Sample(x=sample.x, y=np.where(failed, fate, sample.y)).curves() for fate in (1.0, 0.0))
+    return math.exp(least.median[0]), math.exp(most.median[0])
+
+
+def _ratio_bounds(pair: Sequence[Sample], made: NDArray[np.bool_]) -> tuple[float, float]:
+    """Return the least and the largest logarithm of a ratio of medians, whatever failed runs would do."""
+    first, second = (np.log(_bounds_of_failed(each, made)) for each in pair)
+    return float(first[0] - second[1]), float(first[1] - second[0])
+
+
+def curve_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, Curves]) -> pd.DataFrame:
+    """Return the curves point by point, each with its band.
+
+    One whose median lies below the intensities that were run is unknown there, and so is one above them.
+    Where all depends on one motion there is none.
+    """
+    tables = []
+    for key, found in fitted.items():
+        if KINDS[found.kinds[0]] == ONE_MOTION:
+            continue
+        sample, median = blocks.sample(*key), found.median[0]
+        first = sample.x.min() - math.log(_BEYOND) * (median != -math.inf)
+        x = np.linspace(first, sample.x.max() + math.log(_BEYOND) * (median != math.inf), _POINTS)
+        low, high = bands(drawn[key], x, blocks.fewest)
+        tables.append(
+            pd.DataFrame(
+                {
+                    **dict(zip(_KEY, key, strict=True)),
+                    "intensity": np.exp(x),
+                    "probability": found.at(x)[0],
+                    "low": low,
+                    "high": high,
+                }
+            )
+        )
+    columns = [*_KEY, "intensity", "probability", "low", "high"]
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=columns)
+
+
+def contrast_table(
+    blocks: Blocks,
+    fitted: Mapping[Key, Curves],
+    drawn: Mapping[Key, Curves],
+    weights: Array,
+    margin: float,
+) -> pd.DataFrame:
+    """Return the ratio of the medians and the difference of the dispersions of every two methods.
+
+    Of the same motions: a run that failed by one method leaves out that of the other, and both curves are of
+    the same resamples. Rows of the cylinder "all" are geometric means of the ratios over the cylinders. A run
+    may fail where the cylinder overturns, so that leaving it out is not neutral: the ratio lies between
+    ratio_least and ratio_most, for which the failed runs of one method exceed the limit and those of the
+    other do not.
+    """
+    rows: list[dict[str, float | str]] = []
+    pairs = itertools.combinations(blocks.methods, 2)
+    for limit, (against, method) in itertools.product(blocks.limits, pairs):
+        about = {"limit": limit, "method": method, "against": against}
+        found: list[tuple[Array, Array]] = []
+        ends: list[tuple[float, float]] = []
+        for cylinder in blocks.cylinders:
+            pair = [blocks.sample(cylinder, name, limit) for name in (method, against)]
+            unknown = (np.isnan(pair[0].y) | np.isnan(pair[1].y)) & blocks.made
+            if unknown.all():
+                continue
+            with np.errstate(divide="ignore", invalid="ignore"):  # of curves that have no median
+                ends.append(_ratio_bounds(pair, blocks.made))
+            own, many = ([of[cylinder, name, limit] for name in (method, against)] for of in (fitted, drawn))
+            if unknown.any():
+                pair = [Sample(x=each.x, y=np.where(unknown, np.nan, each.y)) for each in pair]
+                own, many = [each.curves() for each in pair], [each.curves(weights) for each in pair]
+            found.append((_differences(own), _differences(many)))
+            row = curve_contrast(*found[-1], blocks.fewest, margin)
+            rows.append({"cylinder": cylinder, **about, **row, **_ends(ends[-1:])})
+        if len(found) == len(blocks.cylinders) > 1:
+            with np.errstate(invalid="ignore"):  # of one beyond all levels and one below there is none
+                mean, means = (np.mean(each, axis=0) for each in zip(*found, strict=True))
+            row = curve_contrast(mean, means, blocks.fewest, margin)
+            rows.append({"cylinder": ALL, **about, **row, **_ends(ends)})
+    return pd.DataFrame(rows)
+
+
+def _ends(bounds: Sequence[tuple[float, float]]) -> dict[str, float]:
+    """Return the columns of geometric means of the bounds of a ratio, of their logarithms."""
+    with np.errstate(invalid="ignore"):
+        return {
+            name: float(np.exp(np.mean(end)))
+            for name, end in zip(RATIOS_OF_FAILED, np.transpose(bounds), strict=True)
+        }
+
+
+def _differences(pair: Sequence[Curves]) -> Array:
+    """Differences (4, B): of the medians' logarithms, of dispersions, and the first's least and largest."""
+    first, second = pair
+    with np.errstate(invalid="ignore"):  # of two curves that are never reached there is none
+        return np.array(
+            [
+                first.median - second.median,
+                first.dispersion - second.dispersion,
+                first.low - second.high,
+                first.high - second.low,
+            ]
+        )
+
+
+def curve_contrast(found: Array, drawn: Array, motions: int, margin: float) -> dict[str, float | str]:
+    """Return the contrast of two curves.
+
+    Parameters
+    ----------
+    found, drawn : ndarray, shapes (4, 1) and (4, B)
+        Differences of the logarithms of the medians, of the dispersions, and the least and the largest that
+        the first may be, and those of the resamples.
+    motions : int
+    margin : float
+    """
+    (centre, spread), (spreads, lows, highs) = found[:2, 0], drawn[1:]
+    ratio = interval(float(centre), lows, motions, above=highs).exponential()
+    return {
+        **ratio.columns("ratio"),
+        **interval(float(spread), spreads, motions).columns("dispersion_difference"),
+        "within": margin_of(ratio),
+        "verdict": ratio.about_one(margin),
+    }
+
+
+def margin_of(ratio: Interval) -> float:
+    """Return the least margin within which the whole interval of a ratio lies; infinite without an end."""
+    if not (ratio.low > 0.0 and math.isfinite(ratio.high)):
+        return math.inf
+    return max(ratio.high, 1.0 / ratio.low, 1.0) - 1.0
+
+
+def curves_of(blocks: Blocks, weights: Array | None = None) -> dict[Key, Curves]:
+    """Return by cylinder, method and limit the curve, or with weights (B, R) those of all resamples."""
+    return {key: blocks.sample(*key).curves(weights) for key in blocks.known_keys()}
+
+
+_GAP_COLUMNS = ["cylinder", "method", "motions", "motions_with_gaps", "runs", "runs_below_gaps"]
+_GAP_COLUMNS += ["median", "median_incremental", "bias", "bias_low", "bias_high"]
+
+
+def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
+    """Return, for each cylinder and method, how many motions have gaps and what stopping early does.
+
+    Empty where the motions are not all run at every level.
+
+    The columns: motions, motions_with_gaps (of these), runs, runs_below_gaps (those that overturn while a
+    stronger one stands), median of all levels and median_incremental, and bias, the second over the first,
+    with the interval of the same resamples.
+    """
+    rows = []
+    motions = len(blocks.motions)
+    several = blocks.cylinders if blocks.made.all() else []  # a motion of one level has no gap
+    for cylinder, method in itertools.product(several, blocks.methods):
+        sample = blocks.sample(cylinder, method, OVERTURNED)
+        if np.isnan(sample.y).all():
+            continue
+        stopped = Sample(x=sample.x, y=incremental(sample.y))
+        whole, early = sample.curves(), stopped.curves()
+        with np.errstate(invalid="ignore"):
+            value = float(early.median[0] - whole.median[0])
+            many_early, many = stopped.curves(weights), sample.curves(weights)
+            low, high = many_early.low - many.high, many_early.high - many.low
+            # of the same counts the same curve, wherever it lies
+            same = (stopped.counts(weights)[2] == sample.counts(weights)[2]).all(axis=1)
+            low, high = (np.where(same, 0.0, end) for end in (low, high))
+        found = below_gaps(sample.y)
+        rows.append(
+            {
+                "cylinder": cylinder,
+                "method": method,
+                "motions": motions,
+                "motions_with_gaps": int(found.any(axis=1).sum()),
+                "runs": int((~np.isnan(sample.y)).sum()),
+                "runs_below_gaps": int(found.sum()),
+                "median": float(np.exp(whole.median[0])),
+                "median_incremental": float(np.exp(early.median[0])),
+                **interval(value, low, motions, above=high).exponential().columns("bias"),
+            }
+        )
+    return pd.DataFrame(rows, columns=_GAP_COLUMNS)
+
+
+def below_gaps(y: Array) -> NDArray[np.bool_]:
+    """Return where a run (R, S) overturns while the same motion, stronger, leaves the cylinder standing.
+
+    Parameters
+    ----------
+    y : ndarray, shape (R, S)
+        1, 0, or NaN where a run failed, from the weakest level to the strongest.
+    """
+    stands = np.nan_to_num(y, nan=1.0) == 0.0
+    later = np.zeros_like(stands)
+    later[:, :-1] = np.logical_or.accumulate(stands[:, :0:-1], axis=1)[:, ::-1]
+    return np.asarray((y == 1.0) & later, dtype=np.bool_)
+
+
+def incremental(y: Array) -> Array:
+    """Return the outcome (R, S) of each level as an analysis has it that stops at the first overturning."""
+    fell = np.maximum.accumulate(np.nan_to_num(y, nan=0.0), axis=1)
+    return np.where(np.isnan(y) & (fell == 0.0), np.nan, fell)
+
+
+# Every run has an intensity of its own in each measure but that of the levels, and so many numbers in each
+# resample: as many resamples as keep this many numbers, and no fewer than give an end of an interval.
+_MOST_NUMBERS, _FEWEST = 150_000, 100
+
+
+def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFrame:
+    """Return the dispersion of one method by each measure, and over that of the best, of the same resamples.
+
+    The runs are the same for every measure: from where no motion overturns to where nearly all do, so that
+    it matters little by which measure their levels were chosen.
+    """
+    rows = []
+    motions = blocks.fewest
+    for cylinder in blocks.cylinders:
+        if (cylinder, method) not in blocks.runs:
+            continue
+        if np.isnan(blocks.exceedance(cylinder, method, OVERTURNED)).all():  # every run failed
+            continue
+        measures = [measure for measure in MEASURES if blocks.has_measure(cylinder, measure)]
+        samples = {m: blocks.sample(cylinder, method, OVERTURNED, m) for m in measures}
+        found = {m: sample.curves() for m, sample in samples.items()}
+        fitted = [m for m in measures if KINDS[found[m].kinds[0]] == FITTED]
+        if not fitted:
+            continue
+        size = samples[fitted[0]].y.size
+        some = weights[: max(_FEWEST, _MOST_NUMBERS // size)]
+        drawn = {m: samples[m].curves(some).dispersion for m in fitted}
+        best = min(fitted, key=lambda m: float(found[m].dispersion[0]))
+        for measure in fitted:
+            spread = float(found[measure].dispersion[0])
+            with np.errstate(divide="ignore", invalid="ignore"):  # separated resamples have no dispersion
+                ratios = np.log(drawn[measure] / drawn[best]) if measure != best else np.zeros(len(some))
+            value = math.log(spread / float(found[best].dispersion[0]))
+            rows.append(
+                {
+                    "cylinder": cylinder,
+                    "method": method,
+                    "measure": measure,
+                    "median": float(np.exp(found[measure].centre[0])),
+                    **spread_interval(spread, drawn[measure], motions).columns("dispersion"),
+                    **interval(value, ratios, motions).exponential().columns("over_best"),
+                    "best": measure == best,
+                }
+            )
+    return pd.DataFrame(rows)

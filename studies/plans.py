@@ -1,0 +1,309 @@
+"""Options of the studies, apart from what they run: help is there before anything heavy is imported."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from rockwobble.compare.runs.plan import Plan, option
+
+if TYPE_CHECKING:
+    from rockwobble.models import Case, Tendon
+
+_ROLLING = "Rolling resistance length, in m, below every base radius. 0: no loss."
+MASS = (
+    "Mass of the cylinder, or of one column without its slab, in t. With it forces are in kN and moments in "
+    "kNm."
+)
+# of each support that an engine may have, the name and the words; written out, as help loads no models
+SUPPORT_WORDS = "recess (ideal recess), flat (flat ground) or ring (recess with clearance)"
+_PLANE = "Azimuth of the plane of a planar motion, in rad. Default: motion in three dimensions."
+_RESTITUTION = (
+    "Ratio of tilt rates after and before an impact of planar motion. momentum: by conservation of "
+    "angular momentum about the new pivot. Default: 1, as in the paper."
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModelPlan(Plan):
+    """Settings of a reduced model."""
+
+    plane: float | None = option(None, _PLANE, group="Reduced model", least=-math.tau, most=math.tau)
+    restitution: float | str | None = option(None, _RESTITUTION, group="Reduced model", form="restitution")
+    rest_tilt: float | None = option(
+        None,
+        "Tilt / alpha below which the cylinder comes to rest. 0: never.",
+        group="Reduced model",
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Copies(Plan):
+    """Perturbed copies of a case: how many, and how different."""
+
+    copies: int = option(20, "Number of perturbed copies.", group="Members", least=2)
+    perturbation: float = option(
+        0.01,
+        "Relative standard deviation of the perturbations: of both horizontal components, or of tilt "
+        "and rolling rate at release.",
+        group="Members",
+        above=0.0,
+        most=0.1,
+    )
+    seed: int = option(0, "Random seed of the perturbations.", group="Members", least=0)
+
+    def perturbed(self, case: Case, count: int | None = None) -> list[Case]:
+        """Return perturbed copies of a case, as many as the plan says or `count`."""
+        from rockwobble.models import perturbed_copies
+
+        copies = self.copies if count is None else count
+        return perturbed_copies(case, copies, perturbation=self.perturbation, seed=self.seed)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AdvicePlan(Copies):
+    """Advice on one case: its copies, of which 5 % have to be a run or more, and its support."""
+
+    copies: int = option(100, "Number of perturbed copies.", group="Members", least=20, most=10_000)
+    seed: int = option(1, "Random seed of the perturbations.", group="Members", least=0)
+    support: str = option(
+        "recess",
+        f"Support: {SUPPORT_WORDS}.",
+        group="Method",
+    )
+    mass: float | None = option(
+        None,
+        MASS,
+        group="Cylinder",
+        above=0.0,
+    )
+
+    def __post_init__(self) -> None:
+        from rockwobble.models.support import support_named  # with numpy, which help can do without
+
+        Plan.__post_init__(self)
+        support_named(self.support)
+
+
+def tendon_of(prestress: float, stiffness: float) -> Tendon | None:
+    """Return the tendon of a prestress and a stiffness, as of `Tendon`; None where it does not pull."""
+    from rockwobble.models import Tendon  # with numpy, which help can do without
+
+    return Tendon(prestress=prestress, stiffness=stiffness) if prestress or stiffness else None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TendonPlan(Plan):
+    """The tendon of many bodies, in multiples of weight and base radius of each."""
+
+    tendon_prestress: float = option(
+        0.0,
+        "Prestress of a tendon along the axis / weight of one column.",
+        group="Tendon",
+        least=0.0,
+    )
+    tendon_stiffness: float = option(
+        0.0, "Stiffness of the tendon, in weights of one column per base radius.", group="Tendon", least=0.0
+    )
+
+    @property
+    def tendon(self) -> Tendon | None:
+        """The tendon; None where it does not pull."""
+        return tendon_of(self.tendon_prestress, self.tendon_stiffness)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FragilityPlan(TendonPlan):
+    """Fragility: intensities, limits, statistics, and what its methods have in common."""
+
+    measure: str = option(
+        "peak_acceleration",
+        "Intensity measure: peak_acceleration (/ g tan alpha), peak_velocity (times p / g tan alpha), "
+        "pga, pgv, sa or sa_mean.",
+        group="Intensity",
+        choices=("peak_acceleration", "peak_velocity", "pga", "pgv", "sa", "sa_mean"),
+    )
+    levels: Sequence[float] | None = option(
+        None,
+        "Intensities to which every motion is scaled: a list 1.5,2,3 or a logarithmic range "
+        "FROM:TO:COUNT. Default: 20, from just above uplift to where most motions overturn.",
+        group="Intensity",
+        form="levels",
+    )
+    scales: Sequence[float] | None = option(
+        None,
+        "Scale factors for the unscaled motions, instead of --levels: 1, or 0.5,1,2.",
+        group="Intensity",
+        form="numbers",
+        flag="--scale",
+    )
+    period: float = option(1.0, "Period of sa and sa_mean, in s.", group="Intensity", above=0.0)
+    limits: Sequence[str] | None = option(
+        None,
+        'Limit state: uplift, "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", overturned or '
+        "contact_lost; may be repeated. Default: all but contact_lost.",
+        group="Statistics",
+        choices=("uplift", "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", "overturned", "contact_lost"),
+        flag="--limit",
+    )
+    margin: float = option(
+        0.1,
+        "Equivalence margin: relative difference within which two medians count as equivalent.",
+        group="Statistics",
+        above=0.0,
+    )
+    resamples: int = option(
+        1000, "Number of bootstrap resamples for the intervals.", group="Statistics", least=2
+    )
+    seed: int = option(0, "Random seed of resamples and synthetic motions.", group="Statistics", least=0)
+    restitution: float | str = option(
+        1.0,
+        "Ratio of tilt rates after and before an impact of the planar models: a number, or momentum "
+        "(Housner). Default: 1, as in the 3D models.",
+        form="restitution",
+    )
+    step_factor: float = option(
+        1.0,
+        "Multiplies the default time step of the engines; probabilities need less accuracy than traces.",
+        above=0.0,
+    )
+    friction: float = option(1.0, "Friction coefficient between cylinder and ground.", above=0.0)
+    rolling_resistance: float = option(0.0, _ROLLING, least=0.0)
+    gravity: float = option(9.81, "Gravitational acceleration g, in m/s2.", above=0.0)
+
+    def __post_init__(self) -> None:
+        # with numpy, which help can do without
+        from rockwobble.models.number_checks import require_increasing
+
+        TendonPlan.__post_init__(self)
+        if self.levels is not None and self.scales is not None:
+            raise ValueError("levels scale the motions, scales take them as they are: got both")
+        for name in ("levels", "scales"):
+            if getattr(self, name) is not None:
+                require_increasing(name, getattr(self, name))
+        if self.limits is not None and not list(self.limits):
+            raise ValueError("a fragility needs at least one limit, got none")
+
+
+# Finest step of a search, over the intensity at which the peak of the horizontal resultant is g tan(alpha):
+# no peak acceleration is known to such a step.
+STEP = 0.015
+# Intensities drawn below each lowest. Where 0.6 % of all overturn, none of so many does once in twenty
+# times; with them a spectrum takes some five times as many runs as without.
+PROBES = 500
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpectrumPlan(TendonPlan):
+    """Overturning spectrum: its grid, what is run in a cell, and the search for the lowest intensities."""
+
+    SIZES: ClassVar = (0.5, 30.0, 100)  # [m]; with the intensities figure 6 of the paper
+    INTENSITIES: ClassVar = (1.0, 12.0, 100)  # [g tan alpha]
+    _MOST: ClassVar = 2000  # a map of more cells than a screen has pixels is a slip of the hand
+
+    semidiagonals: Sequence[float] | None = option(
+        None,
+        "Semidiagonals R, in m: a list 1,2,6 or an even range FROM:TO:COUNT. Default: 0.5:30:100.",
+        group="Grid",
+        form="numbers",
+        flag="--semidiagonal",
+    )
+    intensities: Sequence[float] | None = option(
+        None,
+        "Peaks of the horizontal resultant, in g tan alpha: a list or an even range. Default: 1:12:100.",
+        group="Grid",
+        form="numbers",
+        flag="--intensity",
+    )
+    slab_mass_ratio: float = option(
+        0.0, "Mass of a rigid slab / total mass of the columns that carry it.", group="Cylinder", least=0.0
+    )
+    gravity: float = option(9.81, "Gravitational acceleration g, in m/s2.", group="Ground motion", above=0.0)
+    rolling_resistance: float = option(0.0, _ROLLING, group="Ground motion", least=0.0)
+    support: str = option("recess", "Support of the 3D model: recess or flat.", choices=("recess", "flat"))
+    search_step: float = option(
+        STEP,
+        "Resolution of the overturning boundary, in g tan alpha.",
+        least=1e-5,  # a search in smaller steps would take a day
+    )
+    probes: int = option(
+        PROBES,
+        "Number of random intensities tried below each overturning boundary (bounds the missed share; "
+        "most of the computing time). 0: none.",
+        least=0,
+    )
+
+    def __post_init__(self) -> None:
+        from rockwobble.models.number_checks import require_increasing
+
+        TendonPlan.__post_init__(self)
+        for name in ("semidiagonals", "intensities"):
+            given = getattr(self, name)
+            if given is not None and len(require_increasing(name, given)) > self._MOST:
+                raise ValueError(f"{name} must be at most {self._MOST} numbers, got {len(given)}")
+
+
+@dataclass(frozen=True, kw_only=True)  # no slots: two classes that have them are not inherited together
+class QuickPlan(Plan):
+    """Extent of a published study."""
+
+    quick: bool = option(
+        False,
+        "Reduced extent: coarser maps, fewer points, members and conditions (about two minutes on two "
+        "idle cores).",
+        flag="--quick",
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ValidityPlan(TendonPlan, QuickPlan):
+    """Extent of the study of the limits, and the slab and the tendon of its cylinders."""
+
+    slab_mass_ratio: float = option(
+        0.0,
+        "Mass of a rigid slab that only translates / mass of the column under it. 0: no slab.",
+        group="Cylinder",
+        least=0.0,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GridPlan(TendonPlan):
+    """Grid of reduced runs from rest: its axes, and what all runs have in common."""
+
+    # [m], [-], [-]: from, to and count
+    DEFAULTS: ClassVar = {
+        "semidiagonals": (0.5, 30.0, 100),
+        "tan_alphas": (0.2, 0.2, 1),
+        "scales": (0.5, 6.0, 100),
+    }
+
+    semidiagonals: Sequence[float] | None = option(
+        None,
+        "Semidiagonals R, in m: a list 1,2,6 or an even range FROM:TO:COUNT. Default: 0.5:30:100.",
+        group="Grid",
+        form="numbers",
+        flag="--semidiagonal",
+    )
+    tan_alphas: Sequence[float] | None = option(
+        None,
+        "Slenderness b/h: a list or a range. Default: 0.2.",
+        group="Grid",
+        form="numbers",
+        flag="--tan-alpha",
+    )
+    scales: Sequence[float] | None = option(
+        None,
+        "Scale factors of the records: a list or a range. Default: 0.5:6:100.",
+        group="Grid",
+        form="numbers",
+        flag="--scale",
+    )
+    gravity: float = option(9.81, "Gravitational acceleration g, in m/s2.", group="Ground motion", above=0.0)
+    slab_mass_ratio: float = option(
+        0.0, "Mass of a rigid slab / total mass of the columns that carry it.", group="Cylinder", least=0.0
+    )
+    plane: float | None = option(None, _PLANE, group="Reduced models", least=-math.tau, most=math.tau)
+    restitution: float | str | None = option(None, _RESTITUTION, group="Reduced models", form="restitution")

@@ -1,0 +1,120 @@
+"""Single run: the trace of one reduced model or engine, and from when on perturbed copies diverge."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
+
+from rockwobble.compare.runs.execution import Job, job_fingerprint, simulate_all, simulate_run
+from rockwobble.compare.runs.progress import ProgressCallback, stages
+from rockwobble.compare.storage.manifest import Number, Stored
+from rockwobble.compare.storage.results import Results
+from rockwobble.models import Case, Run, Trace
+from rockwobble.models.plain_json import plain
+from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, case_facts, to_parquet
+
+from .advice.trust import BAND_STEP, copies_part_at, with_time_to_fall
+from .plans import AdvicePlan
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_FILE = "run.parquet"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class SingleRun(Results, kind="run"):
+    """One run.
+
+    Attributes
+    ----------
+    tables : mapping of str to DataFrame
+        run: the samples of the trace.
+    facts : mapping
+        run: its label; case and result: what the samples do not hold; single_trace: from when on copies of
+        it part [s], by how much their input is off, and the command that says what they do; columns of the
+        files.
+    trace : Trace
+    """
+
+    trace: Trace
+
+    def headline(self) -> Mapping[str, Number]:
+        """Return outcome, peak tilt, uplift and number of passes."""
+        trace = self.trace
+        return {
+            "outcome": trace.outcome,
+            "peak tilt [alpha]": trace.peak_tilt / trace.case.cylinder.alpha,
+            "uplift [s]": trace.uplift_time,
+            "passes": len(trace.passes),
+        }
+
+    def sheets(self) -> Mapping[str, bytes]:
+        """Return the trace as `Trace.load` reads it, its samples and its passes as CSV."""
+        trace = self.trace
+        return {
+            _FILE: to_parquet(self.tables["run"], trace.to_plain(), trace.case),
+            "run.csv": self.tables["run"].to_csv(index=False).encode(),
+            "passes.csv": trace.passes.to_csv(index=False).encode(),
+        }
+
+    @classmethod
+    def of_stored(cls, stored: Stored) -> Self:
+        """Return the results whose files are whole."""
+        trace = Trace.load(stored.folder / _FILE)
+        return cls(tables=stored.tables(), facts=stored.manifest.about, manifest=stored.manifest, trace=trace)
+
+    def plot(self, part: str | None = None) -> Figure:
+        """Return a matplotlib figure of the trace."""
+        return self.trace.plot(part)
+
+
+def single_run(
+    case: Case, run: Run, *, answer: str = "", progress: ProgressCallback | None = None
+) -> SingleRun:
+    """Return a run, and from when on copies of its reduced model diverge, by the rule of an advice.
+
+    Parameters
+    ----------
+    case : Case
+    run : Run
+    answer : str, optional
+        Command that says what the copies do.
+    progress : callable, optional
+        Called with a `Progress` at the start and at the end of each stage.
+    """
+    model = run if run.is_model else run.own_model
+    plan = AdvicePlan()
+    stage = stages(progress, [1.0, 1.0])
+    with stage(Job(case=case, run=run).label):
+        # an engine in a process of its own, so that Ctrl-C also stops it in the middle of a long call
+        (trace,) = simulate_all([Job(case=case, run=run)], workers=1 if model == run else 2)
+    part = math.inf
+    if not len(trace.time):
+        return single_run_of(trace, part, answer, plan.perturbation)
+    with stage(f"{plan.copies} copies of the {model}"):
+        own = trace if model == run else simulate_run(case, model)
+        if len(own.time) and math.isfinite(own.uplift_time):
+            case = with_time_to_fall(case, own)
+            copies = [simulate_run(each, model, sample_step=BAND_STEP) for each in plan.perturbed(case)]
+            part = copies_part_at(case, own, copies)
+    return single_run_of(trace, part, answer, plan.perturbation)
+
+
+def single_run_of(
+    trace: Trace, part: float = math.inf, answer: str = "", perturbation: float = AdvicePlan().perturbation
+) -> SingleRun:
+    """Return the results of a trace, and from when on perturbed copies of it diverge [s]."""
+    job = Job(case=trace.case, run=trace.run)
+    left_out = ("rest_intervals", "extrema", "passes")
+    facts = {
+        "inputs": job_fingerprint(job),
+        "run": job.label,
+        "case": case_facts(trace.case),
+        "result": {name: value for name, value in trace.to_plain().items() if name not in left_out},
+        "single_trace": {"copies_part": part, "perturbation": perturbation, "answer": answer},
+        "columns": {"run.csv": COLUMNS, "passes.csv": PASS_COLUMNS},
+    }
+    return SingleRun(tables={"run": trace.to_frame()}, facts=plain(facts), trace=trace)

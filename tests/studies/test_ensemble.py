@@ -1,0 +1,244 @@
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockwobble import ensemble, reduced, sweep
+from rockwobble.compare.runs import execution
+from rockwobble.compare.runs.execution import Job
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    GroundMotion,
+    InitialState,
+    Run,
+    Suite,
+    Trace,
+    el_centro_1940,
+    far_field_motions,
+    perturbed_copies,
+    synthetic_motions,
+)
+from rockwobble.models.records import p695
+from rockwobble.studies.ensemble import Ensemble, ensemble_of
+
+ROUNDING = 1e-12
+RECESS = Run(None, "recess")
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+CASE = Case(PIER, initial=InitialState(0.1, rolling_rate=0.5), duration=1.0, name="release")
+
+
+@pytest.mark.slow
+def test_what_a_wall_holds_beyond_its_balance_has_overturned_in_every_study():
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    cases = [
+        Case(cylinder, initial=InitialState(share * cylinder.alpha), duration=3.0, name=f"{share}")
+        for share in (0.5, 1.3, 1.4)
+    ]
+    run = Run("mujoco", "ring", time_step=1e-3, ring_clearance=0.01, ring_inclination=0.5)
+    found = ensemble(cases, runs=[run], models=[], workers=1)
+    assert found.members["outcome"].tolist()[1:] == ["overturned", "overturned"]
+    assert (found.members["peak_tilt"] < 0.5 * math.pi / cylinder.alpha).all()
+    swept = sweep(Suite(cases, [run]), workers=1).table
+    assert swept["outcome"].tolist() == found.members["outcome"].tolist()
+
+
+def test_copies_are_perturbed_by_the_stated_size():
+    members = perturbed_copies(CASE, 400, perturbation=0.01, seed=5)
+    tilts = np.array([case.initial.tilt for case in members]) / 0.1 - 1.0
+    rates = np.array([case.initial.rolling_rate for case in members]) / 0.5 - 1.0
+    # the standard deviation of 400 draws is known to 1/sqrt(800)
+    assert np.std(tilts) == pytest.approx(0.01, rel=4.0 / math.sqrt(800.0))
+    assert np.std(rates) == pytest.approx(0.01, rel=4.0 / math.sqrt(800.0))
+    assert abs(np.corrcoef(tilts, rates)[0, 1]) < 4.0 / math.sqrt(400.0)
+    assert len({case.name for case in members}) == 400
+
+
+def test_each_component_of_a_copied_record_has_a_factor_of_its_own():
+    motion = el_centro_1940(vertical=True)
+    copies = perturbed_copies(Case(PIER, motion), 400, perturbation=0.01, seed=5)
+    given = motion.acceleration
+    factors = np.empty((400, 2))
+    for row, copy in zip(factors, copies, strict=True):
+        made = copy.motion.acceleration
+        row[:] = made[200, :2] / given[200, :2]
+        np.testing.assert_allclose(made, given * [*row, 1.0], rtol=ROUNDING)  # the vertical as it is
+    # the standard deviation of 400 draws is known to 1/sqrt(800)
+    assert np.std(factors, axis=0) == pytest.approx([0.01, 0.01], rel=4.0 / math.sqrt(800.0))
+    assert np.mean(factors, axis=0) == pytest.approx([1.0, 1.0], abs=4.0 * 0.01 / math.sqrt(400.0))
+    assert abs(np.corrcoef(*factors.T)[0, 1]) < 4.0 / math.sqrt(400.0)
+
+
+def test_synthetic_motions_repeat_with_their_seed_and_have_their_peak():
+    first, again, other = (synthetic_motions(3, peak=4.0, seed=s, duration=5.0) for s in (1, 1, 2))
+    assert np.array_equal(first[2].acceleration, again[2].acceleration)
+    assert not np.array_equal(first[2].acceleration, other[2].acceleration)
+    assert [motion.peak for motion in first] == pytest.approx([4.0] * 3, abs=1e-9)
+    assert first[0].duration == pytest.approx(5.0)
+    assert {motion.acceleration.shape for motion in first} == {(501, 2)}
+
+
+def test_a_ring_is_held_against_the_recess_model(monkeypatch):
+    monkeypatch.setattr(execution, "run_job", lambda job: made_up(job, job.case.initial.tilt))
+    runs = [Run("mujoco", support) for support in ("recess", "flat", "ring")]
+    methods = ensemble(CASE, runs=runs, copies=2, workers=1).methods.set_index("method")
+    assert methods["own_model"].to_dict() == {
+        "recess model": "",
+        "flat-ground model": "",
+        "mujoco recess": "recess model",
+        "mujoco flat": "flat-ground model",
+        "mujoco ring": "recess model",
+    }
+
+
+def made_up(job: Job, peak: float, outcome: str = "stands") -> Trace:
+    """Return a run that has another peak and outcome than it came to."""
+    return dataclasses.replace(reduced.simulate(job.case, sample_step=1.0), peak_tilt=peak, outcome=outcome)
+
+
+def test_failed_runs_are_counted_and_named(monkeypatch):
+    def simulate(job: Job) -> Trace:
+        if job.label == "flat-ground model" and job.case.name.endswith("#2"):
+            return made_up(job, math.nan, "failed")
+        return made_up(job, job.case.initial.tilt)
+
+    monkeypatch.setattr(execution, "run_job", simulate)
+    found = ensemble(CASE, runs=[], copies=7, workers=1)
+    methods = found.methods.set_index("method")
+    assert methods["failed"].to_dict() == {"recess model": 0, "flat-ground model": 1}
+    assert methods.loc["flat-ground model", "failed_members"] == "release #2"
+    assert found.contrasts.loc[0, ["count", "masked"]].tolist() == [6, "release #2"]
+    assert len(found.members) == 14
+    # of six members that do not differ; what failed has no part in the counts and quantiles of its method
+    assert found.contrasts.loc[0, ["compared", "ratio"]].tolist() == [6, 1.0]
+    assert methods.loc["flat-ground model", ["runs", "uplifted", "overturned"]].tolist() == [7, 6, 0]
+    assert math.isfinite(methods.loc["flat-ground model", "peak_median"])
+
+
+def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch):
+    cases = [dataclasses.replace(CASE, name=name) for name in "abcdef"]
+    # past its balance at the end: what that is called is the matter of who ran it
+    runs = {
+        "recess model": made_up(Job(case=cases[0], run=RECESS), 1.5 * PIER.alpha),
+        "flat-ground model": made_up(Job(case=cases[0], run=RECESS), 0.5 * math.pi, "overturned"),
+    }
+    monkeypatch.setattr(execution, "run_job", lambda job: runs[job.label])
+    found = ensemble(cases, runs=[], workers=1)
+    for method, run in runs.items():
+        rows = found.members[found.members["method"] == method]
+        assert rows["outcome"].tolist() == [run.outcome] * 6
+        assert rows["peak_tilt"].tolist() == pytest.approx([run.peak_tilt / PIER.alpha] * 6, abs=ROUNDING)
+    assert found.methods["overturned"].tolist() == [0, 6]
+    assert found.methods["peak_median"].tolist() == [pytest.approx(1.5, abs=ROUNDING), math.inf]
+
+
+def test_members_are_paired_by_name_and_not_by_row(monkeypatch):
+    monkeypatch.setattr(execution, "run_job", lambda job: made_up(job, job.case.initial.tilt))
+    found = ensemble(CASE, runs=[], copies=8, workers=1)
+    shuffled = found.members.sample(frac=1.0, random_state=1)
+    assert ensemble_of(shuffled, found.facts).contrasts.loc[0, "ratio_95_low"] == 1.0
+    with pytest.raises(ValueError, match="one run by each method"):
+        ensemble_of(pd.concat([found.members, found.members[:1]]), found.facts)
+
+
+def test_a_stored_ensemble_comes_back_with_the_same_bits(tmp_path):
+    found = ensemble(CASE, runs=[], copies=3, workers=1)
+    found.save(tmp_path)
+    again = Ensemble.load(tmp_path)
+    assert again.contrasts.equals(found.contrasts)
+    assert again.methods.equals(found.methods)
+    assert again.facts == found.facts
+
+
+def test_a_failed_run_is_no_member_that_stands():
+    found = ensemble(CASE, runs=[], copies=4, workers=1)
+    members = found.members
+    recess = members["method"] == "recess model"
+    members.loc[recess, "outcome"] = ["overturned", "overturned", "stands", "failed"]
+    # the last is how far it came before it failed: no peak
+    members.loc[recess, "peak_tilt"] = [8.0, 8.0, 0.3, 0.4]
+    again = ensemble_of(members, found.facts)
+    assert again.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
+    turned = ensemble_of(members, {**found.facts, "methods": {"flat-ground model": "", "recess model": ""}})
+    assert turned.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
+    assert again.methods.loc[0, ["runs", "uplifted", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
+
+
+def test_bounds_hold_whatever_the_runs_that_failed_would_have_done(monkeypatch):
+    monkeypatch.setattr(execution, "run_job", lambda job: made_up(job, job.case.initial.tilt))
+    found = ensemble(CASE, runs=[], copies=9, perturbation=0.05, workers=1)
+    whole = found.methods.set_index("method")
+    assert (whole["peak_median_least"] == whole["peak_median"]).all()
+    failed = found.members.copy()
+    lost = failed.index[failed["method"] == "flat-ground model"][[1, 4]]
+    failed.loc[lost, "outcome"] = "failed"
+    bounds = ensemble_of(failed, found.facts)
+    median, ratio = bounds.methods.set_index("method").loc["flat-ground model"], bounds.contrasts.loc[0]
+    assert ratio["ratio_least"] <= ratio["ratio"] <= ratio["ratio_most"]
+    told = []
+    for fates in itertools.product(("overturned", "stands"), repeat=2):
+        known = found.members.copy()
+        known.loc[lost, "outcome"] = fates
+        known.loc[lost, "peak_tilt"] = [math.pi if fate == "overturned" else 1e-9 for fate in fates]
+        again = ensemble_of(known, found.facts)
+        told.append(
+            (
+                again.methods.set_index("method").loc["flat-ground model", "peak_median"],
+                again.contrasts.loc[0],
+            )
+        )
+        assert median["peak_median_least"] <= told[-1][0] <= median["peak_median_most"]
+        assert ratio["ratio_least"] <= told[-1][1]["ratio"] <= ratio["ratio_most"]
+    assert told[0][0] == median["peak_median_most"]
+    assert told[-1][0] == median["peak_median_least"]
+    assert {told[0][1]["ratio"], told[-1][1]["ratio"]} == {ratio["ratio_least"], ratio["ratio_most"]}
+
+
+def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monkeypatch, tmp_path):
+    first = ensemble(CASE, runs=[], copies=3, workers=1, resume=tmp_path)
+    monkeypatch.setattr(execution, "run_job", lambda job: pytest.fail("ran again"))
+    again = ensemble(CASE, runs=[], copies=3, workers=1, resume=tmp_path)
+    assert first.members.equals(again.members)
+    assert first.contrasts.equals(again.contrasts)
+    assert first.facts == again.facts
+    assert {
+        len(pd.read_parquet(path)) for path in (tmp_path / "finished" / "ensemble").glob("*.parquet")
+    } == {1}
+
+
+def test_every_input_is_in_the_hash_of_an_ensemble():
+    hashes = [
+        ensemble(CASE, runs=[], workers=1, **options).facts["inputs"]
+        for options in (
+            {"copies": 2},
+            {"copies": 3},
+            {"copies": 2, "seed": 1},
+            {"copies": 2, "models": [RECESS]},
+        )
+    ]
+    assert len(set(hashes)) == 4
+
+
+def test_far_field_motions_have_their_peak_and_their_names(monkeypatch):
+    def made_up(pair: int) -> GroundMotion:
+        return GroundMotion([[0.0, 0.0], [float(pair), 0.0]], 0.01, f"pair {pair}")
+
+    monkeypatch.setattr(p695, "p695_far_field", made_up)
+    motions = far_field_motions(peak=3.0)
+    assert [motion.peak for motion in motions] == pytest.approx([3.0] * 22, abs=ROUNDING)
+    assert [motion.name for motion in motions] == [f"pair {pair}" for pair in range(1, 23)]
+    with pytest.raises(ValueError, match="peak must be positive"):
+        far_field_motions(peak=-1.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"), [({"copies": 1}, "at least 2"), ({"perturbation": 0.5}, "perturbation")]
+)
+def test_bad_input_is_refused(options, message):
+    with pytest.raises(ValueError, match=message):
+        ensemble(CASE, runs=[], **options)

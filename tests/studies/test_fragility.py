@@ -1,0 +1,346 @@
+"""A fragility of the reduced models: the same motions for all, limits, gaps, contrasts, resuming."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockwobble import fragility, reduced
+from rockwobble.compare import IncompleteError
+from rockwobble.compare.runs import execution
+from rockwobble.models import Case, Cylinder, Run, WobblingFrame, synthetic_motions
+from rockwobble.studies import Fragility
+from rockwobble.studies.fragility import runs as running
+from rockwobble.studies.fragility.study import fragility_of
+from rockwobble.studies.fragility.tables import below_gaps, exceedance, incremental
+
+COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
+LEVELS = (1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.5, 8.0)
+COUNT = len(LEVELS)
+MOTIONS = synthetic_motions(12, peak=1.0, seed=4, duration=10.0)
+RECORDS = Path(__file__).parents[2] / "models" / "records"
+NAN = math.nan
+
+
+@pytest.fixture(scope="module")
+def found() -> Fragility:
+    return fragility(COLUMN, MOTIONS, levels=LEVELS, resamples=60, workers=1)
+
+
+def rows(found: Fragility, method: str) -> pd.DataFrame:
+    return found.runs[found.runs["method"] == method].sort_values(["motion", "step"])
+
+
+@pytest.mark.slow
+def test_every_method_runs_under_the_same_motions(found):
+    methods = list(dict.fromkeys(found.runs["method"]))
+    assert methods == ["recess model", "flat-ground model", "planar x", "planar y", "worse plane"]
+    assert len(found.runs) == 5 * 12 * COUNT
+    assert len(found.points) == 12 * COUNT
+    for _, part in found.points.groupby("step"):
+        assert set(part["peak_acceleration"]) == {LEVELS[int(part["step"].iloc[0])]}
+    # a run is the one that anybody can make: here at a level at which it rocks in each plane and stands
+    point = found.points[found.points["step"] == 3].iloc[0]
+    motion = next(each for each in MOTIONS if each.name == point["motion"])
+    models = {
+        "flat-ground model": {"support": "flat"},
+        "planar x": {"plane": 0.0},
+        "planar y": {"plane": 0.5 * math.pi},
+    }
+    for name, options in models.items():
+        alone = reduced.simulate(Case(COLUMN, motion.scaled(point["scale"])), rtol=1e-7, **options)
+        own = rows(found, name)
+        own = own[(own["motion"] == point["motion"]) & (own["step"] == point["step"])].iloc[0]
+        assert own["outcome"] == alone.outcome == "stands", name
+        assert own["peak_tilt"] == pytest.approx(alone.peak_tilt / COLUMN.alpha, abs=1e-12), name
+
+
+@pytest.mark.slow
+def test_contact_is_asked_of_whole_solutions_which_have_the_peaks_of_the_kernel(found):
+    # at the strongest level, where contact is lost
+    options = {"methods": ["recess"], "levels": LEVELS[-1:], "resamples": 2, "workers": 1}
+    whole = fragility(COLUMN, MOTIONS, limits=["contact_lost"], **options).runs.sort_values("motion")
+    quick = rows(found, "recess model")
+    quick = quick[quick["step"] == COUNT - 1]
+    np.testing.assert_allclose(whole["peak_tilt"], quick["peak_tilt"], rtol=1e-12)
+    assert found.runs["contact_lost"].isna().all()
+    assert set(whole["contact_lost"]) <= {0.0, 1.0}
+    lost = [
+        bool(reduced.simulate(Case(COLUMN, m.scaled(s)), rtol=1e-7).assumptions.least_normal_force <= 0.0)
+        for m in MOTIONS[:4]
+        for s in found.points[(found.points["motion"] == m.name)]["scale"].iloc[-1:]
+    ]
+    own = whole.set_index("motion")["contact_lost"]
+    assert [bool(own[motion.name]) for motion in MOTIONS[:4]] == lost
+
+
+def test_a_slab_is_carried_by_the_kernel_of_peaks() -> None:
+    frame = WobblingFrame(COLUMN, slab_mass_ratio=4.0)
+    options = {"methods": ["recess"], "levels": [2.0], "resamples": 2, "workers": 1}
+    runs = fragility(frame, MOTIONS[:2], **options)
+    scale = runs.points["scale"].iloc[0]
+    alone = reduced.simulate(Case(frame, MOTIONS[0].scaled(scale)), rtol=1e-7)
+    assert runs.runs["peak_tilt"].iloc[0] == pytest.approx(alone.peak_tilt / COLUMN.alpha, abs=1e-12)
+
+
+def test_the_worse_plane_is_the_larger_of_both(found):
+    x, y, worse = (rows(found, name) for name in ("planar x", "planar y", "worse plane"))
+    np.testing.assert_array_equal(
+        worse["peak_tilt"], np.maximum(x["peak_tilt"].to_numpy(), y["peak_tilt"].to_numpy())
+    )
+    fell = (x["outcome"] == "overturned").to_numpy() | (y["outcome"] == "overturned").to_numpy()
+    np.testing.assert_array_equal(worse["outcome"] == "overturned", fell)
+
+
+def test_limits_are_one_inside_the_other(found):
+    counts = found.counts.pivot_table(index=["method", "intensity"], columns="limit", values="k")
+    tilts = ["uplift", "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", "overturned"]
+    assert (np.diff(counts[tilts].to_numpy(), axis=1) <= 0).all()
+    assert (found.counts["n"] == 12).all()
+    total = found.runs.groupby("method")["outcome"].apply(lambda part: (part == "overturned").sum())
+    fallen = found.counts[found.counts["limit"] == "overturned"].groupby("method")["k"].sum()
+    assert fallen.to_dict() == total.to_dict()
+
+
+def test_what_a_run_exceeds():
+    table = pd.DataFrame(
+        {
+            "peak_tilt": [0.0, 1e-9, 0.5, 1.2, 8.0, NAN],
+            "outcome": ["stands", "stands", "stands", "stands", "overturned", "failed"],
+            "contact_lost": [0.0, 0.0, NAN, 1.0, 0.0, NAN],
+        }
+    )
+    expected = {
+        "uplift": [0, 1, 1, 1, 1, NAN],
+        "0.5 alpha": [0, 0, 1, 1, 1, NAN],
+        "1 alpha": [0, 0, 0, 1, 1, NAN],
+        "overturned": [0, 0, 0, 0, 1, NAN],
+        "contact_lost": [0, 0, NAN, 1, 1, NAN],
+    }
+    for limit, values in expected.items():
+        np.testing.assert_array_equal(exceedance(table, limit), np.array(values, dtype=float))
+
+
+def test_gaps_and_what_stopping_early_makes_of_them():
+    y = np.array([[0, 1, 0, 1], [0, 0, 1, 1], [1, NAN, 0, 0], [0, NAN, 1, NAN], [1, 0, 1, 0]], dtype=float)
+    found = below_gaps(y)
+    assert found.astype(int).tolist() == [[0, 1, 0, 0], [0] * 4, [1, 0, 0, 0], [0] * 4, [1, 0, 1, 0]]
+    stopped = incremental(y)
+    expected = [[0, 1, 1, 1], [0, 0, 1, 1], [1, 1, 1, 1], [0, NAN, 1, 1], [1, 1, 1, 1]]
+    np.testing.assert_array_equal(stopped, np.array(expected, dtype=float))
+
+
+def test_stopping_early_makes_the_median_smaller(found):
+    some = found.gaps[found.gaps["runs_below_gaps"] > 0]
+    assert len(some) >= 3
+    assert (some["bias"] < 1.0).all()
+    np.testing.assert_allclose(found.gaps["bias"], found.gaps["median_incremental"] / found.gaps["median"])
+
+
+def test_a_curve_that_all_or_none_exceed_ends_with_the_levels(found):
+    calm = found.runs.assign(peak_tilt=0.3, outcome="stands")
+    limits = ["0.1 alpha", "1 alpha"]
+    facts = {**found.facts, "limits": limits, "resamples": 2}
+    curves = fragility_of(calm, found.points, facts).curves
+    curves = curves[curves["method"] == "recess model"].set_index("limit")["intensity"]
+    # all exceed the first limit, none the second; elsewhere a curve goes to half or twice the levels
+    assert (curves["0.1 alpha"].min(), curves["0.1 alpha"].max()) == pytest.approx((LEVELS[0], 16.0))
+    assert (curves["1 alpha"].min(), curves["1 alpha"].max()) == pytest.approx((0.625, LEVELS[-1]))
+    assert (curves.groupby("limit").count() == 60).all()
+
+
+def test_contrasts_are_ratios_of_the_fits_and_alike_methods_are_equal(found):
+    medians = found.fits[found.fits["limit"] == "0.5 alpha"].set_index("method")["median"]
+    pairs = found.contrasts[found.contrasts["limit"] == "0.5 alpha"]
+    assert len(pairs) == 10
+    for row in pairs.to_dict("records"):
+        assert row["ratio"] == pytest.approx(medians[row["method"]] / medians[row["against"]], rel=1e-9)
+        assert row["ratio_low"] <= row["ratio"] <= row["ratio_high"]
+    twice = found.runs[found.runs["method"] == "recess model"]
+    both = pd.concat([twice, twice.assign(method="the same")])
+    same = fragility_of(both, found.points, found.facts).contrasts.set_index("limit")
+    for limit in ("0.5 alpha", "1 alpha"):
+        row = same.loc[limit]
+        assert (row["ratio"], row["ratio_low"], row["ratio_high"], row["verdict"]) == (
+            1.0,
+            1.0,
+            1.0,
+            "within",
+        )
+        assert row["within"] == 0.0
+
+
+def test_a_first_method_that_always_fails_leaves_the_others(found: Fragility) -> None:
+    runs = found.runs[found.runs["method"].isin(["recess model", "planar x"])].copy()
+    runs.loc[runs["method"] == "recess model", ["outcome", "peak_tilt"]] = ["failed", NAN]
+    assert set(fragility_of(runs, found.points, found.facts).fits["method"]) == {"planar x"}
+    with pytest.raises(ValueError, match=rf"got {12 * COUNT} runs that all failed"):
+        fragility_of(runs[runs["outcome"] == "failed"], found.points, found.facts)
+
+
+def test_pairs_leave_out_what_failed_by_either(found):
+    runs = found.runs[found.runs["method"].isin(["recess model", "planar x"])].copy()
+    lost = (runs["method"] == "planar x") & (runs["motion"] == MOTIONS[0].name)
+    runs.loc[lost, ["peak_tilt", "outcome"]] = [NAN, "failed"]
+    whole = fragility_of(runs, found.points, found.facts)
+    gone = runs["motion"] != MOTIONS[0].name
+    fits = fragility_of(runs[gone], found.points[found.points["motion"] != MOTIONS[0].name], found.facts).fits
+    medians = fits[fits["limit"] == "0.5 alpha"].set_index("method")["median"]
+    row = whole.contrasts[whole.contrasts["limit"] == "0.5 alpha"].iloc[0]
+    assert row["ratio"] == pytest.approx(medians["planar x"] / medians["recess model"], rel=1e-9)
+    own = whole.fits[(whole.fits["method"] == "planar x") & (whole.fits["limit"] == "0.5 alpha")].iloc[0]
+    assert (own["failed"], own["runs"]) == (COUNT, 11 * COUNT)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fate", [0, 1])
+def test_what_failed_runs_would_have_done_lies_within_the_bounds(found: Fragility, fate: int) -> None:
+    """Runs that overturn, or that stand, are lost: what all of them say lies between the bounds."""
+    method, other = found.runs["method"].unique()[:2]
+    runs = found.runs.copy()
+    over = runs["outcome"] == "overturned"
+    lost = runs.index[(runs["method"] == method) & (over == bool(fate))][::3]
+    assert len(lost) > 1
+    runs.loc[lost, ["outcome", "peak_tilt"]] = ["failed", math.nan]
+    broken = fragility_of(runs, found.points, found.facts)
+
+    def of(table: pd.DataFrame, **values: str) -> pd.Series:
+        keys = {"cylinder": table["cylinder"].iloc[0], "limit": "overturned", **values}
+        return table[np.all([table[name] == value for name, value in keys.items()], axis=0)].iloc[0]
+
+    whole, fit = of(found.fits, method=method), of(broken.fits, method=method)
+    assert fit["failed"] == len(lost)
+    assert fit["median_if_exceeded"] < whole["median"] * (1 + 1e-9)
+    assert fit["median_if_not"] > whole["median"] * (1 - 1e-9)
+    # the fate of the lost runs is the one that is right
+    right = "median_if_exceeded" if fate else "median_if_not"
+    assert fit[right] == pytest.approx(whole["median"], rel=1e-9)
+    before = of(found.contrasts, method=other, against=method)
+    after = of(broken.contrasts, method=other, against=method)
+    assert before["ratio_least"] == before["ratio"] == before["ratio_most"]
+    assert after["ratio_least"] < after["ratio_most"]
+    assert after["ratio_most" if fate else "ratio_least"] == pytest.approx(before["ratio"], rel=1e-9)
+
+
+@pytest.mark.slow
+def test_the_mean_of_the_cylinders_is_geometric():
+    bodies = {"column": COLUMN, "pier": Cylinder(semidiagonal=6.0, tan_alpha=0.2)}
+    found = fragility(bodies, MOTIONS, methods=["recess", "planar-x"], levels=LEVELS, resamples=20, workers=1)
+    pairs = found.contrasts[found.contrasts["limit"] == "0.5 alpha"].set_index("cylinder")["ratio"]
+    assert pairs["all"] == pytest.approx(math.sqrt(pairs["column"] * pairs["pier"]), rel=1e-12)
+
+
+def test_the_best_measure_has_the_least_dispersion(found):
+    table = found.efficiency
+    best = table[table["best"]].iloc[0]
+    assert best["dispersion"] == table["dispersion"].min()
+    assert (best["over_best"], best["over_best_low"], best["over_best_high"]) == (1.0, 1.0, 1.0)
+    # of one cylinder p and g tan(alpha) are the same for all: the levels' own measure, fitted both ways
+    own = table[table["measure"] == "peak_acceleration"].iloc[0]
+    fit = found.fits[(found.fits["method"] == "recess model") & (found.fits["limit"] == "overturned")].iloc[0]
+    assert own["dispersion"] == pytest.approx(fit["dispersion"], rel=1e-9)
+
+
+def test_a_cloud_takes_the_motions_as_they_are():
+    motions = [motion.scaled(2.0 + 0.4 * place) for place, motion in enumerate(MOTIONS)]
+    found = fragility(COLUMN, motions, methods=["recess"], scales=[1.0, 2.0], resamples=20, workers=1)
+    assert (found.counts["n"] == 1).all()
+    assert found.points["scale"].tolist() == [1.0, 2.0] * 12
+    fit = found.fits[found.fits["limit"] == "0.5 alpha"].iloc[0]
+    assert (fit["kind"], fit["runs"]) == ("fitted", 24)
+
+
+def test_bodies_that_the_kernel_does_not_know_are_solved():
+    hollow = Cylinder(semidiagonal=3.0, tan_alpha=0.15, transverse_inertia=4.0)
+    found = fragility(hollow, MOTIONS[:3], methods=["recess"], levels=[3.0], resamples=5, workers=1)
+    point = found.points.iloc[0]
+    alone = reduced.simulate(Case(hollow, MOTIONS[0].scaled(point["scale"])), rtol=1e-7)
+    assert found.runs["peak_tilt"].iloc[0] == pytest.approx(alone.peak_tilt / hollow.alpha, rel=1e-12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("motions", "levels", "few"), [(5, 3, True), (6, 1, True), (6, 2, False)])
+def test_of_too_few_motions_or_levels_there_are_counts_and_no_curve(
+    motions: int, levels: int, few: bool
+) -> None:
+    options = {"methods": ["recess", "planar-x"], "resamples": 20, "workers": 1}
+    made = fragility(COLUMN, MOTIONS[:motions], levels=LEVELS[3 : 3 + levels], **options)
+    overturned = made.fits[made.fits["limit"] == "overturned"]
+    assert overturned["runs"].to_list() == [motions * levels] * 2
+    assert (overturned["exceeded"].sum() == made.counts.query("limit == 'overturned'")["k"].sum()) > 0
+    fitted = made.fits[["median", "median_low", "median_high", "dispersion"]].notna().to_numpy().any()
+    stated = [fitted, *(len(getattr(made, name)) > 0 for name in ("curves", "contrasts", "gaps"))]
+    assert stated == [not few] * 4
+
+
+@pytest.mark.slow
+def test_a_second_call_runs_nothing_again(tmp_path, monkeypatch):
+    def once() -> Fragility:
+        return fragility(
+            COLUMN,
+            MOTIONS[:4],
+            methods=["worse-plane"],
+            levels=LEVELS,
+            resamples=5,
+            workers=1,
+            resume=tmp_path,
+        )
+
+    first = once()
+
+    def refuse(task):
+        raise AssertionError(task.title)
+
+    monkeypatch.setattr(running, "run_task", refuse)
+    pd.testing.assert_frame_equal(once().runs, first.runs)
+    assert once().facts["inputs"] == first.facts["inputs"]
+
+
+@pytest.mark.slow
+def test_a_dask_worker_with_another_version_of_an_engine_is_refused(monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    versions = itertools.count()  # another at each look
+    monkeypatch.setattr(execution, "engine_makers", lambda name: {name: str(next(versions))})
+    words = r"a worker on .* must have what the caller has: mujoco is .* there .*; nothing is kept"
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+        ) as cluster,
+        pytest.raises(IncompleteError, match=words),
+    ):
+        fragility(
+            COLUMN,
+            MOTIONS[:2],
+            methods=[Run("mujoco", "recess")],
+            levels=[12.0],
+            step_factor=8.0,
+            resamples=5,
+            scheduler=cluster.scheduler_address,
+        )
+
+
+@pytest.mark.slow
+def test_engines_run_beside_their_model_and_a_ring_holds_what_has_overturned():
+    runs = [Run("mujoco", "recess"), Run("mujoco", "ring", ring_clearance=0.01, ring_inclination=0.5)]
+    found = fragility(
+        COLUMN,
+        [MOTIONS[0], MOTIONS[2]],
+        methods=["recess", *runs],
+        levels=[12.0],
+        step_factor=8.0,
+        friction=3.0,
+        resamples=5,
+        workers=1,
+    )
+    strong = found.runs
+    assert (strong["outcome"] == "overturned").all()
+    ring = strong[strong["method"] == "mujoco ring"]
+    assert (ring["peak_tilt"] > 1.0).all()
+    assert (ring["peak_tilt"] < 0.5 * math.pi / COLUMN.alpha).all()
+    assert found.facts["methods"]["mujoco ring"]["own_model"] == ""
+    assert found.facts["methods"]["mujoco recess"]["own_model"] == "recess model"

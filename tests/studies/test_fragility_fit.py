@@ -1,0 +1,232 @@
+"""Lognormal curves by maximum likelihood, and intervals by resampling, against independent solutions."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from probit_fits import data_set
+from scipy.optimize import root
+from scipy.special import log_ndtr
+from scipy.stats import norm
+
+from rockwobble.compare.metrics.statistics import Interval
+from rockwobble.studies.fragility.fit import (
+    ALWAYS,
+    FALLING,
+    FITTED,
+    KINDS,
+    NEVER,
+    SEPARATED,
+    Array,
+    Sample,
+    bands,
+    expanded_shares,
+    fit_curves,
+    goodness,
+    interval,
+    resamples,
+    spread_interval,
+)
+from rockwobble.studies.fragility.tables import margin_of
+
+TABLE = Path(__file__).parents[1] / "reference" / "probit_fits.csv"
+# the digits of the table, and the tolerance of the solver that wrote it
+PRINTED = 1e-9
+# of the root of the score by MINPACK, whose own tolerance is 1e-8
+ROOT = 1e-7
+X = np.log([1.0, 1.5, 2.0, 3.0, 4.0])
+
+
+def rows() -> list[dict[str, str]]:
+    lines = [line for line in TABLE.read_text().splitlines() if not line.startswith("#")]
+    found = list(csv.DictReader(lines))
+    assert len(found) == 100
+    return found
+
+
+def kind_of(k: list[float], n: float = 10.0) -> tuple[str, float, float]:
+    found = fit_curves(X, np.full((1, 5), n), np.array([k]))
+    return KINDS[found.kinds[0]], float(found.centre[0]), float(found.dispersion[0])
+
+
+def test_a_hundred_random_sets_as_statsmodels_fits_them():
+    for row in rows():
+        x, n, k = data_set(int(row["seed"]))
+        found = fit_curves(x, n[None], k[None])
+        assert KINDS[found.kinds[0]] == FITTED
+        assert found.centre[0] == pytest.approx(float(row["centre"]), abs=PRINTED)
+        assert found.dispersion[0] == pytest.approx(float(row["dispersion"]), abs=PRINTED)
+
+
+def test_a_share_that_is_the_same_at_every_level_has_no_curve():
+    found = fit_curves(X[:2], np.array([[4.0, 12.0]]), np.array([[2.0, 6.0]]))
+    assert KINDS[found.kinds[0]] == FALLING
+
+
+def test_a_hundred_random_sets_are_roots_of_the_score():
+    for row in rows():
+        x, n, k = data_set(int(row["seed"]))
+
+        def score(guess: Array, x: Array = x, n: Array = n, k: Array = k) -> Array:
+            z = (x - guess[0]) / math.exp(guess[1])
+            hit, miss = (np.exp(norm.logpdf(z) - tail) for tail in (norm.logcdf(z), norm.logsf(z)))
+            slope = k * hit - (n - k) * miss
+            return np.array([slope.sum(), (slope * z).sum()])
+
+        found = fit_curves(x, n[None], k[None])
+        # from a start that knows only the data
+        middle = float(x[np.argmin(np.abs(k / n - 0.5))])
+        solved = root(score, [middle, math.log(0.5)])
+        assert solved.success
+        assert found.centre[0] == pytest.approx(solved.x[0], abs=ROOT)
+        assert found.dispersion[0] == pytest.approx(math.exp(solved.x[1]), abs=ROOT)
+
+
+def test_the_maximum_is_one_and_moves_with_the_intensities():
+    n, k = np.full((1, 5), 20.0), np.array([[1.0, 4.0, 9.0, 15.0, 18.0]])
+    whole = fit_curves(X, n, k)
+    centre, spread = float(whole.centre[0]), float(whole.dispersion[0])
+    best = log_likelihood(X, n[0], k[0], centre, spread)
+    for shift, factor in ((0.01, 1.0), (-0.01, 1.0), (0.0, 1.02), (0.0, 0.98)):
+        assert log_likelihood(X, n[0], k[0], centre + shift, spread * factor) < best
+    moved = fit_curves(X + math.log(9.81), n, k)
+    assert moved.centre[0] - math.log(9.81) == pytest.approx(centre, abs=1e-12)
+    assert moved.dispersion[0] == pytest.approx(spread, abs=1e-12)
+    doubled = fit_curves(X, 2.0 * n, 2.0 * k)
+    assert doubled.dispersion[0] == pytest.approx(spread, abs=1e-12)
+
+
+def test_what_has_no_maximum_says_so():
+    assert kind_of([0.0] * 5)[:2] == (NEVER, math.inf)
+    assert kind_of([10.0] * 5)[:2] == (ALWAYS, -math.inf)
+    name, centre, spread = kind_of([0.0, 0.0, 10.0, 10.0, 10.0])
+    assert (name, spread) == (SEPARATED, 0.0)
+    assert centre == pytest.approx(math.log(math.sqrt(1.5 * 2.0)))
+    # one mixed level between none and all: the likelihood grows towards a step at it
+    name, centre, spread = kind_of([0.0, 0.0, 3.0, 10.0, 10.0])
+    assert (name, centre, spread) == (SEPARATED, math.log(2.0), 0.0)
+    assert kind_of([10.0, 10.0, 10.0, 0.0, 0.0])[0] == FALLING
+    name, centre, _ = kind_of([9.0, 8.0, 6.0, 3.0, 1.0])
+    assert name == FALLING
+    assert math.isnan(centre)
+    assert kind_of([0.0, 0.0, 1.0, 9.0, 10.0])[0] == FITTED
+
+
+def test_many_at_once_are_each_what_they_are_alone():
+    random = np.random.default_rng(3)
+    n = random.integers(1, 6, (60, 5)).astype(float)
+    k = random.binomial(n.astype(int), norm.cdf((X - random.uniform(-2.0, 4.0, (60, 1))) / 0.4)).astype(float)
+    together = fit_curves(X, n, k)
+    assert len(set(together.kinds.tolist())) > 2
+    for row in range(60):
+        alone = fit_curves(X, n[row : row + 1], k[row : row + 1])
+        assert alone.kinds[0] == together.kinds[row]
+        np.testing.assert_allclose(alone.centre[0], together.centre[row], rtol=0.0, atol=1e-12)
+        np.testing.assert_allclose(alone.dispersion[0], together.dispersion[row], rtol=0.0, atol=1e-12)
+
+
+def test_probabilities_of_curves_of_every_kind():
+    n = np.full((4, 5), 10.0)
+    k = np.array([[0, 2, 5, 9, 10], [0] * 5, [10] * 5, [0, 0, 10, 10, 10]], dtype=float)
+    found = fit_curves(X, n, k)
+    at = found.at(np.array([found.centre[0], found.centre[3], X[0], X[-1]]))
+    assert at[0, 0] == pytest.approx(0.5)
+    assert at[1].tolist() == [0.0] * 4
+    assert at[2].tolist() == [1.0] * 4
+    assert at[3, 1:].tolist() == [0.5, 0.0, 1.0]
+    assert np.isnan(fit_curves(X, n[:1], n[:1] - k[:1]).at(X)).all()
+
+
+def log_likelihood(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> float:
+    """Binomial, without the coefficients."""
+    eta = (x - centre) / dispersion
+    return float((k * log_ndtr(eta) + (n - k) * log_ndtr(-eta)).sum())
+
+
+def test_goodness_is_twice_what_the_likelihood_lacks():
+    n, k = np.full(5, 20.0), np.array([1.0, 2.0, 12.0, 13.0, 19.0])
+    found = fit_curves(X, n[None], k[None])
+    centre, spread = float(found.centre[0]), float(found.dispersion[0])
+    held = goodness(X, n, k, centre, spread)
+    share = k / n
+    own = (k * np.log(share) + (n - k) * np.log(1.0 - share)).sum()
+    assert held["deviance"] == pytest.approx(2.0 * (own - log_likelihood(X, n, k, centre, spread)), rel=1e-9)
+    assert held["degrees"] == 3
+    assert held["largest"] == pytest.approx(np.abs(share - norm.cdf((X - centre) / spread)).max())
+    # counts that no lognormal curve follows
+    poor = np.array([0.0, 10.0, 10.0, 10.0, 20.0])
+    bent = fit_curves(X, n[None], poor[None])
+    assert goodness(X, n, poor, float(bent.centre[0]), float(bent.dispersion[0]))["p"] < 0.01 < held["p"]
+
+
+def stripes(random: np.random.Generator, levels: Array, *, motions: int = 22) -> Sample:
+    """Motions of a capacity each, around 4 with a dispersion of 0.5."""
+    capacity = random.normal(math.log(4.0), 0.5, motions)
+    return Sample(x=np.tile(levels, (motions, 1)), y=(levels >= capacity[:, None]).astype(float))
+
+
+def test_a_stripe_and_a_cloud_of_the_same_runs_are_one_curve():
+    sample = stripes(np.random.default_rng(2), np.log(np.geomspace(1.0, 12.0, 9)))
+    nudged = Sample(x=sample.x + 1e-13 * np.arange(22)[:, None], y=sample.y)
+    weights = resamples(22, 20, 1)
+    np.testing.assert_allclose(
+        nudged.curves(weights).centre, sample.curves(weights).centre, rtol=0.0, atol=1e-9
+    )
+    n = sample.counts()[1]
+    assert n.tolist() == [[22.0] * 9]
+
+
+def test_a_failed_run_is_no_run():
+    sample = stripes(np.random.default_rng(2), np.log(np.geomspace(1.0, 12.0, 9)))
+    y = sample.y.copy()
+    y[3] = np.nan
+    without = Sample(x=np.delete(sample.x, 3, axis=0), y=np.delete(sample.y, 3, axis=0))
+    assert Sample(x=sample.x, y=y).curves().centre[0] == pytest.approx(without.curves().centre[0], abs=1e-12)
+
+
+def test_intervals_keep_what_is_not_bounded_and_what_is_not_known():
+    drawn = np.linspace(-1.0, 1.0, 1001)
+    low, high = expanded_shares(22)
+    assert low == pytest.approx(norm.cdf(math.sqrt(22.0 / 21.0) * -2.0796), abs=1e-5)
+    found = interval(0.0, drawn, 22)
+    assert (found.low, found.high) == pytest.approx((2.0 * low - 1.0, 2.0 * high - 1.0), abs=0.003)
+    drawn[:40] = math.inf
+    assert interval(0.0, drawn, 22).high == math.inf
+    drawn[:40] = math.nan
+    unknown = interval(0.0, drawn, 22)
+    assert (unknown.low, unknown.high) == (-math.inf, math.inf)
+
+
+def test_a_dispersion_is_reflected_about_itself():
+    found = spread_interval(0.5, np.linspace(0.4, 0.6, 1001), 22)
+    low, high = expanded_shares(22)
+    assert (found.low, found.high) == pytest.approx(
+        (0.25 / (0.4 + 0.2 * high), 0.25 / (0.4 + 0.2 * low)), rel=1e-3
+    )
+    # a resample without dispersion bounds nothing
+    assert spread_interval(0.5, np.zeros(100), 22).high == math.inf
+
+
+def test_a_band_holds_its_curve_and_is_none_where_all_resamples_agree():
+    sample = stripes(np.random.default_rng(5), np.log(np.geomspace(1.0, 12.0, 12)))
+    curves = sample.curves(resamples(22, 300, 0))
+    x = np.log([1.0, 3.0, 4.0, 6.0, 12.0])
+    low, high = bands(curves, x, 22)
+    middle = sample.curves().at(x)[0]
+    assert ((low < middle) & (middle < high)).all()
+    never = Sample(x=sample.x, y=np.zeros_like(sample.y)).curves(resamples(22, 30, 0))
+    assert [end.tolist() for end in bands(never, x, 22)] == [[0.0] * 5, [0.0] * 5]
+
+
+def test_equivalence_is_an_interval_inside_a_margin():
+    close, far, wide = (
+        Interval(value=1.0, low=low, high=high) for low, high in ((0.97, 1.06), (1.2, 1.5), (0.9, 1.2))
+    )
+    assert [each.about_one(0.1) for each in (close, far, wide)] == ["within", "beyond", "undecided"]
+    assert margin_of(close) == pytest.approx(0.06)
+    assert margin_of(Interval(value=1.0, low=0.8, high=1.1)) == pytest.approx(0.25)
+    assert margin_of(Interval(value=1.0, low=0.0, high=1.1)) == math.inf

@@ -1,0 +1,229 @@
+"""The lowest intensity that overturns: found between the steps of a grid and below it."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+
+import numpy as np
+import pytest
+
+from rockwobble import reduced
+from rockwobble.compare.metrics.pair import overturned
+from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
+from rockwobble.models.cpus import in_threads
+from rockwobble.studies.plans import STEP
+from rockwobble.studies.spectrum.maps import uplift_factor
+from rockwobble.studies.spectrum.search import (
+    gap_bound,
+    lowest_on_grid,
+    probe_below,
+    run_searches,
+    search_lowest,
+)
+
+FALL = 0.5 * math.pi
+ALPHA = 0.1
+EL_CENTRO = el_centro_1940()
+UNIT = 9.81 * 0.1 / EL_CENTRO.peak  # factor on the record for an intensity of 1 at tan(alpha) = 0.1
+SAME = 1e-12  # rounding of the intensities
+
+
+class Window:
+    """Peak tilts about one window of overturning, and every intensity at which they were asked for."""
+
+    def __init__(self, centre: float, width: float, flank: float) -> None:
+        self.centre, self.width, self.flank = centre, width, flank
+        self.run: list[float] = []
+
+    def __call__(self, levels: np.ndarray) -> np.ndarray:
+        self.run += levels.tolist()
+        away = np.abs(levels - self.centre) - 0.5 * self.width
+        # the tilt grows by its logarithm towards a window, because the balance is left exponentially
+        beside = 0.3 - 0.1 * np.log(np.maximum(np.abs(away), 1e-9) / self.flank)
+        return np.where(away <= 0.0, FALL, ALPHA * np.clip(beside, 0.3, 0.999))
+
+
+def search(window, start: float, grid: np.ndarray, known: np.ndarray | None = None) -> float:
+    """Search for the lowest of one cylinder."""
+    known = window(grid) if known is None else known
+    going = search_lowest(grid, known, start=start, step=STEP, alpha=ALPHA)
+    return run_searches([going], lambda _, levels: window(levels), workers=1)[0]
+
+
+GRID = np.linspace(1.0, 4.0, 28)
+
+
+@pytest.mark.parametrize("centre", [1.4951, 1.3152, 1.5037, 2.7182])
+def test_a_window_narrower_than_the_step_of_the_grid_is_found_by_its_flanks(centre):
+    window = Window(centre, 0.015, 0.3)
+    found = search(window, 1.0, GRID)
+    assert abs(found - centre) <= 0.0075
+    run = np.array(window.run)
+    assert not overturned(window(run[run < found])).any()
+    assert found - run[run < found].max() <= STEP * (1.0 + SAME)
+
+
+def test_a_coarse_grid_is_filled_and_nothing_beyond_it_is_run():
+    far = Window(9.0, 0.1, 0.02)
+    assert math.isnan(search(far, 1.003, np.array([0.5, 3.5]), known=np.zeros(2)))
+    run = np.sort(far.run)
+    assert run[0] > 1.003  # there it stands
+    assert np.diff([1.003, *run, 3.5]).max() <= 8.0 * STEP * (1.0 + SAME)
+    far.run.clear()
+    for start in (5.0, math.inf):
+        assert math.isnan(search(far, start, GRID, known=np.zeros(28)))
+    assert far.run == []
+
+
+def test_what_is_known_to_overturn_is_the_end_of_a_search():
+    def edge(levels: np.ndarray) -> np.ndarray:
+        return np.where(levels >= 1.2345, FALL, 0.0)
+
+    assert search(edge, 1.0, np.array([1.2345, 3.0])) == 1.2345
+    assert search(edge, 2.0, np.array([1.0, 2.0])) == 2.0
+
+
+def test_a_failed_run_stands_and_hides_nothing_beyond_its_own_step():
+    window = Window(1.5003, 0.02, 0.3)
+
+    def partly(levels: np.ndarray) -> np.ndarray:
+        return np.where((levels > 1.25) & (levels < 1.35), math.nan, window(levels))
+
+    assert 0.0 <= search(partly, 1.0, GRID) - 1.4903 <= STEP
+
+
+def test_searches_side_by_side_find_what_each_finds_alone():
+    edges = np.array([1.5, 2.345, 9.0, 0.5])
+
+    def peaks(i: int, levels: np.ndarray) -> np.ndarray:
+        return np.where(levels >= edges[i], FALL, 0.0)
+
+    known = np.where(edges[:, None] <= GRID, FALL, 0.0)
+    options = {"start": 1.0, "step": STEP, "alpha": ALPHA}
+    found = run_searches([search_lowest(GRID, each, **options) for each in known], peaks, workers=1)
+    alone = [search(lambda levels, e=e: np.where(levels >= e, FALL, 0.0), 1.0, GRID) for e in edges]
+    assert np.array_equal(found, alone, equal_nan=True)
+    assert all(0.0 <= low - edge <= STEP for low, edge in zip(found[:2], edges[:2], strict=True))
+    assert math.isnan(found[2])
+
+
+@pytest.mark.parametrize("stands", [True, False])
+def test_what_moves_at_the_start_alone_is_run_there(stands: bool):
+    run: list[float] = []
+
+    def still(_: int, levels: np.ndarray) -> np.ndarray:
+        run.extend(levels.tolist())
+        return np.zeros_like(levels)
+
+    going = search_lowest(np.array([2.0]), np.zeros(1), start=1.0, step=STEP, alpha=ALPHA, stands=stands)
+    run_searches([going], still)
+    assert (1.0 in run) is not stands
+
+
+def test_threads_are_as_many_as_this_process_may_use(monkeypatch):
+    monkeypatch.setattr("rockwobble.models.cpus.usable_cpus", lambda: 1)
+
+    def thread(_: int) -> int:
+        time.sleep(0.001)  # long enough for a second thread to take the next
+        return threading.get_ident()
+
+    assert len(set(in_threads(thread, range(20)))) == 1
+
+
+def test_an_interruption_passes_through_a_search():
+    def peaks(i: int, levels: np.ndarray) -> np.ndarray:
+        raise KeyboardInterrupt
+
+    going = search_lowest(np.array([2.0]), np.zeros(1), start=1.0, step=STEP, alpha=ALPHA)
+    with pytest.raises(KeyboardInterrupt):
+        run_searches([going], peaks)
+
+
+def test_probes_go_down_until_none_overturns():
+    def third(_: int, levels: np.ndarray) -> np.ndarray:
+        return np.where(10.0 * levels % 1.0 < 1.0 / 3.0, FALL, 0.0)
+
+    # a third of what is below, down to the first window, whatever has been found before
+    for lowest in (2.0, math.nan):
+        low, missed = run_searches([probe_below(1.0, 4.0, lowest, probes=500, seed=(1,))], third, workers=1)[
+            0
+        ]
+        assert 1.0 < low < 1.0 + 1.0 / 500
+        assert missed > 100
+    assert run_searches([probe_below(2.0, 4.0, 1.0, probes=9, seed=(0,))], third)[0] == (1.0, 0)
+    assert run_searches([probe_below(1.0, 4.0, 2.0, probes=0, seed=(0,))], third)[0] == (2.0, 0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("width", "chance"), [(2.0 / 500, 1.0), (0.5 / 500, 0.5), (0.1 / 500, 0.1)])
+def test_a_gap_narrower_than_every_step_is_found_as_often_as_is_stated(width: float, chance: float):
+    """The probes lie one in each of 500 parts: a gap within one is hit as often as it is wide."""
+    trials, found = 200, 0
+    for seed in range(trials):
+        centre = 1.0 + np.random.default_rng(seed).uniform(0.1, 0.9)
+
+        def gap(_: int, levels: np.ndarray, centre: float = centre) -> np.ndarray:
+            return np.where((np.abs(levels - centre) < 0.5 * width) | (levels >= 2.0), FALL, 0.0)
+
+        low, missed = run_searches([probe_below(1.0, 3.0, 2.0, probes=500, seed=(seed,))], gap, workers=1)[0]
+        assert (missed > 0) == (low < 2.0)
+        assert low == 2.0 or abs(low - centre) < 0.5 * width
+        found += low < 2.0
+    # four standard deviations of a share of so many
+    assert found / trials == pytest.approx(
+        chance, abs=4.0 * math.sqrt(chance * (1.0 - chance) / trials) + SAME
+    )
+
+
+def test_a_bound_on_gaps_is_that_of_no_hit_in_so_many_draws():
+    assert (1.0 - gap_bound(500)) ** 500 == pytest.approx(0.05)
+    assert gap_bound(500) == pytest.approx(0.006, abs=1e-4)
+
+
+def test_a_search_finds_windows_that_a_grid_does_not_see():
+    def peaks(levels: np.ndarray) -> np.ndarray:
+        return reduced.peak_tilts([3.177], 0.1, EL_CENTRO, UNIT * levels, rtol=1e-8)[0]
+
+    # at this size the lowest of a grid of 100 intensities is 1.667
+    grid = np.linspace(1.0, 12.0, 100)[:8]
+    known = lowest_on_grid(grid, peaks(grid)[None])[0]
+    found = search(peaks, 1.0, grid)
+    assert overturned(peaks(np.array([found]))).all()
+    assert found < known - 0.05
+
+
+def test_the_lowest_of_a_grid_is_the_first_that_overturns():
+    tilts = np.array([[0.1, FALL, 0.1, FALL], [0.1, 0.2, 0.3, 0.4], [FALL, math.nan, 0.1, 0.1]])
+    found = lowest_on_grid(np.array([1.0, 2.0, 3.0, 4.0]), tilts)
+    assert found[[0, 2]].tolist() == [2.0, 1.0]
+    assert math.isnan(found[1])
+
+
+HAIR = 1e-6  # relative: either side of the exact threshold, far above rounding
+
+
+@pytest.mark.parametrize(
+    "options", [{}, {"plane": 0.0}, {"plane": 0.5 * math.pi}, {"plane": 0.7}, {"until": 3.0}]
+)
+def test_nothing_moves_below_the_factor_of_uplift(options):
+    motion = el_centro_1940(vertical=True)
+    factor = uplift_factor(motion, 0.2, 9.81, **options)
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    below, above = (
+        reduced.simulate(
+            Case(pier, motion.scaled(factor * near), duration=options.get("until")),
+            plane=options.get("plane"),
+        )
+        for near in (1.0 - HAIR, 1.0 + HAIR)
+    )
+    assert math.isnan(below.uplift_time)
+    assert math.isfinite(above.uplift_time)
+
+
+def test_the_end_of_a_run_between_two_samples_counts():
+    ramp = GroundMotion([[0.0, 0.0], [1.0, 0.0]], 1.0)
+    assert uplift_factor(ramp, 0.1, 10.0) == pytest.approx(1.0, rel=SAME)
+    assert uplift_factor(ramp, 0.1, 10.0, until=0.25) == pytest.approx(4.0, rel=SAME)
+    assert uplift_factor(ramp, 0.1, 10.0, plane=0.5 * math.pi) > 1e15

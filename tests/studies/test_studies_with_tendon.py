@@ -1,0 +1,108 @@
+"""Fragility, spectrum, sweep and ensemble with a tendon: runs of it, and bounds that follow its uplift."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import rockwobble as rw
+from rockwobble import multibody, reduced
+from rockwobble.compare.metrics.pair import balance_of, outcome_of
+from rockwobble.models import synthetic_motions
+from rockwobble.studies.fragility.runs import default_levels
+from rockwobble.studies.plans import FragilityPlan
+
+PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+TENDON = rw.Tendon(prestress=0.5, stiffness=2.0)
+STEEL = {"tendon_prestress": TENDON.prestress, "tendon_stiffness": TENDON.stiffness}
+MOTIONS = synthetic_motions(4, peak=1.0, seed=3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("slab", [0.0, 1.0])
+def test_a_fragility_runs_the_tendon_and_leaves_out_flat_ground(slab: float) -> None:
+    body = rw.WobblingFrame(PIER, slab) if slab else PIER
+    found = rw.fragility({"it": body}, MOTIONS, levels=[3.0, 9.0], resamples=50, workers=1, **STEEL)
+    assert "flat-ground model" not in found.facts["methods"]
+    runs = found.runs[found.runs["method"] == "recess model"].set_index(["motion", "step"])
+    for motion in MOTIONS:
+        scale = 9.0 * 9.81 * PIER.tan_alpha / motion.peak
+        own = reduced.simulate(rw.Case(body, motion.scaled(scale), tendon=TENDON), rtol=1e-7)
+        assert runs["peak_tilt"][motion.name, 1] == pytest.approx(own.peak_tilt / PIER.alpha, rel=1e-9)
+    with pytest.raises(ValueError, match="got support 'flat'"):
+        rw.fragility(PIER, MOTIONS, methods=["flat"], levels=[3.0], workers=1, **STEEL)
+
+
+def test_levels_begin_above_the_raised_uplift_and_end_where_most_overturn() -> None:
+    plain = default_levels({"it": PIER}, MOTIONS, FragilityPlan())
+    held = default_levels({"it": PIER}, MOTIONS, FragilityPlan(**STEEL))
+    assert held[0] / plain[0] == pytest.approx(TENDON.uplift_factor(PIER), rel=5e-3)  # three digits
+    options = {"methods": ["recess"], "limits": ["overturned"], "resamples": 50, "workers": 1}
+    shares = rw.fragility(PIER, MOTIONS, **options, **STEEL).counts.groupby("intensity")[["k", "n"]].sum()
+    assert shares["k"].iloc[0] == 0
+    assert shares["k"].iloc[-1] > 0.5 * shares["n"].iloc[-1]
+
+
+@pytest.mark.slow
+def test_a_spectrum_searches_from_the_raised_uplift() -> None:
+    options = {"semidiagonals": [3.0], "intensities": [2.0, 6.0], "search_step": 0.2, "probes": 20}
+    motion = rw.el_centro_1940()
+    found, plain = (rw.spectrum(0.2, motion, workers=1, **options, **steel) for steel in (STEEL, {}))
+    lowest, other = (each.tables["lowest"].set_index("series")["intensity"]["3d"] for each in (found, plain))
+    assert lowest > other
+    pier = rw.Cylinder(semidiagonal=3.0, tan_alpha=0.2)
+    peak = float(np.hypot(*motion.acceleration[:, :2].T).max())
+    case = rw.Case(pier, motion.scaled(lowest * 9.81 * 0.2 / peak), tendon=TENDON)
+    assert reduced.simulate(case, rtol=1e-7).outcome == "overturned"
+
+
+def test_a_sweep_and_an_ensemble_run_the_tendon() -> None:
+    motion = rw.el_centro_1940()
+    grid = rw.Grid(semidiagonals=[6.0], tan_alphas=[0.2], scales=[3.0], motions=[motion], **STEEL)
+    case = rw.Case(PIER, motion.scaled(3.0), tendon=TENDON)
+    peak = reduced.simulate(case, rtol=1e-7).peak_tilt
+    assert rw.sweep(grid, workers=1).table["peak_tilt"][0] == peak
+    members = rw.ensemble(case, runs=[], copies=3, workers=1)
+    assert list(members.methods["method"]) == ["recess model"]
+
+
+def test_the_balance_of_a_case_is_alpha_without_a_tendon() -> None:
+    release = rw.InitialState(0.1)
+    tilts = [
+        reduced.balance_tilt_of_case(rw.Case(PIER, initial=release, duration=1.0, tendon=tendon))
+        for tendon in (None, rw.Tendon(), rw.Tendon(prestress=0.5), rw.Tendon(stiffness=6.0))
+    ]
+    assert tilts[0] == tilts[1] == PIER.alpha
+    assert PIER.alpha < tilts[2] < 0.5 * math.pi
+    assert np.isinf(tilts[3])
+
+
+@pytest.mark.parametrize("gravity", [1.62, 9.81])
+def test_the_balance_without_a_term_is_alpha_to_the_bit(gravity: float) -> None:
+    for tan_alpha in np.geomspace(0.02, 1.5, 40).tolist():
+        pier = rw.Cylinder(semidiagonal=3.0, tan_alpha=tan_alpha)
+        for body in (pier, rw.WobblingFrame(pier, 0.7)):
+            case = rw.Case(body, initial=rw.InitialState(0.01), duration=1.0, gravity=gravity)
+            assert balance_of(case) == body.alpha
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("share", "duration", "outcome"), [(1.4, 0.3, "stands"), (1.7, 3.0, "overturned")])
+def test_what_a_tendon_still_rights_has_not_overturned_in_a_ring(
+    share: float, duration: float, outcome: str
+) -> None:
+    """The tendon moves the balance to 1.63 alpha: a wall holds what leans by more, and not what swings."""
+    case = rw.Case(
+        PIER,
+        initial=rw.InitialState(share * PIER.alpha),
+        duration=duration,
+        tendon=rw.Tendon(stiffness=2.0),
+    )
+    trace = multibody.simulate(
+        case, engine="mujoco", support="ring", time_step=1e-3, ring_clearance=0.01, ring_inclination=0.5
+    )
+    assert trace.outcome == "stands"
+    assert trace.tilt[-1] > PIER.alpha
+    assert outcome_of(trace) == outcome

@@ -1,0 +1,233 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockwobble import reduced, sweep
+from rockwobble.compare import IncompleteError, Progress
+from rockwobble.compare.runs import execution
+from rockwobble.compare.runs.dask_backend import ClusterError
+from rockwobble.compare.runs.progress import Lost
+from rockwobble.compare.storage.claim import CACHE, claim_folder
+from rockwobble.compare.storage.manifest import read_results
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
+from rockwobble.studies import Grid, Sweep
+from rockwobble.studies.sweep import KIND
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+STANDING = Case(PIER, duration=1.0, name="a")
+SIZES, SCALES = [0.5, 2.0, 6.0, 20.0], [0.4, 1.0, 2.5, 6.0, 8.0]
+SHORT = GroundMotion(el_centro_1940().acceleration[:500], el_centro_1940().time_step, "short")
+
+
+def grid(**changes) -> Grid:
+    given = {"semidiagonals": SIZES, "tan_alphas": [0.1, 0.2], "scales": SCALES, "motions": [SHORT]}
+    return Grid(**(given | changes))
+
+
+def files(folder) -> dict[str, int]:
+    return {path.name: path.stat().st_ino for path in (folder / CACHE / KIND).glob("*.parquet")}
+
+
+def test_the_table_holds_what_peak_tilts_gives_in_the_order_of_the_axes():
+    table = sweep(grid(models=["recess", "planar"]), workers=1).table
+    assert len(table) == 2 * 2 * 4 * 5
+    cells = table.set_index(["model", "tan_alpha"])["peak_tilt"]
+    for model in ("recess", "planar"):
+        for tan_alpha in (0.1, 0.2):
+            peaks = reduced.peak_tilts(SIZES, tan_alpha, SHORT, SCALES, **reduced.MODELS[model])
+            assert np.array_equal(cells.loc[(model, tan_alpha)].to_numpy(), peaks.ravel())
+    one = table[(table.model == "recess") & (table.semidiagonal == 2.0) & (table.tan_alpha == 0.2)]
+    assert one["scale"].tolist() == SCALES
+    assert np.array_equal(one.peak_tilt_over_alpha, one.peak_tilt / math.atan(0.2))
+    expected = np.where(table.peak_tilt == 0.5 * math.pi, "overturned", "stands")
+    assert table.outcome.tolist() == expected.tolist()
+    assert 0 < (expected == "stands").sum() - (table.peak_tilt == 0.0).sum() < len(table)
+
+
+@pytest.mark.slow
+def test_no_cell_depends_on_chunks_workers_or_neighbours(tmp_path):
+    whole = sweep(grid(), workers=1).table
+    for options in ({"chunk_size": 1}, {"chunk_size": 3}, {"chunk_size": 7, "out": tmp_path, "workers": 2}):
+        pd.testing.assert_frame_equal(
+            sweep(grid(), **({"workers": 1} | options)).table, whole, check_exact=True
+        )
+
+
+def test_a_second_sweep_repeats_nothing(tmp_path):
+    first = sweep(grid(), out=tmp_path, workers=1, chunk_size=5).table
+    before = files(tmp_path)
+    events = []
+    second = sweep(grid(), out=tmp_path, workers=1, chunk_size=5, progress=events.append).table
+    assert events == []
+    assert files(tmp_path) == before
+    pd.testing.assert_frame_equal(first, second, check_exact=True)
+
+
+def test_a_grid_that_grows_keeps_what_is_there(tmp_path):
+    sweep(grid(tan_alphas=[0.2]), out=tmp_path, workers=1, chunk_size=5)
+    before = set(files(tmp_path).values())
+    events = []
+    table = sweep(grid(), out=tmp_path, workers=1, chunk_size=5, progress=events.append).table
+    assert (events[0].found, events[0].total) == (4, 8)
+    assert before < set(files(tmp_path).values())
+    pd.testing.assert_frame_equal(table, sweep(grid(), workers=1).table, check_exact=True)
+    pd.testing.assert_frame_equal(table, Sweep.load(tmp_path).table, check_exact=True)
+
+
+def test_chunks_of_another_sweep_go_only_when_a_folder_is_claimed_and_this_one_is_complete(tmp_path):
+    sweep(grid(tan_alphas=[0.1]), out=tmp_path, workers=1, chunk_size=5)
+    other = set(files(tmp_path))
+
+    def interrupt(event):
+        if event.done > event.found:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5, progress=interrupt)
+    assert len(files(tmp_path)) == len(other) + 1
+    sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5)
+    assert other < set(files(tmp_path))
+    with claim_folder(tmp_path, plan="this", command="sweep", overwrite=True):
+        table = sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5).table
+    assert not other & set(files(tmp_path))
+    pd.testing.assert_frame_equal(table, Sweep.load(tmp_path).table, check_exact=True)
+
+
+def test_a_sweep_whose_chunks_die_says_so_and_keeps_the_others(tmp_path, monkeypatch):
+    run_tasks = execution.run_tasks
+
+    def losing(*args, **options):
+        assert options["tries"] == 3
+        found = run_tasks(*args, **options)
+        return [Lost("killed"), *found[1:]]
+
+    monkeypatch.setattr(execution, "run_tasks", losing)
+    with pytest.raises(IncompleteError, match=r"1 of 8 chunks ended their processes 3 times.*killed"):
+        sweep(grid(), chunk_size=5, out=tmp_path, workers=1)
+    assert len(files(tmp_path)) == 8
+    with pytest.raises(ValueError, match="does not hold results"):
+        Sweep.load(tmp_path)
+
+
+def test_a_cluster_that_is_gone_says_what_is_kept(tmp_path, monkeypatch):
+    run_tasks = execution.run_tasks
+
+    def gone(*args, **options):
+        run_tasks(args[0], args[1][:3], **options)
+        raise ClusterError("the Dask scheduler does not answer any more")
+
+    monkeypatch.setattr(execution, "run_tasks", gone)
+    with pytest.raises(IncompleteError, match=f"any more; 3 chunks are kept in {tmp_path}$"):
+        sweep(grid(), chunk_size=5, out=tmp_path, workers=1)
+
+
+def test_each_input_of_a_chunk_is_in_its_key():
+    base = next(grid().chunks()).key()
+    others = [
+        grid(semidiagonals=SIZES[1:]),
+        grid(tan_alphas=[0.15]),
+        grid(scales=SCALES[:4]),
+        grid(motions=[GroundMotion(SHORT.acceleration * 1.1, SHORT.time_step, "short")]),
+        grid(motions=[GroundMotion(SHORT.acceleration, 0.011, "short")]),
+        grid(motions=[GroundMotion(SHORT.acceleration, SHORT.time_step, "renamed")]),
+        grid(models=["flat"]),
+        grid(rtol=1e-8),
+        grid(rest_tilt=1e-6),
+        grid(gravity=9.8),
+    ]
+    keys = [next(other.chunks()).key() for other in others]
+    assert len({base, *keys}) == 1 + len(others)
+    assert base == next(grid().chunks()).key()
+
+
+def test_cases_with_engines_and_models(tmp_path):
+    cases = [
+        Case(PIER, initial=InitialState(tilt * PIER.alpha, rolling_rate=0.5), duration=0.5, name=f"{tilt:g}")
+        for tilt in (0.3, 0.5)
+    ]
+    in_recess = Run("mujoco", "recess", 1e-3)
+    table = sweep(Suite(cases, [Run(None, "recess"), in_recess]), out=tmp_path, workers=1).table
+    assert table[["case", "run"]].to_numpy().tolist() == [
+        ["0.3", "recess model"],
+        ["0.5", "recess model"],
+        ["0.3", "mujoco recess"],
+        ["0.5", "mujoco recess"],
+    ]
+    assert table.peak_tilt_over_alpha.tolist() == pytest.approx([0.3, 0.5, 0.3, 0.5], rel=1e-3)
+    again = sweep(Suite(cases, [in_recess]), workers=1).table
+    pd.testing.assert_frame_equal(again, table.tail(2).reset_index(drop=True), check_exact=True)
+
+
+def test_the_chunks_of_a_suite_have_names_for_whoever_waits():
+    cases = [Case(PIER, duration=0.1, name=name) for name in "abc"]
+    events: list[Progress] = []
+    sweep(Suite(cases, [Run(None, "recess")]), workers=1, chunk_size=2, progress=events.append)
+    assert [event.label for event in events[::2]] == ["a, recess model and 1 more", "c, recess model"]
+
+
+def test_the_manifest_says_what_was_swept(tmp_path):
+    found = sweep(grid(), out=tmp_path, workers=1)
+    made = read_results(tmp_path, KIND).manifest
+    assert made.headline == {"runs": 40, **found.table["outcome"].value_counts().to_dict()}
+    assert (made.about["semidiagonals"], made.about["runs"]) == (SIZES, 40)
+    assert found.facts == made.about
+    motions = read_results(tmp_path, KIND).table("motions")
+    assert np.array_equal(motions[["acceleration_x", "acceleration_y"]], SHORT.acceleration)
+
+
+def test_a_summary_counts_the_outcomes_of_each_part_and_an_overturned_run_is_infinite(tmp_path):
+    found = sweep(grid(), out=tmp_path, workers=1)
+    summary = found.summary()
+    assert list(summary["tan_alpha"]) == [0.1, 0.2]
+    for (_, row), (_, own) in zip(summary.iterrows(), found.table.groupby("tan_alpha"), strict=True):
+        counts = own["outcome"].value_counts().reindex(found.outcomes, fill_value=0)
+        assert row[found.outcomes].to_dict() == counts.to_dict()
+        fell = own["outcome"] == "overturned"
+        assert row["median"] == own["peak_tilt_over_alpha"].where(~fell, math.inf).median()
+        assert row["largest"] == own.loc[~fell, "peak_tilt_over_alpha"].max()
+    pd.testing.assert_frame_equal(Sweep.load(tmp_path).summary(), summary, check_exact=True)
+
+
+@pytest.mark.parametrize("where", [100, -100])  # in the data, and in what the file says of itself
+def test_a_damaged_chunk_runs_again(tmp_path, where):
+    first = sweep(grid(), out=tmp_path, workers=1).table
+    path = next((tmp_path / CACHE / KIND).glob("*.parquet"))
+    content = bytearray(path.read_bytes())
+    content[where] ^= 1  # a single bit
+    path.write_bytes(content)
+    events = []
+    again = sweep(grid(), out=tmp_path, workers=1, progress=events.append).table
+    assert (events[-1].found, events[-1].total) == (1, 2)
+    pd.testing.assert_frame_equal(first, again, check_exact=True)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: grid(semidiagonals=[]), "semidiagonals must hold at least one"),
+        (lambda: grid(semidiagonals=[0.0]), "semidiagonals must be above zero"),
+        (lambda: grid(scales=[-1.0]), "scales must not be negative"),
+        (lambda: grid(scales=[1.0, 1.0]), "scales must differ, got 1.0 twice"),
+        (lambda: grid(tan_alphas=[math.nan]), "tan_alphas must be a sequence of finite numbers"),
+        (lambda: grid(motions=[SHORT, SHORT]), "motions must differ, got 'short' twice"),
+        (lambda: grid(models=["glued"]), "must be one of recess, flat, planar, got 'glued'"),
+        (lambda: grid(rtol=1.0), "rtol must be from"),
+        (lambda: sweep([]), "at least one case"),
+        (lambda: sweep([STANDING, STANDING]), "got 'a' twice"),
+        (lambda: sweep(Suite([STANDING], [Run(None, "recess")] * 2)), "got 'recess model' twice"),
+        (lambda: sweep(Suite([STANDING], [Run("mujoco", "glued")])), "got 'glued'"),
+        (lambda: sweep(grid(), chunk_size=0), "chunk_size must be a whole number, at least 1"),
+        (
+            lambda: grid(semidiagonals=[*range(1, 20_001)], scales=[*range(20_000)]),
+            "at most 100,000,000 runs",
+        ),
+        (lambda: Sweep.load("/"), "does not hold results"),
+    ],
+)
+def test_bad_input_gets_one_clear_line(make, words):
+    with pytest.raises(ValueError, match=words):
+        make()
