@@ -6,11 +6,11 @@ import sys
 import zipfile
 from pathlib import Path
 
-FOLDERS = ("models", "reduced", "multibody", "compare", "reports")
+FOLDERS = ("models", "reduced", "multibody", "compare", "studies", "reports")
 
 
 def main(checkout: Path, wheel: Path) -> None:
-    """Exit with a message unless the wheel holds the five folders, and nothing but them and the top level."""
+    """Exit with a message unless the wheel holds its folders, and nothing but them and the top level."""
     wanted = {
         f"rockwobble/{path.relative_to(checkout).as_posix()}"
         for folder in FOLDERS

@@ -1,6 +1,6 @@
 """Verdict on two fingerprints, in one word: same, chaotic or changed. Needs numpy only.
 
-    python verify.py CERTIFICATE OTHER_CERTIFICATE
+    python verdict.py CERTIFICATE OTHER_CERTIFICATE
 
 same: every number repeats as closely as the certificate says. chaotic: what differs does so after the time
 when agreement must end, and the largest tilts of many perturbed copies from then on agree in distribution.

@@ -6,6 +6,7 @@
     python reports/published/remake.py --check       # is anything damaged, or said without a table?
     python reports/published/remake.py --trim        # leave out what is not kept, without any run
     python reports/published/remake.py --age         # what has changed since in the code that they rest on
+    python reports/published/remake.py --archive benchmark.zip   # the benchmark, for who has not the project
 
 An interrupted study resumes. Kept are pages, figures, headline numbers and tables of up to 200 kB; while all
 tables of a study are, `rockwobble report reports/published/NAME` draws its pages again without any run.
@@ -20,6 +21,7 @@ import shutil
 import subprocess
 import sys
 import time
+import zipfile
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
@@ -95,6 +97,9 @@ LARGEST = 200_000
 STILL_KEPT = ("contrasts.parquet", "counts.parquet")
 # of the control no page is shown
 CONTROLS = {"fragility/half-step": (*STILL_KEPT, MANIFEST)}
+
+# modules of compare/external that need numpy alone: check.py of the benchmark imports them
+_EXTERNAL = ("__init__.py", "table.py", "motion.py", "mistakes.py", "explanation.py")
 
 # what `compact` looks for in an SVG
 _DRAWN = b'<g id="figure_1">'  # as matplotlib begins, which has its name no more once it is compact
@@ -300,8 +305,22 @@ def redraw() -> None:
     compact_all()
 
 
+def archive(path: Path) -> None:
+    """Pack the benchmark with the modules that its programs take from the project."""
+    root, benchmark = HERE.parents[1], HERE / "benchmark"
+    files = {path.relative_to(HERE): path for path in benchmark.rglob("*") if "__pycache__" not in path.parts}
+    files |= {Path("benchmark/external") / name: root / "compare/external" / name for name in _EXTERNAL}
+    files[Path("benchmark/verdict.py")] = root / "compare/check/verdict.py"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as packed:
+        for name, source in sorted(files.items()):
+            packed.write(source, name)
+
+
 def main() -> int:
     """Run the commands of the studies that are named, or of all."""
+    if "--archive" in sys.argv:
+        archive(Path(sys.argv[-1]))
+        return 0
     if "--check" in sys.argv:
         return check()
     if "--redraw" in sys.argv:

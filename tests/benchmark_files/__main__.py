@@ -1,7 +1,6 @@
 """The command `python tests/benchmark_files`: write reports/published/benchmark, or parts of it.
 
 python tests/benchmark_files cases [CASE ...]       the references, and how well each is known
-python tests/benchmark_files check                  the modules of compare/external beside check.py
 python tests/benchmark_files results [ENGINE ...]   what check.py says of our models and engines, scoreboard
                                      [--only CASE]  these cases alone; the results of the others stay
 """
@@ -35,14 +34,6 @@ def cases(names: list[str], only: list[str]) -> None:
         print(f"{definition.name}: {number} quantities, largest bound {worst:.0e}; traces {found.bounds}")
 
 
-def check(names: list[str], only: list[str]) -> None:
-    """Write the modules that check.py imports."""
-    del names, only
-    from benchmark_files.write import PUBLISHED, write_modules
-
-    write_modules(PUBLISHED / "trajectory")
-
-
 def results(names: list[str], only: list[str]) -> None:
     """Write the results, and the scoreboard."""
     from benchmark_files.engines import DEFAULT, REDUCED, VARIANTS, results_of
@@ -57,11 +48,11 @@ def results(names: list[str], only: list[str]) -> None:
 def main() -> None:
     """Do what is asked for."""
     parser = argparse.ArgumentParser(prog="python tests/benchmark_files", description=__doc__)
-    parser.add_argument("part", choices=("cases", "check", "results"))
+    parser.add_argument("part", choices=("cases", "results"))
     parser.add_argument("names", nargs="*", help="default: all")
     parser.add_argument("--only", action="append", default=[], metavar="CASE")
     given = parser.parse_args()
-    {"cases": cases, "check": check, "results": results}[given.part](given.names, given.only)
+    {"cases": cases, "results": results}[given.part](given.names, given.only)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The published folder, copied away from the project, and its check asked there.
+"""The published folder, unpacked away from the project, and its check asked there.
 
 `test_files` starts the programs as anybody would; the many judgements are made by the same `main` in this
 process, since most of the time of a start goes into loading numpy.
@@ -10,6 +10,7 @@ import contextlib
 import importlib.util
 import io
 import json
+import runpy
 import shutil
 import sys
 from collections.abc import Callable, Iterator, Mapping
@@ -40,10 +41,11 @@ Judge = Callable[..., Judged]
 
 @pytest.fixture(scope="session")
 def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder, away from everything else."""
-    folder = tmp_path_factory.mktemp("copied") / "benchmark"
-    shutil.copytree(PUBLISHED, folder)
-    return folder
+    """The folder as its archive holds it, away from everything else."""
+    place = tmp_path_factory.mktemp("copied")
+    runpy.run_path(str(PUBLISHED.parent / "remake.py"))["archive"](place / "benchmark.zip")
+    shutil.unpack_archive(place / "benchmark.zip", place)
+    return place / "benchmark"
 
 
 @pytest.fixture(scope="session")
@@ -51,7 +53,7 @@ def check(copied: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mo
     """check.py of that folder, among its cases and one of a single run."""
     folder = tmp_path_factory.mktemp("judging")
     shutil.copy(copied / "check.py", folder)
-    shutil.copytree(copied / "trajectory", folder / "trajectory")
+    shutil.copytree(copied / "external", folder / "external")
     shutil.copytree(copied / "cases", folder / "cases")
     single = shutil.copytree(folder / "cases" / "turn-recess", folder / "cases" / SINGLE) / "case.json"
     given = json.loads(single.read_text())

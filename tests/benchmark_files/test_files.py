@@ -18,7 +18,7 @@ from benchmark_files.conftest import EXIT, Judge
 from benchmark_files.definitions import definitions
 from benchmark_files.references import reference
 from benchmark_files.submission import cases_of
-from benchmark_files.write import PUBLISHED, case_file, write_modules
+from benchmark_files.write import PUBLISHED, case_file
 from rockwobble import reduced
 from rockwobble.models import Case
 from rockwobble.reduced.exact import free_response, steady_wobble_rate
@@ -212,15 +212,8 @@ def test_the_window_of_el_centro_ends_where_a_copy_no_longer_agrees() -> None:
         assert ends[run] < end < ends[run] + 1.0
 
 
-def test_the_check_has_the_modules_of_the_project(tmp_path: Path) -> None:
-    write_modules(tmp_path / "trajectory")
-    written = {path.name: path.read_text() for path in (tmp_path / "trajectory").iterdir()}
-    kept = (PUBLISHED / "trajectory").glob("*.py")
-    assert written == {path.name: path.read_text() for path in kept}
-
-
 def test_programs_need_numpy_only(copied: Path) -> None:
-    for name in ("check", "verify", "scoreboard"):
+    for name in ("check", "verdict", "scoreboard"):
         code = (
             "import sys; before = set(sys.modules); sys.path.insert(0, sys.argv[1]); "
             "__import__(sys.argv[2]); "
@@ -229,15 +222,17 @@ def test_programs_need_numpy_only(copied: Path) -> None:
         command = [sys.executable, "-I", "-c", code, str(copied), name]
         loaded = set(subprocess.run(command, capture_output=True, text=True, check=True).stdout.split())
         allowed = (
-            sys.stdlib_module_names | {name, "trajectory"} | (set() if name == "scoreboard" else {"numpy"})
+            sys.stdlib_module_names | {name, "external"} | (set() if name == "scoreboard" else {"numpy"})
         )
         assert not {m for m in loaded - allowed if not m.startswith("_")}, name
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("path", sorted((PUBLISHED / "examples").iterdir()), ids=lambda path: path.stem)
-def test_examples_of_every_format_are_exact(path: Path, copied: Path, tmp_path: Path) -> None:
-    command = [sys.executable, "-E", "-s", str(copied / "check.py"), "turn-recess", str(path)]
+@pytest.mark.parametrize("place", ["archive", "checkout"])
+def test_examples_are_exact(path: Path, place: str, copied: Path, tmp_path: Path) -> None:
+    folder = copied if place == "archive" else PUBLISHED
+    command = [sys.executable, "-E", "-s", str(folder / "check.py"), "turn-recess", str(path)]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == EXIT["exact"]
     result = json.loads((tmp_path / "result.json").read_text())

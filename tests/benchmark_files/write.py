@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -12,16 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.compare import external
 from rockwobble.reduced.body import body_of
 
 from .definitions import BenchmarkRun, Definition, G
 from .references import FIRST, SECOND, Reference
 
 PUBLISHED = Path(__file__).resolve().parents[2] / "reports" / "published" / "benchmark"
-COMPARED = Path(external.__file__).parent
-MODULES = ("table", "motion", "mistakes", "explanation")
-ABOUT_MODULES = "Trajectories: their files, differences and likely mistakes. Copies of compare/external."
 _MANY = 100  # samples of a ground motion that has a file of its own
 
 
@@ -164,14 +159,6 @@ def _motion(definition: Definition, run: BenchmarkRun) -> dict[str, Any]:
         return {"kind": "samples", "time": times, "acceleration": padded.tolist()}
     label = _label(definition, run)
     return {"kind": "file", "file": "motion.csv", "columns": [f"a{axis}{label}" for axis in "xy"]}
-
-
-def write_modules(folder: Path) -> None:
-    """Write the modules of the project that check.py needs to read, compare and explain trajectories."""
-    folder.mkdir(exist_ok=True)
-    (folder / "__init__.py").write_text(f'"""{ABOUT_MODULES}"""\n', encoding="utf-8")
-    for name in MODULES:
-        shutil.copyfile(COMPARED / f"{name}.py", folder / f"{name}.py")
 
 
 def _write_json(path: Path, content: Mapping[str, Any]) -> None:

@@ -21,10 +21,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from trajectory.explanation import Explanation, explanations
-from trajectory.mistakes import Change, Mistake, correct, in_time_scale, readings
-from trajectory.motion import Motion, Reference, exceeds, motion_at, pose_of
-from trajectory.table import Array, Table, Values, name_list, read_tables
+
+# modules that read, compare and explain trajectories: beside this file in an archive, else in the checkout
+sys.path.append(str(Path(__file__).resolve().parent / "../../../compare"))
+from external.explanation import Explanation, explanations
+from external.mistakes import Change, Mistake, correct, in_time_scale, readings
+from external.motion import Motion, Reference, exceeds, motion_at, pose_of
+from external.table import Array, Table, Values, name_list, read_tables
 
 LEVELS = ("exact", "good", "pass")
 FEWEST_IN_WINDOW = 30

@@ -1,1 +1,0 @@
-"""Trajectories: their files, differences and likely mistakes. Copies of compare/external."""
