@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Self, cast
 
 from rockwobble.models import plain_json
+from rockwobble.models.finding import Findings
 from rockwobble.models.plain_json import Facts
 from rockwobble.models.shown import Shown, brief
 
@@ -59,6 +60,10 @@ class Results(Shown):
     def _main_facts(self) -> Mapping[str, str]:
         return {name: brief(value) for name, value in self.headline().items()}
 
+    def findings(self) -> Findings:
+        """Return what the results say, in order of weight: see `rockwobble.models.finding`."""
+        return Findings()
+
     def sheets(self) -> Mapping[str, bytes]:
         """Return files of data besides the tables, by name, such as tables as CSV."""
         return {}
@@ -82,7 +87,7 @@ class Results(Shown):
         return self.facts
 
     def save(self, folder: str | Path, *, pages: Mapping[str, bytes] | None = None) -> None:
-        """Write tables, facts and manifest to `folder`: whole or not at all; other files there stay.
+        """Write tables, facts, findings (KIND.json) and manifest to `folder`: whole or not at all.
 
         Parameters
         ----------
@@ -104,7 +109,9 @@ class Results(Shown):
         manifest = cast("Manifest", self.manifest or self.made_by().manifest)
         if claim := claim_on(folder):
             manifest = dataclasses.replace(manifest, plan=claim.plan)
-        write_results(folder, manifest, self.tables, files=self.sheets(), pages=pages)
+        findings = self.findings()
+        said = {f"{self.kind}.json": findings.to_json(self.kind)} if findings else {}
+        write_results(folder, manifest, self.tables, files={**self.sheets(), **said}, pages=pages)
 
     @classmethod
     def load(cls, folder: str | Path) -> Self:

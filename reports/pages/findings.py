@@ -22,7 +22,8 @@ from rockwobble.models.support import EXTERNAL, SUPPORTS
 
 from ..figures.case_view import CaseView, SummaryRow, own_rows, rows_of
 from .diagnostics import code_counts, failure, remarks
-from .sentences import enumeration, seconds, small, the
+from .sentences import seconds, small, the
+from .table import enumeration
 
 _LISTED = 10
 # why a run diverges from its reference, as a table says it

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from rockwobble.models.case import REDUCED
@@ -34,11 +34,6 @@ def small(value: float) -> str:
     digit, exponent = f"{value:.0e}".split("e")
     # spaces that do not break
     return f"{digit}\u00a0×\u00a010{str(int(exponent)).translate(_SUPERSCRIPTS)}"
-
-
-def enumeration(words: Sequence[str]) -> str:
-    """Return words with commas and, before the last, "and"."""
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def the(label: str, engine: str) -> str:

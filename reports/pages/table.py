@@ -53,6 +53,11 @@ def number(value: object, form: str = ".3g") -> str:
     return _short(format(found, form))
 
 
+def enumeration(words: Sequence[str]) -> str:
+    """Return words with commas and, before the last, "and"."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
 # how a number is rounded that others do not exceed, and one that others do not fall below
 _BOUNDS: Mapping[str, str] = {"most": ROUND_CEILING, "least": ROUND_FLOOR}
 _EXACT = 12  # digits beyond are those of binary arithmetic

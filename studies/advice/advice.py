@@ -33,6 +33,7 @@ from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL, TERMS
 from rockwobble.models.cylinder import WobblingFrame, cylinder_of
 from rockwobble.models.doubts import doubts_of_cases
+from rockwobble.models.finding import Grade
 from rockwobble.models.plain_json import plain
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.support import RECESS, support_named
@@ -48,7 +49,6 @@ from .grades import (
     POOR,
     STABILITY,
     USE,
-    Grade,
     grade_chance,
     grade_engine,
     grade_intensity,

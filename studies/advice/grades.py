@@ -9,14 +9,12 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Literal
 
 from rockwobble.compare.comparison.prediction import BEATEN, UNTESTED
 from rockwobble.compare.metrics.statistics import FEWEST
+from rockwobble.models.finding import GRADES, Grade
 from rockwobble.models.trace import NO_PEAK
 
-Grade = Literal["satisfied", "not tested", "caution", "not satisfied"]
-GRADES: tuple[Grade, ...] = ("satisfied", "not tested", "caution", "not satisfied")  # the best first
 POOR: tuple[Grade, ...] = ("caution", "not satisfied")
 # share of the moving time for which contact or friction may be missing before the motion is another one:
 # below it stand the spikes of single passes, milliseconds each

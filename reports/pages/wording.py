@@ -1,0 +1,120 @@
+"""Findings and diagnostics in English: every line of `words.toml`, and how its values are written.
+
+A line names values in braces. How a value looks follows its unit: an angle in degrees, a share in per cent,
+a time in s, a number with its 95 % interval behind it. `{runs:copy/copies}` adds the noun that fits the
+count; `{size:added|dissipated}` is the first word above zero, the second below; `{reason:word}` looks its
+value up in the table [word]; any other format is one of `number`, as `{bound:.1e}`. What stands in square
+brackets is left out where a value in it is not known. A line whose key ends in `:NAME unknown` or
+`:NAME infinite` takes the place of the plain one where that value is.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import tomllib
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache
+from importlib.resources import files
+
+from rockwobble.models.finding import Finding, Value
+
+from .table import NONE, enumeration, number
+
+_FIELD = re.compile(r"\{(\w+)(?::([^}]*))?\}")
+_OPTIONAL = re.compile(r"\[([^\]]*)\]")
+# unit: how a number looks
+_BY_UNIT: Mapping[str, Callable[[float], str]] = {
+    "s": lambda value: f"{number(value, '.4g')} s",
+    "rad": lambda value: f"{number(math.degrees(value))}°",
+    "share": lambda value: number(value, "percent"),
+    "count": lambda value: number(value, ".0f"),
+    "alpha": lambda value: f"{number(value)} α",
+    "m": lambda value: f"{number(value)} m",
+    "1/a": lambda value: f"{number(value)} a year",
+}
+
+
+@cache
+def words() -> Mapping[str, Mapping[str, str | list[str]]]:
+    """Tables of `words.toml` by the group of a key."""
+    return tomllib.loads((files(__package__) / "words.toml").read_text(encoding="utf-8"))
+
+
+def lines_of(key: str) -> tuple[str, str]:
+    """Short form and sentence of a key, which are one where only one is stated.
+
+    Raises
+    ------
+    KeyError
+        If the file of words has no such key.
+    """
+    group, _, name = key.partition(".")
+    line = words()[group][name]
+    return (line, line) if isinstance(line, str) else (line[0], line[-1])
+
+
+def sentence(finding: Finding, *, short: bool = False) -> str:
+    """A finding in words, without capital and full stop."""
+    units = {name: unit for name, _, unit in finding.quantities()}
+    return written(finding.key, finding.values, units, short=short)
+
+
+def text(findings: Iterable[Finding]) -> str:
+    """Findings in words, one a line, each behind its level."""
+    return "\n".join(f"{each.level}: {sentence(each)}" for each in findings)
+
+
+def written(key: str, values: Mapping[str, Value], units: Mapping[str, str], *, short: bool = False) -> str:
+    """The line of a key with values of the given units."""
+    return filled(lines_of(_variant(key, values))[0 if short else 1], values, units)
+
+
+def filled(line: str, values: Mapping[str, Value], units: Mapping[str, str]) -> str:
+    """A line with its values; see the module."""
+    line = _OPTIONAL.sub(lambda part: part[1] if _all_known(part[1], values) else "", line)
+    return _FIELD.sub(lambda each: _value(values.get(each[1]), units.get(each[1], ""), each[2] or ""), line)
+
+
+def _variant(key: str, values: Mapping[str, Value]) -> str:
+    group, _, line = key.partition(".")
+    for name, value in values.items():
+        if isinstance(value, float) and not math.isfinite(value):
+            variant = f"{line}:{name} {'unknown' if math.isnan(value) else 'infinite'}"
+            if variant in words()[group]:
+                return f"{group}.{variant}"
+    return key
+
+
+def _all_known(part: str, values: Mapping[str, Value]) -> bool:
+    return all(_is_known(values.get(each[1])) for each in _FIELD.finditer(part))
+
+
+def _is_known(value: Value) -> bool:
+    return value not in (None, "", ()) and not (isinstance(value, float) and math.isnan(value))
+
+
+def _value(value: Value, unit: str, form: str) -> str:
+    if form == "word":
+        word = words()["word"].get(str(value), str(value))
+        return str(word)
+    if isinstance(value, str):
+        return value
+    if isinstance(value, tuple):
+        if value and isinstance(value[0], str):
+            return enumeration([str(each) for each in value])
+        middle, low, high = (_value(each, unit, form) for each in value)
+        return f"{middle} ({low} to {high})"
+    if value is None or math.isnan(value):
+        return NONE
+    if "/" in form:
+        one, many = form.split("/")
+        return f"1 {one}" if value == 1 else f"{number(value, '.0f')} {many}"
+    if "|" in form:
+        above, below = form.split("|")
+        return above if value > 0.0 else below
+    if form.startswith("size "):
+        return _value(abs(value), unit, form.removeprefix("size "))
+    if form:
+        return number(value, form)
+    return _BY_UNIT.get(unit, number)(value)

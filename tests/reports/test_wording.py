@@ -1,0 +1,101 @@
+"""The file of words: a line for each key that the code finds, a key for each line, and how values look."""
+
+from __future__ import annotations
+
+import ast
+import math
+import re
+from pathlib import Path
+
+import pytest
+
+from rockwobble.models import Diagnostic
+from rockwobble.models.diagnostic import CODES, REASONS
+from rockwobble.models.finding import QUANTITIES, Finding, Findings, unit_of
+from rockwobble.reports.pages.diagnostics import sentence as diagnosed
+from rockwobble.reports.pages.wording import filled, lines_of, sentence, words
+
+ROOT = Path(__file__).parents[2]
+PARTS = ("models", "compare", "studies")
+_FIELD = re.compile(r"\{(\w+)(?::[^}]*)?\}")
+SENTENCES = {
+    f"{group}.{name}": line
+    for group, lines in words().items()
+    if group not in ("word", "diagnostic")
+    for name, line in lines.items()
+}
+
+
+def keys_in_code() -> set[str]:
+    """Constants given as `key` to a `Finding`, in whatever expression."""
+    keys = set()
+    for path in (path for part in PARTS for path in (ROOT / part).rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Finding":
+                (key,) = (each.value for each in node.keywords if each.arg == "key")
+                keys |= {each.value for each in ast.walk(key) if isinstance(each, ast.Constant)}
+    return {key for key in keys if isinstance(key, str)}
+
+
+def test_each_key_in_the_code_has_a_line_and_each_line_a_key():
+    keys = keys_in_code()
+    lines = {key.partition(":")[0] for key in SENTENCES}
+    assert keys == lines
+
+
+@pytest.mark.parametrize("key", SENTENCES)
+def test_each_line_names_known_quantities_and_takes_their_values(key: str):
+    both = SENTENCES[key]
+    for short, line in enumerate([both] if isinstance(both, str) else reversed(both)):
+        values = {name: 2.0 if unit_of(name) else "text" for name in _FIELD.findall(line)}
+        assert "{" not in sentence(Finding(key=key, values=values), short=bool(short))
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_each_diagnostic_has_a_line_that_takes_its_values(code: str):
+    for detail in REASONS.get(code, ("",)):
+        for number in (2.0, math.nan, math.inf):
+            fact = Diagnostic(code=code, time=number, duration=2.0, size=number, bound=1.0, detail=detail)
+            assert not set("{}[]") & set(diagnosed(fact))
+
+
+@pytest.mark.parametrize(
+    ("line", "text"),
+    [
+        ("{tilt} and {share}", "11.5° and 40 % (26 % to 71 %)"),
+        ("{runs:copy/copies} of {names}[ at {time}][ over {tilt:.1f}]", "1 copy of a, b and c over 0.2"),
+        ("{difference:added|dissipated} {time}", "dissipated –"),
+        ("{difference:size percent}", "50 %"),
+        ("{reason:word}", "the runs diverge there"),
+    ],
+)
+def test_a_value_is_written_as_its_unit_asks(line: str, text: str):
+    values = {
+        "tilt": 0.2,
+        "share": (0.4, 0.26, 0.71),
+        "runs": 1,
+        "names": ("a", "b", "c"),
+        "time": math.nan,
+        "difference": -0.5,
+        "reason": "diverged",
+    }
+    assert filled(line, values, {name: unit_of(name) for name in values}) == text
+
+
+def test_a_value_without_a_known_quantity_is_refused():
+    with pytest.raises(ValueError, match="QUANTITIES"):
+        Finding(key="any", values={"speed": 1.0})
+
+
+def test_findings_are_a_table_a_file_and_a_text():
+    finding = Finding(key="diagnostic.slip", level="caution", values={"time": 1.5}, runs="mujoco")
+    findings = Findings([finding, Finding(key="diagnostic.side")])
+    assert repr(findings).splitlines()[0] == "caution: contact slipped from 1.5 s on"
+    assert list(findings.to_frame()["unit"]) == ["s", ""]
+    assert b'"unit": "s"' in findings.to_json("trial")
+    assert findings.of("diagnostic") == findings
+
+
+def test_every_quantity_has_a_meaning():
+    assert all(meaning for _, meaning in QUANTITIES.values())
+    assert lines_of("diagnostic.slip") == ("slipped", "contact slipped[ from {time} on]")
