@@ -19,7 +19,7 @@ from rockwobble.models.trace import NO_PEAK
 from rockwobble.models.trace_source import Known
 
 from .auto_step import AUTO, STEP_TOLERANCE, Progress, find_step
-from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, engine_for
+from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, engine_fault, engine_for
 from .excitation import StepMeans
 from .extrapolated_step import EXTRAPOLATED, FINEST, extrapolate, require_finest
 from .guard import check_time_step
@@ -141,6 +141,7 @@ def _simulate(
     settings: Settings,
 ) -> Trace:
     """Run with one time step [s]."""
+    engine_fault(run.engine_name)  # loads it: the time of a run is that of a warm engine
     started = clock.perf_counter()
     scale = froude_scale(case.cylinder.semidiagonal, case.gravity)
     backend, scene, resolved = _statement(case, run.engine_name, run.support, settings, step)

@@ -23,6 +23,7 @@ from ..metrics.pair import (
     direction_difference,
     energy_loss,
     first_unresolved_pass,
+    largest_differences,
     make_pair,
     start_of,
     tilt_rms,
@@ -52,7 +53,8 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     "contact_rms": ("b", "RMS distance of the contact points where both tilts exceed 5 % of the peak"),
     "turn_difference": (
         "deg",
-        "how far apart the contact points have rolled at the end of agreement, or at a pass unresolved",
+        "angle-of-turn difference: how far apart the contact points have rolled at the end of agreement, or "
+        "at a pass unresolved",
     ),
     "uplift_time_difference": ("s", "run minus reference"),
     "uplift_direction_difference": ("rad", "azimuth of the contact point at uplift or release"),
@@ -64,7 +66,13 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     "residual_twist": ("deg", "turn of the cylinder about its axis at the end"),
     "energy_loss": ("", "energy lost by the run over the largest energy reached"),
     "wall_time": ("s", "computing time of the run"),
-    "time_ratio": ("", "the same over that of the reference"),
+    "time_ratio": ("", "the same over that of the reference, both without loading or compiling"),
+    "largest_tilt_difference": ("alpha", "until within_tolerance_until, as the next two"),
+    "largest_contact_difference": (
+        "b",
+        "largest distance of the contact points, where both tilts exceed 5 % of the peak",
+    ),
+    "largest_turn_difference": ("deg", "largest angle-of-turn difference there, before a pass unresolved"),
     "reference_wall_time": ("s", "computing time of the reference"),
     "contact_resolution": ("rad", "smallest minimum tilt of a pass that the engine resolves"),
     "closest_pass": ("alpha", "smallest minimum tilt of the reference's passes within the agreement"),
@@ -151,7 +159,10 @@ def summary_row(
     tolerance, within = tolerance_of(reference, trial), within or prediction
     close = agreement_time(whole, tolerance=tolerance, broken=broken, allowance=allowance)
     direction = direction_difference(reference, trial)
-    turned_until = min(agreement.end, first_unresolved_pass(trial, start=whole.start))
+    unresolved = first_unresolved_pass(trial, start=whole.start)
+    tilt, contact, turn = largest_differences(
+        whole, close, turned_until=unresolved, direction_difference=direction
+    )
     return {
         **_UNKNOWN,
         **_methods(case, name, reference, label, trial),
@@ -160,8 +171,11 @@ def summary_row(
         "reference_peak_tilt": reference.peak_tilt / alpha,
         **difference,
         "turn_difference": math.degrees(
-            turn_difference(whole, until=turned_until, direction_difference=direction)
+            turn_difference(whole, until=min(agreement.end, unresolved), direction_difference=direction)
         ),
+        "largest_tilt_difference": tilt,
+        "largest_contact_difference": contact,
+        "largest_turn_difference": math.degrees(turn),
         "uplift_time_difference": trial.uplift_time - reference.uplift_time,
         "uplift_direction_difference": direction,
         "agreed_passes": agreed_passes(reference, agreement),

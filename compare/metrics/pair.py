@@ -186,21 +186,25 @@ def tilt_rms_relative(pair: Pair) -> float:
 TILTED = 0.05
 
 
-def contact_rms(pair: Pair) -> float:
-    """Return the RMS distance of the two contact points, in units of b.
+def _well_tilted(pair: Pair) -> NDArray[np.bool_]:
+    """Samples in which both tilts exceed 5 % of the reference's peak (n,).
 
-    Counted where both tilts exceed 5 % of the reference's peak: near upright the whole base is
-    close to the ground, and where the rim touches says nothing.
-
-    Returns
-    -------
-    float
-        NaN where no sample counts.
+    Nearer to upright the whole base is close to the ground, and where the rim touches says nothing.
     """
     least = TILTED * float(pair.reference_tilt.max())
+    return (pair.tilt > least) & (pair.reference_tilt > least)
+
+
+def _contact_difference(pair: Pair) -> FloatArray:
+    """Distance of the two contact points (n,) [b]; NaN where a rim does not carry."""
     distance = np.linalg.norm(pair.contact_point - pair.reference_contact_point, axis=1)
-    counts = (pair.tilt > least) & (pair.reference_tilt > least) & np.isfinite(distance)
-    return rms(distance[counts]) / pair.cylinder.base_radius
+    return np.asarray(distance / pair.cylinder.base_radius)
+
+
+def contact_rms(pair: Pair) -> float:
+    """RMS of the contact-point difference where both are well tilted [b]; NaN where they never are."""
+    distance = _contact_difference(pair)
+    return rms(distance[_well_tilted(pair) & np.isfinite(distance)])
 
 
 _HALF_A_TURN = 1e-9  # [rad] rounding of half a turn: motion with spin takes longer than a sample for it
@@ -231,14 +235,52 @@ def turn_difference(pair: Pair, *, until: float, direction_difference: float = 0
     float
         Trial minus reference [rad]; NaN where they are never tilted at the same time.
     """
-    difference = pair.rolling_angle - pair.reference_rolling_angle
+    difference = _turn_difference(pair, direction_difference)
     both = np.flatnonzero(np.isfinite(difference) & (pair.time <= until))
+    return float(difference[both[-1]]) if len(both) else math.nan
+
+
+def _turn_difference(pair: Pair, direction_difference: float) -> FloatArray:
+    """Trial minus reference (n,) [rad], without the whole turn by which the two started apart."""
+    difference = pair.rolling_angle - pair.reference_rolling_angle
+    both = np.flatnonzero(np.isfinite(difference))
     if not len(both):
-        return math.nan
+        return difference
     offset = float(difference[both[0]]) - (
         direction_difference if math.isfinite(direction_difference) else 0.0
     )
-    return float(difference[both[-1]]) - 2.0 * math.pi * round(offset / (2.0 * math.pi))
+    return np.asarray(difference - 2.0 * math.pi * round(offset / (2.0 * math.pi)))
+
+
+def largest_differences(
+    pair: Pair, agreement: Agreement, *, turned_until: float, direction_difference: float = 0.0
+) -> tuple[float, ...]:
+    """Largest differences of tilt [alpha], contact point [b] and angle of turn [rad] within an agreement.
+
+    Parameters
+    ----------
+    pair : Pair
+    agreement : Agreement
+    turned_until : float
+        Time of the run up to which angles of turn are comparable [s].
+    direction_difference : float, optional
+        As of `turn_difference`.
+
+    Returns
+    -------
+    tuple of float
+        The three; NaN where there is no sample: contact point and angle of turn count where both are well
+        tilted, as in `contact_rms`.
+    """
+    within = pair.time < agreement.end - _SAME_TIME if agreement.diverged else pair.time <= agreement.end
+    tilted = within & _well_tilted(pair)
+    turn = np.abs(_turn_difference(pair, direction_difference))
+    parts = (
+        np.abs(pair.tilt_difference)[within],
+        _contact_difference(pair)[tilted],
+        turn[tilted & (pair.time <= turned_until)],
+    )
+    return tuple(float(np.nanmax(part)) if np.isfinite(part).any() else math.nan for part in parts)
 
 
 def first_unresolved_pass(trial: Trace, *, start: float = 0.0) -> float:

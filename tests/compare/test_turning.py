@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from rockwobble.compare.metrics.pair import (
+    Agreement,
     contact_rms,
     direction_difference,
     first_unresolved_pass,
+    largest_differences,
     make_pair,
     turn_difference,
 )
@@ -127,3 +129,20 @@ def test_contact_points_that_are_not_known_are_masked(cylinder, make_trace, time
 def test_contact_points_at_rest_are_masked(cylinder, make_trace, time):
     rest = make_trace(time, np.zeros_like(time), rolling_angle=np.full_like(time, np.nan))
     assert math.isnan(contact_rms(make_pair(cylinder, rest, rest)))
+
+
+@pytest.mark.parametrize("diverged", [True, False])
+def test_largest_differences_are_those_before_the_end_of_agreement(cylinder, make_trace, time, diverged):
+    tilt = np.where(time < 0.5, 0.01, 0.3) * cylinder.alpha  # first below 5 % of the peak
+    higher = np.select([time < 2.0, time < 5.0], [0.001, 0.002], 0.5) * cylinder.alpha
+    turned = np.select([time < 0.5, time < 3.0], [3.0, 0.1], 0.2)
+    pair = make_pair(
+        cylinder,
+        make_trace(time, tilt, rolling_angle=2.0 * time + 2.0 * math.pi),
+        make_trace(time, tilt + higher, rolling_angle=2.0 * time + turned),
+    )
+    agreement = Agreement(length=5.0, end=5.0, diverged=diverged, tested=True)
+    largest = largest_differences(pair, agreement, turned_until=2.9, direction_difference=3.0)
+    # the sample at the divergence is the first that does not agree
+    assert largest == pytest.approx((0.002 if diverged else 0.5, 2.0 * math.sin(0.1), 0.1))
+    assert np.isnan(largest_differences(pair, agreement, turned_until=0.4)[2])
