@@ -203,6 +203,26 @@ class Case:
         return float((pushed[pushed > 0.0] / pressed[pushed > 0.0]).max(initial=0.0))
 
     @property
+    def friction_of_uplift(self) -> float:
+        """Friction below which it slides before it can uplift [-]: b/h, more under a slab with a tendon."""
+        body, tendon = self.cylinder, self.tendon
+        if tendon is None:
+            return body.tan_alpha
+        pressed = 1.0 + tendon.prestress / (1.0 + body.slab_mass_ratio)
+        return body.tan_alpha * tendon.uplift_factor(body) / pressed
+
+    @property
+    def uplifts(self) -> bool:
+        """Whether the shaking uplifts it from rest where nothing slides. Exact: convex between samples."""
+        if self.motion is None:
+            return False
+        acceleration, body = self.motion.until(self.length), self.cylinder
+        held = self.gravity * (1.0 if self.tendon is None else self.tendon.uplift_factor(body))
+        vertical = acceleration[:, 2] if self.motion.has_vertical else 0.0
+        pushed = np.hypot(acceleration[:, 0], acceleration[:, 1])
+        return bool((pushed >= body.tan_alpha * (held + vertical)).any())
+
+    @property
     def is_release(self) -> bool:
         """Whether it starts tilted."""
         return self.initial is not None and self.initial.tilt > 0.0

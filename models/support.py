@@ -87,6 +87,11 @@ class Support(str):
         """Whether it keeps the cylinder in its place, by guidance or by walls."""
         return self.guided or self.walls
 
+    @property
+    def lets_slide(self) -> bool:
+        """Whether friction alone keeps the base in its place."""
+        return self.has_model and not self.is_recess
+
 
 RECESS = Support(
     "recess",

@@ -9,9 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, GroundMotion
-
-# A motion is in one plane if it leaves it by no more than a few roundings of its peak.
-_PLANE_TOLERANCE = 32.0 * float(np.finfo(float).eps)
+from rockwobble.models.mode import PLANE_TOLERANCE, stays_in_plane
 
 
 def ground_at(case: Case, times: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -31,26 +29,7 @@ def is_spatial(motion: GroundMotion) -> bool:
     """Whether the motion is in no vertical plane by more than any rounding."""
     record = three_columns(motion)
     largest = record[int(np.square(record[:, :2]).sum(axis=1).argmax())]
-    return not stays_in_plane(record, math.atan2(largest[1], largest[0]), 1e4 * _PLANE_TOLERANCE)
-
-
-@lru_cache(maxsize=4)
-def plane_of_shaking(motion: GroundMotion | None) -> float | None:
-    """The azimuth [rad] of the vertical plane that holds the whole motion, if there is one."""
-    if motion is None or motion.peak == 0.0:
-        return 0.0
-    record = three_columns(motion)
-    largest = record[int(np.square(record[:, :2]).sum(axis=1).argmax())]
-    azimuth = math.atan2(largest[1], largest[0])
-    return azimuth if stays_in_plane(record, azimuth) else None
-
-
-def stays_in_plane(record: NDArray[np.float64], azimuth: float, tolerance: float = _PLANE_TOLERANCE) -> bool:
-    """Return whether a record (n, 3) leaves the plane at `azimuth` by at most a share of its peak."""
-    x, y = record[:, 0], record[:, 1]
-    across = y * math.cos(azimuth) - x * math.sin(azimuth)
-    peak = math.sqrt(float((x * x + y * y).max(initial=0.0)))
-    return float(np.abs(across).max(initial=0.0)) <= tolerance * peak
+    return not stays_in_plane(record, math.atan2(largest[1], largest[0]), 1e4 * PLANE_TOLERANCE)
 
 
 def in_plane(record: NDArray[np.float64], azimuth: float) -> NDArray[np.float64]:

@@ -12,12 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, InitialState
+from rockwobble.models.mode import plane_of_shaking, stays_in_plane
 from rockwobble.models.number_checks import quoted
 from rockwobble.models.support import MODELLED, RECESS, support_named
 
 from . import kernels
 from .body import Body, restitution_from_momentum
-from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
+from .columns import is_spatial, three_columns
 from .integration.balance import decide
 from .integration.result import Driver, IntegrationResult, Options, Task
 from .restoring import TERMS, balance, constants_of

@@ -1,0 +1,86 @@
+"""Modes of motion, and the one that friction, slenderness, support and shaking let a case have."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .case import Case
+from .ground_motion import GroundMotion
+from .support import support_named
+
+REST, SLIDES, ROCKS = "rest", "slides", "rocks"
+ROCKS_IN_PLANE, ROCKS_AND_SLIDES = "rocks in one plane", "rocks and slides"
+MODES = (REST, SLIDES, ROCKS, ROCKS_IN_PLANE, ROCKS_AND_SLIDES)
+# Over `Case.friction_of_uplift`: what uplifts below it slides as well, since no friction is known so well.
+BORDER = 1.1
+
+# A motion is in one plane if it leaves it by no more than a few roundings of its peak.
+PLANE_TOLERANCE = 32.0 * float(np.finfo(float).eps)
+
+
+def expected_mode(case: Case, support: str) -> str:
+    """Mode of motion that the mechanics lets a case have, before any run.
+
+    From rest on flat ground the smaller of friction and b/h decides: below b/h friction can never lift the
+    base and never turns it, so it slides; from there to 1.1 b/h it rocks and may slide.
+    Recesses take what friction does not.
+
+    Parameters
+    ----------
+    case : Case
+    support : str
+        Name of a support.
+
+    Returns
+    -------
+    str
+        One of `MODES`.
+
+    Examples
+    --------
+    >>> from rockwobble.models import Cylinder, el_centro_1940
+    >>> cask = Cylinder(semidiagonal=3.0, tan_alpha=0.5)
+    >>> shaken = el_centro_1940().scaled(2.5)
+    >>> expected_mode(Case(cask, shaken, friction=0.3), "flat")
+    'slides'
+    >>> expected_mode(Case(cask, shaken, friction=0.3), "recess")
+    'rocks'
+    >>> expected_mode(Case(cask, shaken, friction=0.52), "flat")
+    'rocks and slides'
+    """
+    initial = case.initial
+    if case.is_release:
+        assert initial is not None
+        stays = case.motion is None or stays_in_plane(case.motion.acceleration, initial.rolling_angle)
+        return ROCKS_IN_PLANE if stays and not initial.rolling_rate else ROCKS
+    free = support_named(support).lets_slide
+    if free and case.friction < case.friction_of_uplift:
+        return SLIDES if case.friction_at_rest > case.friction else REST
+    if not case.uplifts:
+        return REST
+    if free and case.friction < BORDER * case.friction_of_uplift:
+        return ROCKS_AND_SLIDES
+    return ROCKS if plane_of_shaking(case.motion) is None else ROCKS_IN_PLANE
+
+
+@lru_cache(maxsize=4)
+def plane_of_shaking(motion: GroundMotion | None) -> float | None:
+    """Azimuth of the vertical plane that holds the whole motion [rad]; None if there is none."""
+    if motion is None or motion.peak == 0.0:
+        return 0.0
+    record = motion.acceleration
+    largest = record[int(np.square(record[:, :2]).sum(axis=1).argmax())]
+    azimuth = math.atan2(largest[1], largest[0])
+    return azimuth if stays_in_plane(record, azimuth) else None
+
+
+def stays_in_plane(record: NDArray[np.float64], azimuth: float, tolerance: float = PLANE_TOLERANCE) -> bool:
+    """Whether a record (n, 2) or (n, 3) leaves the plane at `azimuth` by at most a share of its peak."""
+    x, y = record[:, 0], record[:, 1]
+    across = y * math.cos(azimuth) - x * math.sin(azimuth)
+    peak = math.sqrt(float((x * x + y * y).max(initial=0.0)))
+    return float(np.abs(across).max(initial=0.0)) <= tolerance * peak
