@@ -18,7 +18,7 @@ from rockwobble.models.synthetic import pulse, synthetic_motions
 from .sentences import fragment
 
 MOST_RECORDS = 10  # of a page: each is some 100 kB of it
-_MOST_INTENSITY = 10.0  # of the slider, times the record or the intensity that is given
+_MOST_PEAK = 20.0  # [g]: to which the slider of the intensity brings the weakest ground motion
 # [s], [m/s^2], [s]: of the motions beside El Centro
 _SYNTHETIC_LENGTH, _SYNTHETIC_PEAK, _PULSE_PERIOD, _SEED = 12.0, 3.0, 0.8, 1
 
@@ -132,6 +132,7 @@ def explore_page(
     """
     if not 1 <= len(shakings) <= MOST_RECORDS:
         raise ValueError(f"a page holds 1 to {MOST_RECORDS} ground motions, got {len(shakings)}")
+    weakest = min(each.motion.peak for each in shakings) or 9.81
     values = {name: getattr(state, name) for name in State.__slots__}
     given = {
         "records": [_shaking_values(each) for each in shakings],
@@ -139,7 +140,7 @@ def explore_page(
         "gravity": gravity,
         "duration": duration,
         "free": free,
-        "most": _MOST_INTENSITY * max(1.0, state.intensity),
+        "most": max(float(f"{_MOST_PEAK * 9.81 / weakest:.2g}"), state.intensity),
     }
     return fragment(
         "explore/explore.html.j2",
@@ -216,7 +217,7 @@ def _panels() -> dict[str, dict[str, object]]:
             equal=True,
             legend=[
                 entry("base at rest", "#bbbbbb", "solid"),
-                entry("contact point", "#0072B2", "solid"),
+                entry("contact point (flat ground)", "#0072B2", "solid"),
                 entry("top of the column", "#D55E00", "solid"),
             ],
         ),
@@ -234,6 +235,7 @@ def _panels() -> dict[str, dict[str, object]]:
                     ("to α", "#08519c"),
                     ("beyond α", "#E69F00"),
                     ("overturns", "#B00020"),
+                    ("not decided", "#808080"),
                 )
             ],
         ),

@@ -115,16 +115,17 @@ function contactForce(o, flat, y, ax, ay, az, slopes) {
 // -- the run
 
 // In `problem`: what `bodyOf` takes; support "recess", "flat" or "planar" with an azimuth; release { tilt, azimuth, rate } or
-// none; restitution of impacts in a plane; duration. `motion` has samples x, y, z (or none), dt and a scale, or is null.
-// Returns the outcome and, at each `sampleStep`, the motion.
+// none; restitution of impacts in a plane; duration. `motion` has samples x, y, z (or none), dt and a scale of each, or is null.
+// Returns the outcome, the peak over alpha (infinite where it overturns, NaN where that is not decided) and, at each
+// `sampleStep`, the motion.
 function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {}) {
   const o = bodyOf(problem, rtol), planar = problem.support === "planar", flat = problem.support === "flat", n = flat ? 8 : 4;
-  const azimuth = planar ? problem.azimuth || 0 : 0, release = problem.release, scale = motion ? motion.scale : 0;
+  const azimuth = planar ? problem.azimuth || 0 : 0, release = problem.release, scale = motion ? motion.scale : [0, 0, 0];
   const length = motion ? motion.x.length : 0, dt = motion ? motion.dt : 1, ca = Math.cos(azimuth), sa = Math.sin(azimuth);
   const [gx, gy, gz] = [0, 1, 2].map(() => new Float64Array(length));
   for (let i = 0; i < length; i++) {
-    const x = scale * motion.x[i], y = scale * motion.y[i];
-    gx[i] = planar ? x * ca + y * sa : x; gy[i] = planar ? 0 : y; gz[i] = motion.z ? scale * motion.z[i] : 0;
+    const x = scale[0] * motion.x[i], y = scale[1] * motion.y[i];
+    gx[i] = planar ? x * ca + y * sa : x; gy[i] = planar ? 0 : y; gz[i] = motion.z ? scale[2] * motion.z[i] : 0;
   }
   const pieceAfter = (i) => {
     if (i >= length - 1) return { x: 0, y: 0, z: 0, sx: 0, sy: 0, sz: 0, begin: Math.max(length - 1, 0) * dt, length: Infinity, step: dt };
@@ -252,16 +253,17 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
         const tilt = part[0];
         if (y[1] > 0 && (!inPlane || tilt > 0)) {
           run.peak = Math.max(run.peak, tilt); lastMaximum = piece.begin + elapsed + turned;
-          if (following && !(flat && o.delta > 0)) return finish();
+          if (following && !(flat && o.delta > 0) && tilt < HALF_PI) return finish();
         }
-        if (o.delta > 0 && inPlane && tilt > 0) { taken = turned; out.set(part); out[1] = 0; fell = false; }
+        if (tilt >= HALF_PI) fell = true;  // it turns back beyond, within the step
+        else if (o.delta > 0 && inPlane && tilt > 0) { taken = turned; out.set(part); out[1] = 0; fell = false; }
       }
       if (inPlane && out[0] <= 0) {
         landed = true;
         const hops = turned && y[1] > 0;
         taken = crossing((state) => state[0], hops ? turned : 0, size, 1);
         out.set(part);
-      } else if (fell) { taken = crossing((state) => state[0] - (state === part ? HALF_PI : 0), 0, size, -1); out.set(part); }
+      } else if (fell) { taken = crossing((state) => state[0] - (state === part ? HALF_PI : 0), 0, turned || size, -1); out.set(part); }
       y.set(out); k.set(kOut);
       if (taken !== size) restart = true;
       elapsed = taken === size && size === stop - elapsed ? stop : elapsed + taken;
@@ -305,6 +307,7 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
     if (run.outcome !== "overturned") while (count && times[count - 1] > duration * (1 + 1e-12)) count--;
     COLUMNS.forEach((name, i) => { run[name] = buffer.subarray(i * most, i * most + count); });
     run.body = o;
+    run.relativePeak = { stands: run.peak / o.alpha, overturned: Infinity, undecided: NaN }[run.outcome];
     return run;
   }
 }

@@ -7,21 +7,20 @@
   const peaks = motions.map(({ x, y }) => x.reduce((most, value, i) => Math.max(most, Math.hypot(value, y[i])), 0) / GRAVITY);
   const BLUE = "#0072B2", RED = "#B00020", ORANGE = "#D55E00", GREY = "#8a8a8a", AGREEMENT = 0.01;  // of alpha
 
-  // -- the problem: what each slider states, between the bounds of its number
+  // -- the problem: what each slider states, between the bounds of its number; out of them nothing is computed
 
   const standard = given.state, state = { ...standard }, fields = {};
   for (const field of root.querySelectorAll(".field")) {
     const name = field.dataset.field, [number, slider] = field.querySelectorAll("input"), [low, high] = [Number(number.min), Number(number.max)];
     const log = "log" in slider.dataset, to = (value) => (log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low)) * 1000;
-    const from = (share) => Number((log ? low * (high / low) ** (share / 1000) : low + (high - low) * share / 1000).toPrecision(4));
-    const set = (value) => { state[name] = value; changed(); };
-    slider.addEventListener("input", () => { const value = from(Number(slider.value)); number.value = value; slider.ariaValueText = String(value); set(value); });
+    const rounded = (value, digits) => Math.min(Math.max(Number(value.toPrecision(digits)), low), high);
+    const from = (share) => rounded(log ? low * (high / low) ** (share / 1000) : low + (high - low) * share / 1000, 4);
+    slider.addEventListener("input", () => { state[name] = number.value = from(Number(slider.value)); slider.ariaValueText = number.value; changed(); });
     number.addEventListener("input", () => {
-      const value = Number(number.value), fits = number.value !== "" && value >= low && value <= high;
-      number.ariaInvalid = fits ? "false" : "true";
-      if (fits) { slider.value = to(value); set(value); }
+      if (number.validity.valid) { state[name] = Number(number.value); slider.value = to(state[name]); slider.ariaValueText = number.value; }
+      changed();
     });
-    const show = () => { const value = state[name]; number.value = Number(value.toPrecision(5)); number.ariaInvalid = "false"; slider.value = to(value); slider.ariaValueText = number.value; };
+    const show = () => { number.value = rounded(state[name], 5); slider.value = to(state[name]); slider.ariaValueText = number.value; };
     fields[name] = { field, low, high, show };
   }
   for (const name of ["record", "support"]) {
@@ -35,7 +34,7 @@
       height: at.height, diameter: at.diameter, gamma: at.slab, delta: Math.min(at.loss / 1000, 0.45 * at.diameter), gravity: GRAVITY,
       prestress: tendon ? at.prestress : 0, stiffness: tendon ? at.stiffness : 0, support: at.support, azimuth: at.plane / DEG,
       release: released ? { tilt: at.tilt / DEG, azimuth: lean / DEG, rate: at.support === "planar" ? 0 : at.rate } : null,
-      record: at.record, intensity: at.intensity, duration: released ? given.free : given.duration || (motions[at.record].x.length - 1) * motions[at.record].dt,
+      record: at.record, intensity: at.intensity, factors: at.factors, duration: released ? given.free : given.duration || (motions[at.record].x.length - 1) * motions[at.record].dt,
     };
   };
 
@@ -67,40 +66,60 @@
     worker.postMessage({ motions });
     return worker;
   };
-  const solverOf = (done) => {
+  const solverOf = (requestOf, done) => {
     let solving = null, waiting = null;
     const worker = workerOf(({ data }) => {
       const at = solving;
       solving = null;
       if (waiting) ask(waiting);
-      done(at, data.run);
+      done(at, data);
     });
     const ask = (at) => {
       waiting = solving ? at : null;
       if (solving) return;
       solving = at;
-      worker.postMessage({ problem: problemOf(at) });
+      worker.postMessage(requestOf(at));
     };
     return ask;
   };
+  const runOf = (at) => ({ problem: problemOf(at) });
+  // two horizontal components, or tilt and rate of a release, each as given and 1 % more or less
+  const FACTORS = [0.99, 1, 1.01].flatMap((one) => [0.99, 1, 1.01].map((other) => [one, other])).filter(([one, other]) => one !== 1 || other !== 1);
+  const copiesOf = (at) => ({
+    problems: FACTORS.map(([one, other]) => problemOf({ ...at, factors: [one, other], tilt: at.tilt * one, rate: at.rate * other })),
+  });
   let bodies = [], pinned = null, frame = 0;
   const besideOf = (at) => ({
     pinned, stronger: { ...at, intensity: at.intensity * (1 + 1e-6), tilt: at.record < 0 ? at.tilt * (1 + 1e-6) : at.tilt },
     planar: { ...at, support: "planar" }, other: { ...at, support: at.support === "flat" ? "recess" : "flat" },
   })[find("beside").value];
+  const outOfRange = () => root.querySelector(".field:not([hidden]) input:invalid");
   // both are drawn once where they come before the same frame
-  const showSoon = () => { frame ||= requestAnimationFrame(() => { frame = 0; show(); }); };
-  const solve = solverOf((at, run) => { bodies[0] = bodyOf(at, run, run.outcome === "overturned" ? RED : BLUE, 1); showSoon(); });
-  const solveBeside = solverOf((at, run) => {
+  const showSoon = () => { frame ||= requestAnimationFrame(() => { frame = 0; if (!outOfRange()) show(); }); };
+  const solve = solverOf(runOf, (at, { run }) => { bodies[0] = bodyOf(at, run, run.outcome === "overturned" ? RED : BLUE, 1); solveCopies(at); showSoon(); });
+  const solveCopies = solverOf(copiesOf, (at, { peaks: ends }) => { if (bodies[0].at === at) { bodies[0].copies = ends; showSoon(); } });
+  const solveBeside = solverOf(runOf, (at, { run }) => {
     if (find("beside").value) bodies[1] = bodyOf(at, run, GREY, 0.4);
     if (bodies[0]) showSoon();
   });
   const changed = () => {
     const at = { ...state }, beside = besideOf(at), released = at.record < 0;
-    find("follows").textContent = `R = ${number(Math.hypot(at.height, at.diameter) / 2)} m, tan α = ${number(at.diameter / at.height)}; beyond the tilt α = ${number(Math.atan2(at.diameter, at.height) * DEG)}° the weight overturns it`;
     for (const name of ["ground", "map"]) root.querySelector(`.graph.${name}`).hidden = released;
     const hide = { intensity: released, tilt: !released, rate: !released || at.support === "planar", lean: !released || at.support === "planar", plane: at.support !== "planar" };
-    for (const [name, hidden] of Object.entries(hide)) fields[name].field.hidden = hidden;
+    for (const [name, hidden] of Object.entries(hide)) {
+      fields[name].field.hidden = hidden;
+      if (hidden) fields[name].show();
+    }
+    const wrong = outOfRange();
+    for (const part of root.querySelectorAll("[data-of-run]")) part.inert = Boolean(wrong);
+    if (wrong) {
+      const { title, range } = wrong.closest(".field").dataset;
+      say(`Nothing is computed: ${title} must be from ${range}`, "undecided");
+      find("follows").textContent = "";
+      clock.pause();
+      return;
+    }
+    find("follows").textContent = `R = ${number(Math.hypot(at.height, at.diameter) / 2)} m, tan α = ${number(at.diameter / at.height)}; beyond the tilt α = ${number(Math.atan2(at.diameter, at.height) * DEG)}° the weight overturns it`;
     const refused = (at.prestress || at.stiffness) && at.support === "flat";
     find("refused").textContent = refused ? "The tendon is left out: the model has none on flat ground." : "";
     solve(at);
@@ -118,7 +137,7 @@
   // -- what a run becomes: poses for the view, lines for the graphs
 
   const bodyOf = (at, run, colour, opacity) => {
-    const b = at.diameter / 2, body = { ...run, at, colour, opacity, alpha: run.body.alpha, balance: Math.min(run.body.balance, Math.PI / 2) };
+    const b = at.diameter / 2, body = { ...run, at, colour, copies: [], opacity, alpha: run.body.alpha, balance: Math.min(run.body.balance, Math.PI / 2) };
     let held = run.angle.find((angle) => !Number.isNaN(angle)) ?? 0;  // the view keeps it while the column stands
     body.rolling_angle = run.angle.map((angle) => { held = Number.isNaN(angle) ? held : angle; return held; });
     body.contact_x = run.x.map((x, i) => x + b * Math.cos(body.rolling_angle[i]));
@@ -155,9 +174,10 @@
 
     follow() {
       if (!this.mark) return;
-      const { left, right, top, bottom } = this.at.frame;
-      const [x, y] = this.place.id === "map" ? [this.at.x(Math.hypot(state.height, state.diameter) / 2), this.at.y(state.intensity * peaks[state.record])] : [this.at.x(clock.now), 0];
-      const inside = x >= left && x <= right && (y === 0 || (y >= top && y <= bottom));
+      const { left, right } = this.at.frame;
+      const shown = bodies[0] && bodies[0].at, onMap = this.place.id === "map";
+      const [x, y] = onMap && shown ? [this.at.x(Math.hypot(shown.height, shown.diameter) / 2), this.at.y(shown.intensity * peaks[shown.record])] : [this.at.x(clock.now), 0];
+      const inside = onMap ? shown && placeOf(shown) >= 0 : x >= left && x <= right;
       this.mark.setAttribute("visibility", inside ? "visible" : "hidden");
       if (inside) this.mark.setAttribute("transform", `translate(${x} ${y})`);
     }
@@ -183,7 +203,7 @@
     const ends = [0, clock.length];
     const tilts = (body, colour, name) => line(thinned(body.time, body.tilt.map((tilt) => tilt * DEG)), colour, name);
     const top = Math.max(...bodies.map((body) => Math.min(body.peak, 1.6 * body.balance))), alpha = main.alpha * DEG, near = top > 0.25 * main.alpha;
-    graphs.tilt.panel.y.high = Math.max(1.08 * top * DEG, near ? 1.15 * alpha : 0, 1e-9);
+    graphs.tilt.panel.y.high = Math.max(1.08 * top * DEG, near ? 1.15 * alpha : 0) || 1;
     redraw(graphs.tilt, [...(beside ? [tilts(beside, GREY, "beside it")] : []), tilts(main, main.colour, "tilt"), ...(near ? [rule("y", alpha, `α = ${number(alpha)}°`, RED)] : [])], ends);
     clearTimeout(laterTimer);
     laterTimer = setTimeout(() => showFurther(main, motion, ends), first ? 0 : 80);  // once the sliders rest
@@ -202,43 +222,44 @@
       const shakes = motion ? [["x", "east", BLUE], ["y", "north", ORANGE], ["z", "up", "#009E73"]].filter(([key]) => motion[key]) : [];
       redraw(graphs.ground, shakes.map(([key, name, colour]) => line(thinned(axis, motion[key].map((value) => value * scale)), colour, name, { width: 1 })), ends);
     }
-    // a line is broken where the column stands, and where it jumps: in a pass
-    const path = (body, x, y, jump, colour, name) => {
-      const points = [[], []];
-      for (let i = 0, last = -1; i < x.length; i++) {
-        const gap = !(body.tilt[i] > 1e-3 * body.alpha) || Number.isNaN(x[i]) || (last >= 0 && Math.hypot(x[i] - x[last], y[i] - y[last]) > jump);
-        if (!gap && last >= 0 && i - last < body.thin) continue;
-        points[0].push(gap ? NaN : x[i]); points[1].push(gap ? NaN : y[i]);
-        last = i;
-      }
-      return line(points, colour, name, { width: 1.2 });
-    };
+    // in a recess the contact point stays on the circle, and its path says nothing
     const b = at.diameter / 2, circle = Array.from({ length: 73 }, (_, i) => i * Math.PI / 36), paths = [];
+    const path = (points, colour, name) => line([points.map(([x]) => x), points.map(([, y]) => y)], colour, name, { width: 1.2 });
     for (const body of [...bodies].reverse()) {
-      const top = body.tilt.map((tilt) => (tilt < 1.3 * body.balance ? at.height * Math.sin(tilt) + b * (1 - Math.cos(tilt)) : NaN));  // not the fall
-      body.thin = Math.ceil(body.tilt.length / 2500);
-      const own = body === main ? [ORANGE, "top of the column"] : [GREY, "beside it"];
-      paths.push(path(body, body.contact_x, body.contact_y, b, body === main ? BLUE : GREY, "contact point"));
-      paths.push(path(body, top.map((r, i) => body.x[i] + r * Math.cos(body.angle[i])), top.map((r, i) => body.y[i] + r * Math.sin(body.angle[i])), Infinity, ...own));
+      const { tilt, at: { height, diameter, support } } = body, [contact, top] = body === main ? [BLUE, ORANGE] : [GREY, GREY], step = Math.ceil(tilt.length / 2500);
+      const upright = tilt.findIndex((value) => value > 1.3 * body.balance), last = (upright < 0 ? tilt.length : upright) - 1;  // not the fall
+      if (support === "flat") for (const points of rockwobbleContactPaths(body, diameter / 2, 0, last, step)) paths.push(path(points, contact, "contact point (flat ground)"));
+      const tops = [];
+      for (let i = 0; i <= last; i += step) {
+        const out = tilt[i] > 0 ? height * Math.sin(tilt[i]) + diameter / 2 * (1 - Math.cos(tilt[i])) : 0;
+        tops.push([body.x[i] + out * Math.cos(body.rolling_angle[i]), body.y[i] + out * Math.sin(body.rolling_angle[i])]);
+      }
+      paths.push(path(tops, top, body === main ? "top of the column" : "beside it"));
     }
     redraw(graphs.path, [line([circle.map((angle) => b * Math.cos(angle)), circle.map((angle) => b * Math.sin(angle))], "#bbb", "base at rest", { width: 1 }), ...paths]);
+    if (map) drawMap();
   }
-  const outcome = ({ outcome: end, endTime, upliftTime, peak, alpha }) => {
+  const say = (words, kind) => {
+    if (find("outcome").textContent !== words) find("outcome").textContent = words;
+    find("outcome").className = kind;
+  };
+  const outcome = ({ outcome: end, endTime, upliftTime, peak, alpha, relativePeak, copies }) => {
     const words = { overturned: `Overturns: on the ground at ${number(endTime, 4)} s`, undecided: `Not decided: followed for ${number(endTime || clock.length, 4)} s only` }[end]
       || (Number.isNaN(upliftTime) ? "Stands, and does not uplift" : peak > alpha ? "Stands, after a tilt beyond α" : "Stands");
-    if (find("outcome").textContent !== words) find("outcome").textContent = words;
-    find("outcome").className = end;
+    const otherwise = end === "undecided" ? 0 : copies.filter((each) => Number.isFinite(each) !== Number.isFinite(relativePeak)).length;
+    say(words + (otherwise ? `; but ${otherwise} of ${copies.length} runs with a 1 % change end otherwise` : ""), otherwise ? "sensitive" : end);
   };
   const results = (body, motion) => {
     const { at, peak, alpha, normal, outward, across } = body, o = body.body, fell = body.outcome === "overturned", moved = !Number.isNaN(body.upliftTime);
+    const end = { overturned: "overturns", undecided: "not decided" }[body.outcome];
     let friction = 0, least = Infinity;
     for (let i = 0; i < normal.length; i++) if (body.tilt[i] > 1e-3 * alpha && !(fell && body.tilt[i] > 1.2 * body.balance)) {
       friction = Math.max(friction, normal[i] > 0 ? Math.hypot(outward[i], across[i]) / normal[i] : Infinity);
       least = Math.min(least, normal[i] / GRAVITY);
     }
     const ends = o.gaps, topShift = ends * at.diameter / 2 * (1 - Math.cos(peak)) + at.height * Math.sin(peak), rows = [
-      ["peak tilt", fell ? "overturns" : moved ? `${number(peak * DEG)}° = ${number(peak / alpha)} α` : "0"],
-      [ends > 1 ? "displacement of the slab" : "displacement of the top", fell ? "overturns" : moved ? `${number(topShift)} m` : "0 m"],
+      ["peak tilt", end || (moved ? `${number(peak * DEG)}° = ${number(peak / alpha)} α` : "0")],
+      [ends > 1 ? "displacement of the slab" : "displacement of the top", end || (moved ? `${number(topShift)} m` : "0 m")],
       [motion ? "time of uplift" : "released", moved ? motion ? `${number(body.upliftTime, 4)} s` : "at 0 s" : "none"],
       ["peak ground acceleration", motion ? `${number(at.intensity * peaks[at.record])} g` : "still"],
       ["acceleration at uplift", `${number(o.slope * (1 + o.q / GRAVITY))} g`],
@@ -282,46 +303,54 @@
   });
   find("reset").addEventListener("click", () => { Object.assign(state, standard); showFields(); changed(); });
 
-  // -- the map: size by intensity, coarse at first, made in a worker of its own
+  // -- the map: size by intensity, made in a worker of its own, a row at a time from that of the column outward
 
-  const CELLS = 40, SIZES = [1 / 4, 4], palette = graphs.map.panel.legend.map((entry) => entry.colour);
-  const classOf = (peak) => (peak === Infinity ? 6 : peak > 1 ? 5 : peak === 0 ? 0 : 1 + Math.min(3, Math.floor(peak * 4)));
-  let map = null, mapTimer = 0, asked = 0;
-  const spread = (i) => (i + 0.5) / CELLS, geometric = (low, high, share) => low * (high / low) ** share;
-  const cellOf = (column, row) => ({ ...map.at, height: map.at.height * geometric(...SIZES, spread(column)), diameter: map.at.diameter * geometric(...SIZES, spread(column)), intensity: geometric(...map.intensities, spread(row)) });
+  const CELLS = 41, SIZES = [1 / 4, 4], palette = graphs.map.panel.legend.map((entry) => entry.colour);
+  const classOf = (peak) => (Number.isNaN(peak) ? 7 : peak === Infinity ? 6 : peak > 1 ? 5 : peak === 0 ? 0 : 1 + Math.min(3, Math.floor(peak * 4)));
+  let map = null, mapTimer = 0;
+  const geometric = ([low, high], share) => low * (high / low) ** share, centre = (i) => (i + 0.5) / CELLS;
+  const shareOf = ([low, high], value) => Math.log(value / low) / Math.log(high / low);
+  // what a map is of: all but size and intensity
+  const subjectOf = ({ height, diameter, intensity, ...others }) => JSON.stringify([others, (diameter / height).toPrecision(4)]);
+  const placeOf = (at) => {
+    if (!map || subjectOf(at) !== map.subject) return -1;
+    const [column, row] = [shareOf(SIZES, at.height / map.at.height), shareOf(map.intensities, at.intensity)].map((share) => Math.floor(share * CELLS));
+    return column >= 0 && column < CELLS && row >= 0 && row < CELLS ? row * CELLS + column : -1;
+  };
   function askMap(at) {
-    const { height, diameter, intensity, ...varied } = at, others = JSON.stringify(varied);
     clearTimeout(mapTimer);
-    if (map && Math.abs(diameter / height / (map.at.diameter / map.at.height) - 1) < 1e-3 && others === map.others) { graphs.map.follow(); return; }
+    if (map && subjectOf(at) === map.subject) return;
     map = null;  // the worker stops after the row that it is at
     graphs.map.place.classList.add("stale");
     if (at.record >= 0) mapTimer = setTimeout(() => {  // once the sliders rest
       // around the uplift of the column: from half of it on
-      const uplift = diameter / height / peaks[at.record];
-      map = { at, others, intensities: [0.5 * uplift, 16 * uplift], values: new Float64Array(CELLS * CELLS).fill(NaN), id: ++asked };
-      row(8, 0);
+      const uplift = at.diameter / at.height / peaks[at.record], intensities = [0.5 * uplift, 16 * uplift];
+      const near = shareOf(intensities, at.intensity) * CELLS - 0.5, rows = Array.from({ length: CELLS }, (_, i) => i);
+      map = { at, subject: subjectOf(at), intensities, values: Array(CELLS * CELLS), rows: rows.sort((i, j) => Math.abs(i - near) - Math.abs(j - near)) };
+      askRow();
     }, 500);
   }
-  const row = (level, place) => {
-    const middle = (i) => i * level + (level - 1) / 2;
-    mapper.postMessage({ id: map.id, level, place, row: Array.from({ length: CELLS / level }, (_, i) => problemOf(cellOf(middle(i), middle(place)))) });
+  const askRow = () => {
+    const row = map.rows.shift(), { at, intensities } = map;
+    const cellOf = (column) => ({ ...at, height: at.height * geometric(SIZES, centre(column)), diameter: at.diameter * geometric(SIZES, centre(column)), intensity: geometric(intensities, centre(row)) });
+    mapper.postMessage({ subject: map.subject, row, problems: Array.from({ length: CELLS }, (_, column) => problemOf(cellOf(column))) });
   };
   const mapper = workerOf(({ data }) => {
-    if (!map || data.id !== map.id) return;
-    const { level, place, peaks: found } = data;
-    found.forEach((peak, i) => { for (let r = 0; r < level; r++) for (let c = 0; c < level; c++) map.values[(place * level + r) * CELLS + i * level + c] = peak; });
-    const last = (place + 1) * level >= CELLS;
-    if (last || place % (8 / level) === 0) drawMap();
-    if (!last) row(level, place + 1);
-    else if (level > 1) row(level / 2, 0);
+    if (!map || data.subject !== map.subject) return;
+    data.peaks.forEach((peak, column) => { map.values[data.row * CELLS + column] = peak; });
+    drawMap();
+    if (map.rows.length) askRow();
   });
   function drawMap() {
     graphs.map.place.classList.remove("stale");
-    const R = (share) => geometric(...SIZES, share) * Math.hypot(map.at.height, map.at.diameter) / 2, edges = Array.from({ length: CELLS + 1 }, (_, i) => i / CELLS);
-    const y = edges.map((share) => geometric(...map.intensities, share) * peaks[map.at.record]);
+    // each cell is coloured by a run in it: by that of the column where the dot lies
+    const place = bodies[0] ? placeOf(bodies[0].at) : -1;
+    if (place >= 0) map.values[place] = bodies[0].relativePeak;
+    const R = (share) => geometric(SIZES, share) * Math.hypot(map.at.height, map.at.diameter) / 2, PGA = (share) => geometric(map.intensities, share) * peaks[map.at.record];
+    const edges = Array.from({ length: CELLS + 1 }, (_, i) => i / CELLS), words = (peak) => (peak === undefined ? "not yet known" : Number.isNaN(peak) ? "not decided" : peak === Infinity ? "overturns" : `peak ${number(peak)} α`);
     redraw(graphs.map, [
-      { kind: "heat", name: "map", x: edges.map(R), y, cells: Array.from(map.values, (peak) => (Number.isNaN(peak) ? -1 : classOf(peak))), palette, written: [],
-        said: (column, line, i) => [`R = ${number(R(spread(column)))} m`, `peak ground acceleration ${number(geometric(...map.intensities, spread(line)) * peaks[map.at.record])} g`, Number.isNaN(map.values[i]) ? "not yet known" : map.values[i] === Infinity ? "overturns" : `peak ${number(map.values[i])} α`] },
+      { kind: "heat", name: "map", x: edges.map(R), y: edges.map(PGA), cells: Array.from(map.values, (peak) => (peak === undefined ? -1 : classOf(peak))), palette, written: [],
+        said: (column, row, i) => [`R = ${number(R(centre(column)))} m`, `peak ground acceleration ${number(PGA(centre(row)))} g`, words(map.values[i])] },
     ]);
   }
   graphs.map.sheet.addEventListener("click", (event) => {

@@ -71,15 +71,8 @@ function rockwobbleStage(plot, shape, changed) {
     lines.forEach((line, i) => pen.fillText(line, 8, plot.clientHeight - 8 - 14 * (lines.length - 1 - i)));
     stroke(circle, "#888", 1.5, [6, 4]);
   };
-  // a line that is broken where the cylinder stands
   const trail = (body, first, last) => {
-    let points = [];
-    const colour = body.opacity < 1 ? "#000" : body.colour;
-    for (let i = Math.max(0, first); i <= last; i++) {
-      if (body.tilt[i] > 0) points.push([body.contact_x[i], body.contact_y[i], 0]);
-      else { stroke(points, colour, 2.5); points = []; }
-    }
-    stroke(points, colour, 2.5);
+    for (const points of rockwobbleContactPaths(body, b, Math.max(0, first), last)) stroke(points.map(([x, y]) => [x, y, 0]), body.opacity < 1 ? "#000" : body.colour, 2.5);
   };
   // of a convex solid the faces towards the eye are all that is seen, in any order
   const cylinder = (body, at, factor) => {
@@ -152,4 +145,19 @@ function rockwobbleStage(plot, shape, changed) {
       if (shape().slab) slab(body, at, factor);
     }
   };
+}
+
+// Paths of the contact point: between two samples it runs along the rim, whose centre moves; broken where the cylinder stands.
+function rockwobbleContactPaths(body, b, first, last, step = 1) {
+  const paths = [[]], centre = (i) => [body.contact_x[i] - b * Math.cos(body.rolling_angle[i]), body.contact_y[i] - b * Math.sin(body.rolling_angle[i])];
+  for (let i = first; i <= last; i += step) {
+    if (!(body.tilt[i] > 0)) { if (paths.at(-1).length) paths.push([]); continue; }
+    const from = paths.at(-1).length ? i - step : i, angle = body.rolling_angle[from], turn = body.rolling_angle[i] - angle;
+    const [[x, y], [u, v]] = [centre(from), centre(i)], parts = Math.ceil(Math.abs(turn) / 0.1) || 1;
+    for (let n = 1; n <= parts; n++) {
+      const share = n / parts, now = angle + share * turn;
+      paths.at(-1).push([x + share * (u - x) + b * Math.cos(now), y + share * (v - y) + b * Math.sin(now)]);
+    }
+  }
+  return paths;
 }
