@@ -5,7 +5,8 @@ from .case import Case, InitialState, Run, Suite, run_duration
 from .cylinder import Cylinder, RockingBody, WobblingFrame
 from .diagnostic import Assumptions, Diagnostic
 from .ground_motion import GroundMotion
-from .hazard import HazardCurve, read_hazard
+from .hazard import HazardCurve
+from .hazard_file import read_hazard
 from .members import perturbed_copies, with_motions
 from .records.files import el_centro_1940, read_record
 from .records.folder import read_records, read_records_by_level

@@ -52,6 +52,10 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "large_peak": ("g", "no record has such a peak: is its unit another?"),
         "unlike_components": ("", "peaks of components differ as only units do"),
         "same_components": ("", "two components are the same: is one file given twice?"),
+        "large_hazard": (
+            "g or m/s",
+            "half of a hazard curve is above strong shaking: is its unit another?",
+        ),
         # and a length or a gravity
         "unlikely_length": ("m", "no structure has such a length: is its unit another?"),
         "unlikely_gravity": ("m/s2", "no planet has such a gravity: is its unit another?"),
@@ -73,6 +77,7 @@ REASONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "same_components": ("x and y", "x and z", "y and z"),
         "unlikely_length": ("mm", "cm", "in", "ft", "km"),
         "unlikely_gravity": ("ft/s2", "in/s2", "cm/s2", "mm/s2"),
+        "large_hazard": ("g", "m/s"),
         "offset": ("x", "y", "z"),
         "gravity_in_record": ("x", "y", "z"),
         "other_direction": tuple(f"{place} is {axis}" for place in "xyz" for axis in "xyz" if axis != place),

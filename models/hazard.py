@@ -1,21 +1,17 @@
-"""Seismic hazard: the annual frequency with which an intensity is exceeded at a site, and its files."""
+"""Seismic hazard: the annual frequency with which an intensity is exceeded at a site."""
 
 from __future__ import annotations
 
-import csv
-import json
 import math
-import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .argument_kinds import with_argument_kinds
+from .diagnostic import Diagnostic
 from .number_checks import require_increasing, require_numbers, require_one_of, require_positive
 from .shown import Brief
 
@@ -33,7 +29,8 @@ HAZARD_MEASURES: Mapping[str, tuple[str, str]] = MappingProxyType(
     }
 )
 _SPECTRAL = ("sa", "sa_mean")
-_NAMES = ", ".join(HAZARD_MEASURES)
+# g or m/s: half of a site's curve above it is rather one in another unit
+LARGEST_MIDDLE = 3.0
 
 
 @with_argument_kinds
@@ -56,6 +53,8 @@ class HazardCurve(Brief):
         Period of the oscillator, for "sa" and "sa_mean" alone [s].
     name : str, optional
         Name of site and source.
+    source : str, optional
+        Names of its columns in a file, and what they were read as.
 
     Raises
     ------
@@ -79,6 +78,7 @@ class HazardCurve(Brief):
     measure: str = field(kw_only=True)
     period: float | None = field(default=None, kw_only=True)
     name: str = field(default="", kw_only=True)
+    source: str = field(default="", kw_only=True)
 
     def __post_init__(self) -> None:
         measure_of(self.measure, self.period)
@@ -113,6 +113,15 @@ class HazardCurve(Brief):
         words, unit = HAZARD_MEASURES[self.measure]
         return f"{words}, T = {self.period:g} s [{unit}]" if self.period else f"{words} [{unit}]"
 
+    @property
+    def doubts(self) -> tuple[Diagnostic, ...]:
+        """Doubt about its unit, "large_hazard": half of its points lie above 3 g or 3 m/s."""
+        middle = float(np.median(self.intensity))
+        if middle <= LARGEST_MIDDLE:
+            return ()
+        unit = HAZARD_MEASURES[self.measure][1]
+        return (Diagnostic(code="large_hazard", size=middle, bound=LARGEST_MIDDLE, detail=unit),)
+
     def exceedance(self, intensity: ArrayLike) -> Array:
         """Return annual frequencies of exceedance [1/year] at intensities; NaN beyond the ends."""
         x = np.log(np.asarray(intensity, dtype=np.float64))
@@ -143,204 +152,3 @@ def measure_of(measure: str, period: float | None) -> tuple[str, float | None]:
     elif period is not None:
         raise ValueError(f"a period belongs to sa and sa_mean, got {period:g} s with {measure}")
     return measure, period
-
-
-@with_argument_kinds
-def read_hazard(
-    path: str | Path,
-    *,
-    measure: str,
-    period: float | None = None,
-    units: str | None = None,
-    years: float | None = None,
-    site: int = 1,
-    name: str | None = None,
-) -> HazardCurve:
-    r"""Read a hazard curve: CSV of two columns, the CSV of OpenQuake, or the JSON of the USGS.
-
-    Parameters
-    ----------
-    path : str or Path
-        CSV with a header line: intensity, and annual frequency of exceedance, or its probability in `years`.
-        The file of OpenQuake says its years and its measure itself, that of the USGS its measures.
-    measure : str
-        One of `HAZARD_MEASURES`: whether a curve is of the geometric mean or of the resultant no file says.
-    period : float, optional
-        For "sa" and "sa_mean" [s]; chooses among several curves of a file.
-    units : {"g", "m/s2", "cm/s2", "m/s", "cm/s"}, optional
-        Units of the intensity. Default: g, and m/s for velocities.
-    years : float, optional
-        The second column is the probability p of exceedance in so many years: -ln(1 - p)/years is taken.
-    site : int, optional
-        Which site of a file of OpenQuake, from 1.
-    name : str, optional
-        Default: the name of the file without its ending.
-
-    Returns
-    -------
-    HazardCurve
-        Without points of frequency zero at its end, and of several with one frequency at its beginning, where
-        the calculation saturates, with the last.
-
-    Raises
-    ------
-    ValueError
-        If the file is missing, none of these, or of another measure or period.
-
-    Examples
-    --------
-    >>> from tempfile import mkdtemp
-    >>> path = Path(mkdtemp()) / "site.csv"
-    >>> _ = path.write_text("pga_g,poe_50\n0.1,0.4\n0.2,0.1\n0.4,0.02\n")
-    >>> site = read_hazard(path, measure="pga", years=50.0)
-    >>> [round(float(each), 6) for each in site.annual_frequency]
-    [0.010217, 0.002107, 0.000404]
-    """
-    place = Path(path)
-    measure_of(measure, period)
-    try:
-        text = place.read_text(encoding="utf-8-sig")
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "it is no text"
-        raise ValueError(f"cannot read the hazard curve {place}: {reason}") from None
-    if text.lstrip().startswith("{"):
-        x, frequency = _usgs(place, text, measure, period)
-    elif "investigation_time" in text[:2000] or re.search(r"(?m)^lon,lat.*poe-", text[:5000]):
-        x, frequency = _openquake(place, text, measure, period, years, site)
-    else:
-        x, frequency = _two_columns(place, text, years)
-    keep = frequency > 0.0
-    x, frequency = x[keep] * _unit_factor(measure, units), frequency[keep]
-    if len(frequency) and np.all(np.diff(frequency) <= 0.0):
-        first = np.flatnonzero(frequency == frequency[0])[-1]
-        x, frequency = x[first:], frequency[first:]
-    try:
-        return HazardCurve(x, frequency, measure=measure, period=period, name=name or place.stem)
-    except ValueError as error:
-        raise ValueError(f"{place.name}: {error}") from None
-
-
-_UNITS = {"g": ("g", 1.0), "m/s2": ("g", 1.0 / 9.81), "cm/s2": ("g", 0.01 / 9.81)} | {
-    "m/s": ("m/s", 1.0),
-    "cm/s": ("m/s", 0.01),
-}
-
-
-def _unit_factor(measure: str, units: str | None) -> float:
-    own = HAZARD_MEASURES[measure][1]
-    if units is None:
-        return 1.0
-    require_one_of(
-        "units of a hazard curve", units, [each for each, (unit, _) in _UNITS.items() if unit == own]
-    )
-    return _UNITS[units][1]
-
-
-def _frequencies(path: Path, values: Array, years: float | None) -> Array:
-    """Return annual frequencies from these, or from probabilities in `years`."""
-    if years is None:
-        return values
-    require_positive("hazard years", years, "years")
-    if np.any((values < 0.0) | (values >= 1.0)):
-        raise ValueError(f"{path.name}: a probability must be at least 0 and below 1, got {values.max():g}")
-    return np.asarray(-np.log1p(-values) / years, dtype=np.float64)
-
-
-def _two_columns(path: Path, text: str, years: float | None) -> tuple[Array, Array]:
-    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
-    rows = [_cells(line) for line in lines]
-    titled = bool(rows) and not _is_number(rows[0][0])
-    if len(rows) == titled or any(len(row) != 2 for row in rows[titled:]):
-        raise ValueError(
-            f"{path.name} is no hazard curve: expected two columns, intensity and annual frequency of "
-            "exceedance"
-        )
-    if titled:
-        header = " ".join(rows.pop(0)).lower()
-        if years is None and re.search(r"poe|prob|p_", header):
-            raise ValueError(
-                f"{path.name} gives probabilities of exceedance: say in how many years (--hazard-years, "
-                "years=)"
-            )
-    return _numbers(path, rows, years)
-
-
-def _cells(line: str) -> list[str]:
-    """Cells of a line; beside semicolons and tabs a comma is that of a decimal."""
-    if ";" in line or "\t" in line:
-        return [cell.strip().replace(",", ".") for cell in re.split("[;\t]", line.strip())]
-    return [cell.strip() for cell in (line.split(",") if "," in line else line.split())]
-
-
-def _is_number(text: str) -> bool:
-    try:
-        return math.isfinite(float(text))
-    except ValueError:
-        return False
-
-
-def _numbers(path: Path, rows: Sequence[Sequence[str]], years: float | None) -> tuple[Array, Array]:
-    wrong = next((row for row in rows if not all(map(_is_number, row))), None)
-    if wrong is not None:
-        raise ValueError(f"{path.name}: expected two numbers, got {' '.join(wrong)[:60]!r}")
-    table = np.array([[float(cell) for cell in row] for row in rows], dtype=np.float64).reshape(-1, 2)
-    return table[:, 0], _frequencies(path, table[:, 1], years)
-
-
-def _openquake(
-    path: Path, text: str, measure: str, period: float | None, years: float | None, site: int
-) -> tuple[Array, Array]:
-    """Read the CSV of OpenQuake: a comment with imt and investigation_time, then a site a line."""
-    comment = "\n".join(line for line in text.splitlines()[:20] if line.startswith("#"))
-    imt = re.search(r"imt='([^']*)'", comment)
-    stated = re.search(r"investigation_time=([0-9.eE+-]+)", comment)
-    if imt is not None:
-        _require_measure(path, [imt[1]], measure, period)
-    span = float(stated[1]) if stated is not None and _is_number(stated[1]) else years
-    if span is None:
-        raise ValueError(f"{path.name} does not say its investigation time: give it (--hazard-years, years=)")
-    head, *sites = csv.reader(line for line in text.splitlines() if line.strip() and not line.startswith("#"))
-    places = [index for index, cell in enumerate(head) if cell.startswith("poe-")]
-    if not places or not 1 <= site <= len(sites):
-        raise ValueError(
-            f"{path.name} holds {len(sites)} sites: site must be from 1 to {len(sites)}, got {site}"
-        )
-    row = sites[site - 1]
-    return _numbers(path, [(head[index].removeprefix("poe-"), row[index]) for index in places], span)
-
-
-def _usgs(path: Path, text: str, measure: str, period: float | None) -> tuple[Array, Array]:
-    """Read the JSON of the hazard service of the USGS, whose values are annual frequencies."""
-    try:
-        response = json.loads(text)["response"]
-        curves = response["hazardCurves"] if isinstance(response, dict) else response
-        named = {str(_head(each)["imt"]["value"]): each for each in curves}
-        chosen = named[_require_measure(path, named, measure, period)]
-        total = next(part for part in chosen["data"] if part.get("component", "Total") == "Total")
-        x = total["values"]["xs"] if "values" in total else _head(chosen)["xvalues"]
-        y = total["values"]["ys"] if "values" in total else total["yvalues"]
-        return np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
-    except (KeyError, TypeError, StopIteration, json.JSONDecodeError):
-        raise ValueError(
-            f"{path.name} is no hazard curve of the USGS: it has no response with curves"
-        ) from None
-
-
-def _head(curve: Mapping[str, Any]) -> Mapping[str, Any]:
-    head: Mapping[str, Any] = curve.get("metadata", curve)
-    return head
-
-
-def _require_measure(path: Path, names: Iterable[str], measure: str, period: float | None) -> str:
-    """Return the name of a curve that is of a measure and a period: PGA, SA(0.2) or SA0P2."""
-    kind, known = measure.split("_")[0], list(names)
-    for name in known:
-        own = re.fullmatch(r"(PGA|PGV|SA)\(?([0-9P.]*)\)?", name.upper())
-        if own is not None and own[1].lower() == kind:
-            at = float(own[2].replace("P", ".")) if own[2] else None
-            if (at is None and period is None) or (at and period and abs(at - period) <= 1e-6 * period):
-                return name
-    wanted = kind.upper() + (f" at {period:g} s" if period else "")
-    raise ValueError(
-        f"{path.name} is of {', '.join(known)}, not of {wanted}: choose measure (and period) of it"
-    )

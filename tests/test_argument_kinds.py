@@ -28,7 +28,7 @@ CASE = rw.Case(PIER, STILL, duration=0.5, name="a case")
 OTHER = rw.Case(PIER, STILL, duration=0.4, name="another case")
 MODEL = rw.Run(None, "recess")
 TRACE = rw.simulate(CASE)
-HAZARD = "iml,annual_frequency\n0.1,0.01\n0.2,0.001\n"
+HAZARD = "PGA (g),annual frequency\n0.1,0.01\n0.2,0.001\n"
 RECORD = "0.00, 0.0\n0.01, 0.5\n0.02, 0.0\n"
 
 WRONG: dict[str, Any] = {

@@ -177,8 +177,8 @@ class Hazard(Plan):
 
     hazard: Path | None = _hazard(
         None,
-        "Hazard curve of the site, which adds the annual frequency of overturning: CSV of intensity and "
-        "annual frequency, CSV of OpenQuake or JSON of the USGS.",
+        "Hazard curve of the site, which adds the annual frequency of overturning: CSV of two named columns, "
+        "CSV of OpenQuake or JSON of the USGS.",
     )
     hazard_measure: str | None = _hazard(
         None,
@@ -186,14 +186,14 @@ class Hazard(Plan):
         "pgv_resultant or sa (horizontal resultant).",
     )
     hazard_units: str | None = _hazard(
-        None, "Unit of the intensity of the hazard curve. Default: g, or m/s for velocities."
+        None, "Unit of the intensity, such as g or cm/s2, where the header of the file does not state it."
     )
     hazard_years: float | None = _hazard(
         None,
-        "Period, in years, if the file gives probabilities of exceedance instead of annual frequencies.",
+        "Period, in years, of probabilities of exceedance, where the header of the file does not state it.",
         above=0.0,
     )
-    hazard_site: int = _hazard(1, "Number of the site in an OpenQuake file.", least=1)
+    hazard_site: int | None = _hazard(None, "Number of the site in an OpenQuake file of several.", least=1)
     risk_years: float = _hazard(50.0, "Period of the overturning probability, in years.", above=0.0)
     total_dispersion: float | None = _hazard(
         None,
@@ -214,7 +214,7 @@ class Hazard(Plan):
 
         if self.hazard is None:
             if lone := first_given(
-                self, "hazard_measure", "hazard_units", "hazard_years", "total_dispersion"
+                self, "hazard_measure", "hazard_units", "hazard_years", "hazard_site", "total_dispersion"
             ):
                 raise ValueError(f"{lone} belongs to a hazard curve, give --hazard as well")
             return None

@@ -175,10 +175,12 @@ class Fragility(Results, kind=KIND):
         """Return the same with the tables risk and contributions, and the hazard among its facts."""
         risk, contributions = self._risk_tables(hazard, years, total_dispersion)
         site = {"name": hazard.name, "title": hazard.title, "years": years, "rare": hazard.intensity_at(RARE)}
+        site |= {"source": hazard.source, "total_dispersion": total_dispersion}
+        doubts = [{"record": hazard.name or "hazard"} | fields_of(fact) for fact in hazard.doubts]
         return replace(
             self,
             tables={**self.tables, "risk": risk, "contributions": contributions},
-            facts=plain({**self.facts, "hazard": site | {"total_dispersion": total_dispersion}}),
+            facts=plain({**self.facts, "hazard": site, "doubts": [*self.facts.get("doubts", ()), *doubts]}),
             manifest=None,
         )
 

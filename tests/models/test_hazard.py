@@ -1,7 +1,8 @@
-"""Hazard curves: what is refused, and the files of three sources."""
+"""Hazard curves: what is refused, and that one curve in any form of a file is the same curve."""
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 from pathlib import Path
@@ -12,6 +13,11 @@ import pytest
 from rockwobble.models import HazardCurve, read_hazard
 
 X, RATE = [0.05, 0.1, 0.2, 0.4, 0.8], [2e-2, 7e-3, 2e-3, 4e-4, 5e-5]
+G = 9.81  # [m/s^2] of 1 g in every file
+UNITS = {
+    "pga": {"g": 1.0, "m/s2": G, "cm/s2": 100.0 * G, "Gal": 100.0 * G, "%g": 100.0},
+    "pgv": {"m/s": 1.0, "cm/s": 100.0, "in/s": 1.0 / 0.0254},
+}
 
 
 def test_between_its_points_a_curve_is_a_power_law() -> None:
@@ -20,23 +26,19 @@ def test_between_its_points_a_curve_is_a_power_law() -> None:
     at = np.geomspace(0.01, 1.0, 50)
     assert site.exceedance(at) == pytest.approx(1e-4 * at**-2.3, rel=1e-12)  # rounding
     assert site.intensity_at(1e-3) == pytest.approx(10.0 ** (-1.0 / 2.3), rel=1e-12)
-
-
-def test_beyond_its_ends_nothing_is_known() -> None:
-    site = HazardCurve(X, RATE, measure="pga")
-    assert np.isnan(site.exceedance([0.049, 0.81])).all()
+    assert np.isnan(site.exceedance([0.009, 1.1])).all()
     assert math.isnan(site.intensity_at(1e-5))
 
 
 @pytest.mark.parametrize(
     ("intensity", "frequency", "options", "words"),
     [
-        (X, RATE[:-1], {}, "two or more intensities, got 4 for 5"),
+        (X, RATE[:-1], {}, "got 4 for 5"),
         (X[:1], RATE[:1], {}, "two or more intensities"),
         ([0.1, 0.1, 0.2], RATE[:3], {}, "increasing"),
-        (X, [2e-2, 7e-3, 7e-3, 4e-4, 5e-5], {}, "must decrease with intensity, got 0.007 at 0.1"),
-        (X, [2e-2, 7e-3, 2e-3, 4e-4, 0.0], {}, "must be positive and finite, got 0 at 0.8"),
-        (X, [2e-2, 7e-3, math.nan, 4e-4, 1e-5], {}, "must be positive and finite"),
+        (X, [2e-2, 7e-3, 7e-3, 4e-4, 5e-5], {}, "got 0.007 at 0.1"),
+        (X, [2e-2, 7e-3, 2e-3, 4e-4, 0.0], {}, "got 0 at 0.8"),
+        (X, [2e-2, 7e-3, math.nan, 4e-4, 1e-5], {}, "positive and finite"),
         (X, RATE, {"measure": "pgd"}, "the measure of a hazard curve"),
         (X, RATE, {"measure": "sa"}, "needs the period"),
         (X, RATE, {"period": 1.0}, "a period belongs to sa"),
@@ -50,157 +52,244 @@ def test_what_is_no_curve_is_refused(
         HazardCurve(intensity, frequency, **{"measure": "pga", **options})  # type: ignore[arg-type]
 
 
-def usgs(newer: bool) -> str:
-    imt = {"value": "SA0P2", "display": "0.20 Second Spectral Acceleration"}
-    other = {"component": "Fault", "yvalues": [1e-9] * 5, "values": {"xs": X, "ys": [1e-9] * 5}}
-    total = {"component": "Total", "yvalues": RATE, "values": {"xs": X, "ys": RATE}}
-    if newer:
-        return json.dumps({"response": {"hazardCurves": [{"imt": imt, "data": [other, total]}]}})
-    return json.dumps({"response": [{"metadata": {"imt": imt, "xvalues": X}, "data": [other, total]}]})
+@pytest.mark.parametrize(("measure", "doubtful"), [("pga", True), ("pgv", True), ("sa", False)])
+def test_half_a_curve_beyond_strong_shaking_is_doubted(measure: str, doubtful: bool) -> None:
+    more = 16.0 if doubtful else 14.0  # the middle is at 0.2
+    site = HazardCurve(more * np.array(X), RATE, measure=measure, period=1.0 if measure == "sa" else None)
+    assert [fact.code for fact in site.doubts] == ["large_hazard"] * doubtful
 
 
-def openquake(imt: str) -> str:
-    probabilities = [-math.expm1(-50.0 * rate) for rate in RATE]
-    head = ",".join(f"poe-{x:.7f}" for x in X)
-    row = ",".join(f"{p!r}" for p in probabilities)
-    stated = f"generated_by='OpenQuake engine 3.16.3', kind='mean', investigation_time=50.0, imt='{imt}'"
-    comment = f'#,,,,,,,"{stated}"'
-    return f"{comment}\nlon,lat,depth,{head}\n1.0,2.0,0.0,{row}\n"
+def read(tmp_path: Path, text: str, **options: object) -> HazardCurve:
+    path = tmp_path / "site.csv"
+    path.write_text(text, encoding="utf-8")
+    return read_hazard(path, **{"measure": "pga", **options})  # type: ignore[arg-type]
+
+
+def quantities(rate: np.ndarray) -> list[tuple[str, np.ndarray]]:
+    in_50, in_475 = (-np.expm1(-years * rate) for years in (50.0, 475.0))
+    return [
+        ("annual frequency of exceedance", rate),
+        ("Rate [1/yr]", rate),
+        ("AFE", rate),
+        ("lambda (1/a)", rate),
+        ("annual_probability", -np.expm1(-rate)),
+        ("probability of exceedance in 50 years", in_50),
+        ("PoE (475 yr)", in_475),
+        ("return period (years)", 1.0 / rate),
+        ("TR", 1.0 / rate),
+    ]
+
+
+def table(columns: list[tuple[str, np.ndarray]], separator: str, *, falls: bool) -> str:
+    names, values = zip(*columns, strict=True)
+    rows = np.column_stack(values)[:: -1 if falls else 1]
+    lines = [separator.join(f"{each!r}" for each in row) for row in rows.tolist()]
+    text = "\n".join(lines)
+    return separator.join(names) + "\n" + (text.replace(".", ",") if separator == ";" else text) + "\n"
+
+
+def test_one_curve_in_any_form_is_the_same_curve(tmp_path: Path) -> None:
+    """Any unit, order of columns and rows, separator, and frequency, probability or return period."""
+    chance = np.random.default_rng(6)
+    for measure, (unit, factor), form in itertools.product(
+        UNITS, [*UNITS["pga"].items(), *UNITS["pgv"].items()], range(9)
+    ):
+        x, rate = np.cumsum(chance.uniform(0.01, 0.2, 8)), np.cumprod(chance.uniform(0.2, 0.9, 8)) * 0.02
+        name = ("{} ({})", "{} in {}", "{}_{}")[form % 3].format(measure.upper(), unit)
+        columns = [(name, factor * x), quantities(rate)[form]]
+        text = table(columns[:: 1 - 2 * chance.integers(2)], ",;\t"[form // 3], falls=chance.random() < 0.5)
+        if unit not in UNITS[measure]:
+            with pytest.raises(ValueError, match="is no unit of"):
+                read(tmp_path, text, measure=measure)
+            continue
+        site = read(tmp_path, text, measure=measure)
+        assert site.intensity == pytest.approx(x, rel=1e-12)
+        assert site.annual_frequency == pytest.approx(rate, rel=1e-8)  # digits of 1 - p
+        assert name in site.source
+        assert site.title.endswith(f"[{'m/s' if measure == 'pgv' else 'g'}]")
+
+
+ROWS = "\n" + "".join(f"{x},{y}\n" for x, y in zip(X, RATE, strict=True))
 
 
 @pytest.mark.parametrize(
-    ("text", "options"),
+    ("header", "option", "value", "words"),
     [
-        ("pga_g,annual_frequency\n" + "\n".join(f"{x},{y}" for x, y in zip(X, RATE, strict=True)), {}),
-        ("# site\n" + "\n".join(f"{x} {y}" for x, y in zip(X, RATE, strict=True)), {}),
-        (
-            "pga;poe\n" + "\n".join(f"{x};{-math.expm1(-50 * y)!r}" for x, y in zip(X, RATE, strict=True)),
-            {"years": 50.0},
-        ),
-        ("a,f\n" + "\n".join(f"{9.81 * x!r},{y}" for x, y in zip(X, RATE, strict=True)), {"units": "m/s2"}),
-        ("PGA (g), rate [1/a]\n" + "\n".join(f"{x}, {y}" for x, y in zip(X, RATE, strict=True)), {}),
-        (
-            "PGA in g;Rate\n" + "\n".join(f"{x};{y}" for x, y in zip(X, RATE, strict=True)).replace(".", ","),
-            {},
-        ),
-        (openquake("PGA"), {}),
-        (openquake("SA(0.2)"), {"measure": "sa_mean", "period": 0.2}),
-        (usgs(newer=False), {"measure": "sa_mean", "period": 0.2}),
-        (usgs(newer=True), {"measure": "sa", "period": 0.2}),
+        ("PGA,AFE", "units", "g", "say the unit"),
+        ("acceleration,AFE", "units", "m/s2", "say the unit"),
+        ("PGA (g),probability", "years", 50.0, "in how many years"),
+        ("PGA (g),P50", "years", 50.0, "in how many years"),
+        ("PGA (g),poe_50", "years", 50.0, "in how many years"),
     ],
 )
-def test_each_source_gives_the_same_curve(text: str, options: dict[str, object], tmp_path: Path) -> None:
-    path = tmp_path / "site.txt"
-    path.write_text(text)
-    site = read_hazard(path, **{"measure": "pga", **options})  # type: ignore[arg-type]
-    assert site.intensity == pytest.approx(X, rel=1e-12)
-    assert site.annual_frequency == pytest.approx(RATE, rel=1e-9)  # of the logarithm of 1 - p
-    assert site.name == "site"
+def test_what_a_header_leaves_open_is_asked_for(
+    header: str, option: str, value: object, words: str, tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match=words):
+        read(tmp_path, header + ROWS)
+    site = read(tmp_path, header + ROWS, **{option: value})
+    assert site.intensity[0] == pytest.approx(X[0] / UNITS["pga"][value] if option == "units" else X[0])  # type: ignore[index]
+    rate = -math.log1p(-RATE[0]) / 50.0 if option == "years" else RATE[0]
+    assert site.annual_frequency[0] == pytest.approx(rate)
 
 
-def test_a_saturated_beginning_and_an_empty_end_are_left_out(tmp_path: Path) -> None:
-    path = tmp_path / "site.csv"
-    path.write_text("x,f\n0.01,0.05\n0.02,0.05\n0.1,0.01\n0.5,0.0001\n1,0\n2,0\n")
-    assert read_hazard(path, measure="pga").intensity == pytest.approx([0.02, 0.1, 0.5])
+@pytest.mark.parametrize(
+    ("header", "options", "words"),
+    [
+        ("x,y", {"units": "g"}, "must name one column"),
+        ("PGA (g),PGA (g)", {}, "must name one column"),
+        ("AFE,TR", {}, "must name one column"),
+        ("PGA (g),rate", {}, "that it is annual"),
+        ("ln(PGA),AFE", {}, "'ln'"),
+        ("log10 PGA (g),AFE", {}, "'log10'"),
+        ("PGA (g),AFE x 1e-3", {}, "'1e-3'"),
+        ("PGA (g),10% in 50 years", {}, "'10%'"),
+        ("PGA (g),probability in 50 years (%)", {}, "'%'"),
+        ("PGA (g),annual probability of non-exceedance", {}, "'non-exceedance'"),
+        ("PGA (g),return period (days)", {}, "'days'"),
+        ("PGD (cm),AFE", {}, "'pgd'"),
+        ("site (g),AFE", {}, "names no intensity"),
+        ("PGV (cm/s),AFE", {}, "is of 'PGV"),
+        ("Sa(0.5 s) (g),AFE", {"measure": "sa", "period": 0.6}, "is of 'Sa"),
+        ("PGA (g),AFE", {"units": "m/s2"}, "is in g, got units m/s2"),
+        ("PGA (g),AFE", {"units": "inch"}, "units of a hazard curve"),
+        ("PGA (g),AFE", {"years": 50.0}, "years belong to a probability"),
+        ("PGA (g),P50", {"years": 10.0}, "contradicts"),
+        ("PGA (g),probability in 50 years", {"years": 10.0}, "is of 50 years"),
+        ("PGA (g),AFE", {"site": 1}, "no file of OpenQuake"),
+        ("PGA (g),TR", {}, "must decrease"),
+        ("name,lon,lat,0.1,0.2", {}, "levels in the header"),
+        ("imt,iml,poe", {}, "two columns"),
+        ("0.01,0.9", {}, "two columns"),
+    ],
+)
+def test_a_table_that_could_be_read_wrongly_is_refused(
+    header: str, options: dict[str, object], words: str, tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match=words) as refusal:
+        read(tmp_path, header + ROWS, **options)
+    assert "\n" not in str(refusal.value)
+    assert "array" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ("g,1/yr\n0.1,0.1\n", "two numbers"),
+        ("0.1,0.2,0.3\n", "two columns"),
+        ("0.1,2\n0.2,nan\n", "two numbers"),
+        ("0.1,0\n0.2,0\n", "no hazard at this site"),
+        ("0.1,0.1\n0.2,0\n0.3,0.01\n", "positive and finite"),
+        ("0.1,0.1\n", "fewer than two levels"),
+        ("", "no hazard at this site"),
+    ],
+)
+def test_rows_that_are_no_curve_are_refused(rows: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=words):
+        read(tmp_path, "PGA (g),AFE\n" + rows)
+
+
+def test_a_comma_that_may_part_thousands_is_refused(tmp_path: Path) -> None:
+    assert read(tmp_path, "PGA (g);TR\n0,1;475\n0,2;2475\n").intensity[1] == 0.2
+    with pytest.raises(ValueError, match="two numbers"):
+        read(tmp_path, "PGA (g);TR\n0,1;475\n0,2;2,475\n")
+
+
+def test_levels_that_say_nothing_are_left_out(tmp_path: Path) -> None:
+    text = "PGA (g),poe in 50 years\n0.01,1\n0.02,1.0\n0.05,0.9\n0.1,0.5\n0.2,0.5\n0.5,0.001\n1,0\n2,0\n"
+    assert read(tmp_path, text).intensity == pytest.approx([0.05, 0.2, 0.5])
+    with pytest.raises(ValueError, match=r"got 1\.5"):
+        read(tmp_path, text.replace("1.0", "1.5"))
+    with pytest.raises(ValueError, match="positive and finite"):
+        read(tmp_path, text.replace("0.001", "1"))
+
+
+def test_a_header_may_be_the_last_comment_above_the_numbers(tmp_path: Path) -> None:
+    rows = "".join(f"{x} {y}\n" for x, y in zip(X, RATE, strict=True))
+    assert read(tmp_path, "# site\n# PGA(g) AFE\n" + rows).intensity == pytest.approx(X)
+    with pytest.raises(ValueError, match="two columns"):
+        read(tmp_path, rows)
+
+
+def usgs(imt: str, newer: bool) -> str:
+    own = {"value": imt, "display": "0.20 Second Spectral Acceleration"}
+    other = {"component": "Fault", "yvalues": [1e-9] * 5, "values": {"xs": X, "ys": [1e-9] * 5}}
+    total = {"component": "Total", "yvalues": RATE, "values": {"xs": X, "ys": RATE}}
+    if newer:
+        return json.dumps({"response": {"hazardCurves": [{"imt": own, "data": [other, total]}]}})
+    return json.dumps({"response": [{"metadata": {"imt": own, "xvalues": X}, "data": [other, total]}]})
+
+
+def openquake(imt: str, sites: int = 1, years: float = 50.0, columns: str = "poe-{:.7f}") -> str:
+    comment = f"#,,\"generated_by='OpenQuake engine 3.16.3', kind='mean', investigation_time={years}"
+    head = ",".join(columns.format(x) for x in X)
+    rows = (
+        f"{place},2.0,0.0," + ",".join(repr(-math.expm1(-years * rate / place)) for rate in RATE)
+        for place in range(1, sites + 1)
+    )
+    return (
+        comment + (f", imt='{imt}'\"" if imt else '"') + f"\nlon,lat,depth,{head}\n" + "\n".join(rows) + "\n"
+    )
+
+
+@pytest.mark.parametrize("form", [openquake, lambda imt: usgs(imt, True), lambda imt: usgs(imt, False)])
+@pytest.mark.parametrize(
+    ("measure", "period", "imts", "unit"),
+    [
+        ("pga", None, ("PGA", "PGA"), 1.0),
+        ("sa_mean", 0.2, ("SA(0.2)", "SA0P2"), 1.0),
+        ("pgv_resultant", None, ("PGV", "PGV"), 0.01),
+    ],
+)
+def test_files_of_programs_are_in_the_units_of_their_convention(
+    form: object, measure: str, period: float | None, imts: tuple[str, str], unit: float, tmp_path: Path
+) -> None:
+    text = form(imts[form is not openquake])  # type: ignore[operator]
+    site = read(tmp_path, text, measure=measure, period=period)
+    assert site.intensity == pytest.approx(unit * np.array(X), rel=1e-12)
+    assert site.annual_frequency == pytest.approx(RATE, rel=1e-9)
+    assert "convention" in site.source
+    stated = read(tmp_path, text, measure=measure, period=period, units="m/s" if "pgv" in measure else "%g")
+    assert stated.intensity == pytest.approx(np.array(X) * (1.0 if "pgv" in measure else 0.01))
+    with pytest.raises(ValueError, match="is of "):
+        read(tmp_path, text, measure="sa", period=0.3)
+
+
+def test_a_site_of_several_is_chosen(tmp_path: Path) -> None:
+    text = openquake("PGA", sites=3, years=1.0)
+    with pytest.raises(ValueError, match="3 sites, from 1 to 3: choose one"):
+        read(tmp_path, text)
+    for site in (1, 3):
+        found = read(tmp_path, text, site=site)
+        assert found.annual_frequency == pytest.approx(np.array(RATE) / site, rel=1e-9)
+    for beyond in (0, 4):
+        with pytest.raises(ValueError, match=f"from 1 to 3: got site {beyond}"):
+            read(tmp_path, text, site=beyond)
 
 
 @pytest.mark.parametrize(
     ("text", "options", "words"),
     [
         (openquake("PGA"), {"measure": "pgv"}, "is of PGA, not of PGV"),
-        (openquake("SA(0.2)"), {"measure": "sa", "period": 1.0}, r"is of SA\(0.2\), not of SA at 1 s"),
-        (usgs(newer=True), {}, "is of SA0P2, not of PGA"),
-        (openquake("PGA"), {"site": 2}, "site must be from 1 to 1, got 2"),
+        (openquake("PGA"), {"years": 1.0}, "is of 50 years"),
+        (openquake("PGA", columns="PGA~{}"), {}, "no hazard curve of OpenQuake"),
+        (openquake("PGA").replace("1,2.0,0.0,", "1,2.0,0.0,-"), {}, "from 0 to 1"),
+        (usgs("PGA", True), {"years": 50.0}, "annual frequencies"),
+        (usgs("PGA", True).replace("Total", "total"), {}, "no levels and values"),
         ('{"response": {}}', {}, "no hazard curve of the USGS"),
         ("{", {}, "no hazard curve of the USGS"),
-        ("pga,poe_50\n0.1,0.1\n0.2,0.01\n", {}, "in how many years"),
-        ("pga,poe\n0.1,1.0\n0.2,0.01\n", {"years": 50.0}, "below 1, got 1"),
-        ("1,2,3\n", {}, "two columns"),
-        ("", {}, "two columns"),
-        ("0.1,x\n0.2,1\n", {}, "expected two numbers"),
-        ("0.1,0.2\n0.2,0.1\n", {"units": "m/s"}, "units of a hazard curve"),
     ],
 )
-def test_a_file_that_is_not_what_was_asked_for_is_refused(
+def test_a_file_of_a_program_that_is_something_else_is_refused(
     text: str, options: dict[str, object], words: str, tmp_path: Path
 ) -> None:
-    path = tmp_path / "site.txt"
-    path.write_text(text)
     with pytest.raises(ValueError, match=words):
-        read_hazard(path, **{"measure": "pga", **options})  # type: ignore[arg-type]
+        read(tmp_path, text, **options)
 
 
-def test_a_missing_file_is_refused_by_name(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"cannot read the hazard curve .*none\.csv: No such file"):
+def test_a_file_that_cannot_be_opened_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"none\.csv: No such file"):
         read_hazard(tmp_path / "none.csv", measure="pga")
-
-
-GRAVITY = 9.81  # [m/s^2] of 1 g in every file
-# measure: units of its intensity in those of the curve, g or m/s
-UNITS = {
-    "pga": {"g": 1.0, "m/s2": 1.0 / GRAVITY, "cm/s2": 0.01 / GRAVITY},
-    "pga_resultant": {"g": 1.0, "m/s2": 1.0 / GRAVITY, "cm/s2": 0.01 / GRAVITY},
-    "pgv": {"m/s": 1.0, "cm/s": 0.01},
-    "pgv_resultant": {"m/s": 1.0, "cm/s": 0.01},
-    "sa": {"g": 1.0, "m/s2": 1.0 / GRAVITY, "cm/s2": 0.01 / GRAVITY},
-    "sa_mean": {"g": 1.0, "m/s2": 1.0 / GRAVITY, "cm/s2": 0.01 / GRAVITY},
-}
-ALL_UNITS = ["g", "m/s2", "cm/s2", "m/s", "cm/s"]
-
-
-@pytest.mark.parametrize("measure", UNITS)
-@pytest.mark.parametrize("years", [None, 1.0, 50.0, 475.0])
-def test_any_curve_is_read_in_every_unit_of_its_measure(
-    measure: str, years: float | None, tmp_path: Path
-) -> None:
-    chance = np.random.default_rng(6)
-    period = 0.7 if measure.startswith("sa") else None
-    intensity = np.cumsum(chance.uniform(0.01, 0.2, 12))
-    frequency = np.cumprod(chance.uniform(0.2, 0.9, 12)) * 0.02
-    second = frequency if years is None else 1.0 - np.exp(-frequency * years)
-    path = tmp_path / "site.csv"
-    for units in [None, *ALL_UNITS]:
-        factor = UNITS[measure].get(units or "", 1.0)
-        rows = zip((intensity / factor).tolist(), second.tolist(), strict=True)
-        path.write_text("x,y\n" + "".join(f"{x!r},{y!r}\n" for x, y in rows))
-        options = {"measure": measure, "period": period, "years": years, "units": units}
-        if units is not None and units not in UNITS[measure]:
-            with pytest.raises(
-                ValueError, match=rf"must be one of {', '.join(UNITS[measure])}, got '{units}'"
-            ):
-                read_hazard(path, **options)
-            continue
-        site = read_hazard(path, **options)
-        assert site.intensity == pytest.approx(intensity, rel=1e-12)
-        assert site.annual_frequency == pytest.approx(frequency, rel=1e-9)  # digits of 1 - p
-        assert site.title.endswith(f"[{'m/s' if 'pgv' in measure else 'g'}]")
-        assert ("T = 0.7 s" in site.title) == (period is not None)
-        # a point of the curve is met from both sides, and halfway in both logarithms its geometric mean
-        for one, two in zip(range(11), range(1, 12), strict=True):
-            middle = math.sqrt(intensity[one] * intensity[two])
-            rate = math.sqrt(frequency[one] * frequency[two])
-            assert site.exceedance([intensity[one], middle]) == pytest.approx(
-                [frequency[one], rate], rel=1e-8
-            )
-            assert site.intensity_at(rate) == pytest.approx(middle, rel=1e-8)
-
-
-@pytest.mark.parametrize("site", [1, 2, 3])
-@pytest.mark.parametrize("years", [1.0, 50.0])
-def test_each_site_of_a_file_of_openquake_has_its_own_curve(site: int, years: float, tmp_path: Path) -> None:
-    rates = np.outer([1.0, 0.5, 0.25], RATE)
-    head = ",".join(f"poe-{x:.7f}" for x in X)
-    rows = "".join(
-        f"{place},2.0,0.0," + ",".join(repr(-math.expm1(-years * rate)) for rate in of_site) + "\n"
-        for place, of_site in enumerate(rates.tolist())
-    )
-    path = tmp_path / "hazard.csv"
-    path.write_text(f"#,\"investigation_time={years}, imt='SA(0.7)'\"\nlon,lat,depth,{head}\n{rows}")
-    found = read_hazard(path, measure="sa", period=0.7, site=site)
-    assert found.annual_frequency == pytest.approx(rates[site - 1], rel=1e-9)
-    for period in (0.69, 0.71, 7.0):
-        with pytest.raises(ValueError, match=r"is of SA\(0\.7\), not of SA"):
-            read_hazard(path, measure="sa", period=period)
-    for beyond in (0, 4):
-        with pytest.raises(ValueError, match=f"site must be from 1 to 3, got {beyond}"):
-            read_hazard(path, measure="sa", period=0.7, site=beyond)
+    (tmp_path / "no.csv").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ValueError, match="it is no text"):
+        read_hazard(tmp_path / "no.csv", measure="pga")
