@@ -18,6 +18,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import pairwise
+from pathlib import Path
 from typing import Literal
 
 from jinja2 import Environment
@@ -72,8 +73,8 @@ class Page:
     ----------
     name : str
         Name of its files.
-    template : str
-        In the folder templates, without its ending.
+    template : str or Path
+        Name in the folder templates, without its ending; or a file elsewhere.
     values : mapping
         What the template is given: plain values.
     pictures : iterable of Picture
@@ -87,7 +88,7 @@ class Page:
     """
 
     name: str
-    template: str
+    template: str | Path
     values: Mapping[str, object]
     pictures: Iterable[Picture] = ()
     alone: Sequence[str] | None = None
@@ -211,20 +212,21 @@ class Page:
             keys.update(column.key for column in (made.fitting_columns(width) if width else made.columns))
             return place(made)
 
+        known = _environment()
         text = (
-            _environment()
-            .get_template(f"{self.template}.md.j2")
-            .render(
-                {
-                    **self.values,
-                    "output": output,
-                    "picture": lambda name: place(pictures[name]),
-                    "block": lambda name: place(Safe(self.blocks[name])) if output == "html" else "",
-                    "table": table,
-                    "fold": lambda title="": place(Fold(title)),
-                    "shows": keys.__contains__,
-                }
-            )
+            known.from_string(self.template.read_text(encoding="utf-8"))
+            if isinstance(self.template, Path)
+            else known.get_template(f"{self.template}.md.j2")
+        ).render(
+            {
+                **self.values,
+                "output": output,
+                "picture": lambda name: place(pictures[name]),
+                "block": lambda name: place(Safe(self.blocks[name])) if output == "html" else "",
+                "table": table,
+                "fold": lambda title="": place(Fold(title)),
+                "shows": keys.__contains__,
+            }
         )
         text = re.sub(r"\n{3,}", "\n\n", text).strip()
         cut = _PLACE.split(text)
