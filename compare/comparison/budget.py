@@ -22,10 +22,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, RockingBody, Run, Trace
+from rockwobble.models.frames import pd
 from rockwobble.models.shown import Brief
 from rockwobble.models.support import RECESS
 from rockwobble.multibody.engines.registry import engine_facts

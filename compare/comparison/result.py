@@ -9,9 +9,9 @@ from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
-import pandas as pd
 
 from rockwobble.models import Case, Trace, plain_json
+from rockwobble.models.frames import pd
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.plain_json import plain
 from rockwobble.models.trace_file import case_facts, case_from_plain
@@ -33,7 +33,7 @@ BudgetKey = tuple[str, str, str]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Comparison(Results, kind="comparison"):
+class Comparison(Results, kind="comparison", findings_file="report.json"):
     """Runs compared with reference models, or with one another.
 
     Attributes

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping
 from itertools import permutations
 
 import numpy as np
-import pandas as pd
 
 from rockwobble.models import AGREEMENT, Case, Trace
 from rockwobble.models.diagnostic import cell_of
+from rockwobble.models.frames import pd
 
 from ..external.verdict import NO_VERDICT, VERDICT_COLUMNS, Row, judge
 from ..metrics.pair import (

@@ -28,7 +28,6 @@ from rich.markdown import Markdown
 
 from ..figures.interactive import charts, colour_bar
 from ..figures.picture import Picture
-from ..figures.svg import image, svg
 from .command_line import command_lines
 from .sentences import environment
 from .table import Row, Table, columns_of, number
@@ -95,13 +94,17 @@ class Page:
     blocks: Mapping[str, str] = field(default_factory=dict)
     outputs: Sequence[Output] = ("markdown", "html")
 
-    def files(self) -> dict[str, bytes]:
-        """Return the files by name: NAME.md with its pictures as SVG beside it, and NAME.html."""
+    def files(self, *, document: bool = True) -> dict[str, bytes]:
+        """Return the files by name: NAME.html, and for a `document` NAME.md with its pictures as SVG."""
         titled, texts = self.alone is not None, {}
-        if "markdown" in self.outputs:
+        if "markdown" in self.outputs and document:
             texts[f"{self.name}.md"] = self.markdown()
         if "html" in self.outputs:
             texts[f"{self.name}.html"] = self.html()
+        if not document:
+            return {name: text.encode() for name, text in texts.items()}
+        from ..figures.svg import svg
+
         return {
             **{name: text.encode() for name, text in texts.items()},
             **{
@@ -121,6 +124,8 @@ class Page:
             if form == "tex":
                 found |= {f"{name}.tex": table.latex().encode() for name, table in self._named_tables()}
             else:
+                from ..figures.svg import image
+
                 found |= {f"{each.name}.{form}": image(each, form) for each in self.pictures}
         return found
 
