@@ -40,6 +40,7 @@ CAUSES: Mapping[str, str] = {
 _DIFFERENCES: Mapping[str, str] = {
     "azimuth": "azimuth",
     "path": "path of the mass centre",
+    "twist": "turn about its axis",
     "uplift_time": "time of uplift",
     "uplift_direction": "direction of uplift",
 }
