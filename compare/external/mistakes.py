@@ -60,13 +60,15 @@ class Mistake:
     ----------
     code : str
         "time_offset" (value: to be added to the times [s]), "time_scale" (value: the motion is slower by
-        this factor), "clock" (value: times are too large by this factor), "spin" (value: [deg/s]), "time_unit", "angle_unit", "length_unit" (value: too large by this factor), "turned"
+        this factor), "clock" (value: times are too large by this factor), "spin" (value: [deg/s]),
+        "time_unit", "angle_unit", "length_unit" (value: too large by this factor), "turned"
         (by value [deg], counter-clockwise), "turned_back" (by half a turn), "x_reversed", "y_reversed",
         "axes_exchanged", "axes_exchanged_reversed", "mirrored" (value: azimuth of the line [deg]),
         "z_reversed", "y_up", "quaternion_scalar_last", "quaternion_inverse", "origin" (value: its distance
         from the right one [m]).
     concerns : str
-        "time", "tilt", "azimuth", "tilt and azimuth", "quaternion", "path", "twist", or "axes": azimuth and path.
+        "time", "tilt", "azimuth", "tilt and azimuth", "quaternion", "path", "twist", or "axes": azimuth
+        and path.
     value : float
         NaN where there is none.
     """
@@ -94,8 +96,9 @@ class Mistake:
                 rate = f"{100.0 * abs(value - 1.0):.2f} % {'slower' if value > 1.0 else 'faster'}"
                 return f"it moves {rate}, as with R {size:+.2f} %, g {weight:+.2f} % or another slenderness"
             case "clock":
-                factor, way = max(value, 1.0 / value), "slow" if value > 1.0 else "fast"
-                return f"it runs in {way} motion: times are {factor:g} times too {'long' if value > 1.0 else 'short'}"
+                factor, way = max(value, 1.0 / value), "long" if value > 1.0 else "short"
+                motion = "slow" if value > 1.0 else "fast"
+                return f"it runs in {motion} motion: times are {factor:g} times too {way}"
             case "spin":
                 return f"it spins about its axis by {value:.3g} deg/s, so that its base must slip"
             case "time_unit":

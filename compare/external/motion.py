@@ -400,7 +400,6 @@ class Reference:
         bound = math.hypot(PATH_BOUND, self.azimuth_bound * beside, math.sqrt(3.0) * noise * few)
         return _part(model.time[within], size, bound, apart > bound + ABOVE_NOISE * noise)
 
-
     def _twist(self, model: Motion, trial: Motion, within: Mask) -> Part | None:
         if model.twist is None or trial.twist is None or np.count_nonzero(within) < FEWEST_COMPARED:
             return None

@@ -189,11 +189,13 @@ def unwrapped(axis: Array, leans: Mask) -> tuple[Array, Mask]:
 
 
 def _from_start(table: Table) -> tuple[Array, list[str]]:
-    """Return the times of a table [s], from the first where they are since 1970, and what there is to know of them."""
+    """Return the times of a table [s], from the first where they are since 1970, and notes on them."""
     time = table.complete("time")
     for unit, factor in _SINCE_1970.items():
         if _IN_2001 <= time[0] / factor < 10.0 * _IN_2001:
-            return (time - time[0]) / factor, [f"times are since 1970 in {unit}: the first is the start of the run"]
+            return (time - time[0]) / factor, [
+                f"times are since 1970 in {unit}: the first is the start of the run"
+            ]
     return time, []
 
 

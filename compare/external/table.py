@@ -17,7 +17,7 @@ x, y, z        m, cm, mm    mass centre from the original base centre, which mov
                             m where the header is silent
 ============== ============ =======================================================================
 
-A column that is not named so is read by the end of its title, as field.pose.orientation.w, Can_QX, posX or q0.
+A column that is not named so is read by the end of its title, as pose.orientation.w, Can_QX, posX or q0.
 The run.csv of `rockwobble simulate` is read as it is: its names have one unit each, its rolling angle is the
 azimuth, and its centre x, y and z.
 
@@ -65,7 +65,10 @@ OWN_TITLES = {
     "centre_z": "z [m]",
 }
 # ends of titles, after a mark that is no letter
-_BEFORE_AXIS = {QUATERNION: "q|quat|quaternion|ori|orientation|rot|rotation", POSITION: "t|pos|position|translation"}
+_BEFORE_AXIS = {
+    QUATERNION: "q|quat|quaternion|ori|orientation|rot|rotation",
+    POSITION: "t|pos|position|translation",
+}
 ENDS = {
     "time": "t|time|timestamp|seconds|elapsed",
     **{
@@ -89,7 +92,7 @@ IN_ORDER = {
 PROGRAMS = {
     "an export of OptiTrack Motive": (
         r"^Format Version",
-        "export quaternions with z up, and give --trajectory-columns by number, as 2,6,3,4,5 with the time first",
+        "export quaternions with z up, and give --trajectory-columns by number, time first: 2,6,3,4,5",
     ),
     "an export of Vicon Nexus": (
         r"^(Trajectories|Segments|Joints|Model Outputs)\b",
@@ -101,7 +104,7 @@ PROGRAMS = {
     ),
     "an export of OpenSim": (
         r"^endheader",
-        "drop the lines up to endheader, and turn the angles into a quaternion, in columns time, qw, qx, qy, qz",
+        "drop the lines up to endheader, and turn the angles into a quaternion: time, qw, qx, qy, qz",
     ),
     "an export of rostopic": (r"^%time", "export a topic of type geometry_msgs/PoseStamped"),
     "a TUM trajectory": (
@@ -169,9 +172,7 @@ def name_list(names: Sequence[str]) -> str:
     return ", ".join(short[:count]) + (f" and {len(short) - count} more" if count < len(short) else "")
 
 
-def read_tables(
-    path: Path, angle_unit: str | None = None, columns: Sequence[str] = ()
-) -> dict[str, Table]:
+def read_tables(path: Path, angle_unit: str | None = None, columns: Sequence[str] = ()) -> dict[str, Table]:
     """Read the runs of a CSV file by name, "" where it has no column `run`.
 
     Parameters
@@ -180,7 +181,7 @@ def read_tables(
     angle_unit : {"rad", "deg"}, optional
         Unit of angles where the header is silent.
     columns : sequence of str, optional
-        Titles or numbers of the columns of `IN_ORDER`, each with its unit in brackets where the header is silent.
+        Titles or numbers of the columns of `IN_ORDER`, each with its unit where the header is silent.
 
     Raises
     ------
@@ -312,15 +313,18 @@ def _named(path: Path, lines: Sequence[str]) -> tuple[list[str], Stated, Rows]:
         ends = (name for name, end in ENDS.items() if re.fullmatch(rf"(?:.*[\W_])?(?:{end})", title, re.I))
         named += [(name, at) for name in ends if name not in exact]
     # of a quaternion or a place some ends alone are other quantities
-    partial = {name for group in (QUATERNION, POSITION) if not set(group) <= {name for name, _ in named} for name in group}
+    partial = {
+        name
+        for group in (QUATERNION, POSITION)
+        if not set(group) <= {name for name, _ in named}
+        for name in group
+    }
     named = [(name, at) for name, at in named if name in exact or name not in partial]
     known: Stated = {}
     for name, at in named:
         if name in known:
             both = f"{header[known[name][0]]!r} and {header[at]!r}"
-            raise ValueError(
-                f"{file} must have each column once, got {name} as {both}: name them by columns"
-            )
+            raise ValueError(f"{file} must have each column once, got {name} as {both}: name them by columns")
         known[name] = at, titles[at][1]
     for group in (QUATERNION, POSITION):
         missing = [name for name in group if name not in known]
@@ -333,9 +337,8 @@ def _named(path: Path, lines: Sequence[str]) -> tuple[list[str], Stated, Rows]:
             f"{file} {advice}"
             if (advice := _advice(lines))
             else f"{file} must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x, y and z, "
-            f"got {name_list([title for title in header if title]) or 'none'}; --trajectory-columns names them"
+            f"got {name_list([each for each in header if each]) or 'none'}; --trajectory-columns names them"
         )
-
 
     return header, known, rows
 

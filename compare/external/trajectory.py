@@ -45,8 +45,8 @@ class External(Brief):
     time_offset : float, optional
         Added to the times of the file [s], so that the run starts at 0 with the ground motion or the release.
     columns : sequence of str, optional
-        Titles or numbers of the columns of time and tilt; time, tilt and azimuth; time, x, y and z; time, qw, qx,
-        qy and qz; or time, qw, qx, qy, qz, x, y and z. Default: by the names in the header.
+        Titles or numbers of the columns of time and tilt; time, tilt and azimuth; time, x, y and z; time, qw,
+        qx, qy and qz; or time, qw, qx, qy, qz, x, y and z. Default: by the names in the header.
     noise : float, optional
         Tilt below which the cylinder counts as standing [rad]. Default: what the scatter of the samples
         asks for, 5 standard deviations, and at least 1e-4 alpha.
@@ -135,9 +135,7 @@ def external_motion(trace: Trace) -> Motion:
     )
     path = trace.centre_of_mass if "path" in poses.given else None
     motion = motion_at(trace.time, trace.tilt, azimuth, path)
-    return replace(
-        motion, twist=twist_since_start(trace), noise=poses.noise, path_noise=poses.position_noise
-    )
+    return replace(motion, twist=twist_since_start(trace), noise=poses.noise, path_noise=poses.position_noise)
 
 
 def twist_since_start(trace: Trace) -> Array | None:

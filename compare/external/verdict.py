@@ -27,7 +27,10 @@ CONFIDENCE = 4.0
 Row = dict[str, Any]  # of a summary
 # columns of the summary that only external trajectories have: unit, meaning
 VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = {
-    "differs_in": ("", "of an external trajectory: tilt, azimuth, path, twist, uplift_time, uplift_direction"),
+    "differs_in": (
+        "",
+        "of an external trajectory: tilt, azimuth, path, twist, uplift_time, uplift_direction",
+    ),
     "not_compared": (
         "",
         "azimuth or path, where not given or where the tilts agree over too little motion",
