@@ -56,9 +56,11 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
             "g or m/s",
             "half of a hazard curve is above strong shaking: is its unit another?",
         ),
-        # and a length or a gravity
+        # and a length, a gravity, a mass or a tendon
         "unlikely_length": ("m", "no structure has such a length: is its unit another?"),
         "unlikely_gravity": ("m/s2", "no planet has such a gravity: is its unit another?"),
+        "unlikely_mass": ("t/m3", "no structure has such a density: is the unit of its mass another?"),
+        "unlikely_tendon": ("weights", "no tendon has such a force: is its unit another?"),
         "offset": ("", "the mean is a large part of the peak: the offset was not removed"),
         "gravity_in_record": ("g", "the mean is 1 g: the sensor has recorded gravity"),
         "unlikely_step": ("s", "no recorder has such a time step: is the unit of time another?"),
@@ -78,6 +80,7 @@ REASONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "unlikely_length": ("mm", "cm", "in", "ft", "km"),
         "unlikely_gravity": ("ft/s2", "in/s2", "cm/s2", "mm/s2"),
         "large_hazard": ("g", "m/s"),
+        "unlikely_tendon": ("prestress", "stiffness"),
         "offset": ("x", "y", "z"),
         "gravity_in_record": ("x", "y", "z"),
         "other_direction": tuple(f"{place} is {axis}" for place in "xyz" for axis in "xyz" if axis != place),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from .bounds import OVERTURNED_TILT
 from .cylinder import RockingBody
 from .number_checks import require_finite, require_not_negative, require_positive
 from .shown import Brief
@@ -27,7 +28,9 @@ class Tendon(Brief):
         Axial stiffness over the weight of one column per base radius, kt b/(m g) [-].
     yield_force : float, optional
         Tension at which it yields over the weight of one column [-]; above the prestress. A tension beyond
-        it is a diagnostic.
+        it is a diagnostic, and its run tests no stability, see `beyond_yield` of `compare.metrics.pair`.
+    unit_stress : float, optional
+        Stress of its steel at a tension of the weight of one column [MPa]; None: not known.
 
     Raises
     ------
@@ -47,6 +50,7 @@ class Tendon(Brief):
     prestress: float = 0.0
     stiffness: float = 0.0
     yield_force: float | None = None
+    unit_stress: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("prestress", "stiffness"):
@@ -59,6 +63,8 @@ class Tendon(Brief):
                     f"yield_force must be above the prestress, {self.prestress:g} weights, got {force:g}"
                 )
             object.__setattr__(self, "yield_force", force)
+        if self.unit_stress is not None:
+            object.__setattr__(self, "unit_stress", require_positive("unit_stress", self.unit_stress, "MPa"))
 
     @classmethod
     def from_steel(
@@ -70,6 +76,7 @@ class Tendon(Brief):
         column_mass: float,
         base_radius: float,
         yield_force: float | None = None,
+        area: float | None = None,
         gravity: float = 9.81,
     ) -> Tendon:
         """Make a tendon from what a drawing gives.
@@ -88,6 +95,8 @@ class Tendon(Brief):
             b [m].
         yield_force : float, optional
             [N]
+        area : float, optional
+            Of the steel [m^2], for its stress.
         gravity : float, optional
             g [m/s^2].
 
@@ -107,6 +116,7 @@ class Tendon(Brief):
             yield_force=None
             if yield_force is None
             else require_finite("yield_force", yield_force, "N") / weight,
+            unit_stress=None if area is None else 1e-6 * weight / require_positive("area", area, "m^2"),
         )
 
     def gaps(self, body: RockingBody) -> int:
@@ -129,3 +139,24 @@ class Tendon(Brief):
     def tension(self, body: RockingBody, tilt: float) -> float:
         """Return the tension at a tilt [rad] over the weight of one column [-]."""
         return self.prestress + self.stiffness * self.gaps(body) * 2.0 * math.sin(0.5 * tilt)
+
+    def tilt_at(self, body: RockingBody, tension: float) -> float:
+        """Return the tilt at which the tension is so many weights of one column [rad]; inf: not below 90 deg.
+
+        Examples
+        --------
+        >>> import rockwobble as rw
+        >>> pier = rw.Cylinder.from_dimensions(base_radius=0.8, height=9.0)
+        >>> strands = rw.Tendon(prestress=4.186, stiffness=59.37)
+        >>> round(math.degrees(strands.tilt_at(pier, 6.357)), 2)
+        2.1
+        """
+        if tension <= self.prestress:
+            return 0.0
+        if tension > self.tension(body, OVERTURNED_TILT):
+            return math.inf
+        return 2.0 * math.asin((tension - self.prestress) / (2.0 * self.stiffness * self.gaps(body)))
+
+    def yield_tilt(self, body: RockingBody) -> float:
+        """Return the tilt at which it yields [rad]; inf where it does not below 90 deg."""
+        return math.inf if self.yield_force is None else self.tilt_at(body, self.yield_force)

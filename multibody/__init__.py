@@ -10,9 +10,8 @@ from .engines.registry import (
     EngineNotInstalledError,
     available_engines,
     engine_names,
-    find_engine,
 )
-from .simulation import open_scene, simulate
+from .simulation import simulate
 
 __all__ = [
     "DEFAULT_ENGINE",
@@ -20,8 +19,6 @@ __all__ = [
     "EngineNotInstalledError",
     "available_engines",
     "engine_names",
-    "find_engine",
-    "open_scene",
     "simulate",
 ]
 

@@ -180,7 +180,9 @@ class Grid(Brief, GridPlan):
             for size in (min(self.semidiagonals), max(self.semidiagonals))
             for tan_alpha in (min(self.tan_alphas), max(self.tan_alphas))
         ]
-        return doubts_about(motions=self.motions, cylinders=cylinders, gravities=[self.gravity])
+        return doubts_about(
+            motions=self.motions, cylinders=cylinders, gravities=[self.gravity], tendons=[self.tendon]
+        )
 
     @property
     def options(self) -> Mapping[str, object]:

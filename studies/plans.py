@@ -87,11 +87,15 @@ class AdvicePlan(Copies):
         support_named(self.support)
 
 
-def tendon_of(prestress: float, stiffness: float) -> Tendon | None:
-    """Return the tendon of a prestress and a stiffness, as of `Tendon`; None where it does not pull."""
+def tendon_of(prestress: float, stiffness: float, yield_force: float | None = None) -> Tendon | None:
+    """Return the tendon of such values, as of `Tendon`; None where it does not pull."""
     from rockwobble.models import Tendon  # with numpy, which help can do without
 
-    return Tendon(prestress=prestress, stiffness=stiffness) if prestress or stiffness else None
+    if not prestress and not stiffness:
+        if yield_force is not None:
+            raise ValueError("tendon_yield needs a prestress or a stiffness of the tendon, got none")
+        return None
+    return Tendon(prestress=prestress, stiffness=stiffness, yield_force=yield_force)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,7 +119,28 @@ class TendonPlan(Plan):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FragilityPlan(TendonPlan):
+class YieldPlan(TendonPlan):
+    """The same, and up to which force it is elastic."""
+
+    tendon_yield: float | None = option(
+        None,
+        "Yield force of the tendon / weight of one column; runs that pass it are no answer. Default: none.",
+        group="Tendon",
+        above=0.0,
+    )
+
+    def __post_init__(self) -> None:
+        Plan.__post_init__(self)
+        _ = self.tendon  # refuses what is none
+
+    @property
+    def tendon(self) -> Tendon | None:
+        """The tendon; None where it does not pull."""
+        return tendon_of(self.tendon_prestress, self.tendon_stiffness, self.tendon_yield)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FragilityPlan(YieldPlan):
     """Fragility: intensities, limits, statistics, and what its methods have in common."""
 
     measure: str = option(
@@ -177,7 +202,7 @@ class FragilityPlan(TendonPlan):
         # with numpy, which help can do without
         from rockwobble.models.number_checks import require_increasing
 
-        TendonPlan.__post_init__(self)
+        YieldPlan.__post_init__(self)
         if self.levels is not None and self.scales is not None:
             raise ValueError("levels scale the motions, scales take them as they are: got both")
         for name in ("levels", "scales"):
@@ -196,7 +221,7 @@ PROBES = 500
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SpectrumPlan(TendonPlan):
+class SpectrumPlan(YieldPlan):
     """Overturning spectrum: its grid, what is run in a cell, and the search for the lowest intensities."""
 
     SIZES: ClassVar = (0.5, 30.0, 100)  # [m]; with the intensities figure 6 of the paper
@@ -238,7 +263,7 @@ class SpectrumPlan(TendonPlan):
     def __post_init__(self) -> None:
         from rockwobble.models.number_checks import require_increasing
 
-        TendonPlan.__post_init__(self)
+        YieldPlan.__post_init__(self)
         for name in ("semidiagonals", "intensities"):
             given = getattr(self, name)
             if given is not None and len(require_increasing(name, given)) > self._MOST:

@@ -144,6 +144,19 @@ def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
     return np.asarray(peak_tilts, dtype=np.float64) >= OVERTURNED_TILT
 
 
+def beyond_yield(peak_tilts: ArrayLike, case: Case) -> NDArray[np.bool_]:
+    """Return where a run, of this peak tilt [rad], is no answer: its tendon yields, and models are elastic.
+
+    Where it yields only beyond the balance, a run that overturns does so before.
+    """
+    tilts = np.asarray(peak_tilts, dtype=np.float64)
+    limit = math.inf if case.tendon is None else case.tendon.yield_tilt(case.cylinder)
+    if math.isinf(limit):
+        return np.zeros(tilts.shape, dtype=bool)
+    decided = overturned(tilts) & (limit >= balance_of(case))
+    return (tilts > limit) & ~decided
+
+
 def outcome_of_peak(peak: float) -> str:
     """Return the outcome of a run of a reduced model by its peak tilt [rad], NaN where it failed."""
     return "failed" if math.isnan(peak) else "overturned" if overturned(peak) else "stands"
@@ -253,7 +266,7 @@ def _turn_difference(pair: Pair, direction_difference: float) -> FloatArray:
 
 
 def largest_differences(
-    pair: Pair, agreement: Agreement, *, unresolved: float, direction_difference: float = 0.0
+    pair: Pair, agreement: Agreement, *, turned_until: float, direction_difference: float = 0.0
 ) -> tuple[float, ...]:
     """Largest differences of tilt [alpha], contact point [b] and angle of turn [rad] within an agreement.
 
@@ -261,8 +274,8 @@ def largest_differences(
     ----------
     pair : Pair
     agreement : Agreement
-    unresolved : float
-        First pass that leaves the side to chance [s]: after it angles of turn are known up to whole turns.
+    turned_until : float
+        Time of the run up to which angles of turn are comparable [s].
     direction_difference : float, optional
         As of `turn_difference`.
 
@@ -274,13 +287,11 @@ def largest_differences(
     """
     within = pair.time < agreement.end - _SAME_TIME if agreement.diverged else pair.time <= agreement.end
     tilted = within & _well_tilted(pair)
-    turn = _turn_difference(pair, direction_difference)
-    by_chance = (pair.time > unresolved) & np.isfinite(turn)
-    turn[by_chance] -= 2.0 * math.pi * np.round(turn[by_chance] / (2.0 * math.pi))
+    turn = np.abs(_turn_difference(pair, direction_difference))
     parts = (
         np.abs(pair.tilt_difference)[within],
         _contact_difference(pair)[tilted],
-        np.abs(turn)[tilted],
+        turn[tilted & (pair.time <= turned_until)],
     )
     return tuple(float(np.nanmax(part)) if np.isfinite(part).any() else math.nan for part in parts)
 

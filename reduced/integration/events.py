@@ -234,15 +234,17 @@ def make_events(system: System, stepper: Stepper) -> Events:
         """Return the end of a step from `y`."""
         h, y_new, turn = trial.h, trial.y, trial.turn
         turns = turn.kind != NO_TURN
+        # a body without a balance may turn back just beyond, within the step
+        beyond = turn.kind == MAXIMUM and turn.tilt >= OVERTURNED_TILT
+        overturns = beyond or y_new[0] >= OVERTURNED_TILT
         # with spin the tilt stays positive; without it the base meets the ground
-        lands = trial.flat and (y_new[0] <= 0.0 or (turns and turn.tilt <= 0.0))
-        overturns = y_new[0] >= OVERTURNED_TILT
+        lands = trial.flat and not beyond and (y_new[0] <= 0.0 or (turns and turn.tilt <= 0.0))
         if not (lands or overturns):
             return Ending(h, y_new, lands, overturns, turns)
         # a hop within one step lands after its highest point, a dip before its lowest
         hops = lands and turns and turn.tilt > 0.0
         first = turn.at if hops else 0.0
-        last = turn.at if lands and turns and not hops else h
+        last = turn.at if beyond or (lands and turns and not hops) else h
         h, y_new = crossing(body, work, trial.path, y, first, last, OVERTURNED_TILT if overturns else 0.0)
         return Ending(h, y_new, lands, overturns, hops)
 

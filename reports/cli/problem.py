@@ -12,7 +12,7 @@ import typer
 
 import rockwobble as rw
 from rockwobble.compare.runs.plan import OptionsIn, Plan, option
-from rockwobble.studies.plans import MASS, TendonPlan
+from rockwobble.studies.plans import MASS, TendonPlan, YieldPlan
 
 from ..pages.command_line import command_line
 from . import options
@@ -236,12 +236,19 @@ class Steel(Plan):
     tendon_length: float | None = _tendon(
         None, "Free length of the tendon between its anchors, in m.", above=0.0
     )
+    tendon_yield_force: float | None = _tendon(
+        None, "Yield force of the tendon, in N. Default: no yielding.", above=0.0
+    )
+    tendon_area: float | None = _tendon(
+        None, "Area of the steel of the tendon, in mm2: stresses in MPa.", above=0.0
+    )
+    tendon_yield_stress: float | None = _tendon(
+        None, "Yield stress of the steel, in MPa; with --tendon-area. Default: no yielding.", above=0.0
+    )
     mass: float | None = option(None, MASS, group="Cylinder", above=0.0)
 
-    def of_steel(
-        self, given: str, cylinder: RockingBody, gravity: float, yield_force: float | None = None
-    ) -> rw.Tendon:
-        """Return the tendon of one column; `given`: an option of steel, `yield_force` [N].
+    def of_steel(self, given: str, cylinder: RockingBody, gravity: float) -> rw.Tendon:
+        """Return the tendon of one column; `given`: an option of steel.
 
         Raises
         ------
@@ -252,19 +259,29 @@ class Steel(Plan):
             needed = ("tendon_rigidity", "tendon_length", "mass")
             lacks = [f"--{name.replace('_', '-')}" for name in needed if getattr(self, name) is None]
             raise ValueError(f"{given} needs {' and '.join(lacks)} as well")
+        area, stress, force = self.tendon_area, self.tendon_yield_stress, self.tendon_yield_force
+        if stress is not None:
+            if area is None or force is not None:
+                other = (
+                    "needs --tendon-area as well" if area is None else "got --tendon-yield-force beside it"
+                )
+                raise ValueError(f"--tendon-yield-stress {other}")
+            force = stress * area  # MPa mm2
         return rw.Tendon.from_steel(
             prestress=self.tendon_force or 0.0,
             axial_rigidity=self.tendon_rigidity,
             length=self.tendon_length,
             column_mass=1e3 * self.mass,
             base_radius=cylinder.base_radius,
-            yield_force=yield_force,
+            yield_force=force,
+            area=None if area is None else 1e-6 * area,
             gravity=gravity,
         )
 
 
-_STEEL = ("tendon_force", "tendon_rigidity", "tendon_length")
-_RATIOS = ("tendon_prestress", "tendon_stiffness")
+_OF_YIELD = ("tendon_yield_force", "tendon_area", "tendon_yield_stress")
+_STEEL = ("tendon_force", "tendon_rigidity", "tendon_length", *_OF_YIELD)
+_RATIOS = ("tendon_prestress", "tendon_stiffness", "tendon_yield")
 TiedPlan = TypeVar("TiedPlan", bound=TendonPlan)
 
 
@@ -289,7 +306,12 @@ def with_steel(
             "--tendon-stiffness, multiples of weight and base radius of each"
         )
     tendon = steel.of_steel(given, cylinders[0], gravity)
-    return replace(plan, tendon_prestress=tendon.prestress, tendon_stiffness=tendon.stiffness)
+    values = {"tendon_prestress": tendon.prestress, "tendon_stiffness": tendon.stiffness}
+    if isinstance(plan, YieldPlan):
+        values |= {} if tendon.yield_force is None else {"tendon_yield": tendon.yield_force}
+    else:
+        refuse(context, _OF_YIELD, "belongs to fragility, spectrum and runs of one case")
+    return replace(plan, **values)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -305,9 +327,6 @@ class Restraint(Steel):
     tendon_yield: float | None = _tendon(
         None, "Yield force of the tendon / weight of one column. Default: no yielding.", above=0.0
     )
-    tendon_yield_force: float | None = _tendon(
-        None, "Yield force of the tendon, in N. Default: no yielding.", above=0.0
-    )
 
     def tendon(self, cylinder: RockingBody, gravity: float) -> rw.Tendon | None:
         """Return the tendon of one column; None without any of its options.
@@ -317,8 +336,8 @@ class Restraint(Steel):
         ValueError
             If an option is out of range, one is missing, or two do not go together.
         """
-        ratio = _first_stated(self, *_RATIOS, "tendon_yield")
-        drawn = _first_stated(self, *_STEEL, "tendon_yield_force")
+        ratio = _first_stated(self, *_RATIOS)
+        drawn = _first_stated(self, *_STEEL)
         if not drawn:
             if not ratio:
                 return None
@@ -329,7 +348,7 @@ class Restraint(Steel):
             )
         if ratio:
             raise ValueError(f"{drawn} states a tendon in N, got {ratio} in weights beside it")
-        return self.of_steel(drawn, cylinder, gravity, self.tendon_yield_force)
+        return self.of_steel(drawn, cylinder, gravity)
 
 
 def _first_stated(plan: Plan, *names: str) -> str:

@@ -146,7 +146,7 @@ def compare(
                     require_runnable(each, run)
             trajectories = external.read(cases)
         if suite is None:
-            echo(case_lines(cases[0]))
+            echo(case_lines(cases[0], problem.mass))
         else:
             echo(suite_lines(suite, cases, runs))
         if engine == [options.ALL]:
@@ -220,8 +220,8 @@ def simulate(
     Without options: the recess model under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
 
     Writes the samples (run.csv), the near-upright passes (passes.csv), both for Trace.load (run.parquet),
-    units and meaning of each column (manifest.json), and the page (run.html); `rockwobble report` draws it as
-    a document, too (run.md, trace.svg). SI units and radians.
+    units and meaning of each column (manifest.json), and the page (run.html, run.md, trace.svg). SI units and
+    radians.
 
     Example: rockwobble simulate --release-tilt-deg 5 --rolling-rate 0.5 --duration 8
     """
@@ -242,7 +242,7 @@ def simulate(
             named = None if engine == options.NO_ENGINE else engine
             run = _with_settings(case, rw.Run(named, support, time_step), setting, dataclasses.asdict(model))
             require_runnable(case, run)
-        echo([*record_lines([case.motion]), *case_warnings([case])])
+        echo([*record_lines([case.motion]), *case_warnings([case], problem.mass)])
         with user_input(), shown_progress() as progress:
             found = single_run(
                 case,
@@ -253,7 +253,7 @@ def simulate(
         if not len(found.trace.time):
             complain(f"{run} left no result: {remarks(found.trace.facts)}")
             raise typer.Exit(FAILED)
-        show_and_save(found, out, document=False)
+        show_and_save(found, out)
     if found.trace.outcome == "failed":
         raise typer.Exit(FAILED)
 
@@ -312,7 +312,7 @@ def advise(
             require_judged(case, plan.support)
             run = _run(case, engine, plan.support, time_step)
             claim_folder(context)
-        echo([*record_lines([case.motion]), *case_warnings([case])])
+        echo([*record_lines([case.motion]), *case_warnings([case], plan.mass)])
         with shown_progress("stages") as progress:
             found = rw.advise(
                 case,

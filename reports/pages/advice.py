@@ -69,14 +69,15 @@ _DIVERGENCE = {
     "never, as predicted": "as predicted",
     "in time": "as predicted",
     "later": "longer than predicted",
-    "much later": "more than ten times as long as predicted, which tests nothing",
-    "too little motion": "until then the model's tilt hardly changes, which tests nothing",
+    "much later": "inconclusive, more than ten times as long as predicted",
+    "too little motion": "inconclusive, until then the model's tilt hardly changes",
     "earlier": "less than half as long as predicted: rely on neither before you know why",
 }
 # options of an advice that other commands do not have
 PLAN = ("mass", "copies", "perturbation", "seed")
 # share of a demand below which what acts beside another is none
 _NOTHING = 1e-3
+_YIELDS = "tendon yields"
 Row = dict[str, object]
 
 _NO_PEAK = {"failed": "failed", "undecided": "is undecided"}  # of a run without a peak
@@ -122,7 +123,7 @@ def page_of(found: Advice) -> Page:
         "wall_lines": list(wall_lines(found)),
         "checks": list(_checks(found)),
         "in_one_plane": planar_words(found),
-        "shares": planar_shares(found.planar) if len(found.planar) else [],
+        "shares": planar_shares(found.planar) if len(found.planar) and not found.yielded else [],
         "no_planar_analysis": no_planar_analysis(found),
         "assumptions": list(assumptions(found)),
     }
@@ -137,6 +138,8 @@ def _reasons(found: Advice) -> dict[str, str]:
         return {"friction": _reason_at_rest(found)}
     slip, lost = found.missing
     few = f"fewer than {FEWEST} runs differ"
+    if found.yielded:
+        few = f"the tendon yields in {found.yielded} runs"
     contact = "never lost in 95 % of all runs" if found.grades["contact"] == "satisfied" else few
     if lost > 0.0:
         contact = f"lost for {number(lost, 'percent')} of the time in motion"
@@ -154,6 +157,8 @@ def _reasons(found: Advice) -> dict[str, str]:
 def _reason_of_overturning(found: Advice) -> str:
     if found.overturned:
         return "it overturns as given"
+    if found.yields:
+        return "the tendon yields as given"
     grade, lowest = found.grades["overturning"], found.lowest_factor
     fell = [row for row in _groups(found) if row["counts"] and row["chance"] > 0.0]
     worst = max(fell, key=lambda row: float(row["chance"]), default=None)
@@ -163,10 +168,16 @@ def _reason_of_overturning(found: Advice) -> str:
     if grade == "caution":
         near = [f"{number(lowest)} times this shaking overturns it"] if lowest < NEAR else []
         return "; ".join([*reasons, *near])
+    if found.yielded:
+        return f"the tendon yields in {found.yielded} of {int(found.counting['runs'].sum())} runs"
+    if found.yields_from < NEAR:
+        return f"the tendon yields at {number(found.yields_from)} times this shaking"
     if found.facts["motion"] is None:
         return "no copy overturns" if grade == "satisfied" else "the copies are all one run"
     if not len(found.lowest):
         return "no run overturns, but no other scales of this shaking were run"
+    if math.isnan(lowest) and not math.isnan(found.yields_from):
+        return f"no run overturns; at {number(found.yields_from)} times this shaking the tendon yields"
     if math.isnan(lowest):
         return f"no run overturns, nor up to {number(found.scales['factor'].max())} times this shaking"
     return f"no run overturns; {number(lowest)} times this shaking does"
@@ -196,6 +207,8 @@ def _reason_of_tendon(found: Advice) -> str:
     if tendon is None:
         return ""
     largest, limit = f"{number(found.largest_tension)} weights of a column", tendon["yield_force"]
+    if stress := tendon.get("unit_stress"):
+        largest += f" = {number(stress * found.largest_tension, '.4g')} MPa"
     if limit is None:
         return f"no yield force was given, the demand is {largest}"
     over = "above" if found.grades["tendon"] == "not satisfied" else "below"
@@ -210,6 +223,8 @@ def _ratios_of_tendon(found: Advice) -> dict[str, str]:
 
 def _reason_of_trace(found: Advice) -> str:
     trust, verification = found.trust, found.verification
+    if found.yields:
+        return "the tendon yields: what comes after is not modelled"
     if not found.copies_differ and trust.kind != "statistics":
         return "the copies are all one run"
     ran = verification is not None and verification.outcome not in NO_PEAK
@@ -234,6 +249,8 @@ def _reason_of_intensity(found: Advice) -> str:
     low, high = found.range_as_strong
     if math.isnan(low):
         return "no other scales of this shaking were run"
+    if found.grades["intensity"] == "not tested":
+        return f"the tendon yields at {number(found.yields_from)} times this shaking"
     which = f"at {len(found.as_strong)} scales, {STRONG}"
     if math.isinf(high):
         lowest, share = found.overturning_as_strong
@@ -265,9 +282,9 @@ def _reason_of_engine(found: Advice) -> str:
     if (verification.outcome == "overturned") != found.overturned:
         return "it stands, the model overturns" if found.overturned else "it overturns, the model stands"
     if verification.divergence == "too little motion":
-        return f"it agrees until {until}, in which the model's tilt hardly changes: that tests nothing"
+        return f"inconclusive: it agrees until {until}, in which the model's tilt hardly changes"
     if verification.divergence in UNTESTED:
-        return f"{agrees}: more than ten times as long from uplift on, which tests nothing"
+        return f"inconclusive: it agrees until {until}, where {predicted} was predicted: too early to test it"
     return agrees
 
 
@@ -304,7 +321,7 @@ def _comparison_words(found: Advice) -> str:
         return ""
     kind = f"{rows[0]['runs']} far-field records of FEMA P-695"
     if found.facts["records"] == "synthetic":
-        kind = f"{rows[0]['runs']} synthetic ground motions, which are no records"
+        kind = f"{rows[0]['runs']} synthetic (not recorded) motions"
     plane = (
         ", which shake in both directions while this one has one component"
         if found.response["in_one_plane"]
@@ -331,12 +348,15 @@ def _numbers(found: Advice) -> Iterator[Row]:
         tilt, top = alpha * peak, found.top(peak)
         # "21 of 22" beside "overturns" would say that so many do
         without = "no limit" if covered else "overturns"
+        if overturn == _YIELDS:
+            without = _YIELDS
         words = [without if math.isinf(peak) else number(each) for each in (tilt, top)]
         covered = "" if math.isinf(peak) else covered
         return {"name": name, "overturn": overturn, "covered": covered, "tilt": words[0], "top": words[1]}
 
-    given = math.inf if found.overturned else found.peak
-    yield row("as given, one run", "overturns" if found.overturned else "stands", "", given)
+    given = math.inf if found.overturned or found.yields else found.peak
+    ends = _YIELDS if found.yields else "overturns" if found.overturned else "stands"
+    yield row("as given, one run", ends, "", given)
     for group in _groups(found):
         known, peak = group["runs"] - group["failed"], group["peak_tilt_95"]
         if group["single"]:
@@ -345,6 +365,8 @@ def _numbers(found: Advice) -> Iterator[Row]:
             continue
         low, high = (number(group[f"chance_{end}"], "percent").removesuffix(" %") for end in ("low", "high"))
         share = f"{group['overturned']} of {known} ({low} to {high} %)"
+        if beyond := group.get("yielded", 0):
+            share = f"not tested, the tendon yields in {beyond} of {known}"
         covered = f"{group['covered']} of {known}" if group["covered"] else ""
         yield row(group["name"], share, covered, peak)
 
@@ -362,10 +384,14 @@ def _demand_rows(found: Advice) -> Iterator[Row]:
             continue
         row = values[demand]
         if math.isnan(row["value"]):
-            yield {"name": name, "value": "not given", "of": row["reason"]}
+            yield {"name": name, "value": "not given", "of": _reason(found, row)}
             continue
-        cells: Row = {"name": name, "value": f"{number(row['value'])}{_UNITS[row['unit']]}"}
         unit = "kNm" if demand == "moment" else "kN"
+        cells: Row = {"name": name, "value": f"{number(row['value'])}{_UNITS[row['unit']]}"}
+        if not math.isnan(row.get("peak", math.nan)):  # an earlier version stated none
+            cells["peak"] = f"{number(row['peak'])}{_UNITS[row['unit']]}"
+            if not math.isnan(row["for_mass"]):
+                cells["peak"] = f"{_rounded(row['peak'] / row['value'] * row['for_mass'])} {unit}"
         if not math.isnan(row["per_tonne"]):
             cells["tonne"] = f"{_rounded(row['per_tonne'])} {unit}/t"
             if not math.isnan(row["for_mass"]):
@@ -378,7 +404,7 @@ def _demand_columns(found: Advice) -> Iterator[list[str]]:
     yield from (["name", "demand", "words"], ["value", "value", "words"], ["tonne", "per tonne", "words"])
     if found.facts["mass"] is not None:
         yield ["mass", "one column" if "columns" in found.facts["cylinder"] else "in all", "words"]
-    yield ["of", "not exceeded by", "words"]
+    yield from (["peak", "peak", "words"], ["of", "not exceeded by", "words"])
 
 
 def _rounded(value: float) -> str:
@@ -417,31 +443,41 @@ def _wall(found: Advice) -> str:
         return ""
     row = rows["clearance"]
     if math.isnan(row["value"]):
-        return f"Wall: not given, {row['reason']}."
+        return f"Wall: no size, {_reason(found, row)}."
     height, clearance = (number(1e3 * rows[part]["value"]) for part in ("wall_height", "clearance"))
     tilt = number(math.degrees(rows["tilt"]["value"] * found.cylinder.alpha))
     size = f"{height} mm high, {clearance} mm clear of the rim"
     tendon = found.facts.get("tendon") or {"balance_tilt": 1.0}
-    beyond = ""
-    if rows["tilt"]["value"] > tendon["balance_tilt"]:
-        fell = f"{int(row['overturned'])} of {int(row['runs'])}"
-        beyond = ", beyond its balance" + (f": {fell} fall, which no wall holds" if row["overturned"] else "")
+    beyond = ", beyond its balance" if rows["tilt"]["value"] > tendon["balance_tilt"] else ""
     return f"Wall: {size}, for a tilt of {tilt}° ({_of(found, row)}{beyond})."
+
+
+def _reason(found: Advice, row: Mapping[Any, Any]) -> str:
+    """Why a demand has no value, and in which group."""
+    words = {"yields": "the tendon yields in {}", "overturns": "{} overturn"}.get(row["reason"])
+    return words.format(_of(found, row)) if words else str(row["reason"])
 
 
 def _of(found: Advice, row: Mapping[Any, Any]) -> str:
     """How many runs of which group ask no more than a demand, and under which shaking."""
-    kind = "" if found.facts["records"] == "p695" else " synthetic"
-    name = {
-        COPIES: " copies",
-        VERTICAL: " with vertical",
-        ACCELERATION: f"{kind}, same PGA",
-        VELOCITY: f"{kind}, same PGV",
-    }[row["group"]]
-    level = "" if row["factor"] == 1.0 else f", × {number(row['factor'])}"
     runs = int(row["runs"])
     count = "one run of" if runs == 1 else f"{int(row['covered'])} of {runs}"
-    return f"{count}{name}{level}"
+    return f"{count}{_group(found, row)}"
+
+
+_OF_GROUP = {
+    COPIES: " copies",
+    VERTICAL: " with vertical",
+    ACCELERATION: ", same PGA",
+    VELOCITY: ", same PGV",
+}
+
+
+def _group(found: Advice, row: Mapping[Any, Any]) -> str:
+    """The group of a demand, and its shaking."""
+    measured = row["group"] in (COPIES, VERTICAL) or found.facts["records"] == "p695"
+    level = "" if row["factor"] == 1.0 else f", × {number(row['factor'])}"
+    return f"{'' if measured else ' synthetic'}{_OF_GROUP[row['group']]}{level}"
 
 
 def _steps(found: Advice) -> list[str]:
@@ -565,7 +601,7 @@ def _failure(verification: Verification) -> str:
 
 def _scales(found: Advice) -> Iterator[Row]:
     low, high = found.range_as_strong
-    if not math.isnan(low) and not found.overturned:
+    if not math.isnan(low) and not found.overturned and found.grades["intensity"] != "not tested":
         span = f"{number(low)} to {number(high)} α"
         yield _check(
             f"largest tilt at {len(found.as_strong)} scales, {STRONG}",
@@ -578,6 +614,8 @@ def _scales(found: Advice) -> Iterator[Row]:
     name, factor, notes = "lowest scale found to overturn", found.lowest_factor, []
     if math.isnan(factor):
         notes = [f"up to {number(found.scales['factor'].max())} times; gaps may lie between the scales run"]
+        if not math.isnan(found.yields_from):
+            notes = [f"at {number(found.yields_from)} times the tendon yields"]
     elif not lowest["confirmed"][SPATIAL]:
         notes = [
             f"by chance: it stands at a tolerance of {number(CHECK_RTOL)} or perturbed by {number(NUDGE)}"
@@ -592,6 +630,8 @@ def _scales(found: Advice) -> Iterator[Row]:
 
 def _ratios(found: Advice) -> Iterator[Row]:
     """Rows of the largest tilts of copies by one of two ways over those by the other."""
+    if found.yielded:
+        return
     facts, vertical = found.facts, found.vertical
     holds = support_named(facts["support"])
     place = (FLAT if holds.is_recess else RECESS).place

@@ -25,11 +25,36 @@ _NO_SCALE = 1e9
 
 
 def opening(found: Advice) -> Iterator[str]:
-    """Yield what a reader must not miss: the vertical component, and what keeps the case at rest."""
+    """Yield what a reader must not miss: the vertical component, why nothing moves, limit of a tendon."""
     if found.vertical_matters:
         yield vertical_words(found)
     if not found.moves:
         yield _at_rest(found)
+    yield from _limit_of_tendon(found)
+
+
+def _limit_of_tendon(found: Advice) -> Iterator[str]:
+    """Up to where the tendon is what the models take it for; an earlier version knew nothing of it."""
+    tendon, alpha = found.facts.get("tendon"), math.degrees(found.cylinder.alpha)
+    if tendon is None or "tilts" not in tendon:
+        return
+    if tendon["yield_force"] is None:
+        of = "its prestress" if tendon["prestress"] else "the weight of a column"
+        tilts = [f"{n} times {of} {_at_tilt(alpha * tilt)}" for n, tilt in tendon["tilts"].items()]
+        at_rest = f"{of} upright, " if tendon["prestress"] else ""
+        yield (
+            f"The tendon is taken as elastic without limit: it would carry {at_rest}{' and '.join(tilts)}."
+        )
+        return
+    words = f"The tendon yields {_at_tilt(alpha * tendon['yield_tilt'])}; what comes after is not modelled"
+    if beyond := found.yielded + found.yields:
+        runs = int(found.counting["runs"].sum())
+        words += f", and nothing is known of {beyond} of {runs + 1} runs that pass it"
+    yield f"{words}."
+
+
+def _at_tilt(degrees: float) -> str:
+    return f"at a tilt of {number(degrees)}°" if math.isfinite(degrees) else "at no tilt below 90°"
 
 
 def _at_rest(found: Advice) -> str:
@@ -84,13 +109,16 @@ def tendon_words(found: Advice) -> str:
         return ""
     stiffness, balance = tendon["initial_stiffness"], tendon["balance_tilt"]
     way = "grows" if stiffness > 0.0 else "falls"
-    returns = "It brings the column back from every tilt"
-    if math.isfinite(balance):
-        returns = f"It brings the column back from tilts up to {number(balance)} α"
+    # elastic: beyond its yield it does not
+    limit = min(balance, tendon.get("yield_tilt", math.inf))
+    returns = f"tilts up to {number(limit)} α" if math.isfinite(limit) else "every tilt, if it stays elastic"
     steel = f"prestress {number(tendon['prestress'])} W, stiffness {number(tendon['stiffness'])} W/b"
+    if stress := tendon.get("unit_stress"):
+        steel += f"; {number(stress * tendon['prestress'], '.4g')} MPa at rest, {number(stress)} a W"
     return (
         f"Tendon: {steel}. Uplift at {number(tendon['uplift_factor'])} g tan α; initial stiffness "
-        f"{number(stiffness)} m g b, the couple {way} with the tilt. {returns}."
+        f"{number(stiffness)} m g b, the couple {way} with the tilt. It brings the column back "
+        f"from {returns}."
     )
 
 
@@ -112,6 +140,8 @@ def vertical_words(found: Advice) -> str:
         return "No vertical component of this record was given: its effect was not looked at."
     if vertical.ratios is None:
         return ""
+    if found.yielded:
+        return "Whether the vertical component overturns it is not tested: the tendon yields."
     ratios = vertical.ratios
     with_it, without, count = (int(ratios[key]) for key in ("overturned", "against_overturned", "members"))
     words = f"With the vertical component of the record {with_it} of {count} copies overturn"
@@ -133,7 +163,7 @@ def other_record_lines(found: Advice) -> Iterator[str]:
     """Yield what the other ground motions are, and what they were scaled to."""
     if records := found.facts["records"]:
         measured = "The 22 far-field pairs of FEMA P-695"
-        yield f"{measured if records == 'p695' else '22 synthetic ground motions, which are no records'},"
+        yield f"{measured if records == 'p695' else '22 synthetic (not recorded) motions'},"
         yield (
             "scaled to the peak of this record, the largest resultant of its horizontal components (PGA, "
             "PGV): what this intensity does. Large bodies follow the peak velocity."
@@ -181,6 +211,8 @@ def planar_words(found: Advice) -> str:
 
 def no_planar_analysis(found: Advice) -> str:
     """Why there is no planar analysis of what moves; empty where there is one."""
+    if found.moves and found.yielded:
+        return "No planar analysis: the tendon yields."
     if not found.moves or len(found.planar):
         return ""
     knows = "release out of its plane" if found.facts["release"] else "vertical shaking, and no still ground"

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from rockwobble.models.plain_json import Facts
 
 
-def case_lines(case: Case) -> list[str]:
-    """Return the lines that echo a case: what was understood, in numbers."""
+def case_lines(case: Case, mass: float | None = None) -> list[str]:
+    """Return the lines that echo a case and the mass of a column [t]: what was understood, in numbers."""
     cylinder, motion, initial = case.cylinder, case.motion, case.initial
     lines = [
         f"Cylinder: b = {cylinder.base_radius:.4g} m, 2h = {2.0 * cylinder.half_height:.4g} m, "
@@ -52,7 +52,7 @@ def case_lines(case: Case) -> list[str]:
             f"Release: tilt {math.degrees(initial.tilt):.4g} deg "
             f"({initial.tilt / cylinder.alpha:.3g} alpha), rolling rate {initial.rolling_rate:g} rad/s"
         )
-    lines += case_warnings([case])
+    lines += case_warnings([case], mass)
     lines.append(f"Length of the run: {case.length:.4g} s")
     return lines
 
@@ -117,13 +117,13 @@ def source_lines(sources: Sequence[str], where: str) -> list[str]:
     return lines
 
 
-def case_warnings(cases: Iterable[Case]) -> list[str]:
-    """Return a line on each doubt about what cases state."""
+def case_warnings(cases: Iterable[Case], mass: float | None = None) -> list[str]:
+    """Return a line on each doubt about what cases, and the mass of a column [t], state."""
     from rockwobble.models.doubts import doubts_of_cases
 
     from .diagnostics import warnings
 
-    return warnings(doubts_of_cases(cases))
+    return warnings(doubts_of_cases(cases, mass))
 
 
 def warnings_about(

@@ -192,7 +192,7 @@ def _remarks(fallen: Sequence[Row]) -> Iterator[str]:
     for row in fallen:
         if row["failed"]:
             runs = row["failed"] + row["runs"]
-            line = f"{_method(row, True)} failed in {row['failed']} of {runs} runs, which are left out"
+            line = f"{_method(row, True)} has no answer in {row['failed']} of {runs} runs, which are left out"
             if math.isfinite(row.get("median_if_not", math.nan)):
                 exceeded, stands = number(row["median_if_exceeded"]), number(row["median_if_not"])
                 line += f": the median is {exceeded} if they all overturn, {stands} if none does"

@@ -65,7 +65,7 @@ def _findings(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> Iterato
     if any(np.isfinite(lowest).any() for lowest in spectrum.lowest.values()):
         yield from _boundary(spectrum, tables)
     if failed := int(spectrum.failed().sum()):
-        yield f"Cells that failed and are left out: {failed}."
+        yield f"Cells without an answer (failed, or past yield): {failed}."
     yield from _search(spectrum, tables["lowest"])
     yield _second_run_words(tables["checked"])
 

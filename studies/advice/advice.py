@@ -13,7 +13,7 @@ import pandas as pd
 
 from rockwobble import reduced
 from rockwobble.compare.metrics.contrast import pairs_of
-from rockwobble.compare.metrics.pair import overturned, tolerance_of
+from rockwobble.compare.metrics.pair import beyond_yield, overturned, tolerance_of
 from rockwobble.compare.runs.choice import require_runnable
 from rockwobble.compare.runs.execution import Job, job_fingerprint, simulate_run
 from rockwobble.compare.runs.progress import ProgressCallback, stages
@@ -46,6 +46,7 @@ from ..spectrum.parts import SPATIAL
 from .demands import demand_table, demands_of, fall_of, weaker_factors
 from .grades import (
     EVENLY_LOADED,
+    NEAR,
     POOR,
     STABILITY,
     USE,
@@ -75,7 +76,7 @@ from .members import (
     with_vertical,
     without_vertical,
 )
-from .scales import held_by, planar_runs, scan_as_strong, scan_scales
+from .scales import AS_STRONG, held_by, planar_runs, scan_as_strong, scan_scales
 from .trust import (
     BAND_STEP,
     Trust,
@@ -136,6 +137,7 @@ class Response(TypedDict):
     tension: float  # of a tendon, largest until it falls [weights of one column]; NaN without one
     lost: float
     tolerance: float
+    yields: bool  # a tendon, see `beyond_yield`
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -226,8 +228,26 @@ class Advice(Results, kind=KIND):
 
     @property
     def overturned(self) -> bool:
-        """Whether it overturns as given."""
-        return self.response["outcome"] == "overturned"
+        """Whether it overturns as given; nobody knows where its tendon yields before."""
+        return self.response["outcome"] == "overturned" and not self.yields
+
+    @property
+    def yields(self) -> bool:
+        """Whether the tendon yields as given, so that the run is no answer."""
+        return self.response.get("yields", False)  # of an earlier version nothing is known
+
+    @property
+    def yielded(self) -> int:
+        """Number of runs of the groups that grades rest on whose tendon yields."""
+        return int(self.counting["yielded"].sum()) if "yielded" in self.counting else 0
+
+    @property
+    def yields_from(self) -> float:
+        """Lowest scale of the ground motion at which the tendon yields; NaN where it does at none."""
+        spatial = self.scales[self.scales["series"] == SPATIAL]
+        tables = (table for table in (spatial, self.as_strong) if "yields" in table)
+        factors = (table["factor"][table["yields"].astype(bool)].min() for table in tables)
+        return float(np.fmin.reduce([math.nan, *factors]))
 
     @property
     def copies_differ(self) -> bool:
@@ -253,7 +273,8 @@ class Advice(Results, kind=KIND):
         """Lowest scale of the ground motion found to overturn; NaN where none is."""
         searched = self.lowest["factor"][self.lowest["series"] == SPATIAL].max()
         beside = self.as_strong
-        return float(np.fmin(searched, beside["factor"][overturned(beside["peak_tilt"])].min()))
+        lowest = float(np.fmin(searched, beside["factor"][overturned(beside["peak_tilt"])].min()))
+        return math.nan if lowest >= self.yields_from else lowest
 
     @property
     def overturning_as_strong(self) -> tuple[float, float]:
@@ -311,7 +332,7 @@ class Advice(Results, kind=KIND):
         shaken, friction = facts["motion"] is not None, facts["friction"]
         (slip, lost), spread = (
             self.missing,
-            bool((~self.counting["single"] & self.counting["lost_95"].notna()).any()),
+            not self.yielded and bool((~self.counting["single"] & self.counting["lost_95"].notna()).any()),
         )
         slides = friction is not None and friction < self.cylinder.tan_alpha and response["uplift_time"] > 0.0
         found: dict[str, Grade] = {
@@ -319,7 +340,8 @@ class Advice(Results, kind=KIND):
                 self.overturned,
                 self.lowest_factor,
                 self.counting["chance"],
-                tested=len(self.lowest) > 0 or (not shaken and self.copies_differ),
+                tested=(len(self.lowest) > 0 or (not shaken and self.copies_differ))
+                and not (self.yields or self.yielded or self.yields_from < NEAR),
             ),
             "friction": grade_share(
                 0.0 if friction is None else slip,
@@ -328,7 +350,9 @@ class Advice(Results, kind=KIND):
                 slides=slides,
             ),
             "contact": grade_share(lost, tested=spread),
-            "trace": grade_trace(self.trust.kind, tested=self.copies_differ),
+            "trace": "not satisfied"
+            if self.yields
+            else grade_trace(self.trust.kind, tested=self.copies_differ),
         }
         if tendon is not None:
             found["tendon"] = grade_tendon(
@@ -336,7 +360,8 @@ class Advice(Results, kind=KIND):
             )
         if shaken and not self.overturned:
             low, high = self.range_as_strong
-            found["intensity"] = grade_intensity(*map(_opened, (low, self.peak, high)))
+            grade = grade_intensity(*map(_opened, (low, self.peak, high)))
+            found["intensity"] = "not tested" if self.yields_from <= AS_STRONG[1] else grade
         found["engine"] = "not tested"
         if verification is not None:
             differs = (verification.outcome == "overturned") != self.overturned or not verification.moves
@@ -363,6 +388,8 @@ class Advice(Results, kind=KIND):
         if not self.moves:
             return "the cylinder stays at rest"
         ends = "it overturns as given" if self.overturned else STABILITY[self.grades["overturning"]]
+        if self.yields:
+            ends = "its tendon yields, whether it overturns is not tested"
         return f"{ends}; {USE[self.model_grade].format(model)}"
 
     @property
@@ -527,7 +554,9 @@ def advise(
             methods = verification.agreed_until if verification.diverged else math.inf
         data = spread_from(band, trace.peak_tilt / alpha)
         trust = trust_of(methods, data, trace.peak_time, float(trace.time[-1]))
-    members = pd.DataFrame(rows, columns=None if rows else ["group", "outcome", "peak_tilt", "member"])
+    members = pd.DataFrame(
+        rows, columns=None if rows else ["group", "outcome", "peak_tilt", "yields", "member"]
+    )
     tables = {
         "members": members,
         "band": band,
@@ -555,7 +584,7 @@ def advise(
         "records": source,
         "mass": plan.mass,
         "options": None,
-        "doubts": doubts_of_cases([case]),
+        "doubts": doubts_of_cases([case], plan.mass),
         "record_sources": sources_of([case.motion]),
         "perturbation": plan.perturbation,
         "seed": plan.seed,
@@ -587,8 +616,10 @@ def _threshold(case: Case, motion: GroundMotion) -> float:
 def _restraint(case: Case) -> dict[str, object] | None:
     """Facts of the tendon of a case; None without one.
 
-    uplift_factor, by which it raises the threshold of uplift; initial_stiffness [m g b], and balance_tilt
-    [alpha], infinite where the couple brings the body back from every tilt.
+    uplift_factor, by which it raises the threshold of uplift; initial_stiffness [m g b]; balance_tilt
+    [alpha], infinite where the couple brings the body back from every tilt; yield_tilt [alpha], infinite
+    where it does not yield; tilts [alpha] at which it carries 2 and 5 times its prestress, or weights
+    without one.
     """
     tendon, body = case.tendon, case.cylinder
     if tendon is None:
@@ -599,6 +630,8 @@ def _restraint(case: Case) -> dict[str, object] | None:
         "uplift_factor": tendon.uplift_factor(body),
         "initial_stiffness": tendon.initial_stiffness(body),
         "balance_tilt": reduced.balance_tilt_of_case(case) / body.alpha,
+        "yield_tilt": tendon.yield_tilt(body) / body.alpha,
+        "tilts": {str(n): tendon.tilt_at(body, n * (tendon.prestress or 1.0)) / body.alpha for n in (2, 5)},
     }
 
 
@@ -676,6 +709,7 @@ def _response(trace: Trace) -> Response:
         "tension": own.get("tendon", math.nan),
         "lost": own["lost"],
         "tolerance": tolerance_of(trace),
+        "yields": bool(beyond_yield(trace.peak_tilt, trace.case)),
     }
 
 

@@ -52,6 +52,8 @@ _TENDON = "tendon"  # tension, in weights of a column alone
 UNITS: Mapping[str, str] = {**_BASE, **_TOP, **_RECESS, _TENDON: "weights"}
 # what else there is of each run
 SHARES = ("slip", "lost")
+# of these also the largest of all samples
+PEAKS = {name: f"{name}_peak" for name in ("shear", "force")}
 # demands of which is said what acts together with them, and what that is
 _LEADING = ("shear", "moment")
 _TOGETHER = ("shear", "force", "moment")
@@ -81,7 +83,8 @@ def demands_of(trace: Trace) -> dict[str, float]:
         top_force, under the slab of a frame [weights of the share of the slab]; moment, of the recess about
         the vertical through the contact point, (1 + cos(tilt)) |kappa| [weights times b]; shear_and_wall,
         the sum at one time of shear and of the force on a wall that supplies the moment over the lever arm b
-        [weights]: each not exceeded in 99 % of the moving time. shear_with_shear, shear_with_force and
+        [weights]: each not exceeded in 99 % of the moving time; shear_peak and force_peak, the largest of all
+        samples: of rigid contact, in a near pass. shear_with_shear, shear_with_force and
         shear_with_moment: what acts together where the shear is largest of all times at which contact is
         kept and none of these is exceeded; moment_with_shear and so on, where the moment is. tilt, the
         largest [alpha]: at least `PASSED` of the balance where it passes that. tendon, the largest tension
@@ -111,6 +114,7 @@ def demands_of(trace: Trace) -> dict[str, float]:
         together = {f"{name}_with_{part}": float(part == "force") for name, part in _pairs()}
         return found | {
             **{"moment": 0.0, "shear_and_wall": 0.0, "tilt": largest},
+            **{"shear_peak": 0.0, "force_peak": 1.0},
             **{**pull, **together, **_none_missing()},
         }
     lengths = np.diff(trace.time, append=trace.time[-1])[moving]
@@ -126,6 +130,7 @@ def demands_of(trace: Trace) -> dict[str, float]:
     series["shear_and_wall"] = series["shear"] + series["moment"]
     places = {name: _usual(values) for name, values in series.items()}
     found = {name: float(series[name][place]) for name, place in places.items()}
+    found |= {peak: float(series[name].max()) for name, peak in PEAKS.items()}
     usual = np.logical_and.reduce([series[name] <= found[name] for name in (*_BASE, *_SUMS)])
     usual &= series["force"] > 0.0
     for name, part in _pairs():
@@ -185,7 +190,9 @@ def demand_table(
         `mass` [kN, kNm]; group and factor, of which it is, with runs, those of them that differ, covered, how
         many of these do not exceed it, and overturned, how many fall; with_shear, with_force and with_moment
         of shear and of moment: what acts together where one of them is largest and none is beyond its value
-        [weights, weights times b]; reason, why a value is NaN.
+        [weights, weights times b]; peak, of shear and of force, what 95 % of the runs of a group exceed at no
+        time; reason, why a value is NaN: too few runs; "yields" or, of a wall, "overturns", where that is so
+        of more than 5 % of a group, in covered runs.
 
         Demands: those of `demands_of` and, of the tilt, wall_height, at which the rim stands out farthest and
         a wall takes its force, and clearance, by which a vertical wall of this height must stand back [m].
@@ -195,6 +202,7 @@ def demand_table(
     if not groups:
         return pd.DataFrame(columns=[*_COLUMNS, "per_tonne", "for_mass"])
     rows: list[dict[str, Any]] = []
+    yields, falls = (_most(groups, column) for column in ("yields", "overturns"))
     for name, unit in UNITS.items():
         if name in _TOP and not cylinder.slab_mass_ratio > 0.0:
             continue
@@ -203,6 +211,11 @@ def demand_table(
         if name == _TENDON and name not in members:
             continue
         rows.append({"demand": name, "unit": unit, **_largest(name, groups)})
+        if yields is not None and name != _TENDON:
+            rows[-1] |= yields | {"value": math.nan, "reason": "yields"}
+            continue
+        if name in PEAKS:
+            rows[-1]["peak"] = _largest(PEAKS[name], groups)["value"]
         if (
             name == "moment"
             and rows[-1]["value"] == 0.0
@@ -224,6 +237,9 @@ def demand_table(
         rows += [
             recess["tilt"] | {"demand": name, "unit": "m", "value": each} for name, each in walls.items()
         ]
+        if falls is not None and yields is None:
+            for row in rows[-len(walls) :]:
+                row |= falls | {"value": math.nan, "reason": "overturns"}
     table = pd.DataFrame(rows, columns=_COLUMNS)
     arms = table["unit"].map({"weights": gravity, "weights × b": gravity * b}).astype(float)
     table["per_tonne"] = table["value"] * arms
@@ -236,7 +252,7 @@ def demand_table(
 
 _COLUMNS = [
     *("demand", "value", "unit", "group", "factor", "runs", "covered", "overturned"),
-    *("with_shear", "with_force", "with_moment", "reason"),
+    *("with_shear", "with_force", "with_moment", "peak", "reason"),
 ]
 
 
@@ -257,6 +273,18 @@ def all_alike(runs: pd.DataFrame) -> bool:
     """Return whether several runs that move are one: of records that differ many may not move at all."""
     numbers = [name for name in ("peak_tilt", *UNITS) if name in runs.columns]
     return len(runs) > 1 and runs["peak_tilt"].min() > 0.0 and bool(runs[numbers].nunique().max() == 1)
+
+
+def _most(groups: list[tuple[str, float, pd.DataFrame]], what: str) -> dict[str, Any] | None:
+    """The group of which most yield or overturn, where that is more than a demand leaves out."""
+    worst: dict[str, Any] | None = None
+    share = 1.0 - COVERED
+    for group, factor, runs in groups:
+        ends = runs["outcome"] == "overturned" if what == "overturns" else runs["yields"]
+        if ends.mean() > share * (1.0 + ROUNDING):
+            share = float(ends.mean())
+            worst = {"group": group, "factor": factor, "runs": len(runs), "covered": int(ends.sum())}
+    return worst
 
 
 def _largest(name: str, groups: list[tuple[str, float, pd.DataFrame]]) -> dict[str, Any]:

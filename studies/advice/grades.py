@@ -48,12 +48,13 @@ class Criterion:
 
 
 _BRIEFLY = f"for at most {100.0 * BROKEN:g} % of the time in motion"
-_FEW = f"fewer than {FEWEST} runs that differ"
+_FEW = f"fewer than {FEWEST} runs that differ, or the tendon yields in some"
 CRITERIA: Mapping[str, Criterion] = MappingProxyType(
     {
         "overturning": Criterion(
             satisfied=f"no run overturns, nor any scale up to {NEAR:g} times this shaking",
-            not_tested="no run overturns, but no other scales of this shaking were run",
+            not_tested="no run overturns, but no other scales of this shaking were run, or the tendon "
+            f"yields in a run or at a scale up to {NEAR:g}",
             caution=f"at most {100.0 * UNSAFE:g} % of a group overturn, or a scale below {NEAR:g} does; "
             "copies with the vertical component are a group",
             not_satisfied=f"the case as given overturns, or more than {100.0 * UNSAFE:g} % of a group",
@@ -80,12 +81,12 @@ CRITERIA: Mapping[str, Criterion] = MappingProxyType(
             satisfied="the largest tilt comes before two methods, or the copies, diverge",
             not_tested="the copies are all one run",
             caution="the largest tilt comes after methods or copies diverge: trust statistics",
-            not_satisfied="the run failed",
+            not_satisfied="the run failed, or its tendon yields",
         ),
         "intensity": Criterion(
             satisfied=f"the tilt changes by less than {SENSITIVE:g} times under shaking as strong, with a "
             f"margin of {100.0 * (BETWEEN_SCALES - 1.0):.0f} % for what lies between the scales run",
-            not_tested="no other scales of this shaking were run",
+            not_tested="no other scales of this shaking were run, or the tendon yields at one of them",
             caution=f"it changes by {SENSITIVE:g} times or more, or one of these scales overturns",
             not_satisfied="never: the percentiles say it",
         ),
@@ -159,7 +160,8 @@ def grade_overturning(overturned: bool, lowest: float, chances: Iterable[float],
     chances : iterable of float
         Share of each group of members that overturns; NaN of a group that says nothing.
     tested : bool
-        Whether other scales of the ground motion were run, or copies of a release over still ground.
+        Whether other scales of the ground motion were run, or copies of a release over still ground, and the
+        tendon, if there is one, yields in none.
     """
     worst = overall(map(grade_chance, chances))
     if overturned or worst == "not satisfied":

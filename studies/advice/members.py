@@ -12,6 +12,7 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.compare.metrics.contrast import Contrast
+from rockwobble.compare.metrics.pair import beyond_yield
 from rockwobble.compare.metrics.statistics import (
     FEWEST,
     Interval,
@@ -102,7 +103,10 @@ def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
 
 
 def member_row(group: str, trace: Trace, factor: float = 1.0) -> dict[str, float | str]:
-    """Return the row of a run: group, member, factor [-], model, outcome, peak_tilt [alpha], demands."""
+    """Return the row of a run.
+
+    group, member, factor [-], model, outcome, peak_tilt [alpha], yields, see `beyond_yield`, and demands.
+    """
     return {
         "group": group,
         "member": trace.case.name,
@@ -110,6 +114,7 @@ def member_row(group: str, trace: Trace, factor: float = 1.0) -> dict[str, float
         "model": str(trace.run),
         "outcome": trace.outcome,
         "peak_tilt": trace.peak_tilt / trace.case.cylinder.alpha,
+        "yields": bool(beyond_yield(trace.peak_tilt, trace.case)),
         **(demands_of(trace) if trace.outcome not in NO_PEAK else {}),
     }
 
@@ -193,9 +198,11 @@ def ratios_of(found: Contrast) -> dict[str, float]:
 def group_table(members: pd.DataFrame) -> pd.DataFrame:
     """Return one row for each group of members but the other support: how many overturn, and percentiles.
 
-    Columns: group, runs, failed, overturned; single, whether all moved alike, which makes them one run;
+    Columns: group, runs, failed, overturned; yielded, those of which no more is known than that their tendon
+    yields, which do not count as overturned; single, whether all moved alike, which makes them one run;
     counts, whether grades and demands rest on it; chance with chance_low and chance_high; covered, how many
-    of the runs that did not fail make 95 % of them; and for peak_tilt [alpha], inf where it overturns, and
+    of the runs that did not fail make 95 % of them; and for peak_tilt [alpha], inf where it overturns or
+    yields, and
     each of `DEMANDS` the percentiles _05 and _50, and _95, which `covered` of the runs do not exceed. NaN
     where too few runs differ, see `stated`.
     """
@@ -203,12 +210,13 @@ def group_table(members: pd.DataFrame) -> pd.DataFrame:
     numbers = ["peak_tilt", *(name for name in DEMANDS if name in members.columns)]
     for group, runs in members[members["group"] != OTHER].groupby("group", sort=False):
         known = runs[~runs["outcome"].isin(NO_PEAK)]
-        fell = known["outcome"] == "overturned"
+        yields = known["yields"].astype(bool)
+        fell = (known["outcome"] == "overturned") & ~yields
         single = all_alike(known)
         chance = Interval(value=math.nan, low=math.nan, high=math.nan)
         if not single:
             chance = share_interval(int(fell.sum()), len(known))
-        values = known[numbers].assign(peak_tilt=known["peak_tilt"].mask(fell, math.inf))
+        values = known[numbers].assign(peak_tilt=known["peak_tilt"].mask(fell | yields, math.inf))
         values = values[:1] if single else values
         upper = dict.fromkeys(numbers, (math.nan, 0))
         if single or len(values) >= FEWEST:
@@ -219,6 +227,7 @@ def group_table(members: pd.DataFrame) -> pd.DataFrame:
                 "runs": len(runs),
                 "failed": len(runs) - len(known),
                 "overturned": int(fell.sum()),
+                "yielded": int(yields.sum()),
                 "single": single,
                 "counts": group not in BESIDE_THE_PROBLEM,
                 **chance.columns("chance"),

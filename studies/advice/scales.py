@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble import reduced
-from rockwobble.compare.metrics.pair import overturned
+from rockwobble.compare.metrics.pair import beyond_yield, overturned
 from rockwobble.compare.metrics.statistics import share_interval
 from rockwobble.models import Case
 from rockwobble.models.support import RECESS
@@ -35,6 +35,7 @@ REFINEMENTS, EXTREMA = 3, 8
 PLANAR_SCALES = (0.5, 2.0**-0.5, 1.0, 2.0**0.5, 2.0)
 # ratio of peak tilts from which one is larger: below it is rounding and the step of the solution
 LARGER = 1.01
+_SCALES = ["series", "factor", "peak_tilt", "yields"]
 _LOWEST = ["series", "factor", "confirmed", "start"]
 
 
@@ -44,8 +45,8 @@ def scan_scales(case: Case, support: str = RECESS) -> tuple[pd.DataFrame, pd.Dat
     Returns
     -------
     scales : DataFrame
-        series, factor [-], peak_tilt [rad]: "3d", and "planar_x" and "planar_y" unless the case is a release,
-        of which a planar analysis knows nothing.
+        series, factor [-], peak_tilt [rad], yields, see `beyond_yield`: "3d", and "planar_x" and "planar_y"
+        unless the case is a release, of which a planar analysis knows nothing.
     lowest : DataFrame
         Lowest factor found to overturn, by series, NaN where none does; confirmed,
         whether
@@ -54,7 +55,7 @@ def scan_scales(case: Case, support: str = RECESS) -> tuple[pd.DataFrame, pd.Dat
     """
     motion = case.motion
     if motion is None or motion.peak == 0.0:
-        return pd.DataFrame(columns=["series", "factor", "peak_tilt"]), pd.DataFrame(columns=_LOWEST)
+        return pd.DataFrame(columns=_SCALES), pd.DataFrame(columns=_LOWEST)
     tan_alpha, gravity = case.cylinder.tan_alpha, case.gravity
     step = STEP * intensity_unit(tan_alpha, motion, gravity)
     tables, lowest = [], []
@@ -74,12 +75,21 @@ def scan_scales(case: Case, support: str = RECESS) -> tuple[pd.DataFrame, pd.Dat
         factor = float(np.fmin(found, lowest_on_grid(FACTORS, peaks[None])[0]))
         again = run(factor * np.array(CONFIRMING), rtol=CHECK_RTOL)
         lowest.append((name, factor, bool(overturned(again).all()), start))
-        tables.append(pd.DataFrame({"series": name, "factor": FACTORS, "peak_tilt": peaks}))
+        tables.append(
+            pd.DataFrame(
+                {
+                    "series": name,
+                    "factor": FACTORS,
+                    "peak_tilt": peaks,
+                    "yields": beyond_yield(peaks, case),
+                }
+            )
+        )
     return pd.concat(tables, ignore_index=True), pd.DataFrame(lowest, columns=_LOWEST)
 
 
 def scan_as_strong(case: Case, support: str, peak_tilt: float) -> pd.DataFrame:
-    """Run a case over shaking as strong as that given: factor [-], increasing, and peak_tilt [rad].
+    """Run a case over shaking as strong as that given: factor [-], increasing, peak_tilt [rad] and yields.
 
     Scales evenly in the logarithm over `AS_STRONG`, then, `REFINEMENTS` times, between the largest of the
     tilts and their neighbours and between the least and theirs: tilts change fastest there. No row without
@@ -87,7 +97,7 @@ def scan_as_strong(case: Case, support: str, peak_tilt: float) -> pd.DataFrame:
     """
     motion = case.motion
     if motion is None or motion.peak == 0.0 or overturned(np.array([peak_tilt]))[0]:
-        return pd.DataFrame(columns=["factor", "peak_tilt"], dtype=float)
+        return pd.DataFrame(columns=["factor", "peak_tilt", "yields"], dtype=float)
     run = partial(_peaks, case, series=SPATIAL, support=support)
     factors = np.unique([*np.geomspace(*AS_STRONG, AS_STRONG_COUNT), 1.0])
     peaks = run(factors)
@@ -101,7 +111,7 @@ def scan_as_strong(case: Case, support: str, peak_tilt: float) -> pd.DataFrame:
         peaks = np.concatenate([peaks, run(between)])
         order = np.argsort(factors)
         factors, peaks = factors[order], peaks[order]
-    return pd.DataFrame({"factor": factors, "peak_tilt": peaks})
+    return pd.DataFrame({"factor": factors, "peak_tilt": peaks, "yields": beyond_yield(peaks, case)})
 
 
 def planar_runs(cases: Sequence[Case], support: str = RECESS) -> pd.DataFrame:

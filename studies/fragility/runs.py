@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.metrics.pair import outcome_of, outcome_of_peak
+from rockwobble.compare.metrics.pair import beyond_yield, outcome_of, outcome_of_peak
 from rockwobble.compare.runs.choice import require_runnable, run_labels
 from rockwobble.compare.runs.execution import (
     all_makers,
@@ -35,7 +35,7 @@ from rockwobble.multibody.scene import default_step
 
 from ..plans import FragilityPlan
 from .intensity import intensity, measures_of, uplift_scale
-from .tables import CONTACT_LOST
+from .tables import CONTACT_LOST, YIELDED
 
 Row = dict[str, float | str]  # of a run
 # The worse plane is no run of its own: of both planes, for each motion, the one that tilts more.
@@ -230,9 +230,7 @@ class Task:
         )[0]
         return [
             # of one without a peak its run says why
-            self._simulate(case, scale)
-            if math.isnan(peak)
-            else _row(peak / cylinder.alpha, outcome_of_peak(peak))
+            self._simulate(case, scale) if math.isnan(peak) else _row(case, peak, outcome_of_peak(peak))
             for peak, scale in zip(peaks.tolist(), shaking.scales, strict=True)
         ]
 
@@ -245,12 +243,18 @@ class Task:
         lost = math.nan
         if trace.outcome not in NO_PEAK and (self.contact or not run.is_model):
             lost = float(any(fact.code in _LOST for fact in trace.diagnostics))
-        return _row(trace.peak_tilt / case.cylinder.alpha, outcome_of(trace), lost)
+        return _row(case, trace.peak_tilt, outcome_of(trace), lost)
 
 
-def _row(peak_tilt: float, outcome: str, contact_lost: float = math.nan) -> Row:
-    """Row of a run; contact_lost is 1 or 0, NaN where nobody asked or the run failed."""
-    return {"peak_tilt": peak_tilt, "outcome": outcome, "contact_lost": contact_lost}
+def _row(case: Case, peak_tilt: float, outcome: str, contact_lost: float = math.nan) -> Row:
+    """Row of a run; contact_lost is 1 or 0, NaN where nobody asked, the run failed or its tendon yields.
+
+    Of one that is no answer beyond yield the peak tilt is that of yield, which it passes.
+    """
+    tendon = case.tendon
+    if tendon is not None and beyond_yield(peak_tilt, case):
+        peak_tilt, outcome, contact_lost = tendon.yield_tilt(case.cylinder), YIELDED, math.nan
+    return {"peak_tilt": peak_tilt / case.cylinder.alpha, "outcome": outcome, "contact_lost": contact_lost}
 
 
 def run_task(task: Task) -> pd.DataFrame:
@@ -504,7 +508,7 @@ def run_plan(
         key=Task.key,
         label=lambda task: task.title,
         folder=folder,
-        lost=lambda task: pd.DataFrame([_row(math.nan, "failed")] * len(task.points)),
+        lost=lambda task: pd.DataFrame([_row(task.shakings[0].case, math.nan, "failed")] * len(task.points)),
         cost=lambda task: task.cost,
         tries=_TRIES,
         makers=partial(all_makers, tuple(method.run for method in plan.methods if method.run is not None)),
@@ -524,17 +528,20 @@ def _with_labels(task: Task, table: pd.DataFrame) -> pd.DataFrame:
     return whole[[*KEYS, "method", "peak_tilt", "outcome", "contact_lost"]]
 
 
+_ENDS = [*NO_PEAK, "overturned", YIELDED]  # the worst first
+
+
 def worse_plane(runs: pd.DataFrame) -> pd.DataFrame:
     """Return the rows of the worse plane: the larger tilt of both, overturned where one is."""
     parts = [runs[runs["method"] == MODEL_LABELS[name]].set_index(KEYS) for name in _PLANES]
     of = {name: pd.concat([part[name] for part in parts], axis=1) for name in parts[0]}
-    ends = [(of["outcome"] == name).any(axis=1) for name in (*NO_PEAK, "overturned")]
+    ends = [(of["outcome"] == name).any(axis=1) for name in _ENDS]
     return (
         parts[0]
         .assign(
             method=MODEL_LABELS[WORSE_PLANE],
             peak_tilt=of["peak_tilt"].max(axis=1, skipna=False),  # NaN where one failed
-            outcome=np.select(ends, [*NO_PEAK, "overturned"], parts[0]["outcome"]),
+            outcome=np.select(ends, _ENDS, parts[0]["outcome"]),
             contact_lost=of["contact_lost"].max(axis=1, skipna=False),
         )
         .reset_index()

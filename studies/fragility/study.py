@@ -337,6 +337,7 @@ def fragility(
     rolling_resistance: float = 0.0,
     tendon_prestress: float = 0.0,
     tendon_stiffness: float = 0.0,
+    tendon_yield: float | None = None,
     gravity: float = 9.81,
     workers: int | None = None,
     scheduler: str | None = None,
@@ -383,6 +384,8 @@ def fragility(
     tendon_prestress, tendon_stiffness : float, optional
         Tendon prestress and tendon stiffness of a tendon in each body [weights of one column, and these per
         base radius].
+    tendon_yield : float, optional
+        Its yield force [weights of one column]: a run that passes it is no answer.
     gravity : float, optional
         g [m/s^2].
     workers, scheduler, progress : optional
@@ -437,6 +440,7 @@ def fragility(
         rolling_resistance=rolling_resistance,
         tendon_prestress=tendon_prestress,
         tendon_stiffness=tendon_stiffness,
+        tendon_yield=tendon_yield,
         gravity=gravity,
     )
     if methods is _ALL and asked.tendon is not None:

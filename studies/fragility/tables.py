@@ -47,6 +47,7 @@ LIMITS: Mapping[str, float] = {
     OVERTURNED: math.nan,
     CONTACT_LOST: math.nan,
 }
+YIELDED = "yielded"  # outcome of a run of which no more is known than that its tendon yields
 DEFAULT_LIMITS = tuple(name for name in LIMITS if name != CONTACT_LOST)
 
 
@@ -55,7 +56,8 @@ def exceedance(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
 
     Overturned is what the run itself says: the side reaches the ground, or no later ground motion can stop
     it. Such a run exceeds every limit: when in its fall it leaves the ground depends on where a method ends
-    the fall. A cylinder at rest has not uplifted; any tilt above zero is uplift.
+    the fall. One beyond yield exceeds what it passed before, and no more is known. A cylinder at rest has not
+    uplifted; any tilt above zero is uplift.
 
     Parameters
     ----------
@@ -65,6 +67,7 @@ def exceedance(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
         One of `LIMITS`.
     """
     failed = (runs["outcome"].isin(NO_PEAK) | runs["outcome"].isna()).to_numpy(bool)
+    yielded = (runs["outcome"] == YIELDED).to_numpy(bool)
     fell = (runs["outcome"] == "overturned").to_numpy(bool)
     if limit == CONTACT_LOST:
         lost = runs["contact_lost"].to_numpy(float)
@@ -75,7 +78,7 @@ def exceedance(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
         peaks = runs["peak_tilt"].to_numpy(float)
         bound = LIMITS[limit]
         found = (fell | (peaks > 0.0 if bound == 0.0 else peaks >= bound)).astype(float)
-    return np.where(failed, np.nan, found)
+    return np.where(failed | (yielded & (found != 1.0)), np.nan, found)
 
 
 Key = tuple[str, str, str]  # cylinder, method, limit

@@ -103,6 +103,7 @@ _FACTS = (
     "rolling_resistance",
     "tendon_prestress",
     "tendon_stiffness",
+    "tendon_yield",
 )
 
 
@@ -147,6 +148,8 @@ class TiltMaps:
         [m]
     tendon_prestress, tendon_stiffness : float
         Tendon prestress and tendon stiffness of a tendon [weights of one column, and these per base radius].
+    tendon_yield : float, optional
+        Its yield force [weights of one column]: a run that passes it is no answer, NaN.
     """
 
     tan_alpha: float
@@ -165,6 +168,7 @@ class TiltMaps:
     rolling_resistance: float = 0.0
     tendon_prestress: float = 0.0
     tendon_stiffness: float = 0.0
+    tendon_yield: float | None = None
 
     @property
     def alpha(self) -> float:
@@ -429,6 +433,7 @@ def tilt_maps(
         rolling_resistance=asked.rolling_resistance,
         tendon_prestress=asked.tendon_prestress,
         tendon_stiffness=asked.tendon_stiffness,
+        tendon_yield=asked.tendon_yield,
         semidiagonals=sizes,
         intensities=levels,
         peak_tilt={

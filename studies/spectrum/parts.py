@@ -6,15 +6,16 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TypedDict
+from typing import Any, TypedDict
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble import reduced
+from rockwobble.compare.metrics.pair import beyond_yield
 from rockwobble.compare.storage.provenance import reduced_makers, result_fingerprint
-from rockwobble.models import GroundMotion
+from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
 from rockwobble.models.case import TERMS
 from rockwobble.models.cpus import usable_cpus
 
@@ -116,7 +117,7 @@ def run_part(part: SpectrumPart, *, workers: int | None = None) -> pd.DataFrame:
         Number of threads.
     """
     sizes, levels, plan = part.semidiagonals, part.levels, part.plan
-    run = partial(
+    elastic = partial(
         reduced.peak_tilts,
         tan_alpha=part.tan_alpha,
         motion=part.motion,
@@ -127,6 +128,13 @@ def run_part(part: SpectrumPart, *, workers: int | None = None) -> pd.DataFrame:
         tendon=plan.tendon,
         **series_options(part.series, plan.support),
     )
+    body = WobblingFrame(Cylinder(semidiagonal=1.0, tan_alpha=part.tan_alpha), plan.slab_mass_ratio)
+    case = Case(body, part.motion, tendon=plan.tendon)
+
+    def run(semidiagonals: Array, **given: Any) -> Array:
+        tilts = elastic(semidiagonals, **given)
+        return np.where(beyond_yield(tilts, case), math.nan, tilts)
+
     peaks = run(sizes, scales=part.unit * levels, workers=workers)
     searches = [
         search_lowest(levels, known, start=part.start, step=plan.search_step, alpha=math.atan(part.tan_alpha))

@@ -16,7 +16,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.compare.metrics.pair import overturned
+from rockwobble.compare.metrics.pair import beyond_yield, overturned
 from rockwobble.compare.runs.progress import ProgressCallback
 from rockwobble.compare.storage.manifest import Number
 from rockwobble.compare.storage.provenance import reduced_makers, result_fingerprint
@@ -223,13 +223,13 @@ def _single(spectrum: TiltMaps, series: str, i: int, scale: float) -> float:
             spectrum.motion.scaled(scale),
             gravity=spectrum.gravity,
             rolling_resistance=spectrum.rolling_resistance,
-            tendon=tendon_of(spectrum.tendon_prestress, spectrum.tendon_stiffness),
+            tendon=tendon_of(spectrum.tendon_prestress, spectrum.tendon_stiffness, spectrum.tendon_yield),
         ),
         rtol=CHECK_RTOL,
         sample_step=spectrum.motion.duration,
         **series_options(series, spectrum.support),
     )
-    return run.peak_tilt
+    return math.nan if beyond_yield(run.peak_tilt, run.case) else run.peak_tilt
 
 
 def _agree(peak: float, other: float) -> bool:
@@ -302,6 +302,7 @@ def spectrum(
     rolling_resistance: float = 0.0,
     tendon_prestress: float = 0.0,
     tendon_stiffness: float = 0.0,
+    tendon_yield: float | None = None,
     support: str = RECESS,
     search_step: float = STEP,
     probes: int = PROBES,
@@ -328,6 +329,8 @@ def spectrum(
         Length of the couple against rolling [m].
     tendon_prestress, tendon_stiffness : float, optional
         Tendon prestress and tendon stiffness of a tendon [weights of one column, and these per base radius].
+    tendon_yield : float, optional
+        Its yield force [weights of one column]: a run that passes it is no answer, NaN.
     support : {"recess", "flat"}, optional
         Support of the model in three dimensions.
     search_step : float, optional
@@ -361,6 +364,7 @@ def spectrum(
         rolling_resistance=rolling_resistance,
         tendon_prestress=tendon_prestress,
         tendon_stiffness=tendon_stiffness,
+        tendon_yield=tendon_yield,
         support=support,
         search_step=search_step,
         probes=probes,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rockwobble.models import Case, Cylinder, GroundMotion
+from rockwobble.models import Case, Cylinder, GroundMotion, Tendon
 from rockwobble.models.doubts import doubts_of_cases
 
 
@@ -29,6 +29,15 @@ def test_lengths_of_structures_and_models_are_not_doubted(height: float) -> None
 @pytest.mark.parametrize(("gravity", "unit"), [(32.2, "ft/s2"), (386.0, "in/s2"), (981.0, "cm/s2")])
 def test_a_gravity_in_another_unit_is_doubted(gravity: float, unit: str) -> None:
     assert codes(Cylinder(semidiagonal=6.0, tan_alpha=0.2), gravity) == [("unlikely_gravity", unit)]
+
+
+@pytest.mark.parametrize("factor", [1e-3, 1.0, 1e3])
+def test_mass_and_tendon_in_another_unit_are_doubted(factor: float) -> None:
+    pier = Cylinder.from_dimensions(base_radius=0.8, height=9.0)
+    steel = Tendon(prestress=4.19 * factor, stiffness=59.4 * factor)
+    doubts = doubts_of_cases([Case(pier, duration=1.0, tendon=steel)], 45.0 * factor)
+    expected = [] if factor == 1.0 else ["unlikely_mass", "unlikely_tendon"]
+    assert [each["code"] for each in doubts] == expected
 
 
 def test_one_component_given_twice_is_doubted() -> None:

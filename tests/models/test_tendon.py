@@ -7,6 +7,7 @@ import math
 import pytest
 
 import rockwobble as rw
+from rockwobble.compare.metrics.pair import balance_of, beyond_yield
 from rockwobble.models import Tendon
 
 
@@ -32,6 +33,26 @@ def test_under_a_slab_it_crosses_two_gaps() -> None:
     assert tendon.initial_stiffness(pier) == pytest.approx(3.0 - 5.0)
     assert tendon.initial_stiffness(frame) == pytest.approx(12.0 - 25.0)
     assert tendon.uplift_factor(frame) == pytest.approx(1.0 + 2.0 * 0.5 / 5.0)
+
+
+@pytest.mark.parametrize("slab", [0.0, 2.0])
+def test_tension_at_the_yield_tilt_is_the_yield_force(slab: float) -> None:
+    body = rw.WobblingFrame(rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2), slab)
+    tilt = Tendon(prestress=0.5, stiffness=3.0, yield_force=1.7).yield_tilt(body)
+    assert Tendon(prestress=0.5, stiffness=3.0).tension(body, tilt) == pytest.approx(1.7, rel=1e-14)
+    for tendon in (Tendon(prestress=0.5, yield_force=0.6), Tendon(stiffness=0.1, yield_force=2.0), Tendon()):
+        assert math.isinf(tendon.yield_tilt(body))  # not below 90 degrees
+
+
+def test_a_run_beyond_yield_answers_only_if_its_balance_comes_first() -> None:
+    pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    for force in (0.6, 1.2):
+        tendon = Tendon(prestress=0.5, stiffness=1.0, yield_force=force)
+        case = rw.Case(pier, duration=1.0, tendon=tendon)
+        limit, balance = tendon.yield_tilt(pier), balance_of(case)
+        peaks = [0.9 * limit, 1.1 * limit, 0.5 * math.pi, math.nan]
+        assert beyond_yield(peaks, case).tolist() == [False, True, limit < balance, False]
+    assert not beyond_yield([1.5], rw.Case(pier, duration=1.0, tendon=Tendon(stiffness=1.0))).any()
 
 
 @pytest.mark.parametrize(

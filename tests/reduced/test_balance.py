@@ -93,3 +93,31 @@ def test_with_a_tendon_the_balance_is_its_own_and_alpha_is_a_tilt_like_others(te
     ]
     back = released(pier.alpha)
     assert (back.outcome, back.peak_tilt) == ("stands", pier.alpha)
+
+
+@pytest.mark.parametrize("excess", [-1e-3, -1e-6, 1e-6, 1e-4, 3e-4, 1e-3])
+@pytest.mark.parametrize(
+    ("size", "tan_alpha", "prestress", "stiffness"),
+    [(6.0, 0.2, 0.5, 8.0), (6.0, 0.3, 0.5, 5.0), (17.5, 0.441, 1.96, 3.194)],
+)
+def test_energy_at_ninety_degrees_alone_decides_without_a_balance(
+    size: float, tan_alpha: float, prestress: float, stiffness: float, excess: float
+) -> None:
+    pier = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
+    tied = Tendon(prestress=prestress, stiffness=stiffness)
+    b, g = pier.base_radius, 9.81
+
+    def potential(tilt: float) -> float:
+        gap = 2.0 * math.sin(0.5 * tilt)  # [b]
+        spring = b * g * (prestress * gap + 0.5 * stiffness * gap**2)
+        return g * (b * math.sin(tilt) + pier.half_height * math.cos(tilt)) + spring
+
+    start, side = 0.5 * pier.alpha, 0.5 * math.pi
+    barrier = (1.0 + excess) * potential(side) - potential(start)
+    rate = math.sqrt(2.0 * barrier / body_of(pier, g).A)
+    release = Case(pier, initial=InitialState(start, tilt_rate=rate), duration=20.0, tendon=tied)
+    assert math.isinf(balance_tilt_of_case(release))
+    trace = simulate(release)
+    assert trace.outcome == ("overturned" if excess > 0.0 else "stands")
+    assert trace.peak_tilt <= side
+    assert trace.tilt.max() <= side

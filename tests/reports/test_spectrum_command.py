@@ -167,7 +167,7 @@ def test_failed_cells_are_counted_and_left_out(spectrum):
     tilt[3, 4] = tilt[5, 6] = np.nan
     words = said(dataclasses.replace(spectrum, peak_tilt={**spectrum.peak_tilt, PLANAR_X: tilt}))
     assert "of 142 cells" in words
-    assert "Cells that failed and are left out: 2." in words
+    assert "Cells without an answer (failed, or past yield): 2." in words
     every = {**spectrum.peak_tilt, PLANAR_X: np.full_like(tilt, np.nan)}
     assert "No cell could be solved." in said(dataclasses.replace(spectrum, peak_tilt=every))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import os
 from collections.abc import Iterator
@@ -132,7 +133,7 @@ def test_demands_of_samples_are_those_of_the_continuous_solution():
     assert np.mean(shear <= found["shear"]) == pytest.approx(1.0 - SPIKES, abs=1e-4)  # a sample
     assert found["lost"] == 0.0
     still = demands_of(reduced.simulate(case(0.5)))
-    weight = {"force", "shear_with_force", "moment_with_force"}  # acts where nothing else does
+    weight = {"force", "force_peak", "shear_with_force", "moment_with_force"}  # acts where nothing else does
     assert {name: value for name, value in still.items() if value} == dict.fromkeys(weight, 1.0)
 
 
@@ -320,7 +321,16 @@ def loads_of(*rows: tuple[float, float, float]) -> pd.DataFrame:
             "factor": 1.0,
             "outcome": "stands",
             "peak_tilt": 0.1 + 0.01 * place,
-            **{"friction": 0.2, "shear": shear, "force": 1.2, "moment": 0.01, "tilt": 0.1},
+            "yields": False,
+            **{
+                "shear_peak": 2.0 * shear,
+                "force_peak": 1.5,
+                "friction": 0.2,
+                "shear": shear,
+                "force": 1.2,
+                "moment": 0.01,
+                "tilt": 0.1,
+            },
             "shear_and_wall": shear + 0.005,
             **{"shear_with_shear": shear, "shear_with_force": force, "shear_with_moment": moment},
             **{"moment_with_shear": 0.5 * shear, "moment_with_force": 1.0, "moment_with_moment": 0.01},
@@ -364,11 +374,16 @@ def test_a_demand_is_the_largest_of_all_groups_and_of_weaker_shaking(advice):
         ranked = {key: np.sort(group[name])[math.ceil(0.95 * len(group)) - 1] for key, group in sets}
         assert found["value"][name] == max(ranked.values())
         assert ranked[found["group"][name], found["factor"][name]] == found["value"][name]
-    theta, b = found["value"]["tilt"] * PIER.alpha, PIER.base_radius
+    assert (found["peak"][["shear", "force"]] > found["value"][["shear", "force"]]).all()
+    b = PIER.base_radius
     assert found["per_tonne"]["moment"] == pytest.approx(9.81 * b * found["value"]["moment"])  # [kNm]
-    # a vertical wall as high as the point of the rim that stands out farthest: b theta/2, b theta^2/2 away
-    assert found["value"]["wall_height"] == pytest.approx(0.5 * b * theta, rel=theta)
-    assert found["value"]["clearance"] == pytest.approx(0.5 * b * theta**2, rel=theta)
+    # a wall is sized for what stands, and no higher than the point of the rim that stands out farthest
+    assert found["value"][["wall_height", "clearance"]].isna().all()
+    standing = demand_table(rows[rows["outcome"] == "stands"], PIER, gravity=9.81, support="recess")
+    wall = standing.set_index("demand")["value"]
+    theta = wall["tilt"] * PIER.alpha
+    assert wall["wall_height"] == pytest.approx(0.5 * b * theta, rel=theta)
+    assert wall["clearance"] == pytest.approx(0.5 * b * theta**2, rel=theta)
     # together they are less than one after the other
     assert found["value"]["shear_and_wall"] <= found["value"]["shear"] + found["value"]["moment"]
     acts_within_its_rows(advice.demands)
@@ -398,7 +413,8 @@ def test_no_demand_falls_where_the_record_is_scaled_up(body, motion, monkeypatch
         demands = dict(zip(found["demand"], found["value"], strict=True))
         acts_within_its_rows(found)
         for name, value in largest.items():
-            assert demands[name] >= 0.9 * value, (name, scale)  # a tenth is chance
+            if name not in ("wall_height", "clearance"):  # none where too many fall
+                assert demands[name] >= 0.9 * value, (name, scale)  # a tenth is chance
         largest |= {name: value for name, value in demands.items() if value > 0.0}
     assert largest["tilt"] >= PASSED  # it overturns at the end
     assert largest["moment"] > 0.0
@@ -774,6 +790,14 @@ def test_an_advice_says_what_a_tendon_does(no_records: None) -> None:
     rows = found.demands.set_index("demand")
     assert rows["value"]["tendon"] > 0.6
     assert found.grades["tendon"] == "not satisfied"
+    # it yields at 0.25 alpha in most runs, which say nothing else; without a yield force they do
+    assert found.grades["overturning"] == "not tested"
+    assert found.yielded > 5
+    assert rows["value"].drop("tendon").isna().all()
+    elastic = advise(
+        dataclasses.replace(case, tendon=dataclasses.replace(tendon, yield_force=None)), copies=20
+    )
+    assert (elastic.grades["overturning"], elastic.yielded) != ("not tested", found.yielded)
     assert "tendon" not in plain.grades
     # the scale from which is searched follows the raised uplift
     starts = found.lowest["start"].to_numpy() / plain.lowest["start"].to_numpy()

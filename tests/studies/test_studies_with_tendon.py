@@ -9,9 +9,10 @@ import pytest
 
 import rockwobble as rw
 from rockwobble import multibody, reduced
-from rockwobble.compare.metrics.pair import balance_of, outcome_of
+from rockwobble.compare.metrics.pair import balance_of, beyond_yield, outcome_of
 from rockwobble.models import synthetic_motions
 from rockwobble.studies.fragility.runs import default_levels
+from rockwobble.studies.fragility.tables import exceedance
 from rockwobble.studies.plans import FragilityPlan
 
 PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -106,3 +107,30 @@ def test_what_a_tendon_still_rights_has_not_overturned_in_a_ring(
     assert trace.outcome == "stands"
     assert trace.tilt[-1] > PIER.alpha
     assert outcome_of(trace) == outcome
+
+
+@pytest.mark.parametrize("force", [1.1, 0.8, 0.55])
+def test_beyond_yield_before_the_balance_studies_know_only_what_came_before(force: float) -> None:
+    column = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    motions = rw.synthetic_motions(6, peak=3.0, seed=1, duration=8.0)
+    steel = {"tendon_prestress": 0.5, "tendon_stiffness": 1.0}
+    given = {"methods": ["recess"], "levels": [1.5, 4.0, 12.0], "resamples": 20, "workers": 1, **steel}
+    elastic, yielding = (
+        rw.fragility({"pier": column}, motions, **given, **more) for more in ({}, {"tendon_yield": force})
+    )
+    tied = rw.Tendon(prestress=0.5, stiffness=1.0, yield_force=force)
+    case = rw.Case(column, duration=1.0, tendon=tied)
+    lost = beyond_yield(elastic.runs["peak_tilt"] * column.alpha * (1.0 + 1e-12), case)
+    assert lost.any() == (force < 1.1)  # 1.1 is beyond the balance
+    assert (yielding.runs["outcome"] == "yielded").tolist() == lost.tolist()
+    for limit, of in (("uplift", 0.0), ("0.1 alpha", 0.1), ("0.5 alpha", 0.5), ("overturned", math.inf)):
+        known, before = (exceedance(each.runs, limit) for each in (yielding, elastic))
+        unknown = lost & (of * column.alpha > tied.yield_tilt(column))
+        assert np.isnan(known).tolist() == unknown.tolist()
+        assert (known[~unknown] == before[~unknown]).all()
+    grid = {"semidiagonals": [2.0, 5.0], "intensities": [2.0, 4.0, 6.0], "probes": 0, **steel}
+    whole, part = (
+        rw.spectrum(0.2, motions[0], **grid, **more).maps for more in ({}, {"tendon_yield": force})
+    )
+    for name, tilts in whole.peak_tilt.items():
+        assert np.isnan(part.peak_tilt[name]).tolist() == beyond_yield(tilts, case).tolist()

@@ -1,0 +1,1 @@
+"""Trade-off of speed and accuracy of the reduced models, other solvers and the engines."""
