@@ -1,7 +1,7 @@
 from .comparison.budget import LARGEST_SHARE as LARGEST_SHARE
 from .comparison.budget import WORTH_EXPLAINING as WORTH_EXPLAINING
 from .comparison.budget import ErrorBudget as ErrorBudget
-from .comparison.budget import findings as findings
+from .comparison.budget import unexplained_rows as unexplained_rows
 from .comparison.result import Comparison as Comparison
 from .comparison.summary import SUMMARY_COLUMNS as SUMMARY_COLUMNS
 from .external.trajectory import External as External

@@ -10,8 +10,9 @@ from .engines.registry import (
     EngineNotInstalledError,
     available_engines,
     engine_names,
+    find_engine,
 )
-from .simulation import simulate
+from .simulation import open_scene, simulate
 
 __all__ = [
     "DEFAULT_ENGINE",
@@ -19,6 +20,8 @@ __all__ = [
     "EngineNotInstalledError",
     "available_engines",
     "engine_names",
+    "find_engine",
+    "open_scene",
     "simulate",
 ]
 

@@ -320,9 +320,16 @@ def resolved_settings(
 def open_scene(case: Case, engine: str, support: str, settings: Settings) -> Iterator[Stepper]:
     """Open the scene of a case as `simulate` does at its default step, for who wants to step it alone.
 
-    Yields
-    ------
-    Stepper
+    Parameters
+    ----------
+    case : Case
+    engine, support : str
+    settings : mapping
+        Of the engine.
+
+    Returns
+    -------
+    context manager of Stepper
         With whatever members its engine adds.
 
     Raises

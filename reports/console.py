@@ -245,18 +245,20 @@ def print_facts(heading: Sequence[str | Text], facts: Mapping[str, str], *, comm
     print()
 
 
-def show_and_save(found: Results, out: Path, *, details: bool = False) -> None:
+def show_and_save(found: Results, out: Path, *, details: bool = False, document: bool = True) -> None:
     """Write results with their page; then print the page, with what is folded where `details` are wanted."""
-    save_with_page(found, out, details=details)()
+    save_with_page(found, out, details=details, document=document)()
 
 
-def save_with_page(found: Results, out: Path, *, details: bool = False) -> Callable[[], None]:
-    """Write results with their page, and return what prints the page."""
+def save_with_page(
+    found: Results, out: Path, *, details: bool = False, document: bool = True
+) -> Callable[[], None]:
+    """Write results with their page, as a `document`, too, and return what prints the page."""
     from .pages import page_of
 
     found = found.made_by(command_line())
     page = page_of(found)
-    pages = page.files()
+    pages = page.files(document=document)
     with user_input():
         found.save(out, pages=pages)
 

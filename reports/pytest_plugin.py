@@ -158,7 +158,7 @@ class SuiteItem(pytest.Item):
         from rockwobble.compare.check.suite import SuiteRuns, check_run, reference_of
         from rockwobble.compare.runs.execution import Job
 
-        from .pages.findings import budget_of_run
+        from .pages.comparison import budget_lines
 
         runs, bounds = SuiteRuns(workers=1), self.suite.bounds
         job = Job(case=self.case, run=self.run, label=self.label)
@@ -167,8 +167,9 @@ class SuiteItem(pytest.Item):
         if failed:
             wanted = trace.outcome != "failed" and not self.config.getoption(_OPTION)
             reference = reference_of(self.run, bounds)
-            budget = budget_of_run(self.case, self.run, reference) if wanted else []
-            raise DisagreementError(failed, budget)
+            budget = rw.comparison(self.case, runs=[self.run], budget=True) if wanted else None
+            lines = budget_lines(budget, self.run, reference) if budget else []
+            raise DisagreementError(failed, lines)
 
     def repr_failure(
         self, excinfo: pytest.ExceptionInfo[BaseException], style: TracebackStyle | None = None

@@ -42,8 +42,6 @@ class Entry:
         command writes none.
     command, kind : str
         Name of the command, and kind of the results. Default: the name.
-    page : str
-        Module with the page, below `reports`. Default: that of the name in `pages`.
     """
 
     name: str
@@ -51,10 +49,9 @@ class Entry:
     results: str = ""
     command: str = ""
     kind: str = ""
-    page: str = ""
 
     def __post_init__(self) -> None:
-        for field, default in (("command", self.name), ("kind", self.name), ("page", f"pages.{self.name}")):
+        for field, default in (("command", self.name), ("kind", self.name)):
             object.__setattr__(self, field, getattr(self, field) or default)
 
     def results_class(self) -> type[Results]:
@@ -88,16 +85,6 @@ ENTRIES = (
     Entry(name="certify", group="trust"),
     Entry(name="verify", group="trust"),
     Entry(name="validity", group="published", results="studies.validity.study.Validity"),
-    Entry(
-        name="paper",
-        command="figures",
-        group="published",
-        results="reports.paper.page.Paper",
-        page="paper.page",
-    ),
-    Entry(name="tradeoff", group="published", results="studies.tradeoff.study.Tradeoff"),
-    Entry(name="extremes", group="published", results="studies.extremes.Extremes"),
-    Entry(name="versions", kind="engine versions", results="reports.pages.versions.EngineVersions"),
 )
 COMMANDS: Mapping[str, Entry] = {entry.command: entry for entry in ENTRIES if entry.group}
 KINDS: Mapping[str, Entry] = {entry.kind: entry for entry in ENTRIES if entry.results}

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _FILE = "run.parquet"
+_COPIES = 20  # enough to say from when on they diverge
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -86,7 +87,7 @@ def single_run(
         Called with a `Progress` at the start and at the end of each stage.
     """
     model = run if run.is_model else run.own_model
-    plan = AdvicePlan()
+    plan = AdvicePlan(copies=_COPIES)
     stage = stages(progress, [1.0, 1.0])
     with stage(Job(case=case, run=run).label):
         # an engine in a process of its own, so that Ctrl-C also stops it in the middle of a long call

@@ -116,7 +116,27 @@ def test_the_command_is_installed_and_knows_its_version() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("module", ["models", "multibody", "compare", "reports.cli.main"])
-def test_importing_loads_no_engine_and_no_tables(module: str) -> None:
-    print_heavy = f"import sys, rockwobble.{module}; print(*sorted(set({HEAVY!r}) & set(sys.modules)))"
-    assert run(sys.executable, "-c", print_heavy).split() == []
+@pytest.mark.parametrize(
+    "load",
+    [
+        *(f"import rockwobble.{module}" for module in ("models", "multibody", "compare", "reports.cli.main")),
+        *(f"rockwobble.{name}" for name in ("comparison", "simulate", "read_record", "GroundMotion")),
+    ],
+)
+def test_importing_loads_no_engine_no_tables_and_no_scipy(load: str) -> None:
+    heavy = {*HEAVY, "pandas.core"} - {"pandas"}  # which is there under its name before it is loaded
+    script = f"import sys, rockwobble; {load}; print(*sorted({heavy!r} & set(sys.modules)))"
+    assert run(sys.executable, "-c", script).split() == []
+
+
+@pytest.mark.slow
+def test_a_run_needs_neither_scipy_stats_nor_matplotlib(tmp_path: Path) -> None:
+    script = f"""
+import sys
+from rockwobble.reports.cli.main import main
+try:
+    main(["simulate", "--release-tilt-deg", "5", "--duration", "1", "--out", {str(tmp_path / "run")!r}])
+except SystemExit:
+    print({{"scipy.stats", "scipy.optimize", "matplotlib"}} & set(sys.modules) or "light")
+"""
+    assert run(sys.executable, "-c", script).splitlines()[-1] == "light"

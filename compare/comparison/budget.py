@@ -22,10 +22,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, RockingBody, Run, Trace
+from rockwobble.models.frames import pd
 from rockwobble.models.shown import Brief
 from rockwobble.models.support import RECESS
 from rockwobble.multibody.engines.registry import engine_facts
@@ -459,7 +459,7 @@ def _agreement(case: Case, response: Trace, trajectory: Trace) -> Agreement | No
     return agreement if agreement.length > 0.0 else None
 
 
-def findings(summary: pd.DataFrame) -> pd.DataFrame:
+def unexplained_rows(summary: pd.DataFrame) -> pd.DataFrame:
     """Return the rows of a summary in which too much stays unexplained, the worst first.
 
     Rows whose whole difference is below 1e-4 alpha, or is not split, are left out.

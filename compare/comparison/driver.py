@@ -6,11 +6,10 @@ from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
 from pathlib import Path
 
-import pandas as pd
-
 from rockwobble.models import AGREEMENT, Case, Run, Suite, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import RECESS_MODEL
+from rockwobble.models.frames import pd
 
 from ..external.trajectory import External, read_trajectories
 from ..external.verdict import Row

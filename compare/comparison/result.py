@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
-import pandas as pd
 
 from rockwobble.models import Case, Trace, plain_json
+from rockwobble.models.finding import Findings
+from rockwobble.models.frames import pd
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.plain_json import plain
 from rockwobble.models.trace_file import case_facts, case_from_plain
@@ -24,6 +25,7 @@ from ..storage.manifest import Number, Stored
 from ..storage.provenance import fingerprint
 from ..storage.results import Results
 from .budget import ErrorBudget
+from .findings import case_findings, causes_of, overview
 from .summary import agreement_matrix
 
 _FACTS = "comparison.json"
@@ -33,7 +35,7 @@ BudgetKey = tuple[str, str, str]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Comparison(Results, kind="comparison"):
+class Comparison(Results, kind="comparison", findings_file="report.json"):
     """Runs compared with reference models, or with one another.
 
     Attributes
@@ -118,6 +120,32 @@ class Comparison(Results, kind="comparison"):
         """
         return agreement_matrix(self.cases, self.traces, until=self.until)
 
+    @cached_property
+    def causes(self) -> Mapping[str, Sequence[str]]:
+        """Cause of the divergence in each row of a case, "" where there is none: see `findings.cause`."""
+        return {
+            name: causes_of(case, self._rows(name), self._traces(name)) for name, case in self.cases.items()
+        }
+
+    def findings(self) -> Findings:
+        """What the comparison says: of many cases the overview first, then those with `runs` the case."""
+        if len(self.cases) == 1:
+            return self.case_findings(*self.cases)
+        each = (replace(one, runs=name) for name in self.cases for one in self.case_findings(name))
+        return Findings([*overview(self.summary), *each])
+
+    def case_findings(self, name: str) -> Findings:
+        """What the comparison says of one case."""
+        return Findings(
+            case_findings(self.cases[name], self._rows(name), self._traces(name), self.causes[name])
+        )
+
+    def _rows(self, name: str) -> pd.DataFrame:
+        return self.summary[self.summary["case"] == name]
+
+    def _traces(self, name: str) -> Mapping[str, Trace]:
+        return {label: trace for (case, label), trace in self.traces.items() if case == name}
+
     def of_case(self, name: str) -> Comparison:
         """Return the part on one case.
 
@@ -141,20 +169,16 @@ class Comparison(Results, kind="comparison"):
         )
 
     def headline(self) -> Mapping[str, Number]:
-        """Return numbers of cases, rows and divergences, relative RMS and agreement time."""
+        """Return numbers of cases, rows and divergences, and the agreement time."""
         rows = self.summary
-        relative, agreed = rows["tilt_rms_relative"], rows["agreement_time"]
-        numbers = {
-            "median of the relative RMS": value_if_enough(relative.median(), int(relative.notna().sum())),
-            "largest relative RMS": float(relative.max()),
-            "median agreement time [s]": value_if_enough(agreed.median(), len(agreed)),
-        }
+        agreed = rows["agreement_time"]
+        median = value_if_enough(agreed.median(), len(agreed))
         return {
             "cases": len(self.facts["cases"]),
             "rows": len(rows),
             "diverged": int(rows["diverged"].sum()),
             "failed": int((rows["outcome"] == "failed").sum()),
-            **{name: float(value) if math.isfinite(value) else None for name, value in numbers.items()},
+            "median agreement time [s]": float(median) if math.isfinite(median) else None,
         }
 
     def _about(self) -> Mapping[str, object]:

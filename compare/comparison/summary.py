@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import permutations
+from typing import Protocol, cast
 
 import numpy as np
-import pandas as pd
 
-from rockwobble.models import AGREEMENT, Case, Trace
+from rockwobble.models import AGREEMENT, Case, Run, Trace
 from rockwobble.models.diagnostic import cell_of
+from rockwobble.models.frames import pd
 
-from ..external.verdict import NO_VERDICT, VERDICT_COLUMNS, Row, judge
+from ..external.verdict import NO_VERDICT, VERDICT_COLUMNS, JudgedRow, Row, judge
 from ..metrics.pair import (
     Agreement,
     Pair,
@@ -72,7 +73,10 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
         "b",
         "largest distance of the contact points, where both tilts exceed 5 % of the peak",
     ),
-    "largest_turn_difference": ("deg", "largest angle-of-turn difference there, before a pass unresolved"),
+    "largest_turn_difference": (
+        "deg",
+        "largest angle-of-turn difference there, up to whole turns after a pass unresolved",
+    ),
     "reference_wall_time": ("s", "computing time of the reference"),
     "contact_resolution": ("rad", "smallest minimum tilt of a pass that the engine resolves"),
     "closest_pass": ("alpha", "smallest minimum tilt of the reference's passes within the agreement"),
@@ -161,7 +165,7 @@ def summary_row(
     direction = direction_difference(reference, trial)
     unresolved = first_unresolved_pass(trial, start=whole.start)
     tilt, contact, turn = largest_differences(
-        whole, close, turned_until=unresolved, direction_difference=direction
+        whole, close, unresolved=unresolved, direction_difference=direction
     )
     return {
         **_UNKNOWN,
@@ -274,6 +278,71 @@ def lost_row(case: Case, name: str, reference: Trace, label: str, trial: Trace) 
         "predicted_by": "",
         "divergence": "",
     }
+
+
+class SummaryRow(JudgedRow, Protocol):
+    """A row of the summary, or of the agreement matrix: what is findings and pages read of its columns."""
+
+    case: str
+    run: str
+    engine: str
+    support: str
+    outcome: str
+    diverged: bool
+    divergence: str
+    agreement_time: float
+    left_tolerance: bool
+    tolerance: float
+    tilt_bound: float
+    within_tolerance_until: float
+    predicted_agreement_time: float
+    predicted_until: float
+    predicted_by: str
+    closest_pass: float
+    peak_tilt: float
+    peak_tilt_difference: float
+    reference: str
+    reference_engine: str
+    reference_support: str
+    reference_outcome: str
+    reference_peak_tilt: float
+    reference_uplift_time: float
+    other_uplift_time: float
+    uplift_time_difference: float
+    uplift_time_uncertainty: float
+    time_ratio: float
+    largest_tilt_difference: float
+    largest_contact_difference: float
+    largest_turn_difference: float
+    not_split: str
+    uplift_direction_difference: float
+    uplift_direction_uncertainty: float
+    unexplained_share: float
+    whole_rms: float
+    limit_error: float
+    differs_in: Sequence[str]
+    not_compared: Sequence[str]
+    likely_mistake: Sequence[str]
+    likely_mistake_in: Sequence[str]
+    agreement_without_mistake: float
+    differs_without_mistake: Sequence[str]
+    finding: bool
+    worth: bool
+
+    def _asdict(self) -> dict[str, object]: ...
+
+
+def rows_of(table: pd.DataFrame) -> Iterator[SummaryRow]:
+    """The rows of a table, with a field for each column."""
+    yield from cast("Iterator[SummaryRow]", table.itertuples())
+
+
+def own_rows(summary: pd.DataFrame) -> pd.DataFrame:
+    """The row of each run against the model of its support, or else its first row."""
+    own = summary["reference"] == summary["support"].map(lambda support: str(Run(None, support).own_model))
+    keys = summary["case"] + "\n" + summary["run"]
+    alone = ~keys.isin(keys[own]) & ~keys.duplicated()
+    return summary[own | alone]
 
 
 # of the agreement matrix, likewise

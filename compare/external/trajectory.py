@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import pandas as pd
 
 from rockwobble.models import Case, Diagnostic, RockingBody, Run, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.bounds import OVERTURNED_TILT
+from rockwobble.models.frames import pd
 from rockwobble.models.shown import Brief
 from rockwobble.models.support import EXTERNAL
 from rockwobble.multibody.passes import TurningPoint, passes_between, turning_points

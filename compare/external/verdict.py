@@ -8,9 +8,9 @@ from dataclasses import replace
 from typing import Any, Protocol
 
 import numpy as np
-import pandas as pd
 
 from rockwobble.models import AGREEMENT, Case, Trace
+from rockwobble.models.frames import pd
 
 from ..metrics.pair import TILTED, start_of
 from .explanation import explanations

@@ -13,10 +13,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.models import Trace
+from rockwobble.models.frames import pd
 from rockwobble.models.trace import NO_PEAK
 
 from .statistics import (

@@ -266,7 +266,7 @@ def _turn_difference(pair: Pair, direction_difference: float) -> FloatArray:
 
 
 def largest_differences(
-    pair: Pair, agreement: Agreement, *, turned_until: float, direction_difference: float = 0.0
+    pair: Pair, agreement: Agreement, *, unresolved: float, direction_difference: float = 0.0
 ) -> tuple[float, ...]:
     """Largest differences of tilt [alpha], contact point [b] and angle of turn [rad] within an agreement.
 
@@ -274,8 +274,8 @@ def largest_differences(
     ----------
     pair : Pair
     agreement : Agreement
-    turned_until : float
-        Time of the run up to which angles of turn are comparable [s].
+    unresolved : float
+        First pass that leaves the side to chance [s]: after it angles of turn are known up to whole turns.
     direction_difference : float, optional
         As of `turn_difference`.
 
@@ -287,11 +287,13 @@ def largest_differences(
     """
     within = pair.time < agreement.end - _SAME_TIME if agreement.diverged else pair.time <= agreement.end
     tilted = within & _well_tilted(pair)
-    turn = np.abs(_turn_difference(pair, direction_difference))
+    turn = _turn_difference(pair, direction_difference)
+    by_chance = (pair.time > unresolved) & np.isfinite(turn)
+    turn[by_chance] -= 2.0 * math.pi * np.round(turn[by_chance] / (2.0 * math.pi))
     parts = (
         np.abs(pair.tilt_difference)[within],
         _contact_difference(pair)[tilted],
-        turn[tilted & (pair.time <= turned_until)],
+        np.abs(turn)[tilted],
     )
     return tuple(float(np.nanmax(part)) if np.isfinite(part).any() else math.nan for part in parts)
 

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
-import pandas as pd
-
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import TimeStep
+from rockwobble.models.frames import pd
 from rockwobble.models.parquet_file import pack, read
 from rockwobble.models.shown import Brief
 from rockwobble.models.support import RECESS

@@ -37,12 +37,13 @@ class Results(Shown):
     """
 
     kind: ClassVar[str]
+    findings_file: ClassVar[str]
     tables: Mapping[str, pd.DataFrame]
     facts: Facts
     manifest: Manifest | None = None
 
-    def __init_subclass__(cls, *, kind: str) -> None:
-        cls.kind = kind
+    def __init_subclass__(cls, *, kind: str, findings_file: str = "") -> None:
+        cls.kind, cls.findings_file = kind, findings_file or f"{kind}.json"
 
     def __getattr__(self, name: str) -> pd.DataFrame:
         # not the fields themselves, for which a copy or a pickle asks before there are any
@@ -87,7 +88,7 @@ class Results(Shown):
         return self.facts
 
     def save(self, folder: str | Path, *, pages: Mapping[str, bytes] | None = None) -> None:
-        """Write tables, facts, findings (KIND.json) and manifest to `folder`: whole or not at all.
+        """Write tables, facts, findings (`findings_file`) and manifest to `folder`: whole or not at all.
 
         Parameters
         ----------
@@ -110,7 +111,7 @@ class Results(Shown):
         if claim := claim_on(folder):
             manifest = dataclasses.replace(manifest, plan=claim.plan)
         findings = self.findings()
-        said = {f"{self.kind}.json": findings.to_json(self.kind)} if findings else {}
+        said = {self.findings_file: findings.to_json(self.kind)} if findings else {}
         write_results(folder, manifest, self.tables, files={**self.sheets(), **said}, pages=pages)
 
     @classmethod

@@ -200,6 +200,14 @@ def engine_named(name: str) -> Engine:
 def find_engine(name: str) -> Engine:
     """Return the engine called `name`, which runs here.
 
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    Engine
+
     Raises
     ------
     ValueError

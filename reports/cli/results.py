@@ -81,9 +81,15 @@ def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
             name + (f" ({state})" if state != "whole" else "") for name, state in files.items()
         ),
         "pages": ", ".join(made.pages),
+        "drawn by": "" if made.kind in KINDS else _drawn_by(made),
     }
     heading = (f"[bold]{store}[/]: {made.kind}",)
     print_facts(heading, {name: text for name, text in lines.items() if text}, command="made by")
+
+
+def _drawn_by(made: Manifest) -> str:
+    """Release that draws the pages of a kind that this one does not know."""
+    return f"the release that made them, rockwobble {made.versions.get('rockwobble', '(not stated)')}"
 
 
 def _text(value: object) -> str:
@@ -135,14 +141,17 @@ def report(
         if not folder.is_dir():
             raise ValueError(f"{folder} is not a folder of results")
         require_writable(place)
-        kinds = [made.kind for made in read_manifests(folder) if made.kind in KINDS]
+        there = read_manifests(folder)
+        kinds = [made.kind for made in there if made.kind in KINDS]
         if not kinds:
-            raise ValueError(f"no results in {folder}; known kinds: {', '.join(KINDS)}")
+            raise ValueError(
+                f"{folder} holds results of kind {there[0].kind}, drawn by {_drawn_by(there[0])}"
+            )
         others = [] if overwrite or place.resolve() == folder.resolve() else manifests_in(place)
         if others:
-            there = "; ".join(f"{each.kind} of `{each.command or 'another program'}`" for each in others)
+            listed = "; ".join(f"{each.kind} of `{each.command or 'another program'}`" for each in others)
             raise ValueError(
-                f"the folder {place} holds {there}: choose another by --out, or write there by --overwrite"
+                f"the folder {place} holds {listed}: choose another by --out, or write there by --overwrite"
             )
         found = {kind: stored_page(kind, folder) for kind in kinds}
         drawn = {kind: {**page.files(), **page.exports(forms or ())} for kind, page in found.items()}

@@ -220,8 +220,8 @@ def simulate(
     Without options: the recess model under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
 
     Writes the samples (run.csv), the near-upright passes (passes.csv), both for Trace.load (run.parquet),
-    units and meaning of each column (manifest.json), and the page (run.html, run.md, trace.svg). SI units and
-    radians.
+    units and meaning of each column (manifest.json), and the page (run.html); `rockwobble report` draws it as
+    a document, too (run.md, trace.svg). SI units and radians.
 
     Example: rockwobble simulate --release-tilt-deg 5 --rolling-rate 0.5 --duration 8
     """
@@ -253,7 +253,7 @@ def simulate(
         if not len(found.trace.time):
             complain(f"{run} left no result: {remarks(found.trace.facts)}")
             raise typer.Exit(FAILED)
-        show_and_save(found, out)
+        show_and_save(found, out, document=False)
     if found.trace.outcome == "failed":
         raise typer.Exit(FAILED)
 

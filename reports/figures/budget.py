@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING, Comparison, ErrorBudget
+from rockwobble.compare.comparison.summary import rows_of
 
-from .case_view import CaseView, rows_of
+from .case_view import CaseView
 from .palette import Style, pale
 from .picture import TIME, Axis, Bars, Layer, Line, Panel, Picture, Rule, Text, list_axis
 from .thinning import envelope

@@ -3,66 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Protocol, cast
 
 import pandas as pd
 
 from rockwobble.compare import Comparison, ErrorBudget
-from rockwobble.compare.external.verdict import JudgedRow
+from rockwobble.compare.comparison.summary import SummaryRow, rows_of
 from rockwobble.compare.metrics.pair import start_of
-from rockwobble.models import Case, Diagnostic, Run, Trace
+from rockwobble.models import Case, Diagnostic, Trace
 from rockwobble.models.support import Support
 
 from .palette import Style, label_styles
-
-
-class SummaryRow(JudgedRow, Protocol):
-    """A row of the summary, or of the agreement matrix: what is read here of its columns."""
-
-    case: str
-    run: str
-    engine: str
-    support: str
-    outcome: str
-    diverged: bool
-    divergence: str
-    agreement_time: float
-    left_tolerance: bool
-    tolerance: float
-    tilt_bound: float
-    within_tolerance_until: float
-    predicted_agreement_time: float
-    predicted_until: float
-    predicted_by: str
-    closest_pass: float
-    peak_tilt: float
-    peak_tilt_difference: float
-    reference: str
-    reference_engine: str
-    reference_support: str
-    reference_outcome: str
-    reference_peak_tilt: float
-    reference_uplift_time: float
-    other_uplift_time: float
-    uplift_time_difference: float
-    uplift_time_uncertainty: float
-    uplift_direction_difference: float
-    uplift_direction_uncertainty: float
-    unexplained_share: float
-    whole_rms: float
-    limit_error: float
-    differs_in: Sequence[str]
-    not_compared: Sequence[str]
-    likely_mistake: Sequence[str]
-    likely_mistake_in: Sequence[str]
-    agreement_without_mistake: float
-    differs_without_mistake: Sequence[str]
-    finding: bool
-    worth: bool
-
-    def _asdict(self) -> dict[str, object]: ...
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -117,19 +69,6 @@ class CaseView:
     def divergence(self, row: SummaryRow) -> float:
         """Return the divergence of a run from its reference, in the time of the run [s]; inf if never."""
         return start_of(self.traces[row.reference]) + row.agreement_time if row.diverged else math.inf
-
-
-def rows_of(table: pd.DataFrame) -> Iterator[SummaryRow]:
-    """Yield the rows of a table, with a field for each column."""
-    yield from cast("Iterator[SummaryRow]", table.itertuples())
-
-
-def own_rows(summary: pd.DataFrame) -> pd.DataFrame:
-    """Return the row of each run against the model of its support, or else its first row."""
-    own = summary["reference"] == summary["support"].map(lambda support: str(Run(None, support).own_model))
-    keys = summary["case"] + "\n" + summary["run"]
-    alone = ~keys.isin(keys[own]) & ~keys.duplicated()
-    return summary[own | alone]
 
 
 def case_views(comparison: Comparison) -> list[CaseView]:

@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 from .heat import NOTHING, Heat, Shades
 from .palette import GREY, Style
 from .picture import MOST_ENTRIES, Axis, Band, Bars, Layer, Line, Panel, Picture, Rule, Text
-from .svg import colours
 from .thinning import POINTS, kept_points
 
 _PER_INCH = 125.0  # pixels of height
@@ -183,6 +182,8 @@ def _heat(heat: Heat, panel: Panel, shades: Shades) -> dict[str, object]:
 def _palette(shades: Shades) -> Sequence[str]:
     """Return the colours of the scale from its low end to its high one."""
     from matplotlib.colors import to_hex
+
+    from .svg import colours
 
     count = shades.steps or _COLOURS
     return [to_hex(colour) for colour in colours(shades)(np.linspace(0.0, 1.0, count))]

@@ -28,5 +28,5 @@ def stored_page(kind: str, folder: Path) -> Page:
 def page_of(found: Results) -> Page:
     """Return the page of results, not drawn yet."""
     whole = found if found.manifest else found.made_by()
-    page: Page = importlib.import_module(f"rockwobble.reports.{KINDS[found.kind].page}").page_of(whole)
+    page: Page = importlib.import_module(f"rockwobble.reports.pages.{KINDS[found.kind].name}").page_of(whole)
     return page

@@ -9,13 +9,17 @@ from collections.abc import Iterator, Mapping, Sequence
 import pandas as pd
 
 from rockwobble.compare import SUMMARY_COLUMNS, WORTH_EXPLAINING, Comparison
+from rockwobble.compare.comparison.budget import COVERED
+from rockwobble.compare.comparison.summary import SummaryRow, own_rows, rows_of
 from rockwobble.compare.external.verdict import lists_in_words
 from rockwobble.models import Run
+from rockwobble.models.diagnostic import codes_in
+from rockwobble.models.finding import Finding
 from rockwobble.models.support import EXTERNAL
 from rockwobble.models.trace import NO_PEAK
 
 from ..figures.budget import all_budgets_picture, budget_picture, parts_picture
-from ..figures.case_view import CaseView, SummaryRow, case_views, own_rows, rows_of
+from ..figures.case_view import CaseView, case_views
 from ..figures.comparison import (
     azimuth_picture,
     contact_picture,
@@ -28,19 +32,11 @@ from ..figures.comparison import (
 from ..figures.picture import Line, Picture
 from ..figures.playback import playback
 from .cases import case_lines, group_of
-from .findings import (
-    CAUSES,
-    budget_sentences,
-    cause_of,
-    counted_remarks,
-    divergence_counts,
-    early_sentences,
-    headline,
-    notes,
-)
+from .diagnostics import code_counts, remarks
 from .page import Page
 from .sentences import fragment
-from .table import Row, number
+from .table import Row, enumeration
+from .wording import lines_of, sentence, statement
 
 # up to so many cases each has a part of the report of its own
 SINGLY = 3
@@ -54,7 +50,7 @@ _ALONE = ("figure", "budget")
 def page_of(found: Comparison) -> Page:
     """Return the report of a comparison."""
     views = case_views(found)
-    many = len(views) > SINGLY
+    many, findings = len(views) > SINGLY, found.findings()
     summary, lengths = found.summary, {view.case.name: view.case.length for view in views}
     pictures = {place: list(_pictures(view, place, many)) for place, view in enumerate(views)}
     whole = _thin([picture for of_case in pictures.values() for picture in of_case])
@@ -69,7 +65,7 @@ def page_of(found: Comparison) -> Page:
         "overview_pictures": [] if bars is None else [bars.name],
         "cases": [
             {
-                **_case(view, many=many),
+                **_case(view, found, many=many),
                 "matrices": matrix_tables(found.matrix[found.matrix["case"] == view.case.name]),
                 "pictures": [picture.name for picture in pictures[place]],
                 "player": name if (name := f"player-{place}") in blocks else "",
@@ -78,18 +74,13 @@ def page_of(found: Comparison) -> Page:
         ],
     }
     if many:
-        own = own_rows(summary)
+        answer, *others = (each for each in findings if not each.runs)
         values |= {
-            "answer": _answer(own),
+            "answer": statement(answer),
             "group_rows": group_rows(summary, lengths),
             "worst": worst_rows(summary, lengths),
             "matrices": matrix_tables(found.matrix),
-            "remarks": [
-                *budget_sentences(summary),
-                *early_sentences(summary),
-                *divergence_counts(summary),
-                *counted_remarks(summary),
-            ],
+            "findings": [*map(statement, others), *counted_diagnostics(summary)],
         }
     return Page(
         name="report",
@@ -101,29 +92,66 @@ def page_of(found: Comparison) -> Page:
     )
 
 
-def _answer(rows: pd.DataFrame) -> str:
-    """How many runs of many cases agree with the model of their support, on two lines of the document."""
-    agree, failed = (~rows["left_tolerance"]).sum(), (rows["outcome"] == "failed").sum()
-    return (
-        f"{agree} of {len(rows)} runs stay within 1 % of alpha, and a tenth of the peak,\nof the model of "
-        f"their support to the end{f'; {failed} failed' if failed else ''}."
-    )
-
-
-def _case(view: CaseView, *, many: bool) -> dict[str, object]:
-    rows = view.rows
+def _case(view: CaseView, found: Comparison, *, many: bool) -> dict[str, object]:
+    rows, name = view.rows, view.case.name
     # of many cases a page would hold too many
     numbers, columns = ([], []) if many else all_columns(rows)
+    findings = found.case_findings(name)
     return {
-        "name": view.case.name,
+        "name": name,
         "lines": case_lines(view.case),
-        "headline": headline(rows, view.case.length),
-        "notes": notes(view),
-        "rows": main_rows(view),
+        "headline": headline(findings),
+        "findings": [statement(each) for each in findings if each.key not in (*_HEADLINE, *_SUPPORTS)],
+        "supports": [statement(each) for each in findings if each.key in _SUPPORTS],
+        "diagnostics": diagnostics(view),
+        "first": first_rows(rows),
+        "rows": main_rows(view, found.causes[name]),
         "external": external_rows(rows),
         "numbers": numbers,
         "columns": columns,
     }
+
+
+_HEADLINE = ("comparison.agree", "comparison.agree_to_end", "comparison.none")
+_SUPPORTS = ("comparison.on_guide", "comparison.on_flat", "comparison.on_walls")
+
+
+def headline(findings: Sequence[Finding]) -> str:
+    """How long runs of each support follow their own model."""
+    return " ".join(statement(each) for each in findings if each.key in _HEADLINE)
+
+
+def diagnostics(view: CaseView) -> list[str]:
+    """Diagnostics of the runs, each text once."""
+    texts = {run: remarks(view.facts[run]) for run in dict.fromkeys(view.rows["run"])}
+    names = {text: [run for run in texts if texts[run] == text] for text in texts.values() if text}
+    return [f"{enumeration(runs)}: {text}." for text, runs in names.items()]
+
+
+def counted_diagnostics(summary: pd.DataFrame) -> list[str]:
+    """How many runs of many cases have which diagnostic."""
+    runs = summary[(summary["outcome"] != "failed") & (summary["reference_outcome"] != "failed")]
+    counts = code_counts(map(codes_in, runs.drop_duplicates(["case", "run"])["diagnostics"]))
+    said = f"Of the runs {', '.join(counts)}: see the column diagnostics of summary.csv."
+    return [said] if counts else []
+
+
+def budget_lines(found: Comparison, run: Run, reference: Run) -> list[str]:
+    """Lines of a console on what the difference of one run from one reference is made of."""
+    labels = {trace.run: label for (_, label), trace in found.traces.items()}
+    budget = next(
+        (each for key, each in found.budgets.items() if key[1:] == (labels[run], labels.get(reference))), None
+    )
+    if budget is None:  # a reference that is not its own has none
+        return ["There is no budget of the difference: traces diverge at once, or there is no finer step."]
+    parts = ["whole", "model_form", *(() if budget.not_split else ("numerics", "unexplained")), "limit_error"]
+    steps = ", ".join(f"{step:g}" for step in budget.steps)
+    return [
+        f"Difference from the {labels[reference]}, RMS in alpha until {budget.covered:.3g} s "
+        f"({100.0 * COVERED:.0f} % of the agreement), steps of {steps} s:",
+        *(f"  {part.replace('_', ' '):<12} {budget.rms(part):8.1e}" for part in parts),
+        *(sentence(each) for each in found.findings() if each.key == "comparison.not_split"),
+    ]
 
 
 def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
@@ -174,7 +202,20 @@ def _blocks(views: Sequence[CaseView], *, many: bool) -> dict[str, str]:
     }
 
 
-def main_rows(view: CaseView) -> list[Row]:
+def first_rows(rows: pd.DataFrame) -> list[Row]:
+    """One row a run, compared with the model of its support within their agreement."""
+    return [
+        {
+            **row._asdict(),
+            "agrees": _agrees(row),
+            "uplift": 1e3 * row.uplift_time_difference,
+            "direction": math.degrees(row.uplift_direction_difference),
+        }
+        for row in rows_of(own_rows(rows))
+    ]
+
+
+def main_rows(view: CaseView, causes: Sequence[str]) -> list[Row]:
     """Return the main columns of the rows of a case; what overturned or failed has a word for its peak."""
     return [
         {
@@ -184,9 +225,9 @@ def main_rows(view: CaseView) -> list[Row]:
             "reference_peak": _peak(row.reference_peak_tilt, row.reference_outcome),
             "agrees": _agrees(row),
             "predicted": min(row.predicted_until, view.case.length),
-            "cause": CAUSES[cause_of(view, row)] if row.left_tolerance else None,
+            "cause": lines_of(f"comparison.{cause}")[0] if cause else None,
         }
-        for row in rows_of(view.rows)
+        for row, cause in zip(rows_of(view.rows), causes, strict=True)
     ]
 
 
@@ -266,8 +307,6 @@ def group_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]
             "cases": len(chosen),
             "agree": int((~chosen["left_tolerance"]).sum()),
             "least": float(chosen["share"].min()),
-            "rms": float(chosen["tilt_rms_relative"].median()),
-            "worst": float(chosen["tilt_rms_relative"].max()),
             "peak": float(chosen["peak_tilt_difference"].abs().max()),
             "time": float(chosen["wall_time"].sum(min_count=1)),
         }
@@ -279,7 +318,7 @@ def group_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]
 def worst_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]:
     """Return the worst run of each case, the worst case first, with the place of the case on the page."""
     rows = _with_shares(summary, lengths)
-    worst = rows.sort_values(["share", "tilt_rms_relative"], ascending=[True, False], kind="stable")
+    worst = rows.sort_values("share", kind="stable")
     places = {name: place for place, name in enumerate(lengths)}
     return [
         {
@@ -305,8 +344,7 @@ def _with_shares(summary: pd.DataFrame, lengths: Mapping[str, float]) -> pd.Data
 def matrix_tables(matrix: pd.DataFrame) -> list[Row]:
     """Return a table for each support: support, rows, and columns as templates have them.
 
-    A cell says for one case how long two agree and by how much their tilts differ; for many in how many of
-    them they agree to the end, and the median of the difference.
+    A cell says for one case how long two agree; for many in how many of them they agree to the end.
     """
     return [_matrix(str(support), part) for support, part in matrix.groupby("support", sort=False)]
 
@@ -323,11 +361,10 @@ def _matrix(support: str, part: pd.DataFrame) -> Row:
 
 
 def _cell(rows: pd.DataFrame) -> str:
-    difference = number(float(rows["tilt_rms_relative"].median()), "percent")
     if len(rows) == 1:
         (row,) = rows_of(rows)
-        return f"{_until(row, row.other_uplift_time)} s, {difference}"
-    return f"{int((~rows['diverged']).sum())} of {len(rows)}, {difference}"
+        return f"{_until(row, row.other_uplift_time)} s"
+    return f"{int((~rows['diverged']).sum())} of {len(rows)}"
 
 
 def _short(label: str, support: str) -> str:

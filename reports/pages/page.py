@@ -18,6 +18,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import pairwise
+from pathlib import Path
 from typing import Literal
 
 from jinja2 import Environment
@@ -27,7 +28,6 @@ from rich.markdown import Markdown
 
 from ..figures.interactive import charts, colour_bar
 from ..figures.picture import Picture
-from ..figures.svg import image, svg
 from .command_line import command_lines
 from .sentences import environment
 from .table import Row, Table, columns_of, number
@@ -72,8 +72,8 @@ class Page:
     ----------
     name : str
         Name of its files.
-    template : str
-        In the folder templates, without its ending.
+    template : str or Path
+        Name in the folder templates, without its ending; or a file elsewhere.
     values : mapping
         What the template is given: plain values.
     pictures : iterable of Picture
@@ -87,20 +87,24 @@ class Page:
     """
 
     name: str
-    template: str
+    template: str | Path
     values: Mapping[str, object]
     pictures: Iterable[Picture] = ()
     alone: Sequence[str] | None = None
     blocks: Mapping[str, str] = field(default_factory=dict)
     outputs: Sequence[Output] = ("markdown", "html")
 
-    def files(self) -> dict[str, bytes]:
-        """Return the files by name: NAME.md with its pictures as SVG beside it, and NAME.html."""
+    def files(self, *, document: bool = True) -> dict[str, bytes]:
+        """Return the files by name: NAME.html, and for a `document` NAME.md with its pictures as SVG."""
         titled, texts = self.alone is not None, {}
-        if "markdown" in self.outputs:
+        if "markdown" in self.outputs and document:
             texts[f"{self.name}.md"] = self.markdown()
         if "html" in self.outputs:
             texts[f"{self.name}.html"] = self.html()
+        if not document:
+            return {name: text.encode() for name, text in texts.items()}
+        from ..figures.svg import svg
+
         return {
             **{name: text.encode() for name, text in texts.items()},
             **{
@@ -120,6 +124,8 @@ class Page:
             if form == "tex":
                 found |= {f"{name}.tex": table.latex().encode() for name, table in self._named_tables()}
             else:
+                from ..figures.svg import image
+
                 found |= {f"{each.name}.{form}": image(each, form) for each in self.pictures}
         return found
 
@@ -211,20 +217,21 @@ class Page:
             keys.update(column.key for column in (made.fitting_columns(width) if width else made.columns))
             return place(made)
 
+        known = _environment()
         text = (
-            _environment()
-            .get_template(f"{self.template}.md.j2")
-            .render(
-                {
-                    **self.values,
-                    "output": output,
-                    "picture": lambda name: place(pictures[name]),
-                    "block": lambda name: place(Safe(self.blocks[name])) if output == "html" else "",
-                    "table": table,
-                    "fold": lambda title="": place(Fold(title)),
-                    "shows": keys.__contains__,
-                }
-            )
+            known.from_string(self.template.read_text(encoding="utf-8"))
+            if isinstance(self.template, Path)
+            else known.get_template(f"{self.template}.md.j2")
+        ).render(
+            {
+                **self.values,
+                "output": output,
+                "picture": lambda name: place(pictures[name]),
+                "block": lambda name: place(Safe(self.blocks[name])) if output == "html" else "",
+                "table": table,
+                "fold": lambda title="": place(Fold(title)),
+                "shows": keys.__contains__,
+            }
         )
         text = re.sub(r"\n{3,}", "\n\n", text).strip()
         cut = _PLACE.split(text)

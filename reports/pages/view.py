@@ -7,7 +7,7 @@ from rockwobble.compare.comparison.result import View
 from ..figures.case_view import case_views
 from ..figures.playback import playback, require_motion
 from .cases import case_lines
-from .findings import headline, notes
+from .comparison import diagnostics, headline
 from .page import Page
 from .sentences import fragment
 
@@ -28,8 +28,8 @@ def page_of(found: View) -> Page:
         template="comparison/view",
         values={
             "name": view.case.name,
-            "headline": headline(view.rows, view.case.length),
-            "notes": notes(view),
+            "headline": headline(found.comparison.findings()),
+            "diagnostics": diagnostics(view),
             "lines": case_lines(view.case),
             "about": found.manifest,
         },

@@ -60,6 +60,12 @@ def sentence(finding: Finding, *, short: bool = False) -> str:
     return written(finding.key, finding.values, units, short=short)
 
 
+def statement(finding: Finding) -> str:
+    """A finding in words, with capital and full stop."""
+    said = sentence(finding)
+    return f"{said[0].upper()}{said[1:]}."
+
+
 def text(findings: Iterable[Finding]) -> str:
     """Findings in words, one a line, each behind its level."""
     return "\n".join(f"{each.level}: {sentence(each)}" for each in findings)
@@ -96,8 +102,8 @@ def _is_known(value: Value) -> bool:
 
 def _value(value: Value, unit: str, form: str) -> str:
     if form == "word":
-        word = words()["word"].get(str(value), str(value))
-        return str(word)
+        each = [value] if isinstance(value, str) else value if isinstance(value, tuple) else []
+        return enumeration([str(words()["word"].get(str(name), name)) for name in each])
     if isinstance(value, str):
         return value
     if isinstance(value, tuple):

@@ -1,4 +1,4 @@
-"""Make what is published here again, every study by its command, from one commit.
+"""Make what is published here again, every study by its command or its script, from one commit.
 
     python reports/published/remake.py               # all of it, some two hours on two cores
     python reports/published/remake.py tradeoff paper
@@ -9,7 +9,8 @@
     python reports/published/remake.py --archive benchmark.zip   # the benchmark, for who has not the project
 
 An interrupted study resumes. Kept are pages, figures, headline numbers and tables of up to 200 kB; while all
-tables of a study are, `rockwobble report reports/published/NAME` draws its pages again without any run.
+tables of a study are, `rockwobble report reports/published/NAME` draws its pages again without any run; of a
+study that is a script, `reports/published/NAME/make.py --redraw`.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ from pathlib import Path
 from rockwobble.compare.storage.manifest import MANIFEST, Manifest, file_state, read_manifests
 from rockwobble.compare.storage.provenance import code_digests
 from rockwobble.reports.pages import stored_page
+from rockwobble.reports.published.script import not_borne_out
 from rockwobble.reports.registry import KINDS
 
 HERE = Path(__file__).parent
@@ -55,10 +57,10 @@ _LIMITS = " ".join(
         "contact_lost",
     )
 )
-# folder: command
+# folder: command, or script with its options
 STUDIES = {
     "compare": "compare",
-    "paper": "figures",
+    "paper": "make.py",
     "spectrum": "spectrum",
     "advice/pier": "advise",
     "advice/column": "advise --semidiagonal 2 --tan-alpha 0.25 --friction 0.3",
@@ -82,8 +84,8 @@ STUDIES = {
     "risk/tendon": "fragility --p695 --cylinder pier=6,0.2 --levels 1.5,2.1,3,4.3,6.3,9.2,13,18 "
     "--limit overturned --friction 3 --step-factor 8 --engine mujoco --support recess "
     "--tendon-prestress 0.5 --tendon-stiffness 1 --hazard risk/en1998-k3.csv --hazard-measure pga",
-    "extremes": "extremes",
-    "tradeoff": "tradeoff --quick",  # the full extent takes an hour of one core
+    "extremes": "make.py",
+    "tradeoff": "make.py --quick",  # the full extent takes an hour of one core
     "validity": "validity",
 }
 # what the code did that made them: a test fails once it does something else
@@ -209,10 +211,6 @@ def _commits_since(commit: str, folder: str) -> int:
     return int(done.stdout)
 
 
-# a number on a page; digits that belong to a name, a colour or a version are compared, too, and do no harm
-_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")
-
-
 def manifests(place: Path = HERE) -> list[tuple[Path, Manifest]]:
     """Return the folders of results below `place`, each with the manifest of every kind that it holds."""
     folders = sorted(path.parent for path in place.rglob(MANIFEST))
@@ -240,8 +238,7 @@ def faults(place: Path = HERE) -> list[str]:
                 for page in pages
                 if f"`{made.command}`" not in page.read_text(encoding="utf-8")
             ]
-        if extra := _numbers_not_borne_out(folder, made):
-            rows.append(f"{name}: its page says {', '.join(extra)}, its tables do not; --redraw mends it")
+        rows += [f"{name}: {each}" for each in _page_faults(folder, made)]
     rows += [
         f"{path.relative_to(place)}: larger than {LARGEST} bytes, a command makes it again"
         for path in place.rglob("*.parquet")
@@ -261,12 +258,20 @@ def _today(folder: Path, made: Manifest) -> tuple[str, str] | None:
         return None
 
 
-def _numbers_not_borne_out(folder: Path, made: Manifest) -> list[str]:
+def _page_faults(folder: Path, made: Manifest) -> list[str]:
+    """What a page says that its tables do not: by the script of the study, where it has one."""
+    if made.kind not in KINDS:
+        if not (folder / "make.py").exists():
+            return ["no command and no make.py draws such results"]
+        if any(file_state(folder, made, each) != "whole" for each in made.files):
+            return []  # said above, where it is a fault
+        script = [sys.executable, str(folder / "make.py"), "--check"]
+        done = subprocess.run(script, capture_output=True, text=True, check=False)
+        said = [row.removeprefix("FAULT ") for row in done.stdout.splitlines() if row.startswith("FAULT")]
+        return said if done.returncode in (0, 1) and bool(said) == done.returncode else [done.stderr.strip()]
     words = _today(folder, made)
-    if words is None:
-        return []
-    stored, today = (Counter(_NUMBER.findall(each)) for each in words)
-    return sorted(stored.keys() - today.keys())
+    extra = not_borne_out(*words) if words else []
+    return [f"its page says {', '.join(extra)}, its tables do not; --redraw mends it"] * bool(extra)
 
 
 def ages(place: Path = HERE) -> list[str]:
@@ -298,10 +303,14 @@ def check() -> int:
 
 def redraw() -> None:
     """Draw the pages again of what has all its tables."""
-    for folder in dict.fromkeys(folder for folder, made in manifests() if _is_whole(folder, made)):
-        words = ["report", str(folder)]
-        subprocess.run([sys.executable, "-m", "rockwobble", *words], cwd=HERE, check=True)
-        trim(folder)
+    for folder, made in manifests():
+        if all(file_state(folder, made, name) == "whole" for name in made.files):
+            script = folder / "make.py"
+            words = (
+                [str(script), "--redraw"] if script.exists() else ["-m", "rockwobble", "report", str(folder)]
+            )
+            subprocess.run([sys.executable, *words], cwd=HERE, check=True)
+            trim(folder)
     compact_all()
 
 
@@ -352,9 +361,13 @@ def main() -> int:
         if folder not in chosen and folder.split("/")[0] not in chosen:
             continue
         begin = time.monotonic()
-        print(f"=== {folder}: rockwobble {command}", flush=True)
-        words = [*shlex.split(command), "--out", folder, "--overwrite"]
-        subprocess.run([sys.executable, "-m", "rockwobble", *words], cwd=HERE, check=True)
+        print(f"=== {folder}: {command}", flush=True)
+        words = shlex.split(command)
+        if words[0] == "make.py":
+            words[0] = f"{folder}/make.py"
+        else:
+            words = ["-m", "rockwobble", *words, "--out", folder, "--overwrite"]
+        subprocess.run([sys.executable, *words], cwd=HERE, check=True)
         trim(HERE / folder, only=CONTROLS.get(folder))
         compact_all()
         print(f"=== {folder}: {time.monotonic() - begin:.0f} s", flush=True)

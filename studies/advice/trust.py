@@ -6,21 +6,22 @@ import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import pandas as pd
 
-from rockwobble.compare.comparison.driver import comparison_row
-from rockwobble.compare.comparison.prediction import Prediction, estimated_error, predict, time_scale
 from rockwobble.compare.metrics.pair import tolerance_of
 from rockwobble.compare.runs.choice import labels_beside_references
 from rockwobble.compare.runs.execution import SAMPLE_STEP, Job, simulate_all, simulate_run
 from rockwobble.models import Case, Run, Trace
+from rockwobble.models.frames import pd
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.multibody.passes import STEPS_OF_A_PASS
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP
+
+if TYPE_CHECKING:
+    from rockwobble.compare.comparison.prediction import Prediction
 
 # A trace is lost where the copies are spread over half of the peak tilt. A percent of alpha, the limit of
 # agreement between methods, would be exceeded by the percent that the copies differ by itself.
@@ -142,6 +143,8 @@ def with_time_to_fall(case: Case, trace: Trace) -> Case:
 
 def model_prediction(case: Case, trace: Trace, run: Run | None) -> Prediction:
     """Predicted divergence of an engine at its default step, from the reduced models alone."""
+    from rockwobble.compare.comparison.prediction import Prediction, estimated_error, predict, time_scale
+
     if trace.outcome == "failed" or not math.isfinite(trace.uplift_time):
         return Prediction(length=case.length, reason="")
     step = REFERENCE_TIME_STEP * time_scale(case)
@@ -169,6 +172,9 @@ def verify_run(case: Case, run: Run, reference: Trace) -> tuple[Verification, Pr
     reference : Trace
         Response of the reduced model.
     """
+    from rockwobble.compare.comparison.driver import comparison_row
+    from rockwobble.compare.comparison.prediction import Prediction
+
     (label,), name = labels_beside_references([run], reference.run)
     own = run.own_model
     # in a process of its own: an engine that crashes leaves the rest of the advice

@@ -318,12 +318,12 @@ def resampled(exposure: Exposure, hazard: HazardCurve, single: Array, weights: A
 
 def _few_parts_factor(parts: Array) -> float:
     """Return the 97.5 % quantile of Student's t for a sum of parts (R,), over that for equal parts."""
-    from scipy.stats import t
+    from scipy.special import stdtrit
 
     squares, most = (parts**2).sum(), len(parts) - 1
     of_error = (parts**4).sum() - squares**2 / len(parts)
     freedom = min(max(2.0 * squares**2 / of_error, 1.0), most) if of_error > 0.0 else most
-    return float(t.ppf(0.975, freedom) / t.ppf(0.975, most)) if most > 0 else 1.0
+    return float(stdtrit(freedom, 0.975) / stdtrit(most, 0.975)) if most > 0 else 1.0
 
 
 def risk_tables(

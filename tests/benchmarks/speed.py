@@ -24,7 +24,7 @@ from rockwobble.reduced.body import body_of
 from rockwobble.reduced.problem import Problem as ReducedProblem
 from rockwobble.reduced.simulation import make_ready
 from rockwobble.reduced.solution import Solution
-from rockwobble.studies.tradeoff.methods import SOLVERS, TOLERANCE_SCALE, SolverName, start_of
+from rockwobble.reports.published.tradeoff.methods import SOLVERS, TOLERANCE_SCALE, SolverName, start_of
 
 from .console import options_of, show
 

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks import scene_cost
 from benchmarks.run_overhead import run_overheads
 from benchmarks.sweep_overhead import IN_MEMORY, KERNEL, STORED, Cost, measure, overhead_grid, ratios
 
@@ -36,14 +35,3 @@ def test_a_disturbed_round_does_not_move_the_ratio() -> None:
     disturbed = {STORED: Cost(9.0, 2.02), IN_MEMORY: Cost(1.0, 2.0)}
     found = ratios([quiet, disturbed, quiet], STORED, IN_MEMORY)
     assert (found.wall, found.cores) == pytest.approx((1.02, 1.01), abs=1e-12)
-
-
-def test_a_table_of_costs_is_shown_whole_and_written(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    out = tmp_path / "cost.csv"
-    assert scene_cost.main(["--engine", "mujoco", "--rounds", "1", "--steps", "5", "--out", str(out)]) == 0
-    shown = capsys.readouterr().out
-    assert "…" not in shown
-    assert "recess" in shown
-    assert len(out.read_text().splitlines()) > 10

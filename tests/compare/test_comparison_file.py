@@ -101,7 +101,7 @@ def test_the_manifest_has_the_main_numbers(saved, tmp_path):
     saved[0].made_by("rockwobble compare").save(tmp_path, pages={"report.md": b"# Report"})
     made = read_results(tmp_path, "comparison").manifest
     assert made.headline["rows"] == len(saved[0].summary)
-    assert made.headline["largest relative RMS"] == saved[0].summary["tilt_rms_relative"].max()
+    assert made.headline["diverged"] == saved[0].summary["diverged"].sum()
     assert (made.command, made.pages) == ("rockwobble compare", ("report.md",))
 
 

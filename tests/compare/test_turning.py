@@ -135,14 +135,15 @@ def test_contact_points_at_rest_are_masked(cylinder, make_trace, time):
 def test_largest_differences_are_those_before_the_end_of_agreement(cylinder, make_trace, time, diverged):
     tilt = np.where(time < 0.5, 0.01, 0.3) * cylinder.alpha  # first below 5 % of the peak
     higher = np.select([time < 2.0, time < 5.0], [0.001, 0.002], 0.5) * cylinder.alpha
-    turned = np.select([time < 0.5, time < 3.0], [3.0, 0.1], 0.2)
+    turned = np.select([time < 0.5, time < 3.0], [3.0, 0.1], 0.2 - 2.0 * math.pi)
     pair = make_pair(
         cylinder,
         make_trace(time, tilt, rolling_angle=2.0 * time + 2.0 * math.pi),
         make_trace(time, tilt + higher, rolling_angle=2.0 * time + turned),
     )
     agreement = Agreement(length=5.0, end=5.0, diverged=diverged, tested=True)
-    largest = largest_differences(pair, agreement, turned_until=2.9, direction_difference=3.0)
+    largest = largest_differences(pair, agreement, unresolved=2.9, direction_difference=3.0)
     # the sample at the divergence is the first that does not agree
-    assert largest == pytest.approx((0.002 if diverged else 0.5, 2.0 * math.sin(0.1), 0.1))
-    assert np.isnan(largest_differences(pair, agreement, turned_until=0.4)[2])
+    assert largest == pytest.approx((0.002 if diverged else 0.5, 2.0 * math.sin(0.1), 0.2))
+    # a whole turn counts where each pass is resolved
+    assert largest_differences(pair, agreement, unresolved=math.inf)[2] == pytest.approx(2.0 * math.pi - 0.2)

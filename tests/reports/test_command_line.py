@@ -23,7 +23,6 @@ from rockwobble.models.trace import lost_trace
 from rockwobble.multibody import available_engines, engine_names
 from rockwobble.multibody.engines.registry import engine_packages, standard_engines
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.pages import page
 from rockwobble.reports.pages.page import Page
 
 GOOD = "time [s], acceleration [g]\n0.00, 0.0\n0.01, 0.1\n0.02, 0.0\n"
@@ -52,7 +51,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.fixture
 def no_report(monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw no report, for tests of what is printed."""
-    monkeypatch.setattr(Page, "files", lambda _: {})
+    monkeypatch.setattr(Page, "files", lambda *_, **__: {})
 
 
 def record(x: str, y: str = "good.csv") -> list[str]:
@@ -156,7 +155,9 @@ def test_no_engine_and_no_trajectory_leave_nothing_to_compare(folder, capsys):
 @pytest.mark.slow
 def test_compare_prints_and_writes(folder, no_engines, monkeypatch, capsys):
     no_engines()
-    monkeypatch.setattr(page, "svg", lambda *_, **__: b"")  # tests of the page draw it
+    monkeypatch.setattr(
+        "rockwobble.reports.figures.svg.svg", lambda *_, **__: b""
+    )  # tests of the page draw it
     monkeypatch.setattr(Page, "html", lambda _, **__: "")
     (folder / "results").mkdir()
     (folder / "results" / "mine.txt").write_text("mine")
@@ -166,7 +167,7 @@ def test_compare_prints_and_writes(folder, no_engines, monkeypatch, capsys):
     assert "Cylinder: b = 1.177 m, 2h = 11.77 m, alpha = 11.31 deg" in out
     assert "Ground: El Centro 1940, 5346 samples of 0.01 s, 2 components, peak 0.430 g" in out
     assert "mujoco recess" in out
-    assert "agreement" in out
+    assert "agrees" in out
     names = {path.name for path in (folder / "results").iterdir()}
     assert names == {
         "mine.txt",
@@ -177,6 +178,7 @@ def test_compare_prints_and_writes(folder, no_engines, monkeypatch, capsys):
         "passes.parquet",
         "excitation.parquet",
         "comparison.json",
+        "report.json",
         "report.html",
         "report.md",
         "figure.svg",

@@ -90,13 +90,6 @@ def test_comparison() -> None:
     assert said == [each for own in ends for each in own]
 
 
-def test_extremes() -> None:
-    counts = table("extremes/extremes")["verdict"].value_counts()
-    assert counts.get("silent", 0) == 0
-    order = ["fine", "flagged", "refused", "caught", "no reference"]
-    assert numbers(headline("extremes/extremes.md")) == [counts[order].sum(), *counts[order]]
-
-
 @pytest.mark.parametrize("folder", ENSEMBLES, ids=lambda folder: folder.name)
 def test_ensemble(folder: Path) -> None:
     members = pd.read_parquet(folder / "members.parquet")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import importlib
 import json
 import runpy
 import shutil
@@ -19,7 +21,16 @@ from rockwobble.studies.validity.limits import needs
 from rockwobble.studies.validity.study import Validity
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
-STUDY = "extremes"
+STUDIES = ("ensemble/copies", "extremes")  # one of a command, one of a script
+PUBLIC = (
+    "rockwobble",
+    "rockwobble.models",
+    "rockwobble.reduced",
+    "rockwobble.multibody",
+    "rockwobble.compare",
+)
+PUBLIC += ("rockwobble.compare.check", "rockwobble.studies")
+OF_A_STUDY = ("rockwobble.reports.pages.", "rockwobble.reports.figures.", "rockwobble.reports.published")
 
 
 def name_of(value: object) -> str:
@@ -31,48 +42,60 @@ def remake() -> dict[str, Any]:
     return runpy.run_path(str(PUBLISHED / "remake.py"))
 
 
-@pytest.fixture
-def copy(tmp_path: Path, remake: dict[str, Any]) -> Path:
-    """A published study whose page has today's words, as `--redraw` leaves it."""
-    shutil.copytree(PUBLISHED / STUDY, tmp_path / STUDY)
-    with pytest.raises(SystemExit):
-        main(["report", str(tmp_path / STUDY)])
-    remake["trim"](tmp_path / STUDY)
-    return tmp_path
+@pytest.fixture(params=STUDIES)
+def copy(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(PUBLISHED / request.param, tmp_path / request.param))
 
 
-def test_what_is_redrawn_is_sound(remake: dict[str, Any], copy: Path) -> None:
-    assert remake["faults"](copy) == []
-    assert not any("words" in row for row in remake["ages"](copy))
+def page_of(folder: Path) -> Path:
+    return next(path for path in folder.glob("*.md"))
 
 
-def test_a_damaged_table_is_found(remake: dict[str, Any], copy: Path) -> None:
-    table = next((copy / STUDY).glob("*.parquet"))
+def test_what_is_published_is_sound(remake: dict[str, Any], copy: Path, tmp_path: Path) -> None:
+    assert remake["faults"](tmp_path) == []
+
+
+def test_a_damaged_table_is_a_fault(remake: dict[str, Any], copy: Path, tmp_path: Path) -> None:
+    table = next(copy.glob("*.parquet"))
     content = bytearray(table.read_bytes())
     content[len(content) // 2] ^= 1
     table.write_bytes(content)
-    assert any(f"{table.name} is damaged" in row for row in remake["faults"](copy))
+    assert any(f"{table.name} is damaged" in row for row in remake["faults"](tmp_path))
 
 
-def test_a_number_that_its_table_does_not_hold_is_found(remake: dict[str, Any], copy: Path) -> None:
-    page = copy / STUDY / "extremes.md"
-    page.write_text(page.read_text() + "\nAnd 0.98765 of all runs stand.\n")
-    assert any("its page says 0.98765" in row for row in remake["faults"](copy))
-
-
-def test_another_sentence_is_no_fault_but_reported(remake: dict[str, Any], copy: Path) -> None:
-    page = copy / STUDY / "extremes.md"
+def test_only_numbers_that_tables_lack_are_faults(remake: dict[str, Any], copy: Path, tmp_path: Path) -> None:
+    page = page_of(copy)
     page.write_text(page.read_text() + "\nA sentence of yesterday.\n")
-    assert remake["faults"](copy) == []
-    assert any("other words" in row for row in remake["ages"](copy))
+    assert remake["faults"](tmp_path) == []
+    page.write_text(page.read_text() + "\nAnd 0.98765 of all runs stand.\n")
+    assert any("its page says 0.98765" in row for row in remake["faults"](tmp_path))
 
 
-def test_results_of_code_that_was_not_committed_are_found(remake: dict[str, Any], copy: Path) -> None:
-    path = copy / STUDY / "manifest.json"
+def test_results_that_nothing_draws_or_nobody_committed_are_faults(
+    remake: dict[str, Any], copy: Path, tmp_path: Path
+) -> None:
+    path = copy / "manifest.json"
     stated = json.loads(path.read_text())
-    stated["commit"] += "+"
-    path.write_text(json.dumps(stated))
-    assert any("committed" in row for row in remake["faults"](copy))
+    path.write_text(json.dumps(stated | {"commit": stated["commit"] + "+", "kind": "yesterday"}))
+    (copy / "make.py").unlink(missing_ok=True)
+    words = " ".join(remake["faults"](tmp_path))
+    assert "committed" in words
+    assert "draws such results" in words
+
+
+def test_scripts_of_published_studies_use_public_names_alone() -> None:
+    checked = 0
+    for script in PUBLISHED.glob("*/make.py"):
+        for path in script.parent.glob("*.py"):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if not isinstance(node, ast.ImportFrom) or not (node.module or "").startswith("rockwobble"):
+                    continue
+                module, checked = str(node.module), checked + 1
+                if not module.startswith(OF_A_STUDY):
+                    assert module in PUBLIC, path
+                    known = importlib.import_module(module)
+                    assert {each.name for each in node.names} <= {*known.__all__}, path
+    assert checked > 20
 
 
 @pytest.mark.parametrize("path", sorted(PUBLISHED.rglob("*.parquet")), ids=name_of)

@@ -19,7 +19,7 @@ from rockwobble.reports.registry import COMMANDS, ENTRIES, HEADINGS, KINDS
 def test_a_kind_finds_its_class_and_its_page(kind: str) -> None:
     made = KINDS[kind].results_class()
     assert made.kind == kind
-    page = importlib.import_module(f"rockwobble.reports.{KINDS[kind].page}")
+    page = importlib.import_module(f"rockwobble.reports.pages.{KINDS[kind].name}")
     parameters = inspect.signature(page.page_of, eval_str=True).parameters.values()
     assert [each.annotation for each in parameters] == [made]
 

@@ -136,3 +136,11 @@ def test_what_holds_no_results_gets_one_clear_line(tmp_path, capsys, command, fo
     error = capsys.readouterr().err
     assert error.count("\n") == 1
     assert str(tmp_path / folder) in error
+
+
+def test_folders_of_an_older_release_say_which_release_draws_them(capsys):
+    folder = str(PUBLISHED / "tradeoff")
+    assert call("report", folder) == 2
+    assert "rockwobble 0.3.0" in capsys.readouterr().err
+    assert call("show", folder) == 0
+    assert "drawn by" in capsys.readouterr().out

@@ -14,11 +14,11 @@ from rockwobble import reduced
 from rockwobble.compare import Comparison
 from rockwobble.compare.comparison import driver
 from rockwobble.compare.comparison.result import comparison_of
+from rockwobble.compare.comparison.summary import own_rows
 from rockwobble.compare.runs import execution
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, WobblingFrame, read_suite
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.cli.suite_choice import chosen_runs
-from rockwobble.reports.figures.case_view import own_rows
 from rockwobble.reports.pages import comparison as report
 from rockwobble.reports.pages.cases import case_lines, group_of
 from rockwobble.reports.pages.page import Page
@@ -136,7 +136,7 @@ def test_a_suite_is_echoed_run_summed_up_and_written(folder, no_engines, capsys)
 def test_runs_of_a_suite_that_part_are_named_the_worst_first(folder, no_engines, monkeypatch, capsys):
     # an engine that has lost the case from the beginning
     no_engines(tilt=np.full(201, 0.3))
-    monkeypatch.setattr(Page, "files", lambda _: {})  # what is printed is looked at
+    monkeypatch.setattr(Page, "files", lambda *_, **__: {})  # what is printed is looked at
     assert call("compare", "mine.suite.toml", "--engine", "mujoco", "--support", "recess") == 0
     out = capsys.readouterr().out
     assert re.search(r"release\s+mujoco recess +4 +0 +0 %", out)
@@ -217,13 +217,13 @@ def test_a_trajectory_is_one_more_run(folder, no_engines, monkeypatch, capsys):
     no_engines()
     arguments = [*RELEASE, "--trajectory", "table.csv", "--trajectory-angles", "rad"]
     assert call("compare", *arguments, "--engine", "none", "--out", "alone") == 0
-    assert re.search(r"table +recess", capsys.readouterr().out)
+    assert re.search(r"table +stands", capsys.readouterr().out)
     alone = pd.read_csv(folder / "alone" / "summary.csv")
     assert alone["run"].tolist() == ["table"]
     assert alone["tilt_rms"].max() < 1e-12  # written with all digits
     page = (folder / "alone" / "report.html").read_text()
     assert "table" in page
-    monkeypatch.setattr(Page, "files", lambda _: {})
+    monkeypatch.setattr(Page, "files", lambda *_, **__: {})
     assert call("compare", *arguments, "--engine", "mujoco", "--support", "recess", "--out", "both") == 0
     both = pd.read_csv(folder / "both" / "summary.csv")
     assert both["run"].tolist() == ["mujoco recess", "table"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import html
 import json
 from importlib.util import find_spec
 from pathlib import Path
@@ -53,7 +54,7 @@ def test_ratios_and_a_drawing_state_the_same_tendon(tmp_path: Path) -> None:
     for trace in traces:
         assert trace.case.tendon == drawn
         assert trace.tilt.tolist() == traces[0].tilt.tolist()
-    page = (tmp_path / "drawn" / "run.md").read_text()
+    page = html.unescape((tmp_path / "drawn" / "run.html").read_text())
     assert "Tendon: prestress 0.9061 weights of a column, stiffness 5.437 weights per base radius" in page
     largest = traces[0].peak_tendon_force
     assert f"largest {largest:.3g} weights of a column" in page

@@ -7,11 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from rockwobble.models.support import RECESS, SUPPORTS
-from rockwobble.studies.tradeoff.study import Tradeoff
-
-from .palette import DARK, GREY, Style, mark_styles
-from .picture import Axis, Line, Panel, Picture, Rule, bar_ends
+from rockwobble.reports.figures.palette import DARK, GREY, Style, mark_styles
+from rockwobble.reports.figures.picture import Axis, Line, Panel, Picture, Rule, bar_ends
+from rockwobble.reports.published.tradeoff.points import Tradeoff
+from rockwobble.reports.published.tradeoff.problem import RECESS
 
 TITLES = {
     "turn": "Azimuth change in free response",
@@ -25,7 +24,9 @@ ERRORS = {
 }
 # support and panel, in the order of the picture
 _PANELS: Mapping[tuple[str, str], str] = {
-    **{(each, "methods"): each.words for each in SUPPORTS.values()},
+    (RECESS, "methods"): "ideal recess",
+    ("flat", "methods"): "flat ground",
+    ("ring", "methods"): "recess with clearance",
     (RECESS, "scipy"): "scipy's solvers, recess",
     (RECESS, "rest threshold"): "rest threshold, recess",
     (RECESS, "integrator"): "integrators, recess",

@@ -20,10 +20,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble import reduced
-from rockwobble.compare.runs.execution import simulate_run
+import rockwobble as rw
+from rockwobble import multibody, reduced
 from rockwobble.models import (
     Case,
+    Cylinder,
     InitialState,
     Run,
     Trace,
@@ -31,11 +32,12 @@ from rockwobble.models import (
     synthetic_motions,
     with_motions,
 )
-from rockwobble.models.cylinder import PIER
-from rockwobble.models.support import RECESS, SUPPORTS, Support
-from rockwobble.multibody.engines.registry import find_engine, own_engines
 
 Array = NDArray[np.float64]
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+RECESS, SUPPORTS = "recess", ("recess", "flat", "ring")
+ENGINES = multibody.available_engines()
 
 # of the tight solutions, and a rest rule a hundred times finer than the default: without any a cylinder
 # that just uplifts chatters at upright without end, and there is no solution to compare with
@@ -192,26 +194,38 @@ def sampling_distance(problem: Problem, support: str) -> float:
 def _with_answers(problem: Problem) -> Problem:
     """Fill in the answers that have to be computed, and how far they have converged."""
     found = dict(problem.references)
-    for name, support in SUPPORTS.items():
-        runs = _reference_runs(support, min(problem.few_steps))
+    for name in SUPPORTS:
+        runs = _reference_runs(name, min(problem.few_steps))
         if name not in found and runs:
             best, other = ([_answer(problem, case, run) for case in problem.cases] for run in runs)
-            source = "tight" if support.has_model else "half_step"
+            source = "tight" if name in reduced.SUPPORTS else "half_step"
             found[name] = Reference(quantities=best, doubt=problem.distance(other, best), source=source)
     return replace(problem, references=found)
 
 
-def _reference_runs(support: Support, finest: float) -> list[Run]:
+def _reference_runs(support: str, finest: float) -> list[Run]:
     """The run whose answer is the reference of a support, and one less tight; none where none can be made."""
-    if support.has_model:
+    if support in reduced.SUPPORTS:
         tolerances = (TIGHT, 10.0 * TIGHT)
         return [Run(None, support, rtol=rtol, rest_tilt=FINE_REST_TILT) for rtol in tolerances]
-    engines = [engine for engine in own_engines() if support in find_engine(engine).supports]
+    engines = [each for each in ENGINES if support in multibody.find_engine(each).supports]
     return [Run(engine, support, step) for engine in engines[-1:] for step in (0.5 * finest, finest)]
 
 
+def simulate(problem: Problem, case: Case, run: Run) -> Trace:
+    """Return a run of a case, with the samples that the problem asks for."""
+    return rw.simulate(
+        case,
+        support=run.support,
+        engine=run.engine,
+        time_step=run.time_step,
+        sample_step=problem.sample_step,
+        **run.settings,
+    )
+
+
 def _answer(problem: Problem, case: Case, run: Run) -> Array:
-    trace = simulate_run(case, run, sample_step=problem.sample_step)
+    trace = simulate(problem, case, run)
     if trace.outcome == "failed":
         raise RuntimeError(f"the reference of {case.name} failed: {trace.facts}")
     return problem.quantity(trace)

@@ -20,18 +20,18 @@ import numba
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from rockwobble import reduced
-from rockwobble.compare.runs.choice import require_runnable
-from rockwobble.compare.runs.execution import simulate_run
+from rockwobble import multibody, reduced
 from rockwobble.models import Case, GroundMotion, Run, Trace
-from rockwobble.models.bounds import OVERTURNED_TILT
-from rockwobble.models.case import RECESS_MODEL, REDUCED_MODELS
-from rockwobble.models.diagnostic import cell_of
-from rockwobble.models.support import RECESS, SUPPORTS
-from rockwobble.multibody.engines.registry import engine_facts, find_engine, own_engines
-from rockwobble.reduced.solution import Solution
-
-from .problem import FINE_REST_TILT, TIGHT, Array, Problem
+from rockwobble.reports.published.tradeoff.problem import (
+    ENGINES,
+    FINE_REST_TILT,
+    RECESS,
+    SUPPORTS,
+    TIGHT,
+    Array,
+    Problem,
+    simulate,
+)
 
 RatesFunction = Callable[[float, Array], list[float]]  # (t, y) -> y'
 SolverName = Literal["RK45", "DOP853", "LSODA"]
@@ -42,7 +42,7 @@ _SWING = 10.0  # of sqrt(R/g): for which a swing is followed past the end
 _AFTER_UPLIFT = 2e-3  # [s]
 _INSTANT = 1e-9  # of motion, for the momentum of a release [s]
 # the recess model as it comes: every computing time is a multiple of its own
-BASE_LINE = str(RECESS_MODEL)
+BASE_LINE = str(Run(None, RECESS))
 BASE_TOLERANCE = 1e-8
 REST_PANEL = "rest threshold"
 _TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11)
@@ -121,10 +121,10 @@ def _line(
 
 def _model_methods(problem: Problem, quick: bool) -> Iterator[Method]:
     tolerances = sorted({*(_TOLERANCES[1::2] if quick else _TOLERANCES), BASE_TOLERANCE}, reverse=True)
-    for run in REDUCED_MODELS:
-        solve = partial(_by_model, problem, run.support, reduced.REST_TILT)
+    for support in reduced.SUPPORTS:
+        solve = partial(_by_model, problem, support, reduced.REST_TILT)
         solved = {rtol: partial(solve, rtol) for rtol in tolerances}
-        yield from _line(str(run), "reduced", solved, support=run.support)
+        yield from _line(str(Run(None, support)), "reduced", solved, support=support)
     # on still ground nothing comes to rest
     for rest_tilt in () if problem.name == "turn" else (FINE_REST_TILT, 1e-5, 0.1):
         solved = {rtol: partial(_by_model, problem, RECESS, rest_tilt, rtol) for rtol in tolerances}
@@ -159,14 +159,14 @@ def _scipy(problem: Problem, quick: bool) -> Iterator[Method]:
 
 
 def _engines(problem: Problem, quick: bool) -> Iterator[Method]:
-    for engine in own_engines():
-        known = find_engine(engine)
+    for engine in ENGINES:
+        known = multibody.find_engine(engine)
         # in single precision a step below the default gains nothing: a line of its own would say only that
         if known.facts.rounding > _DOUBLE or (problem.name != "turn" and not known.uplifts):
             continue
-        for support in SUPPORTS.values():
+        for support in SUPPORTS:
             if support in known.supports and support in problem.references:
-                all_steps = known.facts.step_time < _CHEAP and not support.walls
+                all_steps = known.facts.step_time < _CHEAP and support != "ring"
                 steps = problem.steps if all_steps else problem.few_steps
                 runs = {step: Run(engine, support, step) for step in steps}
                 yield from _engine_line(problem, f"{engine} {support}", "methods", runs)
@@ -176,7 +176,7 @@ def _engines(problem: Problem, quick: bool) -> Iterator[Method]:
 
 def _variants(problem: Problem, engine: str, quick: bool) -> Iterator[Method]:
     """Other integrators and other contact than the default, in a recess."""
-    facts, steps = engine_facts(engine), problem.few_steps
+    facts, steps = multibody.find_engine(engine).facts, problem.few_steps
     for given in facts.alternatives.values():
         name = given.get("integrator")
         if name == "RK4" or (name and not quick):
@@ -200,15 +200,14 @@ def _engine_line(problem: Problem, line: str, panel: str, runs: Mapping[float, R
 
 def _by_engine(problem: Problem, run: Run, case: Case) -> MethodResult:
     try:
-        require_runnable(case, run)
+        return _result(problem, simulate(problem, case, run))
     except ValueError as refusal:
         return MethodResult(quantity=np.empty(0), said=str(refusal))
-    return _result(problem, simulate_run(case, run, sample_step=problem.sample_step))
 
 
 def _result(problem: Problem, trace: Trace) -> MethodResult:
     quantity = np.empty(0) if trace.outcome == "failed" else problem.quantity(trace)
-    return MethodResult(quantity=quantity, said=cell_of(fact.code for fact in trace.facts))
+    return MethodResult(quantity=quantity, said=", ".join(dict.fromkeys(fact.code for fact in trace.facts)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -235,9 +234,18 @@ def start_of(case: Case, *, compiled: bool) -> Rates:
     """Return the equations of a case from its release, or from just after its uplift."""
     begin = _departure(case) if case.initial is None else _INSTANT
     reach = reduced.simulate(dataclasses.replace(case, duration=begin), rtol=TIGHT)
-    assert isinstance(reach.source, Solution)
-    function = rates_of(case, compiled=compiled)
-    return Rates(function=function, start=begin, end=case.length, state=reach.source.states[-1, :4])
+    names = ("tilt", "tilt_rate", "rolling_angle", "rolling_rate")
+    theta, omega, phi, phi_rate = (float(getattr(reach, name)[-1]) for name in names)
+    state = np.array([theta, omega, phi, _inertia(case, theta) * phi_rate])
+    return Rates(function=rates_of(case, compiled=compiled), start=begin, end=case.length, state=state)
+
+
+def _inertia(case: Case, theta: float) -> float:
+    """B of a homogeneous cylinder over its mass [m^2]: inertia of the rolling angle."""
+    b, h = case.cylinder.base_radius, case.cylinder.half_height
+    J, E, C = 0.25 * b * b + 4.0 / 3.0 * h * h, h * b, 1.5 * b * b
+    t = math.tan(0.5 * theta)
+    return sin(theta) ** 2 * (J + 2.0 * E * t + C * t * t)
 
 
 def rates_of(case: Case, *, compiled: bool) -> RatesFunction:
@@ -306,7 +314,7 @@ def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: fl
         return float(y[1])
 
     def overturns(t: float, y: Array) -> float:
-        return float(y[0]) - OVERTURNED_TILT
+        return float(y[0]) - 0.5 * math.pi
 
     turns_back.direction, overturns.terminal = -1.0, True  # type: ignore[attr-defined]
     with np.errstate(all="ignore"):

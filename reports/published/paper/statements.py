@@ -1,4 +1,4 @@
-"""The figures of the paper, computed again, with the paper's statements on them compared with the numbers."""
+"""Statements of the paper on its figures, compared with the numbers."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ from dataclasses import dataclass
 
 import pandas as pd
 
+from rockwobble.models import Cylinder
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 HOLDS, HOLDS_IN_PART, DOES_NOT_HOLD = "holds", "holds in part", "does not hold"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Statement:
-    """A statement of the paper on one of its figures; the words stand in the template paper.md.j2."""
+    """A statement of the paper on one of its figures; the words stand in page.md.j2."""
 
     figure: int
     name: str

@@ -4,22 +4,31 @@ from __future__ import annotations
 
 import math
 import os
+import sys
 import time
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.runs.progress import ProgressCallback, Stage, stages
-from rockwobble.compare.storage.manifest import Number
-from rockwobble.compare.storage.results import Results
+from rockwobble.compare import Results
 from rockwobble.models import Case
-from rockwobble.models.support import RECESS
-
-from ..plans import QuickPlan
-from ..scene_cost import scene_costs
-from .methods import BASE_LINE, REST_PANEL, Method, MethodResult, methods_for, rest_line
-from .problem import FINE_REST_TILT, Problem, problems, sampling_distance
+from rockwobble.reports.published.tradeoff.methods import (
+    BASE_LINE,
+    REST_PANEL,
+    Method,
+    MethodResult,
+    methods_for,
+    rest_line,
+)
+from rockwobble.reports.published.tradeoff.problem import (
+    FINE_REST_TILT,
+    RECESS,
+    Problem,
+    problems,
+    sampling_distance,
+)
+from rockwobble.reports.published.tradeoff.scenes import scene_costs
 
 # a run shorter than this is repeated, so that a tick of the clock does not show [s]
 _SHORT = 2e-3
@@ -31,8 +40,6 @@ _NAMES = ("support", "panel", "family", "line", "knob", "value")
 TARGETS = {"turn": (0.1, 0.01, 1e-3), "shaken": (1e-2, 1e-3, 1e-4), "peaks": (0.05, 1e-2, 1e-3)}
 # an error that falls with a lower power of the step than this has stopped falling; engines are of first order
 FLAT = 0.5
-# rough computing time of a round, in any unit
-_COSTS = {"turn": 1.0, "shaken": 4.0, "peaks": 3.0, "scenes": 0.5}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -56,28 +63,17 @@ class Tradeoff(Results, kind="tradeoff"):
     included, over a minute; NaN where the system does not know.
     """
 
-    def headline(self) -> dict[str, Number]:
+    def headline(self) -> dict[str, float]:
         """Return the cost of engines over that of the recess model."""
         low, high = engine_factors(self.points)
         return {"engine over recess model, least": low, "engine over recess model, largest": high}
 
 
-def measure_tradeoff(plan: QuickPlan, *, progress: ProgressCallback | None = None) -> Tradeoff:
-    """Measure all methods on all problems.
-
-    Parameters
-    ----------
-    plan : QuickPlan
-    progress : callable, optional
-        Called with a `Progress` at the start and the end of each round.
-    """
-    before, quick = _load(), plan.quick
-    scene_rounds = 3 if quick else 9
-    asked = list(problems(quick=quick))
-    rounds = [*((each.name, len(_visits(each))) for each in asked), ("scenes", scene_rounds)]
-    stage = stages(progress, [_COSTS[name] for name, count in rounds for _ in range(count)])
-    points = [_points(each, methods_for(each, quick=quick), stage) for each in asked]
-    scenes = scene_costs(rounds=scene_rounds, steps=500 if quick else 2000, stage=stage)
+def measure(*, quick: bool) -> Tradeoff:
+    """Measure all methods on all problems; `quick` with fewer steps, members and rounds."""
+    before, asked = _load(), list(problems(quick=quick))
+    points = [_points(each, methods_for(each, quick=quick)) for each in asked]
+    scenes = scene_costs(rounds=3 if quick else 9, steps=500 if quick else 2000)
     tables = {
         "points": pd.concat(points, ignore_index=True),
         "scenes": scenes,
@@ -106,18 +102,18 @@ def _visits(problem: Problem) -> list[Case]:
     return list(problem.cases) if len(problem.cases) > 1 else list(problem.cases) * ROUNDS
 
 
-def _points(problem: Problem, methods: list[Method], stage: Stage) -> pd.DataFrame:
+def _points(problem: Problem, methods: list[Method]) -> pd.DataFrame:
     visits = _visits(problem)
     results: list[list[MethodResult]] = [[] for _ in methods]
     seconds = np.full((len(visits), len(methods)), np.nan)
     for number, case in enumerate(visits):
-        with stage(f"{problem.name}, round {number + 1} of {len(visits)}"):
-            if not number:
-                _warm_up(methods, case)
-            for place, method in enumerate(methods):
-                seconds[number, place], result = _time_run(method, case)
-                if len(results[place]) < len(problem.cases):
-                    results[place].append(result)
+        print(f"{problem.name}, round {number + 1} of {len(visits)}", file=sys.stderr, flush=True)
+        if not number:
+            _warm_up(methods, case)
+        for place, method in enumerate(methods):
+            seconds[number, place], result = _time_run(method, case)
+            if len(results[place]) < len(problem.cases):
+                results[place].append(result)
     base = next(place for place, method in enumerate(methods) if method.base)
     ratios = seconds / seconds[:, [base]]
     low, middle, high = np.quantile(ratios, (0.25, 0.5, 0.75), axis=0)

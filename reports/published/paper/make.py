@@ -1,8 +1,10 @@
-"""The figures of the paper: what is kept of them, their pictures, and the report on them."""
+"""Figures 3 to 6 of the paper, computed again, with a verdict on each of its statements; see script.py."""
 
 from __future__ import annotations
 
+import argparse
 import math
+import sys
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -12,32 +14,25 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockwobble.compare.runs.progress import ProgressCallback, stages
-from rockwobble.compare.storage.manifest import Number
-from rockwobble.compare.storage.provenance import package_makers, result_fingerprint
-from rockwobble.compare.storage.results import Results
-from rockwobble.models import Run, el_centro_1940
-from rockwobble.models.cylinder import PIER
-from rockwobble.models.plain_json import plain
-from rockwobble.studies.spectrum.maps import TiltMaps, maps_of, tilt_maps
-from rockwobble.studies.spectrum.parts import SERIES
-from rockwobble.studies.spectrum.study import tables_of
+from rockwobble.compare import Results
+from rockwobble.models import Run
+from rockwobble.reports.figures.palette import DARK, ORDER, SHADED, Style
+from rockwobble.reports.figures.picture import TIME, Axis, Layer, Line, Panel, Picture, Rule
+from rockwobble.reports.figures.spectrum import NAMES, pictures, series_styles
+from rockwobble.reports.pages.page import Page
+from rockwobble.reports.pages.spectrum import spectrum_values
+from rockwobble.reports.pages.table import number
+from rockwobble.reports.published.paper import earthquake, free, overturning
+from rockwobble.reports.published.paper.overturning import lowest_on_axes
+from rockwobble.reports.published.paper.statements import PIER, Statement, from_frame, to_frame
+from rockwobble.reports.published.script import run
+from rockwobble.studies import OverturningSpectrum
 
-from ..figures.palette import DARK, ORDER, SHADED, Style
-from ..figures.picture import TIME, Axis, Layer, Line, Panel, Picture, Rule
-from ..figures.spectrum import NAMES, picture_of, series_styles
-from ..pages.page import Page
-from ..pages.spectrum import spectrum_values
-from ..pages.table import number
-from . import Statement, earthquake, free, from_frame, overturning, to_frame
-from .overturning import lowest_on_axes
-
-KIND = "paper"
 _SAMPLES = 12_000  # of figure 5 that are kept
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Paper(Results, kind=KIND):
+class Paper(Results, kind="paper"):
     """The figures of the paper, computed again, and verdicts on what it says of them.
 
     Attributes
@@ -50,31 +45,15 @@ class Paper(Results, kind=KIND):
         Figure 6, see `OverturningSpectrum`.
     """
 
-    def headline(self) -> dict[str, Number]:
+    def headline(self) -> dict[str, int]:
         """Return the number of statements with each verdict."""
         return {**Counter(each.verdict for each in from_frame(self.statements))}
 
 
-def compute(grid: int, progress: ProgressCallback | None = None, resume: Path | None = None) -> Paper:
-    """Run figures 3 to 6, the last on `grid` sizes and as many intensities.
-
-    The parts of the last are told and kept as in `tilt_maps`: figures 3 to 5 take seconds.
-    """
-    stage = stages(progress, [1.0, 20.0, 40.0])
-    with stage("figure 3"):
-        curves = free.periods()
-    with stage("figure 4"):
-        modes = free.free_modes()
-    with stage("figure 5"):
-        shaken = earthquake.shaken()
-    spectrum = tilt_maps(
-        overturning.TAN_ALPHA,
-        el_centro_1940(),
-        plan=overturning.plan_of(grid),
-        progress=progress,
-        resume=resume,
-        kind=KIND,
-    )
+def measure(given: argparse.Namespace) -> Paper:
+    """Run figures 3 to 6."""
+    curves, modes, shaken = free.periods(), free.free_modes(), earthquake.shaken()
+    spectrum = overturning.spectrum_of(given.grid)
     found = [
         *free.period_statements(curves),
         *free.mode_statements(modes),
@@ -86,22 +65,21 @@ def compute(grid: int, progress: ProgressCallback | None = None, resume: Path | 
         "figure-4": free.to_frame(modes),
         "figure-5": free.drawn_samples(shaken.trace, _SAMPLES),
         "statements": to_frame(found),
-        **tables_of(spectrum),
+        **spectrum.tables,
     }
-    inputs = result_fingerprint(grid, package_makers())
-    return Paper(tables=tables, facts=plain(spectrum.facts() | {"inputs": inputs}))
+    return Paper(tables=tables, facts=spectrum.facts)
 
 
 def page_of(paper: Paper) -> Page:
     """Return the page of the figures."""
-    tables, spectrum = paper.tables, maps_of(paper.tables, paper.facts)
+    tables, spectrum = paper.tables, OverturningSpectrum(tables=paper.tables, facts=paper.facts)
     found = {each.name: each for each in from_frame(paper.statements)}
-    shaken = {**found["abrupt"].numbers, "time_step": spectrum.motion.time_step}
+    shaken = {**found["abrupt"].numbers, "time_step": spectrum.maps.motion.time_step}
     return Page(
         name="paper",
-        template="paper",
+        template=Path(__file__).with_name("page.md.j2"),
         values={
-            **spectrum_values(spectrum, tables),
+            **spectrum_values(spectrum.maps, tables),
             "statements": found,
             "judgements": {name: _judgement(each) for name, each in found.items()},
             "linear_range": _linear_range(found["housner"].numbers),
@@ -296,16 +274,18 @@ def _signed_log(values: Array) -> Array:
     return np.asarray(np.sign(values) * np.where(size < 1.0, size, 1.0 + np.log10(np.maximum(size, 1.0))))
 
 
-def overturning_picture(spectrum: TiltMaps) -> Picture:
+def overturning_picture(spectrum: OverturningSpectrum) -> Picture:
     """Return figure 6: the maps, and the overturning boundaries on two axes."""
-    whole = picture_of(spectrum)
-    styles = series_styles(str(Run(None, spectrum.support)))
+    (whole,) = pictures(spectrum)
+    styles = series_styles(str(Run(None, spectrum.maps.support)))
     curves = []
     for own, label in ((True, "own peak / (g tan α)"), (False, "peak resultant / (g tan α)")):
         lowest = lowest_on_axes(spectrum, own=own)
         lines = [
-            Line(x=spectrum.semidiagonals, y=lowest[name], name=NAMES[name], style=styles[name], width=1.6)
-            for name in SERIES
+            Line(
+                x=spectrum.maps.semidiagonals, y=lowest[name], name=NAMES[name], style=styles[name], width=1.6
+            )
+            for name in lowest
         ]
         title = "overturning boundary, " + ("axis of the paper" if own else "equal ground motion")
         y = Axis(label=label, unit="-", low=0.0)
@@ -320,3 +300,14 @@ def overturning_picture(spectrum: TiltMaps) -> Picture:
         "its own component, the axis of the paper.",
         panels=[*whole.panels[:3], *curves],
     )
+
+
+def options(parser: argparse.ArgumentParser) -> None:
+    """Add the option."""
+    parser.add_argument(
+        "--grid", type=int, default=100, help="sizes and intensities of figure 6 (%(default)s)"
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(run(__file__, Paper, measure, page_of, options=options))

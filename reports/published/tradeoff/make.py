@@ -1,25 +1,29 @@
-"""The report on speed against accuracy."""
+"""Speed against accuracy: all methods on all problems, and the page; see script.py beside its folder."""
 
 from __future__ import annotations
 
 import math
+import sys
+from pathlib import Path
 
 import pandas as pd
 
-from rockwobble.studies.tradeoff.study import (
+from rockwobble.reports.pages.page import Page
+from rockwobble.reports.pages.table import NONE, number
+from rockwobble.reports.published.script import run
+from rockwobble.reports.published.tradeoff.figures import ERRORS, TITLES, pictures
+from rockwobble.reports.published.tradeoff.points import (
     ROUNDS,
     Tradeoff,
     costs,
     engine_factors,
+    measure,
     plateaus,
     rest_tilt_price,
 )
 
-from ..figures.tradeoff import ERRORS, TITLES, pictures
-from .page import Page
-from .table import NONE, number
-
 _NOT_ENGINES = ("reduced", "scipy")
+_TEMPLATE = Path(__file__).with_name("page.md.j2")
 
 
 def page_of(found: Tradeoff) -> Page:
@@ -45,7 +49,7 @@ def page_of(found: Tradeoff) -> Page:
     }
     drawn = pictures(found)
     values["drawn"] = [picture.name for picture in drawn]
-    return Page(name="tradeoff", template="tradeoff", values=values, pictures=drawn)
+    return Page(name="tradeoff", template=_TEMPLATE, values=values, pictures=drawn)
 
 
 def _answer(least: float, largest: float) -> str:
@@ -110,3 +114,15 @@ def _within_chance(found: Tradeoff) -> list[dict[str, object]]:
             {"support": row["support"], "points": len(own), "good": len(good), "cheapest": "".join(cheapest)}
         )
     return rows
+
+
+if __name__ == "__main__":
+    sys.exit(
+        run(
+            __file__,
+            Tradeoff,
+            lambda given: measure(quick=given.quick),
+            page_of,
+            options=lambda parser: parser.add_argument("--quick", action="store_true", help="fewer points"),
+        )
+    )

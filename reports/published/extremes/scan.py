@@ -14,7 +14,7 @@ The verdicts are
 * flagged: it is more, or the model leaves its assumptions, and a diagnostic says so: one of a kind that
   explains the error, and that begins no later than the error does;
 * no reference: the reference has ceased to hold before the error begins;
-* refused: bad input, of which `require_runnable` says so before anything runs;
+* refused: bad input, of which a ValueError says so before anything runs;
 * caught: the run ended as failed, with a diagnostic;
 * silent: wrong, and nothing explains it. There must be none;
 * n/a: the method has nothing of the kind.
@@ -23,36 +23,21 @@ The verdicts are
 from __future__ import annotations
 
 import dataclasses
-import itertools
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from rockwobble import reduced
-from rockwobble.compare.comparison.prediction import time_scale
-from rockwobble.compare.metrics.pair import make_pair
-from rockwobble.compare.runs.choice import require_runnable
-from rockwobble.compare.runs.execution import run_tables, simulate_run
-from rockwobble.compare.runs.progress import ProgressCallback
-from rockwobble.compare.storage.manifest import Number
-from rockwobble.compare.storage.provenance import package_makers, result_fingerprint
-from rockwobble.compare.storage.results import Results
+import rockwobble as rw
+from rockwobble import multibody, reduced
+from rockwobble.compare import Results
 from rockwobble.models import AGREEMENT, Case, Cylinder, Diagnostic, GroundMotion, InitialState, Run, Trace
-from rockwobble.models.case import REDUCED_MODELS
-from rockwobble.models.diagnostic import FAILURES, cell_of
-from rockwobble.models.support import FLAT
-from rockwobble.multibody.engines.registry import engine_facts, find_engine, own_engines
-from rockwobble.multibody.scene import REFERENCE_TIME_STEP, froude_scale
 
-from .plans import QuickPlan
-
-KIND = "extremes"
-_PLANAR_MODEL = Run(None, FLAT, plane=0.0)
+_PLANAR_MODEL = Run(None, "flat", plane=0.0)
 
 FINE = AGREEMENT  # of alpha, or of the angle of turn
 # relative to the energy that balances the cylinder on its rim
@@ -73,6 +58,19 @@ _EXPLAINS = frozenset(
     }
 )
 _EXPLAINS_REDUCED = frozenset({"side"})
+# diagnostics of a run that failed
+_FAILURES = frozenset(
+    {
+        "not_finite",
+        "energy_gain",
+        "penetration",
+        "wall_penetration",
+        "guide",
+        "warning",
+        "step_budget",
+        "tolerance",
+    }
+)
 
 _TAN_ALPHA, _SIZE, _GRAVITY = 0.2, 6.0, 9.81
 _RATE = 0.5  # [rad/s] at 6 m
@@ -143,7 +141,7 @@ Task = tuple[Condition, Run]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Extremes(Results, kind=KIND):
+class Extremes(Results, kind="extremes"):
     """Verdicts of a scan of the extremes.
 
     Attributes
@@ -152,73 +150,38 @@ class Extremes(Results, kind=KIND):
         One row for each condition and method: extreme, value, method, and the attributes of `Verdict`.
     """
 
-    def headline(self) -> dict[str, Number]:
+    def headline(self) -> dict[str, int]:
         """Return the number of runs, and of those with each verdict."""
         return {"runs": len(self.extremes), **Counter(map(str, self.extremes["verdict"]))}
 
 
-def measure_extremes(
-    folder: str | Path,
-    plan: QuickPlan,
-    *,
-    workers: int | None = None,
-    progress: ProgressCallback | None = None,
-) -> Extremes:
-    """Run every condition by every method that is installed.
-
-    Parameters
-    ----------
-    folder : str or Path
-        Keeps each finished run: a second call, after whatever ended the first, repeats none that is there.
-    plan : QuickPlan
-    workers : int, optional
-        Processes; default one for each processor.
-    progress : callable, optional
-        Called with a `Progress` at the start and the end of each run.
-    """
-    tasks = [(condition, run) for condition in conditions(quick=plan.quick) for run in methods()]
-    # an engine may read whatever of the package, and what is looked at takes minutes: any change repeats all
-    made_with = package_makers()
-    with run_tables(
-        measure_task,
-        tasks,
-        kind=KIND,
-        key=lambda task: result_fingerprint(task, made_with),
-        label=lambda task: f"{task[0].extreme} {task[0].value}, {task[1]}",
-        folder=folder,
-        lost=lambda task: _row(task, Verdict(verdict="silent", limit="died")),
-        workers=workers,
-        progress=progress,
-    ) as found:
-        return Extremes(tables={KIND: pd.concat(found, ignore_index=True)}, facts={})
+def measure() -> Extremes:
+    """Return the verdicts on every condition by every method that is installed."""
+    tasks = [(condition, run) for condition in conditions() for run in methods()]
+    with ProcessPoolExecutor() as workers:
+        rows = list(workers.map(measure_task, tasks))
+    return Extremes(tables={"extremes": pd.DataFrame(rows)}, facts={})
 
 
-def measure_task(task: Task) -> pd.DataFrame:
+def measure_task(task: Task) -> dict[str, object]:
     """Return the row of one condition and method."""
-    return _row(task, judge(*task))
-
-
-def _row(task: Task, found: Verdict) -> pd.DataFrame:
     condition, run = task
     named = {"extreme": condition.extreme, "value": condition.value, "method": str(run)}
-    return pd.DataFrame([named | dataclasses.asdict(found)])
+    return named | dataclasses.asdict(judge(condition, run))
 
 
 def methods() -> tuple[Run, ...]:
     """Return the reduced models, and each support of each of our engines that is installed."""
-    engines = (Run(name, support) for name in own_engines() for support in find_engine(name).supports)
-    return (_PLANAR_MODEL, *REDUCED_MODELS, *engines)
+    models = (Run(None, support) for support in reduced.SUPPORTS)
+    engines = (
+        Run(name, support)
+        for name in multibody.available_engines()
+        for support in multibody.find_engine(name).supports
+    )
+    return (_PLANAR_MODEL, *models, *engines)
 
 
-def conditions(*, quick: bool = False) -> list[Condition]:
-    """Return all conditions; `quick` keeps the first and the last of each extreme."""
-    if not quick:
-        return list(_all())
-    groups = (list(own) for _, own in itertools.groupby(_all(), key=lambda each: each.extreme))
-    return [end for own in groups for end in (own[0], own[-1])]
-
-
-def _all() -> Iterator[Condition]:
+def conditions() -> Iterator[Condition]:
     """Yield the conditions, those of each extreme one after another from far too small to far too large."""
     for spin, length in ((0.0, 2.0), (1e-9, 2.0), (1e-3, 2.0), (3.0, 2.0), (10.0, 1.0), (1e3, 0.05)):
         yield Condition(extreme="spin", value=f"{spin:g} rad/s", case=_release(rate=spin, length=length))
@@ -264,7 +227,7 @@ def _release(
     friction: float = 5.0,
 ) -> Case:
     """A release at alpha/2; rate and length scale with size and gravity in Froude's sense."""
-    unit = froude_scale(size, gravity).time
+    unit = _time_scale(size, gravity)
     cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
     release = InitialState(0.5 * cylinder.alpha, rolling_rate=rate / unit)
     return Case(
@@ -289,14 +252,18 @@ def judge(condition: Condition, run: Run) -> Verdict:
         return Verdict(verdict="n/a")
     case, run = _request(condition, run)
     try:
-        require_runnable(case, run)
+        trace = _simulate(case, run, condition)
     except ValueError as refusal:
         return Verdict(verdict="refused", refusal=str(refusal))
-    trace = simulate_run(case, run, sample_step=condition.sample_step)
     if trace.outcome == "failed":
-        codes = [fact.code for fact in trace.facts if fact.code in FAILURES]
-        return Verdict(verdict="caught" if codes else "silent", limit=cell_of(codes))
+        codes = [fact.code for fact in trace.facts if fact.code in _FAILURES]
+        return Verdict(verdict="caught" if codes else "silent", limit=", ".join(dict.fromkeys(codes)))
     return (_model_verdict if run.is_model else _engine)(condition, run, trace)
+
+
+def _simulate(case: Case, run: Run, condition: Condition) -> Trace:
+    options = {"support": run.support, "engine": run.engine, "time_step": run.time_step, **run.settings}
+    return rw.simulate(case, sample_step=condition.sample_step, **options)
 
 
 def _request(condition: Condition, run: Run) -> tuple[Case, Run]:
@@ -313,12 +280,18 @@ def _request(condition: Condition, run: Run) -> tuple[Case, Run]:
 
 
 def _step(condition: Condition) -> float:
-    return REFERENCE_TIME_STEP * condition.time_step * time_scale(condition.case)
+    case = condition.case
+    return 1e-4 * condition.time_step * _time_scale(case.cylinder.semidiagonal, case.gravity)
+
+
+def _time_scale(size: float, gravity: float) -> float:
+    """Time at a size and gravity over that of 6 m on Earth, in Froude's sense."""
+    return math.sqrt(size / _SIZE * _GRAVITY / gravity)
 
 
 def _contact_time(run: Run) -> str:
     """The setting that is the time of a run's contact; "" without one."""
-    return "" if run.is_model else engine_facts(run.engine_name).contact_time
+    return "" if run.is_model else multibody.find_engine(run.engine_name).facts.contact_time
 
 
 def _tighter(run: Run, rtol: float) -> Run:
@@ -327,7 +300,7 @@ def _tighter(run: Run, rtol: float) -> Run:
 
 def _model_verdict(condition: Condition, run: Run, trace: Trace) -> Verdict:
     case = trace.case
-    tight = simulate_run(case, _tighter(run, _TIGHT), sample_step=condition.sample_step)
+    tight = _simulate(case, _tighter(run, _TIGHT), condition)
     error, begins = (math.inf, 0.0) if tight.outcome == "failed" else _tilt_error(tight, trace)
     errors = {"tight": error}
     turns = trace.passes["angle_of_turn"].to_numpy(float)
@@ -342,8 +315,8 @@ def _model_verdict(condition: Condition, run: Run, trace: Trace) -> Verdict:
         limit, reference, otherwise = _explanation(trace.facts, _EXPLAINS_REDUCED, begins), worst, "silent"
     else:
         assert trace.assumptions is not None
-        limit = cell_of(fact.code for fact in trace.assumptions.breaches)
-        begins, reference, otherwise = math.inf, cell_of(errors), "fine"
+        limit = ", ".join(dict.fromkeys(fact.code for fact in trace.assumptions.breaches))
+        begins, reference, otherwise = math.inf, ", ".join(errors), "fine"
     return Verdict(
         verdict="flagged" if limit else otherwise,
         error=errors[worst],
@@ -359,7 +332,7 @@ def _engine(condition: Condition, run: Run, trace: Trace) -> Verdict:
         name, other = "half_step", Run(run.engine, run.support, 0.5 * _step(condition), **run.settings)
     else:
         name, other = "model", _tighter(run.own_model, _REFERENCE)
-    reference = simulate_run(case, other, sample_step=condition.sample_step)
+    reference = _simulate(case, other, condition)
     if reference.outcome == "failed":
         return Verdict(verdict="no reference", reference=name, until=0.0)
     # a fall after the run is no concern of it but for its outcome: it multiplies every difference
@@ -395,11 +368,10 @@ def _energy_error(trace: Trace) -> float:
 def _tilt_error(reference: Trace, trial: Trace, until: float = math.inf) -> tuple[float, float]:
     """Largest difference of the tilt up to a time [alpha], and when it exceeds `FINE` [s]."""
     case = trial.case
-    pair = make_pair(case.cylinder, reference, trial)
-    within = pair.time <= min(until, case.length)
-    off = np.abs(pair.tilt_difference)[within]
+    time = reference.time[reference.time <= min(until, case.length, trial.time[-1] + 1e-9)]
+    off = np.abs(np.interp(time, trial.time, trial.tilt) - reference.tilt[: len(time)]) / case.cylinder.alpha
     error = float(off.max(initial=0.0))
-    begins = float(pair.time[within][off > FINE].min(initial=math.inf))
+    begins = float(time[off > FINE].min(initial=math.inf))
     if reference.outcome != trial.outcome and math.isinf(until):
         apart = abs(reference.peak_tilt - trial.peak_tilt) / case.cylinder.alpha
         if apart > error:

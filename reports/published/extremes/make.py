@@ -1,16 +1,18 @@
-"""The report on the extremes: counts of the verdicts, and what limits each run that is not fine."""
+"""Extremes: every method under every condition, and the page; see script.py beside its folder."""
 
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Mapping
+from pathlib import Path
 
 import pandas as pd
 
-from rockwobble.models.diagnostic import CODES, codes_in
-from rockwobble.studies.extremes import FINE, Extremes
-
-from .page import Page
+from rockwobble.models import Diagnostic
+from rockwobble.reports.pages.page import Page
+from rockwobble.reports.published.extremes.scan import FINE, Extremes, measure
+from rockwobble.reports.published.script import run
 
 # verdict: the word in a table
 WORDS = {
@@ -21,6 +23,8 @@ WORDS = {
     "caught": "caught",
     "silent": "WRONG",
 }
+# no spin in a plane, an engine that holds no standing cylinder, a time step too long for its contact
+_REFUSALS = ("planar motion has no rolling_rate", "cannot uplift", "time_step must be at most")
 _REFERENCES = {
     "exact_turn": "exact angle of turn",
     "energy": "energy kept",
@@ -46,13 +50,13 @@ def page_of(found: Extremes) -> Page:
                 "method": row["method"],
                 "verdict": WORDS[row["verdict"]],
                 "error": row["error"],
-                "reference": ", ".join(_REFERENCES[each] for each in codes_in(row["reference"])),
+                "reference": ", ".join(_REFERENCES[each] for each in _codes(row["reference"])),
             }
             for row in runs.to_dict("records")
         ],
         "about": found.manifest,
     }
-    return Page(name="extremes", template="extremes", values=values)
+    return Page(name="extremes", template=Path(__file__).with_name("page.md.j2"), values=values)
 
 
 def _answer(counts: Mapping[str, int], total: int) -> str:
@@ -90,7 +94,25 @@ def _not_fine(runs: pd.DataFrame) -> list[dict[str, object]]:
                 "error": alike["error"].max(),
                 # never is a dash
                 **{name: alike[name].replace(math.inf, math.nan).min() for name in ("begins", "until")},
-                "limit": refusal or "; ".join(CODES[code][1] for code in codes_in(str(limit))),
+                "limit": refusal or "; ".join(Diagnostic(code=code).meaning for code in _codes(str(limit))),
             }
         )
     return rows
+
+
+def _codes(cell: str) -> list[str]:
+    return cell.split(", ") if cell else []
+
+
+def claims(found: Extremes) -> list[str]:
+    """Return the runs that are wrong in silence, or refused for a reason that no request of the scan has."""
+    return [
+        f"{row['extreme']} {row['value']}, {row['method']}: {row['verdict']} {row['refusal']}"
+        for row in found.extremes.to_dict("records")
+        if row["verdict"] == "silent"
+        or (row["verdict"] == "refused" and not any(each in row["refusal"] for each in _REFUSALS))
+    ]
+
+
+if __name__ == "__main__":
+    sys.exit(run(__file__, Extremes, lambda _: measure(), page_of, claims=claims))

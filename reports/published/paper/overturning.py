@@ -13,12 +13,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.studies.plans import SpectrumPlan
-from rockwobble.studies.spectrum.maps import TiltMaps
-from rockwobble.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
-from rockwobble.studies.spectrum.study import planar_contrast, unconservative_from
-
-from . import Statement, verdict_of
+import rockwobble as rw
+from rockwobble.reports.published.paper.statements import Statement, verdict_of
+from rockwobble.studies import OverturningSpectrum
 
 Array = NDArray[np.float64]
 
@@ -28,28 +25,29 @@ _PROBES = 5  # random intensities below each lowest, for each intensity of the g
 _EVERY = 0.95  # share of the sizes that may pass for all of them: single ones are a matter of chance
 
 
-def plan_of(grid: int) -> SpectrumPlan:
-    """Return the plan of the figure: `grid` sizes and as many intensities."""
-    return SpectrumPlan(
-        semidiagonals=np.linspace(*SpectrumPlan.SIZES[:2], grid).tolist(),
-        intensities=np.linspace(*SpectrumPlan.INTENSITIES[:2], grid).tolist(),
+def spectrum_of(grid: int) -> OverturningSpectrum:
+    """Run `grid` sizes at as many intensities."""
+    return rw.spectrum(
+        TAN_ALPHA,
+        rw.el_centro_1940(),
+        semidiagonals=np.linspace(0.5, 30.0, grid).tolist(),
+        intensities=np.linspace(1.0, 12.0, grid).tolist(),
         probes=_PROBES * grid,
     )
 
 
-def lowest_on_axes(spectrum: TiltMaps, *, own: bool) -> Mapping[str, Array]:
+def lowest_on_axes(spectrum: OverturningSpectrum, *, own: bool) -> Mapping[str, Array]:
     """Return the lowest overturning intensities (n_R,) of each series, over its own peak or that of all."""
     return {
-        name: lowest * (spectrum.component_share(name) if own else 1.0)
-        for name, lowest in spectrum.lowest.items()
+        name: lowest * (spectrum.maps.component_share(name) if own else 1.0)
+        for name, lowest in spectrum.maps.lowest.items()
     }
 
 
-def statements(spectrum: TiltMaps) -> list[Statement]:
+def statements(spectrum: OverturningSpectrum) -> list[Statement]:
     """Compare the paper's statements on the figure with the spectrum, on both pairs of axes."""
-    large = spectrum.semidiagonals >= LARGE
-    contrast = planar_contrast(spectrum)
-    every, upper = contrast.iloc[-1], contrast.iloc[-2]
+    large = spectrum.maps.semidiagonals >= LARGE
+    every, upper = spectrum.contrast.iloc[-1], spectrum.contrast.iloc[-2]
     cells = {"from": unconservative_from(spectrum)}
     cells |= {name: float(every[name]) for name in ("unconservative", "conservative")}
     cells |= {
@@ -70,14 +68,22 @@ def statements(spectrum: TiltMaps) -> list[Statement]:
     return [Statement(figure=6, name=name, numbers=n, verdict=verdict) for name, n, verdict in found]
 
 
+def unconservative_from(spectrum: OverturningSpectrum) -> float:
+    """Return the size [m] from which on 3D has the lower overturning intensity at every size; NaN if none."""
+    maps = spectrum.maps
+    space, x, y = (np.nan_to_num(each, nan=math.inf) for each in maps.lowest.values())
+    higher = ~(space < np.minimum(x, y) - maps.search_step)
+    if higher[-1]:
+        return math.nan
+    return float(maps.semidiagonals[np.flatnonzero(higher)[-1] + 1 if higher.any() else 0])
+
+
 def _lower(lowest: Mapping[str, Array], chosen: NDArray[np.bool_]) -> dict[str, float]:
     """Return at how many sizes the curve of 3D is the lowest, and how much lower it is in the median.
 
     The ratio is of the lower planar curve to that of 3D; above 1 planar analysis is unconservative.
     """
-    space, x, y = (
-        np.nan_to_num(lowest[name][chosen], nan=math.inf) for name in (SPATIAL, PLANAR_X, PLANAR_Y)
-    )
+    space, x, y = (np.nan_to_num(each[chosen], nan=math.inf) for each in lowest.values())
     plane = np.minimum(x, y)
     known = np.isfinite(space) | np.isfinite(plane)
     lower = (space < plane)[known]

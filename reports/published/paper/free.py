@@ -12,10 +12,8 @@ from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, InitialState, RockingBody, Trace
-from rockwobble.models.cylinder import PIER
-
-from ..figures.thinning import kept_samples
-from . import Statement, verdict_of
+from rockwobble.reports.figures.thinning import kept_samples
+from rockwobble.reports.published.paper.statements import PIER, Statement, verdict_of
 
 Array = NDArray[np.float64]
 

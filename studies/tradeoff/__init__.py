@@ -1,1 +1,0 @@
-"""Trade-off of speed and accuracy of the reduced models, other solvers and the engines."""
