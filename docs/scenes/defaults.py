@@ -25,16 +25,19 @@ def mujoco() -> Result:
     return mujoco_can.next_largest_tilt(PLAIN)
 
 
-def bullet() -> Result:
+def bullet(friction: float = 0.5) -> Result:
     """Friction of 0.5 on both, 1/240 s steps."""
     import bullet_can
     import pybullet
 
     def scene() -> int:
         pybullet.setGravity(0.0, 0.0, -9.81)
-        pybullet.createMultiBody(0.0, pybullet.createCollisionShape(pybullet.GEOM_PLANE))
+        ground = pybullet.createMultiBody(0.0, pybullet.createCollisionShape(pybullet.GEOM_PLANE))
         shape = pybullet.createCollisionShape(pybullet.GEOM_CYLINDER, radius=1.0, height=4.0)
-        return int(pybullet.createMultiBody(1.0, shape))
+        can = pybullet.createMultiBody(1.0, shape)
+        for body in (ground, can):
+            pybullet.changeDynamics(body, -1, lateralFriction=friction)
+        return int(can)
 
     with mock.patch.multiple(bullet_can, scene=scene, STEP=1 / 240):
         return bullet_can.next_largest_tilt()

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from accuracy_table import is_stated
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, InitialState
@@ -23,18 +24,17 @@ def random_release(rng):
     return cylinder, InitialState(tilt, rolling_rate=spin)
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_period_and_turn_to_1e_8(seed):
-    rng = np.random.default_rng(seed)
-    for _ in range(COUNT // 4):
+def test_period_and_turn_are_as_close_as_the_readme_says():
+    rng, errors = np.random.default_rng(0), []
+    for _ in range(COUNT):
         cylinder, initial = random_release(rng)
         exact = reduced.free_response(cylinder, initial)
         response = reduced.simulate(
             Case(cylinder, initial=initial, duration=1.01 * exact.period), rtol=1e-10, rest_tilt=0.0
         )
         maxima = response.extrema[response.extrema[:, 3] > 0.0]
-        assert maxima[1, 0] == pytest.approx(exact.period, rel=1e-8), (cylinder, initial)
-        assert maxima[1, 2] == pytest.approx(exact.angle_of_turn, rel=1e-8), (cylinder, initial)
+        errors += [maxima[1, 0] / exact.period - 1.0, maxima[1, 2] / exact.angle_of_turn - 1.0]
+    assert is_stated(np.max(np.abs(errors)), f"{COUNT} random cylinders", r"within (\S+)")
 
 
 def test_steady_wobble_turns_at_the_exact_rate():
