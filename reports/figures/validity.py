@@ -20,7 +20,7 @@ from rockwobble.studies.validity.limits import (
     contrasts,
     models_apart,
 )
-from rockwobble.studies.validity.shaken import FREE, INTENSITY, PERTURBED, STRONG
+from rockwobble.studies.validity.measurements import FREE, INTENSITY, PERTURBED, STRONG
 from rockwobble.studies.validity.study import Validity
 
 from .heat import Gap, Heat, Shades, contour, names

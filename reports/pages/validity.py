@@ -5,29 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-import numpy as np
 import pandas as pd
 
 from rockwobble.models.support import SUPPORTS
 from rockwobble.studies.validity.limits import cells, contrasts, damping, limits_of, needs
+from rockwobble.studies.validity.measurements import FREE, INTENSITY
 from rockwobble.studies.validity.plan import LARGEST_PEAK
-from rockwobble.studies.validity.shaken import FREE, INTENSITY
 from rockwobble.studies.validity.study import Validity
 
-from ..figures.validity import METHODS, has_walls, pictures
-from .limit_counts import faint_factors, with_counts
-from .limits_in_words import (
-    agreement_rows,
-    clearance_words,
-    force_findings,
-    free_findings,
-    record_findings,
-    requirements,
-    ring_findings,
-    scope,
-    verdict_words,
-)
+from ..figures.validity import METHODS, pictures
 from .page import Page
+from .wording import sentence
 
 _NEEDS = {
     "friction": "friction over tan α",
@@ -71,32 +59,36 @@ _WITH_TENDON: Mapping[str, object] = {
 
 def page_of(found: Validity) -> Page:
     """Return the report."""
-    tables, structure, limits = (
-        found.tables,
-        found.structure,
-        with_counts(limits_of(found.tables), found.tables),
-    )
+    tables, structure, limits = found.tables, found.structure, limits_of(found.tables)
+    findings = found.findings()
+
+    def said(group: str) -> list[str]:
+        lines = (sentence(each) for each in findings.of(f"limit_{group}"))
+        return [f"{line[:1].upper()}{line[1:]}." for line in lines]
+
     drawn = pictures(found)
     names = [picture.name for picture in drawn]
     tendon, slab = structure.tendon is not None, bool(structure.slab_mass_ratio)
     values: dict[str, object] = {
         "limits": limits,
-        "scope": list(scope(structure)),
-        "verdict": verdict_words(limits),
-        "clearance": "" if slab else clearance_words(limits),
-        "requirements": list(requirements(limits)),
+        "scope": said("scope"),
+        "verdict": " ".join(said("model")),
+        "clearance": " ".join(said("clearance")),
+        "requirements": [
+            {"need": sentence(each, short=True), "limit": sentence(each)}
+            for each in findings.of("limit_requirement")
+        ],
         "contrasts": _contrasts(contrasts(tables)),
-        "record_findings": list(record_findings(limits, slab=slab)),
+        "record_findings": said("records"),
         "summary": _summary(cells(tables)),
-        "faint": faint_factors(tables),
         **(_WITH_TENDON if tendon else _WITHOUT_TENDON),
         "map_pictures": [name for name in ("bias", "spread", "sensitivity") if name in names],
-        "trace_rows": list(agreement_rows(limits["traces"], tendon=tendon)),
-        "free_findings": list(free_findings(limits["free_response"], tendon=tendon)),
+        "trace_rows": _agreement_rows(limits["traces"], tendon=tendon),
+        "free_findings": said("release"),
         "force_pictures": [
             name for name in ("need-friction", "need-contact", "need-moment", "slip") if name in names
         ],
-        "force_findings": list(force_findings(limits, slab=slab)),
+        "force_findings": said("force"),
         **_needs(needs(tables)),
         "damping": damping(tables).to_dict("records"),
         "ranges": {
@@ -117,7 +109,7 @@ def page_of(found: Validity) -> Page:
         values |= {
             "ring_level": INTENSITY * structure.uplift,
             "rings": _rings(tables["rings"]),
-            "ring_findings": list(ring_findings(limits["rings"], _worst(tables["rings"]))),
+            "ring_findings": said("ring"),
         }
     return Page(name="validity", template="validity", values=values, pictures=drawn)
 
@@ -195,12 +187,14 @@ def _rings(table: pd.DataFrame) -> list[dict[str, object]]:
     return rows
 
 
-def _worst(table: pd.DataFrame) -> dict[str, object]:
-    """The recess with clearance whose peak is farthest from that of the recess model."""
-    shaken = table[has_walls(table) & (table["motion"] != FREE) & (table["outcome"] != "failed")]
-    ratio = (shaken["peak"] / shaken["recess_peak"]).to_numpy(dtype=float)
-    with np.errstate(divide="ignore"):
-        worst = shaken.iloc[int(np.argmax(np.maximum(ratio, 1.0 / ratio)))]
-    return {str(name): value for name, value in worst.items()} | {
-        "ratio": worst["peak"] / worst["recess_peak"]
-    }
+def _agreement_rows(traces: Mapping[str, float], *, tendon: bool) -> list[dict[str, object]]:
+    """Agreement times of the engine with each model; a tendon is known to the recess model alone."""
+    compared = [("recess", "ideal recess", "recess"), ("flat", "flat ground", "recess")]
+    compared.append(("own", "flat ground", "flat ground"))
+    counted = ("whole", "runs")
+    return [
+        {"run": f"engine, {place}", "model": model, "low": traces[name], "high": traces[f"{name}_longest"]}
+        # what is expected to part is not counted
+        | {each: traces[f"{name}_{each}"] for each in counted if name != "flat"}
+        for name, place, model in compared[: 1 if tendon else 3]
+    ]

@@ -16,9 +16,9 @@ from rockwobble.compare.metrics.statistics import MARGIN, quantile_interval
 from rockwobble.models.support import FLAT, RECESS, RECESSES_FIRST, RING, SUPPORTS
 from rockwobble.models.trace import NO_PEAK
 
+from .measurements import FREE, HALVED, PERTURBED
 from .plan import EL_CENTRO, RELEASE
 from .plan import POINT as POINT_NAMES
-from .shaken import FREE, HALVED, PERTURBED
 
 Tables = Mapping[str, "pd.DataFrame"]
 Array = NDArray[np.float64]
@@ -130,7 +130,14 @@ def records(tables: Tables) -> Numbers:
         for verdict in ("within", "beyond"):
             numbers[f"{name}_{verdict}"] = float((own["verdict"] == verdict).sum())
     touched = runs[(runs["method"] != HALVED) & (runs["contact_time"] > 0.0)]
+    standing = column(runs[(runs["method"] == RING) & (runs["outcome"] == "stands")], "peak")
+    strays = table[table["against"] == RECESS.model]
     return numbers | {
+        "undecided": float((runs["outcome"] == "undecided").sum()),
+        "ring_standing": float(len(standing)),
+        "ring_passed": float((standing >= 1.0).sum()),
+        "ring_passed_largest": largest(standing),
+        "strays_bounded": float(np.isfinite(column(strays, "ratio_95_high")).sum()),
         "touched": float(len(touched)),
         "ring_loss_worst": largest(column(touched, "loss")),
         "failed": float(runs["outcome"].isin(NO_PEAK).sum()),
@@ -287,6 +294,8 @@ def contact(tables: Tables) -> Numbers:
         "runs": float(len(moving)),
         "free_least": float(in_free.min()),
         "free_lost_from": limit_of(column(free, "tan_alpha"), in_free > 0.0)[1],
+        "shaken_least": least(normal),
+        "free_least_tan_alpha": float(column(free, "tan_alpha")[int(np.nanargmin(in_free))]),
     }
 
 
@@ -350,6 +359,7 @@ def _confirmations(table: pd.DataFrame) -> Numbers:
         "confirmed": float(confirms.sum()),
         "contradicted": float(contradicts.sum()),
         "points": float(len(resolved)),
+        "releases": float(len(resolved[list(RELEASE)].drop_duplicates())),
     }
 
 
@@ -400,12 +410,21 @@ def rings(tables: Tables) -> Numbers:
         "rolled": largest(column(shaken, "rolled_out")),
         "flat_rolled": largest(column(by_support[FLAT], "rolled_out")),
         "twist": largest(np.abs(column(shaken, "twist"))),
+        "free_twist": largest(np.abs(column(ring[ring["motion"] == FREE], "twist"))),
     }
     for support in (each for each in RECESSES_FIRST if each in by_support):  # stored tables know no new one
         ratio = quotient(by_support[support])
         numbers |= {f"{support}_least": least(ratio), f"{support}_largest": largest(ratio)}
     halved = np.abs(quotient(shaken, "halved_peak", "peak") - 1.0)
     best = shaken.groupby("clearance")["at_end"].max()
+    # the one whose peak is farthest from that of the recess model; walls of inclination 0 lean by alpha
+    known = shaken[shaken["outcome"] != "failed"]
+    with np.errstate(divide="ignore"):
+        far = int(np.nanargmax(np.abs(np.log(quotient(known)))))
+    names = ("tan_alpha", "turn", "clearance", "inclination", "friction")
+    numbers |= {f"worst_{name}": float(known[name].iloc[far]) for name in names}
+    numbers["worst_inclination"] = numbers["worst_inclination"] or math.nan
+    numbers["worst_ratio"] = float(quotient(known)[far])
     return numbers | {
         "halved_alike": float((halved <= SMALL).sum()),
         "halved_known": float(np.isfinite(halved).sum()),
@@ -432,7 +451,14 @@ def soft_contact(tables: Tables) -> Numbers:
     off = np.abs(column(known, "ratio") - 1.0)
     held, left = limit_of(constant, off <= SMALL)
     within = constant <= held  # none where it is NaN
+    stiff = table[column(table, "time_constant") <= held]
+    failed = stiff[stiff["failed"]]
     return {
+        "held_runs": float(len(stiff)),
+        "held_ended": float(len(stiff) - len(failed)),
+        "failed_up_to": largest(column(failed, "softness")),
+        "failed_damping_least": least(column(failed, "damping")),
+        "failed_damping_largest": largest(column(failed, "damping")),
         "held_up_to": least(softness[constant == held]),
         "left_from": least(softness[constant == left]),
         "held_peak": largest(off[within]),

@@ -19,10 +19,22 @@ from rockwobble.compare.storage.provenance import (
     source_digest,
 )
 from rockwobble.compare.storage.results import Results
+from rockwobble.models.finding import Findings
 from rockwobble.models.support import RECESSES_FIRST
 
 from ..plans import ValidityPlan
+from .findings import findings_of
 from .limits import limits_of, records
+from .measurements import (
+    CONTACT,
+    FOLLOWING,
+    FREE_RESPONSE,
+    PEAKS,
+    RECORDS,
+    RINGS,
+    SLIP,
+    VERIFICATION,
+)
 from .plan import (
     ALONE,
     FULL,
@@ -37,8 +49,6 @@ from .plan import (
     shaken_case,
     source_of,
 )
-from .releases import FREE_RESPONSE, SLIP, VERIFICATION
-from .shaken import CONTACT, FOLLOWING, PEAKS, RECORDS, RINGS
 
 PARTS: Mapping[str, Part] = {
     part.name: part for part in (FREE_RESPONSE, VERIFICATION, PEAKS, SLIP, RINGS, CONTACT, FOLLOWING, RECORDS)
@@ -73,6 +83,10 @@ class Validity(Results, kind=KIND):
     def structure(self) -> Structure:
         """What every column carries, and what holds it down."""
         return Structure(**{each.name: self.facts.get(each.name, 0.0) for each in fields(Structure)})
+
+    def findings(self) -> Findings:
+        """Return what the limits say of the model."""
+        return findings_of(limits_of(self.tables), self.structure)
 
     def headline(self) -> dict[str, Number]:
         """Return the ratios of the peaks of the engine to those of the model, over the records."""

@@ -18,8 +18,8 @@ from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.runs.progress import Lost
 from rockwobble.compare.runs.scheduler import run_tasks
 from rockwobble.models import Case, Run, Trace
+from rockwobble.studies.validity.measurements import has_room, losses, release_of
 from rockwobble.studies.validity.plan import EL_CENTRO, shaken_case
-from rockwobble.studies.validity.shaken import has_room, losses, release_of
 
 from .console import options_of, tell
 

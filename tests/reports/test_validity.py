@@ -66,10 +66,7 @@ def test_the_headline_says_what_the_records_show(found: Validity) -> None:
     same = many.assign(peak=many["peak"].where(many["method"] != "recess", many["motion"].map(model)))
     document = changed(found, "records", same)
     assert "**In an ideal recess the engine has the model's peak tilt: over 40 records" in document
-    assert (
-        "one record in twenty exceeds the model's by a factor of more than\n"
-        in document.split("## What must hold")[0]
-    )
+    assert "one record in twenty exceeds the model's" in document.split("## What must hold")[0]
     off = same.assign(peak=same["peak"].where(same["method"] != "recess", 1.2 * same["peak"]))
     assert "**The reduced model is not established even in an ideal recess" in changed(found, "records", off)
 
@@ -109,7 +106,7 @@ def test_with_a_tendon_it_is_stated_and_nothing_stands_against_flat_ground(found
     facts = {**found.facts, "tendon_prestress": 0.5, "tendon_stiffness": 2.0}
     page = page_of(dataclasses.replace(found, tables=tables, facts=facts))
     document = page.markdown()
-    assert "prestress 0.5 weights of a column, stiffness 2 weights\nper base radius" in document
+    assert "prestress 0.5 weights of a column, stiffness 2 weights per base radius" in document
     assert "raises uplift to 1.5 g tan α" in document
     assert "carries at most 1.25 weights of a column" in document
     assert "rolling out" not in document.split("## Free response")[1].split("## Friction")[0]

@@ -10,7 +10,7 @@ from benchmarks.ring_losses import against_models
 
 from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.models import Case, Cylinder, InitialState, Run
-from rockwobble.studies.validity.shaken import has_room, losses
+from rockwobble.studies.validity.measurements import has_room, losses
 
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
 # error of an engine at its default step, in the tilt against its own model, over 1.2 s

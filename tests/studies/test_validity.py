@@ -36,6 +36,7 @@ from rockwobble.studies.validity.limits import (
     quantile_reached,
     vertical,
 )
+from rockwobble.studies.validity.measurements import FREE, HALVED
 from rockwobble.studies.validity.plan import (
     EL_CENTRO,
     FULL,
@@ -47,7 +48,6 @@ from rockwobble.studies.validity.plan import (
     shaken_case,
     source_of,
 )
-from rockwobble.studies.validity.shaken import FREE, HALVED
 from rockwobble.studies.validity.study import PARTS, measure_all, measure_validity, validity_of
 
 pytestmark = pytest.mark.slow

@@ -1,17 +1,17 @@
-"""Shaken cylinders: peaks over records, agreement times, soft contact, and recesses with clearance."""
+"""The measurements: free response, peaks over records, agreement times, contact, recesses with clearance."""
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, replace
 from functools import partial
 
 import numpy as np
 
-from rockwobble import reduced
+from rockwobble import multibody, reduced
 from rockwobble.compare.comparison.driver import comparison_row
-from rockwobble.compare.metrics.pair import FloatArray
+from rockwobble.compare.metrics.pair import FloatArray, make_pair, tilt_rms
 from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
 from rockwobble.models.case import RECESS_MODEL, REDUCED_MODELS
@@ -29,6 +29,7 @@ from .plan import (
     LARGEST_PEAK,
     POINT,
     REFERENCE_SIZE,
+    RELEASE,
     Extent,
     Inputs,
     Part,
@@ -44,6 +45,151 @@ from .plan import (
     release_case,
     shaken_case,
 )
+
+_FREE_RTOL = 1e-10
+_CYCLES = 10.0  # over which the flat-ground model may gather tilt
+_MAXIMUM = 1.0  # in the fourth column of `Trace.extrema`
+
+
+def measure_free_response(
+    tan_alpha: float, releases: Sequence[float], spins: Sequence[float], structure: Structure = ALONE
+) -> list[Row]:
+    """Return one row for each release and spin.
+
+    The columns: tan_alpha, release, spin; period [s] and turn [rad] from tilt maximum to next maximum, exact
+    (recess) and integrated (flat_period, flat_turn; NaN where it overturns first), flat_peak, the
+    largest tilt of the flat-ground model in ten periods over the release, all three NaN with a tendon;
+    `needs_of` the recess model in one period.
+    """
+    return [_release_row(tan_alpha, release, spin, structure) for release in releases for spin in spins]
+
+
+def _release_row(tan_alpha: float, release: float, spin: float, structure: Structure) -> Row:
+    case = release_case(tan_alpha, release, spin, structure=structure)
+    assert case.initial is not None
+    exact = reduced.free_response(case.cylinder, case.initial, tendon=case.tendon)
+    period = turn = peak = math.nan
+    if not case.anchor:  # which the flat-ground model does not have
+        flat = reduced.simulate(replace(case, duration=_CYCLES * exact.period), support=FLAT, rtol=_FREE_RTOL)
+        (period, turn), peak = next_maximum(flat), flat.peak_tilt
+    return {
+        "release": release,
+        "spin": spin,
+        "period": exact.period,
+        "flat_period": period,
+        "turn": exact.angle_of_turn,
+        "flat_turn": turn,
+        "flat_peak": peak / case.initial.tilt,
+        **needs_of(reduced.simulate(case, rtol=_FREE_RTOL)),
+    }
+
+
+def next_maximum(trace: Trace) -> tuple[float, float]:
+    """Return time and rolling angle from the release, a tilt maximum, to the next; NaN if there is none."""
+    maxima = trace.extrema[trace.extrema[:, 3] == _MAXIMUM]
+    if len(maxima) < 2:
+        return math.nan, math.nan
+    return float(maxima[1, 0] - maxima[0, 0]), float(maxima[1, 2] - maxima[0, 2])
+
+
+FREE_RESPONSE = Part(
+    name="free_response",
+    tasks=lambda extent: grid(tan_alpha=extent.tan_alphas, releases=[extent.releases], spins=[extent.spins]),
+    measure=measure_free_response,
+    keys=("tan_alpha",),
+    cost=lambda releases, spins, **_: 0.02 * len(releases) * len(spins),
+    engine="",
+)
+
+
+_VERIFIED_PERIODS = 2.2  # the second maximum, and a little more, so that it is seen to be one
+_FRICTION = 10.0  # whatever the motion needs: friction is another limit
+
+
+def measure_verification(
+    tan_alpha: float, release: float, spin: float, structure: Structure = ALONE
+) -> list[Row]:
+    """Return a row for each support that has a model: the first pass by model and engine, and the tilts.
+
+    The columns: tan_alpha, release, spin, support; turn, engine_turn [rad], half_period, engine_half_period
+    [s] to the first tilt minimum; tilt_rms over alpha; resolved, whether the contact of the engine resolves
+    the pass; outcome.
+    """
+    case = release_case(tan_alpha, release, spin, _VERIFIED_PERIODS, structure=structure)
+    case = replace(case, friction=_FRICTION)
+    rows: list[Row] = []
+    for support in modelled(structure):
+        trial = Run(DEFAULT_ENGINE, support)
+        own = simulate_run(case, Run(None, trial.own_model.support, rtol=_FREE_RTOL))
+        run = simulate_run(case, trial)
+        none = {"time": math.nan, "angle_of_turn": math.nan, "resolved": False}
+        first, own_first = (next(iter(each.passes.to_dict("records")), none) for each in (run, own))
+        rows.append(
+            {
+                "support": support,
+                "turn": next_maximum(own)[1],
+                "engine_turn": first["angle_of_turn"],
+                "half_period": own_first["time"],
+                "engine_half_period": first["time"],
+                "tilt_rms": tilt_rms(make_pair(case.cylinder, own, run)),
+                "resolved": first["resolved"],
+                "outcome": run.outcome,
+            }
+        )
+    return rows
+
+
+VERIFICATION = Part(
+    name="verification",
+    tasks=lambda extent: inputs_at(RELEASE, extent.engine_points),
+    measure=measure_verification,
+    keys=RELEASE,
+    cost=lambda **_: 1.5,
+)
+
+
+_SLIP_PERIODS = 1.1  # one pass: the friction of the next is the same
+
+
+def measure_slip(
+    tan_alpha: float, release: float, spin: float, shares: Sequence[float], structure: Structure = ALONE
+) -> list[Row]:
+    """Return a row for each friction, as a share of what the recess model needs.
+
+    The columns: tan_alpha, release, spin, needed, share, friction, slip of the engine in a recess in one
+    period [b], tilt_rms against the recess model over alpha, outcome. No row where the model loses contact:
+    no friction is enough.
+    """
+    period = release_case(tan_alpha, release, spin, structure=structure)
+    needed = needs_of(reduced.simulate(period, rtol=_FREE_RTOL))["friction"]
+    if not math.isfinite(needed):
+        return []
+    case = release_case(tan_alpha, release, spin, _SLIP_PERIODS, structure=structure)
+    recess = reduced.simulate(case, rtol=_FREE_RTOL)
+    rows: list[Row] = []
+    for share in shares:
+        run = multibody.simulate(replace(case, friction=share * needed))
+        rows.append(
+            {
+                "needed": needed,
+                "share": share,
+                "friction": share * needed,
+                "slip": float(run.slip[-1]) / case.cylinder.base_radius,
+                "tilt_rms": tilt_rms(make_pair(case.cylinder, recess, run)),
+                "outcome": run.outcome,
+            }
+        )
+    return rows
+
+
+SLIP = Part(
+    name="slip",
+    tasks=lambda extent: inputs_at(RELEASE, extent.slip_points, shares=extent.slip_shares),
+    measure=measure_slip,
+    keys=RELEASE,
+    cost=lambda shares, **_: 0.5 * len(shares),
+)
+
 
 # the record of the perturbed copy is stronger by this: no record is known better, and no model can be asked
 # for more than what it changes
@@ -292,7 +438,7 @@ def _rings_tasks(extent: Extent) -> Iterable[Inputs]:
     supports: list[Inputs] = [
         {"support": support, **walls}
         for support in _supports()
-        for walls in (map(dataclasses.asdict, extent.rings) if support.walls else [none])
+        for walls in (map(asdict, extent.rings) if support.walls else [none])
     ]
     for problem in grid(
         tan_alpha=extent.ring_tan_alphas, turn=extent.ring_turns, length=[extent.ring_length]
@@ -324,7 +470,7 @@ def measure_rings(
         walls = {"ring_clearance": clearance, "ring_friction": friction}
         walls |= {"ring_inclination": inclination} if inclination > 0.0 else {}
     if motion == FREE:
-        case = dataclasses.replace(release_of(tan_alpha, turn, length), tendon=structure.tendon)
+        case = replace(release_of(tan_alpha, turn, length), tendon=structure.tendon)
     else:
         strong = INTENSITY * structure.uplift
         case = shaken_case(
