@@ -57,10 +57,10 @@ _LIMITS = " ".join(
         "contact_lost",
     )
 )
-_WALLS = "--support recess --support flat --support ring --set ring_clearance=0.01"
+_SUPPORTS = "--support recess --support flat --support ring"
 # folder: command, or script with its options
 STUDIES = {
-    "compare": f"compare {_WALLS}",
+    "compare": f"compare {_SUPPORTS}",
     "paper": "make.py",
     "spectrum": "spectrum",
     "advice/pier": "advise",
@@ -69,7 +69,7 @@ STUDIES = {
     "ensemble/p695-2": "ensemble --p695 --peak 2",
     "ensemble/p695-3.5": "ensemble --p695 --peak 3.5 --engine mujoco",
     "ensemble/synthetic-3": "ensemble --synthetic 20 --peak 3",
-    "ensemble/copies": f"ensemble --duration 20 {_WALLS}",
+    "ensemble/copies": f"ensemble --duration 20 {_SUPPORTS}",
     "fragility/p695": f"fragility --p695 {_BODIES} --friction 3 --step-factor 8 {_ENGINES} {_LIMITS}",
     # the control: engines whose numbers hold at half the step
     "fragility/half-step": f"fragility --p695 {_BODIES} --friction 3 --step-factor 4 "
