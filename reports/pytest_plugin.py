@@ -90,7 +90,7 @@ class CertificateItem(pytest.Item):
 
     def runtest(self) -> None:
         """Repeat the fingerprint, and raise if it changed."""
-        from rockwobble.compare.certificate import read_certificate, verify
+        from rockwobble.compare.check.baseline import read_certificate, verify
 
         verdict = verify(read_certificate(self.certificate))
         if verdict.exit_code:

@@ -191,6 +191,8 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
     ),
 }
 # of an engine that nobody has named: what a version of it may change, in a few seconds
+# groups whose results become the claims of a certificate
+CLAIMING = tuple(group for group in GROUPS if group not in baseline.NOT_CLAIMING)
 _OF_ENGINES = {name: GROUPS[name] for name in ("exact", "conserved", "agreement", "baseline")}
 # of one that is an extra: every field, on its first support
 _OF_EXTRAS = {"agreement": (dataclasses.replace(GROUPS["agreement"][0], supports=()),)}

@@ -314,11 +314,11 @@ def certify(
     Example: rockwobble certify --engine mujoco --out mujoco.json
     """
     with interruptible(), user_input():
-        from rockwobble.compare.certificate import CLAIMING, models, write_certificate
-        from rockwobble.compare.certificate import certify as make
         from rockwobble.compare.check import engine as engine_subject
         from rockwobble.compare.check import reduced_model, run_checks
-        from rockwobble.compare.check.groups import chosen_checks
+        from rockwobble.compare.check.baseline import certify as make
+        from rockwobble.compare.check.baseline import models, write_certificate
+        from rockwobble.compare.check.groups import CLAIMING, chosen_checks
         from rockwobble.compare.runs.progress import stages
         from rockwobble.compare.storage.files import require_file
         from rockwobble.models.number_checks import require_one_of
@@ -366,8 +366,8 @@ def verify(
     Example: rockwobble verify mujoco.json
     """
     with interruptible(), user_input():
-        from rockwobble.compare.certificate import read_certificate
-        from rockwobble.compare.certificate import verify as verdict_on
+        from rockwobble.compare.check.baseline import read_certificate
+        from rockwobble.compare.check.baseline import verify as verdict_on
         from rockwobble.compare.storage.provenance import other_versions, version_words
 
         stated = read_certificate(certificate)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockwobble.compare.certificate.certificate import read_certificate, subject_of
+from rockwobble.compare.check.baseline import read_certificate, subject_of
 from rockwobble.compare.check.fingerprint import repeat
 from rockwobble.compare.check.verdict import Entry, Sample, compare_entries
 from rockwobble.compare.storage.provenance import package_versions

@@ -19,7 +19,8 @@ from mutation.mutant import Fault, mutated
 from mutation.places import after_assignment, scaled_argument
 
 from rockwobble import reduced
-from rockwobble.compare.certificate import (
+from rockwobble.compare.check import Result, Subject
+from rockwobble.compare.check.baseline import (
     certify,
     claims_of,
     models,
@@ -27,7 +28,6 @@ from rockwobble.compare.certificate import (
     verify,
     write_certificate,
 )
-from rockwobble.compare.check import Result, Subject
 from rockwobble.compare.check.fingerprint import cases_of, fingerprint, repeat, short_cases
 from rockwobble.compare.check.measurement import Bound, at_most, not_run
 from rockwobble.compare.check.verdict import (

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from rockwobble.compare.certificate import read_certificate
 from rockwobble.compare.check import verdict
+from rockwobble.compare.check.baseline import read_certificate
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published" / "certificates" / "reduced.json"
 HEAD: dict[str, Any] = {"kind": "rockwobble certificate", "format": 3, "method": {}}

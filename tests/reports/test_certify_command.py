@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-import rockwobble.compare.certificate as certificate_package
 from rockwobble.compare.check import Result, Subject
+from rockwobble.compare.check import baseline as certificate_package
 from rockwobble.reports.cli.main import main
 
 pytest_plugins = ["pytester"]
