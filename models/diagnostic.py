@@ -22,6 +22,7 @@ FAILURES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "died": ("", "the run ended its process"),
         "step_budget": ("steps", "the steps allowed were used up: the motion chatters near upright"),
         "tolerance": ("", "no step met the tolerance"),
+        "weightless": ("weights", "g + az reached 0: the ground does not carry it, and nothing here applies"),
     }
 )
 # and of every diagnostic

@@ -144,3 +144,18 @@ def quoted(value: object) -> str:
 
 def _in(unit: str) -> str:
     return f" [{unit}]" if unit else ""
+
+
+def require_axis(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    """Array of one dimension of finite numbers that are not negative."""
+    wanted = f"{name} must be a sequence of finite numbers, none negative, got"
+    try:
+        axis = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{wanted} {quoted(values)}") from None
+    if axis.ndim != 1:
+        raise ValueError(f"{wanted} {quoted(values)}")
+    wrong = np.flatnonzero(~(np.isfinite(axis) & (axis >= 0.0)))
+    if wrong.size:
+        raise ValueError(f"{wanted} {axis[wrong[0]]:g} at index {wrong[0]}")
+    return axis

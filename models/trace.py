@@ -13,15 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import plain_json, trace_file
-from .bounds import CLOSED_TILT
+from .bounds import AGREEMENT, CLOSED_TILT
 from .case import Case, Run
 from .diagnostic import Assumptions, Diagnostic, cell_of
+from .mode import REST, ROCKS, ROCKS_AND_SLIDES, ROCKS_IN_PLANE, SLIDES
 from .shown import Shown, line
 from .trace_source import Array, Known, Source, friction_of, no_passes
 
 if TYPE_CHECKING:
     import pandas as pd
 
+# of b: slip, and displacement with a closed base, that is more than the creep of an engine's contact
+_SLIP, _CREEP = 0.01, 1e-3
 NO_PEAK = ("failed", "undecided")  # outcomes of runs of which nobody knows whether they stand
 
 
@@ -83,6 +86,10 @@ class Trace(Shown):
         weight of a column and its share of the slab.
     top_contact_force : ndarray, shape (n, 3)
         In a frame with a slab, of a column on the slab, in weights of its share of the slab, world axes.
+    displacement : ndarray, shape (n, 2)
+        Of the base centre over the ground [m].
+    mode : str
+        "rest", "slides", "rocks", "rocks in one plane" or "rocks and slides"; "" where that is not known.
     friction_needed, top_friction_needed : ndarray, shape (n,)
         Horizontal over normal force at the base, and at the top of a column of a frame [-]; inf where the
         normal force is not positive.
@@ -141,8 +148,8 @@ class Trace(Shown):
     contact_resolution : float
         Smallest minimum tilt of a pass that the engine resolves [rad]: by which contact gives, or by which
         the tilt changes in a few time steps where it is fastest, whichever is more.
-    residual_displacement : float
-        Horizontal distance of the base centre from O at the end [m].
+    peak_displacement, residual_displacement : float
+        Horizontal distance of the base centre from O: the largest, and that at the end [m].
     error_estimate, settled_until : float
         Error of the tilt that the time step leaves [rad], and until when traces of successive steps agree
         [s]; NaN unless the step was sought, the error also where it cannot be known, as of an unsettled run.
@@ -184,6 +191,7 @@ class Trace(Shown):
     wall_time: float = math.nan
     step_count: int = 0
     contact_resolution: float = math.nan
+    peak_displacement: float = math.nan
     residual_displacement: float = math.nan
     error_estimate: float = math.nan
     settled_until: float = math.nan
@@ -198,6 +206,38 @@ class Trace(Shown):
     slip = Late(1)
     wall_contact = Late(1)
     wall_impulse = Late(1)
+
+    def __post_init__(self) -> None:
+        away = np.hypot(*self.displacement.T) if len(self.time) else np.full(1, math.nan)
+        peak = math.nan if self.outcome in NO_PEAK else float(away.max())
+        for name, value in (("peak_displacement", peak), ("residual_displacement", float(away[-1]))):
+            if math.isnan(getattr(self, name)):
+                object.__setattr__(self, name, value)
+
+    @property
+    def displacement(self) -> Array:
+        """Displacement of the base centre over the ground (n, 2) [m]: measured, or by (8) from the mass."""
+        measured = None if self.run.is_model else self.late.get("displacement")
+        if measured is not None:
+            return measured
+        angle = np.where(np.isnan(self.rolling_angle), 0.0, self.rolling_angle)
+        lean = np.sin(self.tilt) * np.stack([np.cos(angle), np.sin(angle)])
+        return np.asarray(self.centre_of_mass[:, :2] - self.case.cylinder.mass_centre_height * lean.T)
+
+    @property
+    def mode(self) -> str:
+        """Mode of motion; of an engine as far as its contact gives: see `models.mode`."""
+        tilt, body = self.peak_tilt, self.case.cylinder
+        if math.isnan(tilt) or not len(self.time):
+            return ""
+        model, b = self.run.is_model, body.base_radius
+        if tilt <= (0.0 if model else CLOSED_TILT * body.alpha):
+            return SLIDES if self.peak_displacement > (0.0 if model else _CREEP * b) else REST
+        if np.nanmax(self.slip, initial=0.0) > _SLIP * b:
+            return ROCKS_AND_SLIDES if tilt >= AGREEMENT * body.alpha else SLIDES
+        largest = self.rolling_angle[int(np.where(np.isnan(self.rolling_angle), -1.0, self.tilt).argmax())]
+        across = np.nan_to_num(self.tilt * np.abs(np.sin(self.rolling_angle - largest)))
+        return ROCKS_IN_PLANE if across.max() <= AGREEMENT * self.tilt.max() else ROCKS
 
     @property
     def open_base(self) -> NDArray[np.bool_]:
@@ -400,10 +440,20 @@ class Trace(Shown):
             "case": self.case.name or str(self.case),
             "run": str(self.run),
             "outcome": f"{self.outcome} at {self.time[-1]:.4g} s" if len(self.time) else self.outcome,
-            "peak tilt": "not known" if math.isnan(self.peak_tilt) else f"{self.peak_tilt / alpha:.4g} alpha",
-            "uplift": "none" if math.isnan(self.uplift_time) else f"{self.uplift_time:.4g} s",
-            "passes": str(len(self.passes)),
+            "mode": self.mode or "not known",
         }
+        if "slides" in self.mode:
+            found["displacement"] = (
+                f"{self.peak_displacement:.4g} m, at the end {self.residual_displacement:.4g} m"
+            )
+        if self.mode != SLIDES:
+            found |= {
+                "peak tilt": "not known"
+                if math.isnan(self.peak_tilt)
+                else f"{self.peak_tilt / alpha:.4g} alpha",
+                "uplift": "none" if math.isnan(self.uplift_time) else f"{self.uplift_time:.4g} s",
+                "passes": str(len(self.passes)),
+            }
         if self.outcome == "stands" and not self.rests:
             found["outcome"] += ", moving"
             if not math.isnan(self.followed_until):

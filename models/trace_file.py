@@ -35,6 +35,8 @@ COLUMNS = {
     "centre_x": ("m", "mass centre, relative to the same point"),
     "centre_y": ("m", "likewise"),
     "centre_z": ("m", "likewise, up"),
+    "displacement_x": ("m", "base centre, relative to the same point"),
+    "displacement_y": ("m", "likewise"),
     "force_x": ("weights", "contact force on the cylinder"),
     "force_y": ("weights", "likewise"),
     "force_z": ("weights", "likewise, up"),
@@ -64,6 +66,7 @@ PASS_COLUMNS = {
 VECTORS = {
     "contact_point": ("contact_x", "contact_y"),
     "centre_of_mass": ("centre_x", "centre_y", "centre_z"),
+    "displacement": ("displacement_x", "displacement_y"),
     "contact_force": ("force_x", "force_y", "force_z"),
     "top_contact_force": ("top_force_x", "top_force_y", "top_force_z"),
 }

@@ -148,9 +148,8 @@ def _merge(pair: Sequence[Trace], order: int, good: int) -> Trace:
         peak_tilt=_number(pair, "peak_tilt", order) if peaks_alike else fine.peak_tilt,
         uplift_time=_number(pair, "uplift_time", order),
         uplift_direction=_limit(_one_branch([np.array(run.uplift_direction) for run in pair]), order),
-        residual_displacement=abs(_number(pair, "residual_displacement", order))
-        if whole
-        else fine.residual_displacement,
+        peak_displacement=math.nan,  # those of the samples
+        residual_displacement=math.nan,
     )
 
 

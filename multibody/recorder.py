@@ -46,7 +46,7 @@ _LEAST_ENERGY = 2e-4
 _ROUNDING = 1e-6  # of a step
 COLUMNS = (
     "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_x", "contact_y",
-    "base_x", "base_y", "x", "y", "z", "energy", "energy_error", "energy_lost", "slip",
+    "x", "y", "z", "energy", "energy_error", "energy_lost", "slip",
     "wall_contact", "wall_impulse", "elongation",
 )  # fmt: skip
 
@@ -211,7 +211,7 @@ class Recorder:
             place = rim(some, later, body)
             return np.column_stack(
                 [time[at], state.tilt[at], state.tilt_rate[at], angle[at], place.rolling_rate,
-                 state.twist[at], place.contact_point, place.base_centre[:, :2], some.position,
+                 state.twist[at], place.contact_point, some.position,
                  state.energy[at], gained[at], lost[at], slip[at], wall_contact[at], wall_impulse[at],
                  elongation[at]]
             )  # fmt: skip

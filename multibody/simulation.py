@@ -230,7 +230,6 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         rest_intervals=np.array(recorder.rests.after_motion(), dtype=float).reshape(-1, 2) * scale.time,
         extrema=_extrema(recorder, scene, scale),
         contact_resolution=resolution,
-        residual_displacement=float(np.hypot(table["base_x"][-1], table["base_y"][-1])) * scale.length,
         **method,
     )
 

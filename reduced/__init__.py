@@ -18,6 +18,7 @@ from .exact import (
 )
 from .problem import REST_TILT, SUPPORTS, balance_tilt_of_case
 from .simulation import simulate
+from .sliding import peak_displacements
 
 # name of each reduced model: the options of `simulate` and `peak_tilts`
 MODELS: Mapping[str, Mapping[str, Any]] = {
@@ -34,6 +35,7 @@ __all__ = [
     "balance_tilt_of_case",
     "free_response",
     "limiting_angle_of_turn",
+    "peak_displacements",
     "peak_tilts",
     "peak_tilts_of_case",
     "planar_quarter_period",

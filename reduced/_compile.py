@@ -198,3 +198,11 @@ def in_memory(entry: Callable[..., object]) -> bool:
 def on_disk(entry: Callable[..., object]) -> bool:
     """Return whether compiled code of `entry` is kept on disk."""
     return bool(cast("Any", entry)._cache._cache_file._load_index())
+
+
+def announce(entry: Callable[..., object], model: str, load: Callable[[], object]) -> None:
+    """Load the compiled code of `entry`, or compile it and say so on standard error: that takes seconds."""
+    if not in_memory(entry):
+        if not on_disk(entry):
+            print(f"rockwobble: compiling the {model} model, once for this installation ...", file=sys.stderr)
+        load()

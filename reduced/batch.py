@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockwobble.models import Case, Cylinder, GroundMotion, Tendon, WobblingFrame
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.cpus import in_threads, usable_cpus
-from rockwobble.models.number_checks import quoted
+from rockwobble.models.number_checks import require_axis
 from rockwobble.models.support import RECESS
 
 from .integration.result import OVERTURNED, IntegrationResult
@@ -58,7 +58,7 @@ def peak_tilts(
     scales : array_like, shape (n_scale,)
         Factors on the motion, not negative [-].
     support, plane, restitution, rtol, rest_tilt
-        As in `simulate`.
+        As in `simulate`, but "flat" has no friction here: for what slides see `peak_displacements`.
     gravity : float, optional
         g [m/s^2].
     slab_mass_ratio : float, optional
@@ -89,7 +89,7 @@ def peak_tilts(
     >>> peaks.shape, float(peaks[0, 0])
     ((1, 2), 0.0)
     """
-    sizes, factors = _axis("semidiagonals", semidiagonals), _axis("scales", scales)
+    sizes, factors = require_axis("semidiagonals", semidiagonals), require_axis("scales", scales)
     cylinders = (Cylinder(semidiagonal=float(size), tan_alpha=tan_alpha) for size in sizes)
     bodies = [
         Problem(
@@ -153,7 +153,7 @@ def peak_tilts_of_case(
     Returns
     -------
     ndarray, shape (n_scale,)
-        Peak tilt [rad]: 0 without uplift, pi/2 if overturned, NaN where the run failed.
+        Peak tilt [rad]: 0 without uplift, as where it slides, pi/2 if overturned, NaN where the run failed.
 
     Raises
     ------
@@ -171,12 +171,14 @@ def peak_tilts_of_case(
     if case.motion is None:
         raise ValueError("scales need a ground motion, got a case without one")
     problem = Problem(case, support=support, plane=plane, rtol=rtol)
+    if problem.slides:
+        return np.zeros(len(require_axis("scales", scales)))
     make_ready(problem.kernel)
 
     def peak(factor: float) -> float:
         return _peak(problem.solve_under(problem.shaking(factor)))
 
-    factors = [float(factor) for factor in _axis("scales", scales)]
+    factors = [float(factor) for factor in require_axis("scales", scales)]
     return np.array(list(in_threads(peak, factors, workers=workers)))
 
 
@@ -184,17 +186,3 @@ def _peak(result: IntegrationResult) -> float:
     if result.status == OVERTURNED:
         return OVERTURNED_TILT
     return result.peak if result.status < OVERTURNED else math.nan
-
-
-def _axis(name: str, values: ArrayLike) -> NDArray[np.float64]:
-    wanted = f"{name} must be a sequence of finite numbers, none negative, got"
-    try:
-        axis = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ValueError(f"{wanted} {quoted(values)}") from None
-    if axis.ndim != 1:
-        raise ValueError(f"{wanted} {quoted(values)}")
-    wrong = np.flatnonzero(~(np.isfinite(axis) & (axis >= 0.0)))
-    if wrong.size:
-        raise ValueError(f"{wanted} {axis[wrong[0]]:g} at index {wrong[0]}")
-    return axis

@@ -39,6 +39,16 @@ def in_plane(record: NDArray[np.float64], azimuth: float) -> NDArray[np.float64]
     return np.column_stack([along * cosine, along * sine, record[:, 2]])
 
 
+def sample_times(duration: float, sample_step: float) -> NDArray[np.float64]:
+    """Multiples of `sample_step` before `duration`, and `duration` itself (n,) [s]."""
+    # a multiple within rounding of the end is the end
+    count = math.ceil(duration / sample_step * (1.0 - 1e-12))
+    times = np.arange(count + 1, dtype=float)
+    times *= sample_step
+    times[-1] = duration
+    return times
+
+
 # kept for the runs that follow with the same motion: it takes a tenth of the time of a short one
 @lru_cache(maxsize=4)
 def three_columns(motion: GroundMotion | None) -> NDArray[np.float64]:

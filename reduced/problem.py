@@ -172,6 +172,12 @@ class Problem:
         """Whether the model has a twist: on flat ground, but not where it is planar by choice."""
         return self.plane is None and not support_named(self.support).guided
 
+    @property
+    def slides(self) -> bool:
+        """Whether friction decides the mode: from rest on flat ground, below b/h."""
+        case = self.case
+        return self.free_twist and not case.is_release and case.friction < case.friction_of_uplift
+
     def is_planar(self) -> bool:
         """Return whether the run stays in one vertical plane."""
         return self._plane is not None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib.metadata
 import math
-import sys
 import time
 from collections.abc import Iterator
 from functools import cache
@@ -19,8 +18,9 @@ from rockwobble.models.number_checks import require_sample_step
 from rockwobble.models.support import RECESS
 from rockwobble.models.trace import NO_PEAK
 
-from . import kernels
-from ._compile import in_memory, on_disk
+from . import kernels, sliding
+from ._compile import announce
+from .columns import sample_times
 from .integration.result import COMPLETED, OVER_BUDGET, OVERTURNED, REST, UNDECIDED, IntegrationResult
 from .problem import REST_TILT, Problem
 from .solution import Solution, six_columns
@@ -47,7 +47,8 @@ def simulate(
         demand is compared.
     support : {"recess", "flat"}, optional
         "recess": no slip, no roll-out, the paper's two degrees of freedom, (18) and (19); "flat": no slip,
-        free to roll out.
+        free to roll out, but where friction is below b/h: from rest a cylinder slides there, exactly, and
+        neither uplifts nor turns. Friction 0 leaves it where it is while the ground moves below.
     plane : float, optional
         Azimuth of a vertical plane that holds the motion [rad]: planar motion, on either support. The
         component of the record across the plane is left out.
@@ -68,7 +69,8 @@ def simulate(
     Trace
         A numerical failure is an outcome with its diagnostics, not an exception. A run that ends while the
         cylinder moves is followed over still ground to the next maximum of the tilt, which counts for the
-        peak; one that overturns ends there, later than asked for. What stays on its balance is "undecided".
+        peak; one that overturns, or slides to rest, ends there, later than asked for. What stays on its
+        balance is "undecided".
 
     Raises
     ------
@@ -88,6 +90,8 @@ def simulate(
         case, support=support, plane=plane, restitution=restitution, rtol=rtol, rest_tilt=rest_tilt
     )
     sample_step = require_sample_step(sample_step, case.length)
+    if problem.slides:
+        return sliding.simulate(case, sample_step, _version())
     make_ready(problem.kernel)
     times = sample_times(case.length, sample_step)
     started = time.perf_counter()
@@ -100,21 +104,7 @@ def simulate(
 
 def make_ready(model: str) -> None:
     """Load the compiled code of `model`, or compile it and say so on standard error: that takes seconds."""
-    entry = kernels.INTEGRATORS[model]
-    if not in_memory(entry):
-        if not on_disk(entry):
-            print(f"rockwobble: compiling the {model} model, once for this installation ...", file=sys.stderr)
-        kernels.load(model)
-
-
-def sample_times(duration: float, sample_step: float) -> NDArray[np.float64]:
-    """Return the multiples of `sample_step` before `duration`, and `duration` itself (n,) [s]."""
-    # a multiple within rounding of the end is the end
-    count = math.ceil(duration / sample_step * (1.0 - 1e-12))
-    times = np.arange(count + 1, dtype=float)
-    times *= sample_step
-    times[-1] = duration
-    return times
+    announce(kernels.INTEGRATORS[model], model, lambda: kernels.load(model))
 
 
 def _trace(
@@ -180,7 +170,6 @@ def _trace(
         },
         wall_time=wall_time,
         step_count=result.step_count,
-        residual_displacement=solution.residual_displacement(),
     )
 
 

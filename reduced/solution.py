@@ -116,15 +116,6 @@ class Solution(Brief):
         horizontal = self.roll_out + radius[:, None] * np.column_stack([np.cos(phi), np.sin(phi)])
         return np.column_stack([horizontal, b * s + h * c])
 
-    def residual_displacement(self) -> float:
-        """Return the horizontal distance of the base centre from O at the last sample [m], or NaN."""
-        if not len(self.states):
-            return math.nan
-        theta, phi = self.states[-1, 0], self.states[-1, 2]
-        inward = self.problem.case.cylinder.base_radius * 2.0 * math.sin(0.5 * theta) ** 2
-        x, y = self.roll_out[-1]
-        return math.hypot(x + inward * math.cos(phi), y + inward * math.sin(phi))
-
     def passes(self) -> pd.DataFrame:
         """Return the passes: a tilt minimum between two maxima of one motion, one row each.
 

@@ -82,7 +82,7 @@ class Measurement(Brief):
 
     The trace is at the sample times of the reduced models. What the file does not give is NaN: energy,
     contact resolution; the twist without quaternions; rolling angle, contact point and mass centre with the
-    tilt alone; the residual displacement without positions, where contact point and mass centre are those of
+    tilt alone; the displacement without positions, where contact point and mass centre are those of
     a cylinder in a recess with the same tilt and azimuth, equations (8) and (10).
 
     Attributes
@@ -94,16 +94,19 @@ class Measurement(Brief):
     given : External
     table : Table
         What the file holds.
+    displacement : ndarray, shape (n, 2)
+        Of the base centre [m]; NaN without positions.
     """
 
     poses: Poses
     first_lean: float
     given: External
     table: Table
+    displacement: Array
 
     def quantities(self) -> Mapping[str, Array]:
-        """Return nothing: a file tells neither energies nor forces."""
-        return {}
+        """Return the displacement: a file tells neither energies nor forces."""
+        return {"displacement": self.displacement}
 
     def assumptions(self, until: float) -> None:
         """Return nothing: a file does not tell."""
@@ -185,7 +188,7 @@ def trajectory_of(table: Table, given: External, case: Case) -> Trace:
     time = _sample_times(float(poses.time[-1]) if fell else min(float(poses.time[-1]), case.length))
     tilt, angle, axis = _resampled(poses, time)
     angle = np.where((tilt > poses.stands) & (time >= begin.time - SAME_TIME), angle, np.nan)
-    contact, centre, moved = _places(poses, time, axis, angle, case.cylinder)
+    contact, centre, displacement = _places(poses, time, axis, angle, case.cylinder)
     twist = np.full(len(time), np.nan) if poses.twist is None else np.interp(time, poses.time, poses.twist)
     first_lean = math.nan if begin.first is None else float(poses.time[begin.first]) if begin.first else 0.0
     rests = bool((tilt[-100:] < poses.stands).all())
@@ -208,8 +211,9 @@ def trajectory_of(table: Table, given: External, case: Case) -> Trace:
         uplift_time=begin.time,
         uplift_direction=begin.direction,
         time_step=float(np.median(np.diff(poses.time))),
-        residual_displacement=moved,
-        source=Measurement(poses=poses, first_lean=first_lean, given=given, table=table),
+        source=Measurement(
+            poses=poses, first_lean=first_lean, given=given, table=table, displacement=displacement
+        ),
     )
 
 
@@ -343,8 +347,8 @@ def _passes(poses: Poses, start: float) -> pd.DataFrame:
 
 def _places(
     poses: Poses, time: Array, axis: Array, angle: Array, cylinder: RockingBody
-) -> tuple[Array, Array, float]:
-    """Contact point and mass centre [m], and how far the base centre has moved at the end [m]."""
+) -> tuple[Array, Array, Array]:
+    """Contact point, mass centre and displacement of the base centre [m]."""
     b, h = cylinder.base_radius, cylinder.mass_centre_height
     rests = np.isnan(angle)[:, None]
     outward = np.column_stack([np.cos(angle), np.sin(angle)])
@@ -352,9 +356,9 @@ def _places(
         centre = _interpolated(poses.time, poses.position, time)
         base = centre - h * axis
         contact = np.where(rests, np.nan, base[:, :2] + b * axis[:, 2:] * outward)
-        return contact, centre, float(np.hypot(base[-1, 0], base[-1, 1]))
+        return contact, centre, base[:, :2]
     lean, rise = np.hypot(axis[:, 0], axis[:, 1]), 1.0 - axis[:, 2:]
     centre = np.column_stack([np.where(rests, 0.0, b * rise * outward), b * lean]) + h * axis
     if not np.isfinite(poses.rolling_angle).any():
         centre[:, :2] = np.nan  # the tilt alone tells how high it is, not where
-    return np.where(rests, np.nan, b * outward), centre, math.nan
+    return np.where(rests, np.nan, b * outward), centre, np.full((len(time), 2), np.nan)

@@ -140,14 +140,16 @@ def test_the_summary_says_what_the_trace_holds(seed: int) -> None:
     facts = [
         Diagnostic(code=code, time=at) for code, at in (("slip", 0.5), ("energy", 0.25), ("slip", 0.125))
     ]
-    said = any_trace(
+    trace = any_trace(
         seed, peak_tilt=ratio * alpha, passes=passes, outcome="overturned", facts=tuple(facts)
-    ).summary()
+    )
+    said = trace.summary()
     end = any_trace(seed).time[-1]
     assert said == {
         "case": "free response",
         "run": "mujoco recess",
         "outcome": f"overturned at {end:.4g} s",
+        "mode": trace.mode,
         "peak tilt": f"{ratio:.4g} alpha",
         "uplift": "0.125 s",
         "passes": str(seed % 3),
@@ -164,7 +166,7 @@ def test_the_summary_says_what_the_trace_holds(seed: int) -> None:
         assert "diagnostics" not in stands.summary()
         # its line has the same facts
         assert repr(stands).startswith(
-            f"Trace(mujoco recess: outcome stands at {end:.4g} s{words}, peak tilt"
+            f"Trace(mujoco recess: outcome stands at {end:.4g} s{words}, mode "
         )
 
 
@@ -175,6 +177,7 @@ def test_a_lost_run_says_that_it_failed_and_why() -> None:
         "case": "free response",
         "run": "mujoco flat",
         "outcome": "failed",
+        "mode": "not known",
         "peak tilt": "not known",
         "uplift": "none",
         "passes": "0",

@@ -1,0 +1,177 @@
+"""The sliding model against closed forms, symmetries and first-order steps of another formulation."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from rockwobble import reduced
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Tendon, Trace, WobblingFrame
+
+BODY = Cylinder(semidiagonal=3.0, tan_alpha=0.5)
+G = 9.81
+EXACT = 1e-11  # of the peak: thousands of steps of 1e-13
+
+Samples = NDArray[np.float64]
+
+
+def slide(samples: Samples, step: float, friction: float, duration: float | None = None) -> Trace:
+    case = Case(BODY, GroundMotion(samples, step), friction=friction, duration=duration)
+    return reduced.simulate(case, support="flat", sample_step=step)
+
+
+def shaking(seed: int, count: int = 25) -> tuple[Samples, float]:
+    """Random accelerations (count, 3) with stops and restarts, and a friction."""
+    draw = np.random.default_rng(seed)
+    friction = float(draw.uniform(0.05, 0.45))
+    samples = draw.normal(size=(count, 3)) * friction * G * draw.uniform(0.6, 3.0)
+    samples[:, 2] = np.clip(0.2 * samples[:, 2], -6.0, None)
+    return samples, friction
+
+
+def test_rectangular_pulse_slides_by_its_closed_form() -> None:
+    size, length, friction = 7.0, 0.4, 0.3
+    direction = np.array([0.6, -0.8])
+    trace = slide(np.outer(np.ones(11), size * direction), length / 10, friction)
+    expected = size * length**2 * (size - friction * G) / (2 * friction * G)
+    assert trace.mode == "slides"
+    assert trace.peak_displacement == pytest.approx(expected, rel=EXACT)
+    np.testing.assert_allclose(trace.displacement[-1], -expected * direction, rtol=EXACT)
+    assert trace.followed_until == pytest.approx(size * length / (friction * G), rel=EXACT)
+    assert trace.rests
+    np.testing.assert_allclose(trace.energy_lost, friction * G * trace.slip, rtol=EXACT, atol=1e-13)
+
+
+def test_half_sine_slides_by_its_closed_form() -> None:
+    size, rate, friction = 6.0, 5.0, 0.3
+    time = np.linspace(0.0, math.pi / rate, 20_001)
+    start = math.asin(friction * G / size) / rate
+
+    end, slows = math.pi / rate, friction * G
+    speed = size / rate * (math.cos(rate * start) + 1.0) - slows * (end - start)
+    pushed = size / rate * (math.cos(rate * start) * (end - start) + math.sin(rate * start) / rate)
+    way = pushed - 0.5 * slows * (end - start) ** 2 + 0.5 * speed**2 / slows
+    samples = np.column_stack([np.zeros_like(time), size * np.sin(rate * time)])
+    trace = slide(samples, time[1], friction)
+    assert trace.peak_displacement == pytest.approx(
+        way, rel=1e-7
+    )  # linear between samples: their step squared
+    assert trace.residual_displacement == trace.peak_displacement
+
+
+def test_circling_ground_slides_at_constant_speed() -> None:
+    size, rate, friction = 5.0, 4.0, 0.3
+    time = np.arange(0.0, 20.0, 0.002)
+    trace = slide(size * np.column_stack([np.cos(rate * time), np.sin(rate * time)]), 0.002, friction)
+    steady = math.sqrt(size**2 - (friction * G) ** 2) / rate
+    speed = np.sqrt(2.0 * trace.energy[(trace.time > 10.0) & (trace.time < 19.0)])
+    np.testing.assert_allclose(speed, steady, rtol=1e-5)  # linear between samples: (rate step)^2/12
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_slide_turns_mirrors_and_scales_with_its_ground(seed: int) -> None:
+    samples, friction = shaking(seed)
+    trace = slide(samples, 0.02, friction)
+    peak = trace.peak_displacement
+    turned, mirrored, harder = samples.copy(), samples.copy(), samples.copy()
+    turned[:, :2] = samples[:, :2] @ np.array([[0.6, 0.8], [-0.8, 0.6]])
+    mirrored[:, :2] *= -1.0
+    harder[:, :2] *= 1.1
+    place = trace.displacement[:25]
+    expected = place @ np.array([[0.6, 0.8], [-0.8, 0.6]])
+    np.testing.assert_allclose(slide(turned, 0.02, friction).displacement[:25], expected, atol=1e-9 * peak)
+    np.testing.assert_allclose(slide(mirrored, 0.02, friction).displacement[:25], -place, atol=EXACT * peak)
+    np.testing.assert_allclose(
+        slide(harder, 0.02, 1.1 * friction).displacement[:25], 1.1 * place, atol=1e-9 * peak
+    )
+    np.testing.assert_allclose(
+        slide(samples, 0.06, friction).displacement[:25], 9.0 * place, atol=1e-8 * peak
+    )
+    finer = np.column_stack([np.interp(np.arange(49) / 2, np.arange(25), each) for each in samples.T])
+    np.testing.assert_allclose(slide(finer, 0.01, friction).displacement[:49:2], place, atol=1e-9 * peak)
+
+
+def test_slides_agree_with_implicit_steps_of_first_order() -> None:
+    # v after a step minimises |v - v*|^2/2 + h n |v|: a step that stops by itself, for all slides at once
+    drawn = [shaking(seed) for seed in range(60)]
+    samples, friction = np.array([each for each, _ in drawn]), np.array([each for _, each in drawn])
+
+    def stepped(parts: int) -> Samples:
+        velocity, place, h = np.zeros((60, 2)), np.zeros((60, 2)), 0.02 / parts
+        for step in range(24 * parts):
+            i, share = divmod(step + 1, parts)
+            i, share = (i, share / parts) if share else (i - 1, 1.0)
+            ground = samples[:, i] * (1.0 - share) + samples[:, i + 1] * share
+            velocity = velocity - h * ground[:, :2]
+            speed = np.maximum(np.hypot(*velocity.T), 1e-300)
+            velocity = velocity * np.maximum(0.0, 1.0 - h * friction * (G + ground[:, 2]) / speed)[:, None]
+            place = place + h * velocity
+        return place
+
+    exact = [slide(each, 0.02, mu) for each, mu in drawn]
+    place = np.array([trace.displacement[24] for trace in exact])
+    size = np.array([trace.peak_displacement for trace in exact])[:, None]
+    coarse, fine = stepped(100), stepped(200)
+    errors = [np.abs((each - place) / size).max(axis=1) for each in (coarse, fine, 2.0 * fine - coarse)]
+    assert errors[1].max() < 0.005
+    assert errors[1].max() < 0.6 * errors[0].max()
+    assert np.median(errors[2]) < 5e-5  # of second order where no stop falls into a step
+
+
+def test_without_friction_the_ground_moves_below() -> None:
+    samples, _ = shaking(7)
+    trace = slide(samples[:, :2], 0.02, 0.0)
+    speed = np.concatenate(
+        [np.zeros((1, 2)), np.cumsum(0.5 * (samples[1:, :2] + samples[:-1, :2]), axis=0) * 0.02]
+    )
+    place = np.cumsum(speed[:-1] * 0.02 + (2 * samples[:-1, :2] + samples[1:, :2]) * 0.02**2 / 6, axis=0)
+    np.testing.assert_allclose(trace.displacement[1:], -place, atol=1e-9 * trace.peak_displacement)
+    assert not trace.rests
+
+
+def test_vertical_shaking_counts_as_gravity_until_it_lifts() -> None:
+    samples, friction = shaking(3)
+    samples[:, 2] = 0.0
+    lighter = samples - np.array([0.0, 0.0, 0.5 * G])
+    np.testing.assert_allclose(
+        slide(lighter, 0.02, friction, 0.48).displacement[:25],
+        slide(samples, 0.02, 0.5 * friction, 0.48).displacement[:25],
+        rtol=1e-9,
+    )
+    samples[10, 2] = -1.5 * G
+    lifted = slide(samples, 0.02, friction)
+    assert (lifted.outcome, lifted.facts[0].code, lifted.mode) == ("failed", "weightless", "")
+    assert lifted.facts[0].time == pytest.approx(0.18 + 0.02 / 1.5)
+    assert math.isnan(lifted.peak_displacement)
+    assert math.isnan(reduced.peak_displacements([friction], GroundMotion(samples, 0.02), [1.0])[0, 0])
+
+
+def test_batch_has_the_peaks_of_single_slides() -> None:
+    samples, _ = shaking(5)
+    motion, frictions, scales = GroundMotion(samples, 0.02), [0.0, 0.1, 0.3, 2.0], [0.0, 0.7, 1.0]
+    peaks = reduced.peak_displacements(frictions, motion, scales)
+    squat = Cylinder(semidiagonal=1.0, tan_alpha=3.0)
+    for i, friction in enumerate(frictions):
+        for j, scale in enumerate(scales):
+            trace = reduced.simulate(Case(squat, motion.scaled(scale), friction=friction), support="flat")
+            assert peaks[i, j] == pytest.approx(trace.peak_displacement, rel=1e-6)
+    assert (peaks[:, 0] == 0.0).all()
+    with pytest.raises(ValueError, match="frictions must be"):
+        reduced.peak_displacements([-0.1], motion, [1.0])
+
+
+def test_what_is_no_slide_from_rest_is_not_taken_for_one() -> None:
+    motion = GroundMotion(shaking(5)[0] * 3.0, 0.02)
+    for case, support in (
+        (Case(BODY, motion, friction=0.51), "flat"),
+        (Case(BODY, motion, friction=0.3), "recess"),
+        (Case(BODY, motion, friction=0.3, initial=InitialState(0.1)), "flat"),
+    ):
+        assert "rocks" in reduced.simulate(case, support=support).mode
+    with pytest.raises(ValueError, match="slab"):
+        reduced.simulate(Case(WobblingFrame(BODY, 1.0), motion, friction=0.3), support="flat")
+    with pytest.raises(ValueError, match="tendon"):
+        reduced.simulate(Case(BODY, motion, friction=0.3, tendon=Tendon(prestress=1.0)), support="flat")
