@@ -335,7 +335,9 @@ class Run:
     def __str__(self) -> str:
         if not self.is_model:
             return f"{self.engine} {self.support}"
-        return "planar model" if self.is_planar else self.support.model or f"{self.support} model"
+        if self.is_planar:
+            return "planar model by momentum" if self.loses_at_impact else "planar model"
+        return self.support.model or f"{self.support} model"
 
     @property
     def is_model(self) -> bool:
@@ -346,6 +348,11 @@ class Run:
     def is_planar(self) -> bool:
         """Whether it is the planar model: motion in one vertical plane."""
         return self.settings.get("plane") is not None
+
+    @property
+    def loses_at_impact(self) -> bool:
+        """Whether it is the planar model whose base closes by the moment of momentum."""
+        return self.is_planar and self.settings.get("restitution") == "momentum"
 
     @property
     def own_model(self) -> Run:

@@ -52,11 +52,9 @@ def expected_mode(case: Case, support: str) -> str:
     >>> expected_mode(Case(cask, shaken, friction=0.52), "flat")
     'rocks and slides'
     """
-    initial = case.initial
+    rocks = ROCKS if plane_of(case) is None else ROCKS_IN_PLANE
     if case.is_release:
-        assert initial is not None
-        stays = case.motion is None or stays_in_plane(case.motion.acceleration, initial.rolling_angle)
-        return ROCKS_IN_PLANE if stays and not initial.rolling_rate else ROCKS
+        return rocks
     free = support_named(support).lets_slide
     if free and case.friction < case.friction_of_uplift:
         return SLIDES if case.friction_at_rest > case.friction else REST
@@ -64,7 +62,17 @@ def expected_mode(case: Case, support: str) -> str:
         return REST
     if free and case.friction < BORDER * case.friction_of_uplift:
         return ROCKS_AND_SLIDES
-    return ROCKS if plane_of_shaking(case.motion) is None else ROCKS_IN_PLANE
+    return rocks
+
+
+def plane_of(case: Case) -> float | None:
+    """Azimuth of the vertical plane that holds the motion of a case [rad]; None if there is none."""
+    motion, initial = case.motion, case.initial
+    if initial is None or initial.tilt == 0.0:
+        return plane_of_shaking(motion)
+    azimuth = initial.rolling_angle
+    stays = motion is None or stays_in_plane(motion.acceleration, azimuth)
+    return azimuth if stays and initial.rolling_rate == 0.0 else None
 
 
 @lru_cache(maxsize=4)

@@ -224,7 +224,7 @@ class Trace(Shown):
         lean = np.sin(self.tilt) * np.stack([np.cos(angle), np.sin(angle)])
         return np.asarray(self.centre_of_mass[:, :2] - self.case.cylinder.mass_centre_height * lean.T)
 
-    @property
+    @cached_property
     def mode(self) -> str:
         """Mode of motion; of an engine as far as its contact gives: see `models.mode`."""
         tilt, body = self.peak_tilt, self.case.cylinder
@@ -233,7 +233,7 @@ class Trace(Shown):
         model, b = self.run.is_model, body.base_radius
         if tilt <= (0.0 if model else CLOSED_TILT * body.alpha):
             return SLIDES if self.peak_displacement > (0.0 if model else _CREEP * b) else REST
-        if np.nanmax(self.slip, initial=0.0) > _SLIP * b:
+        if not model and np.nanmax(self.slip, initial=0.0) > _SLIP * b:
             return ROCKS_AND_SLIDES if tilt >= AGREEMENT * body.alpha else SLIDES
         largest = self.rolling_angle[int(np.where(np.isnan(self.rolling_angle), -1.0, self.tilt).argmax())]
         across = np.nan_to_num(self.tilt * np.abs(np.sin(self.rolling_angle - largest)))

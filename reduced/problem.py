@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, InitialState
-from rockwobble.models.mode import plane_of_shaking, stays_in_plane
+from rockwobble.models.mode import plane_of
 from rockwobble.models.number_checks import quoted
 from rockwobble.models.support import MODELLED, RECESS, support_named
 
@@ -107,6 +107,12 @@ class Problem:
             _require_in_plane(initial, plane)
         for term in self.case.terms.keys() - TERMS:
             raise ValueError(f"the reduced models know no {term}, got {self.case.terms[term]!r}")
+        if self.slides and self.case.cylinder.slab_mass_ratio:
+            body = self.case.cylinder
+            raise ValueError(
+                f"the sliding model is of a cylinder alone, got a slab on columns, which slide at both ends: "
+                f"friction {self.case.friction:g} is below b/h = {body.tan_alpha:g}"
+            )
         if self.case.anchor and self.free_twist:
             raise ValueError(
                 f"{self.case.anchor} is part of the models in the recess and in a plane, got support "
@@ -247,19 +253,14 @@ class Problem:
     @cached_property
     def _plane(self) -> Plane | None:
         """The vertical plane that the motion stays in, if there is one."""
-        motion, initial = self.case.motion, self.case.initial
-        record = three_columns(motion)
+        record = three_columns(self.case.motion)
         if self.plane is not None:
             azimuth = float(self.plane)
-        elif initial is not None and initial.tilt > 0.0:
-            azimuth = initial.rolling_angle
-            if initial.rolling_rate != 0.0 or not stays_in_plane(record, azimuth):
-                return None
         else:
-            shaken = plane_of_shaking(motion)
-            if shaken is None:
+            found = plane_of(self.case)
+            if found is None:
                 return None
-            azimuth = shaken
+            azimuth = found
         x, y = record[:, 0], record[:, 1]
         along = x * math.cos(azimuth) + y * math.sin(azimuth)
         return Plane(azimuth, np.column_stack([along, np.zeros_like(along), record[:, 2]]))

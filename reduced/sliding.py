@@ -65,19 +65,8 @@ class _Sliding(Brief):
 
 
 def simulate(case: Case, sample_step: float, version: str) -> Trace:
-    """Slide of a case from rest on flat ground with friction below b/h, followed to rest.
-
-    Raises
-    ------
-    ValueError
-        If it carries a slab, at which the columns would slide as well.
-    """
+    """Slide of a case from rest on flat ground with friction below b/h, followed to rest."""
     body = case.cylinder
-    if body.carries_slab:
-        raise ValueError(
-            f"the sliding model is of a cylinder alone, got a slab on columns, which slide at both ends: "
-            f"friction {case.friction:g} is below b/h = {body.tan_alpha:g}"
-        )
     _make_ready()
     times = sample_times(case.length, sample_step)
     started = time.perf_counter()

@@ -4,7 +4,7 @@
                        =     numerics     +  unexplained  +   model form
 
 limit is the engine extrapolated to a time step of zero, own the reduced model of the engine's support
-(see `Run.own_model`) or, where that goes through upright itself, planar motion with the loss of a base that
+(see `own_model_of`) or, where that goes through upright itself, planar motion with the loss of a base that
 lands flat. The three are signed traces of the tilt, and add up exactly.
 Tilt itself is never negative, so it folds where a motion goes past upright; as long as two motions agree
 within the tolerance of `tolerance_of` they are on the same side of that fold, which is why the budget ends
@@ -42,7 +42,7 @@ from ..metrics.pair import (
     start_of,
     tolerance_of,
 )
-from ..runs.choice import at_step, references_of
+from ..runs.choice import at_step, own_model_of, references_of
 from ..runs.execution import SAMPLE_STEP, Job
 
 Array = NDArray[np.float64]
@@ -406,8 +406,10 @@ def case_budgets(
     extrapolations = limits(refined, simulate)
     impacts = _impacts(cases, runs, results, simulate)
 
+    by_name = {case.name: case for case in cases}
+
     def own_trace(name: str, label: str) -> Trace:
-        key = name, str(runs[label].own_model)
+        key = name, str(own_model_of(by_name[name], runs[label]))
         return impacts.get(key, results[key])
 
     return {
@@ -436,9 +438,9 @@ def _impacts(
     """
     keys, jobs = [], []
     for case in cases:
-        for model in dict.fromkeys(str(run.own_model) for run in runs.values()):
+        for model in dict.fromkeys(str(own_model_of(case, run)) for run in runs.values()):
             response = results[case.name, model]
-            if not len(landings(response)):
+            if response.run.loses_at_impact or not len(landings(response)):
                 continue
             direction, motion, initial = response.uplift_direction, case.motion, case.initial
             plane = dataclasses.replace(

@@ -17,6 +17,7 @@ from ..metrics.pair import tolerance_of
 from ..runs.choice import (
     default_runs,
     labels_beside_references,
+    own_model_of,
     references_of,
     require_runnable,
 )
@@ -53,8 +54,9 @@ def comparison(
         Default: those of the suite, else every installed engine with supports "recess" and "flat".
     reference : Run, optional
         What every run is compared with, such as ``Run(None, "flat")`` or another engine. Default: the recess
-        model; runs on flat ground also the flat-ground model, and those in a recess with clearance
-        themselves at half the step.
+        model; runs on flat ground also the flat-ground model, or where they slide the sliding model alone;
+        those in a recess with clearance themselves at half the step. From rest in one plane: the planar model
+        with impacts by the moment of momentum.
     out : str or Path, optional
         Folder to save the results in; checked before anything runs.
     until : float, optional
@@ -101,7 +103,7 @@ def comparison(
     cases = case_or_suite.cases if isinstance(case_or_suite, Suite) else (case_or_suite,)
     chosen = _runs(case_or_suite, runs, needed=not (external := tuple(external)))
     for case in cases:
-        own = [run.own_model for run in chosen]
+        own = [own_model_of(case, run) for run in chosen]
         for run in (*chosen, *own, *(() if reference is None else (reference,))):
             require_runnable(case, run)
     labels, named = labels_beside_references(chosen, reference)
@@ -128,7 +130,7 @@ def comparison(
                 found[case.name, name],
                 label,
                 found[case.name, label],
-                own=found[case.name, str(run.own_model)],
+                own=found[case.name, str(own_model_of(case, run))],
                 simulate=copy_of,
                 budget=budgets.get((case.name, label, name)),
                 until=until,
@@ -170,7 +172,7 @@ def _jobs(
         needed = dict(also)
         for label, run in runs.items():
             needed |= references_of(case, run, label, reference, named=named)
-            needed[str(run.own_model)] = run.own_model
+            needed[str(own_model_of(case, run))] = own_model_of(case, run)
         jobs |= {(case.name, label): Job(case=case, run=run, label=label) for label, run in needed.items()}
     for case in cases:
         jobs |= {(case.name, label): Job(case=case, run=run, label=label) for label, run in runs.items()}

@@ -9,6 +9,7 @@ from rockwobble.models import AGREEMENT, Case, Trace
 from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL, REDUCED
 from rockwobble.models.finding import Finding, Value
 from rockwobble.models.frames import pd
+from rockwobble.models.mode import REST, SLIDES
 from rockwobble.models.support import EXTERNAL, SUPPORTS
 
 from ..external.loss import ENERGY_LOSS
@@ -43,7 +44,7 @@ def case_findings(
         if trace.outcome == "failed":
             yield Finding(key="comparison.failed", level="caution", values={"name": label})
     yield from agreements(rows[rows["outcome"] != "failed"], case.length)
-    moving = [trace for trace in traces.values() if math.isfinite(trace.uplift_time)]
+    moving = [trace for trace in traces.values() if trace.mode not in ("", REST)]
     if sound and not moving:
         yield Finding(key="comparison.at_rest")
     late = [label for label, trace in traces.items() if len(trace.time) and trace.peak_time > trace.time[-1]]
@@ -123,13 +124,16 @@ def cause(row: SummaryRow, length: float, *, touched: bool = False, models_diffe
     Returns
     -------
     str
-        "failed"; "support" or "walls", a difference of support, not of accuracy; "mistake" of an external
+        "failed"; "slides", which the reference does not;
+        "support" or "walls", a difference of support, not of accuracy; "mistake" of an external
         trajectory, or "loss" of its energy;
         "pass", one that contact does not resolve; "near_passes", which amplify what small difference there
         is; "method", without a pass, so that it is not chance.
     """
     if "failed" in (row.outcome, row.reference_outcome):
         return "failed"
+    if "slides" in row.mode and row.reference_mode != SLIDES:
+        return "slides"
     support, reference = (SUPPORTS.get(each, EXTERNAL) for each in (row.support, row.reference_support))
     if support == EXTERNAL:
         if explains_divergence(row):
@@ -177,6 +181,7 @@ def explains_divergence(row: SummaryRow) -> bool:
 
 
 _KEYS = {
+    "slides": "comparison.slides",
     "support": "comparison.support",
     "walls": "comparison.walls",
     "pass": "comparison.pass",

@@ -22,6 +22,7 @@ from ..metrics.pair import (
     closest_pass,
     contact_rms,
     direction_difference,
+    displacement_difference,
     energy_loss,
     first_unresolved_pass,
     largest_differences,
@@ -41,10 +42,12 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     "engine": ("", 'multibody engine, or "reduced"'),
     "support": ("", "what holds the cylinder in place: recess, flat or ring"),
     "reference_engine": ("", 'what the run is compared with: an engine, or "reduced"'),
-    "reference_support": ("", "its support"),
+    "reference_support": ("", 'its support; "planar" of the planar model'),
     "time_step": ("s", "time step of the engine"),
     "outcome": ("", "how the run ended: stands, overturned or failed"),
     "reference_outcome": ("", "how the reference ended"),
+    "mode": ("", "mode of motion: rest, slides, rocks, rocks in one plane, rocks and slides"),
+    "reference_mode": ("", "that of the reference"),
     "diagnostics": ("", "codes of what ended or limits the run: see `rockwobble.models.diagnostic`"),
     "peak_tilt": ("alpha", "largest tilt of the run, and of a swing that goes on when it ends"),
     "reference_peak_tilt": ("alpha", "largest tilt of the reference"),
@@ -59,10 +62,18 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     ),
     "uplift_time_difference": ("s", "run minus reference"),
     "uplift_direction_difference": ("rad", "azimuth of the contact point at uplift or release"),
-    "agreement_time": ("s", "from uplift or release to the first tilt difference above 1 % of alpha"),
+    "agreement_time": (
+        "s",
+        "from uplift or release to the first tilt difference above 1 % of alpha; of a slide, or a difference "
+        "of the displacement above 1 % of its peak",
+    ),
     "diverged": ("", "whether there was such a difference; if not, the time is the length of the run"),
     "agreed_passes": ("", "passes within the agreement"),
     "predicted_agreement_time": ("s", "when the traces have to diverge, from the reduced models alone"),
+    "displacement_difference": (
+        "",
+        "largest distance of the base centres over the peak displacement of a slide",
+    ),
     "residual_displacement": ("b", "distance of the base centre from its old place at the end"),
     "residual_twist": ("deg", "turn of the cylinder about its axis at the end"),
     "energy_loss": ("", "energy lost by the run over the largest energy reached"),
@@ -184,6 +195,7 @@ def summary_row(
         "uplift_direction_difference": direction,
         "agreed_passes": agreed_passes(reference, agreement),
         "predicted_agreement_time": prediction.length,
+        "displacement_difference": displacement_difference(whole),
         "residual_displacement": trial.residual_displacement / radius,
         "residual_twist": math.degrees(trial.residual_twist),
         "energy_loss": energy_loss(trial, case.motion),
@@ -212,9 +224,11 @@ def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) 
         "engine": trial.run.engine_name,
         "support": trial.run.support,
         "reference_engine": reference.run.engine_name,
-        "reference_support": reference.run.support,
+        "reference_support": "planar" if reference.run.is_planar else reference.run.support,
         "outcome": trial.outcome,
         "reference_outcome": reference.outcome,
+        "mode": trial.mode,
+        "reference_mode": reference.mode,
         "diagnostics": cell_of(fact.code for fact in trial.facts),
         "run": label,
         "reference": name,
@@ -288,6 +302,8 @@ class SummaryRow(JudgedRow, Protocol):
     engine: str
     support: str
     outcome: str
+    mode: str
+    reference_mode: str
     diverged: bool
     divergence: str
     agreement_time: float

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import AGREEMENT, Case, GroundMotion, RockingBody, Trace
 from rockwobble.models.bounds import OVERTURNED_TILT
+from rockwobble.models.mode import SLIDES
 from rockwobble.models.shown import Brief
 
 FloatArray = NDArray[np.float64]
@@ -42,6 +43,10 @@ class Pair(Brief):
         Unwrapped [rad]; NaN at rest.
     contact_point, reference_contact_point : ndarray, shape (n, 2)
         Relative to O [m]; NaN at rest.
+    displacement, reference_displacement : ndarray, shape (n, 2)
+        Of the base centre over the ground [m].
+    slides_by : float
+        Peak displacement of a reference that slides and does not rock [m]; 0 of others.
     """
 
     cylinder: RockingBody
@@ -53,11 +58,27 @@ class Pair(Brief):
     reference_rolling_angle: FloatArray
     contact_point: FloatArray
     reference_contact_point: FloatArray
+    displacement: FloatArray
+    reference_displacement: FloatArray
+    slides_by: float
 
     @property
     def tilt_difference(self) -> FloatArray:
         """Trial minus reference, shape (n,), in units of alpha."""
         return (self.tilt - self.reference_tilt) / self.cylinder.alpha
+
+    @property
+    def motion_difference(self) -> FloatArray:
+        """Difference that ends an agreement, shape (n,).
+
+        Of the tilt in units of alpha; where the reference slides that of the displacement over its peak, if
+        it is more.
+        """
+        tilted = np.abs(self.tilt_difference)
+        if not self.slides_by:
+            return tilted
+        apart = np.linalg.norm(self.displacement - self.reference_displacement, axis=1)
+        return np.asarray(np.maximum(tilted, apart / self.slides_by))
 
     @property
     def end(self) -> float:
@@ -111,11 +132,16 @@ def make_pair(cylinder: RockingBody, reference: Trace, trial: Trace, *, until: f
         reference_rolling_angle=reference.rolling_angle[:keep],
         contact_point=_resample(trial.time, trial.contact_point, time),
         reference_contact_point=reference.contact_point[:keep],
+        displacement=_resample(trial.time, trial.displacement, time),
+        reference_displacement=reference.displacement[:keep],
+        slides_by=reference.peak_displacement if reference.mode == SLIDES else 0.0,
     )
 
 
 def start_of(trace: Trace) -> float:
-    """Return uplift or release of a trace [s]; 0 where there is none."""
+    """Uplift or release of a trace, or when it begins to slide [s]; 0 where there is none."""
+    if trace.mode == SLIDES:
+        return float(trace.time[max(int((trace.displacement != 0.0).any(axis=1).argmax()) - 1, 0)])
     return trace.uplift_time if math.isfinite(trace.uplift_time) else 0.0
 
 
@@ -354,6 +380,8 @@ def tolerance_of(reference: Trace, trial: Trace | None = None) -> float:
 
     The peak is that of the reference, or of the trial where the reference stays at rest.
     """
+    if reference.mode == SLIDES:
+        return AGREEMENT  # of the peak displacement as well
     for trace in (reference, trial):
         if trace is not None and math.isfinite(trace.uplift_time) and trace.peak_tilt > 0.0:
             return min(AGREEMENT, PEAK_SHARE * trace.peak_tilt / trace.case.cylinder.alpha)
@@ -363,7 +391,9 @@ def tolerance_of(reference: Trace, trial: Trace | None = None) -> float:
 def agreement_time(
     pair: Pair, *, tolerance: float = AGREEMENT, broken: bool = False, allowance: float = 0.0
 ) -> Agreement:
-    """Return the time from uplift or release to the first tilt difference above a tolerance.
+    """Return the time from uplift, release or slide to the first difference above a tolerance.
+
+    See `Pair.motion_difference`.
 
     Parameters
     ----------
@@ -375,17 +405,19 @@ def agreement_time(
     allowance : float, optional
         For the noise of a measurement, added to the tolerance [alpha].
     """
-    beyond = np.flatnonzero(np.abs(pair.tilt_difference) > tolerance + allowance)
+    beyond = np.flatnonzero(pair.motion_difference > tolerance + allowance)
     count = int(beyond[0]) if len(beyond) else len(pair.time)
     end = float(pair.time[count]) if len(beyond) else pair.end
     diverged = broken or len(beyond) > 0
-    agreed = pair.reference_tilt[:count]
+    moved = pair.reference_tilt[:count] / pair.cylinder.alpha
+    if pair.slides_by:
+        moved = np.hypot(*pair.reference_displacement[:count].T) / pair.slides_by
     return Agreement(
         # a trial that moves before the reference uplifts has no agreement at all
         length=max(0.0, end - pair.start) if diverged else end,
         end=end,
         diverged=diverged,
-        tested=count > 0 and float(np.ptp(agreed)) > TESTING * tolerance * pair.cylinder.alpha,
+        tested=count > 0 and float(np.ptp(moved)) > TESTING * tolerance,
     )
 
 
@@ -395,6 +427,15 @@ def agreement_of(
     """Return the agreement of two traces of one case, see `make_pair` and `agreement_time`."""
     return agreement_time(
         make_pair(reference.case.cylinder, reference, trial, until=until), tolerance=tolerance
+    )
+
+
+def displacement_difference(pair: Pair) -> float:
+    """Largest distance of the base centres over the peak of the slide; NaN of other references."""
+    if not pair.slides_by:
+        return math.nan
+    return float(
+        np.linalg.norm(pair.displacement - pair.reference_displacement, axis=1).max() / pair.slides_by
     )
 
 

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 
 from rockwobble.models import Case, InitialState, Run
 from rockwobble.models.case import REDUCED_MODELS, TimeStep
-from rockwobble.models.support import MODELLED
+from rockwobble.models.mode import REST, SLIDES, expected_mode, plane_of
+from rockwobble.models.support import MODELLED, RECESS, SUPPORTS
 from rockwobble.multibody import BrokenEngineError, EngineNotInstalledError, available_engines
 from rockwobble.multibody.engines.registry import (
     engine_fault,
@@ -357,10 +358,10 @@ def references_of(
 
     The reference is called `named`, by default as it calls itself.
 
-    A run is compared with the models that its support names; one between walls also with itself at half its
+    A run is compared with the models of `models_of`; one between walls also with itself at half its
     step, or, where that is sought, at half the default step.
     """
-    chosen = {str(model): model for model in run.compared_with}
+    chosen = {str(model): model for model in models_of(case, run)}
     if reference is not None:
         chosen = {named or str(reference): reference}
     elif run.support.walls:
@@ -368,6 +369,29 @@ def references_of(
         half = "half the default step" if isinstance(run.time_step, str) else "half the step"
         chosen[f"{label}, {half}"] = _finer(case, run)
     return {name: other for name, other in chosen.items() if other != run}
+
+
+def models_of(case: Case, run: Run) -> tuple[Run, ...]:
+    """The reduced models that a run of a case is compared with; the last is the nearest to it.
+
+    Those that its support names. From rest in one plane an engine's base closes with an impact: the planar
+    model takes it by the moment of momentum. What slides, or stays at rest, on flat ground does so by the
+    model of that support alone.
+    """
+    if not run.is_model and run.support in SUPPORTS:
+        plane = plane_of(case)
+        mode = expected_mode(case, run.support)
+        if mode in (REST, SLIDES):
+            return run.compared_with[-1:]
+        if plane is not None and not case.is_release:
+            return (Run(None, RECESS, plane=plane, restitution="momentum"),)
+    return run.compared_with
+
+
+def own_model_of(case: Case, run: Run) -> Run:
+    """The reduced model that an exact engine would follow."""
+    nearest = models_of(case, run)[-1]
+    return nearest if nearest.is_planar and not run.is_model else run.own_model
 
 
 def _finer(case: Case, run: Run) -> Run:

@@ -140,9 +140,7 @@ def test_the_summary_says_what_the_trace_holds(seed: int) -> None:
     facts = [
         Diagnostic(code=code, time=at) for code, at in (("slip", 0.5), ("energy", 0.25), ("slip", 0.125))
     ]
-    trace = any_trace(
-        seed, peak_tilt=ratio * alpha, passes=passes, outcome="overturned", facts=tuple(facts)
-    )
+    trace = any_trace(seed, peak_tilt=ratio * alpha, passes=passes, outcome="overturned", facts=tuple(facts))
     said = trace.summary()
     end = any_trace(seed).time[-1]
     assert said == {
@@ -165,9 +163,7 @@ def test_the_summary_says_what_the_trace_holds(seed: int) -> None:
         assert stands.summary()["uplift"] == "none"
         assert "diagnostics" not in stands.summary()
         # its line has the same facts
-        assert repr(stands).startswith(
-            f"Trace(mujoco recess: outcome stands at {end:.4g} s{words}, mode "
-        )
+        assert repr(stands).startswith(f"Trace(mujoco recess: outcome stands at {end:.4g} s{words}, mode ")
 
 
 def test_a_lost_run_says_that_it_failed_and_why() -> None:

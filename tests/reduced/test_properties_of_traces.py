@@ -128,7 +128,8 @@ def test_no_pass_joins_two_motions_across_a_rest():
 @pytest.mark.parametrize("seed", [seed for seed in range(24) if seed != 9])
 def test_demands_are_the_extrema_of_dense_samples(seed):
     given = problem(seed, sizes=(1.0, 20.0), released=seed % 2 == 0)
-    needed = 0.5 * given.cylinder.tan_alpha
+    slides = given.model == "flat" and given.initial is None  # below b/h
+    needed = (1.02 if slides else 0.5) * given.cylinder.tan_alpha
     duration = min(given.motion.duration, 8.0)
     dense = given.simulate(duration=duration, sample_step=DENSE, friction=needed)
     moving = dense.open_base

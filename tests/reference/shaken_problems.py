@@ -26,7 +26,12 @@ class Problem(NamedTuple):
 
     def simulate(self, **changes: Any) -> Trace:
         """Simulate with `changes` to the motion or to any option; a planar release falls in its plane."""
-        options: dict[str, Any] = {"model": self.model, "initial": self.initial, "rtol": 1e-9}
+        options: dict[str, Any] = {
+            "model": self.model,
+            "initial": self.initial,
+            "rtol": 1e-9,
+            "friction": 10.0,
+        }
         options = {**options, "sample_step": 1.0, **changes}
         cylinder, motion = options.pop("cylinder", self.cylinder), options.pop("motion", self.motion)
         if options["model"] == "planar" and options["initial"] is not None:
