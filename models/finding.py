@@ -41,6 +41,7 @@ QUANTITIES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "peak": ("alpha", "largest tilt"),
         "difference": ("alpha", "difference of two tilts"),
         "displacement": ("m", "distance of the base centre from its place"),
+        "force": ("weights", "a force over the weight of the body"),
         "length": ("m", "a length of the body or its support"),
         "frequency": ("1/a", "annual frequency"),
         "runs": ("count", "number of runs"),

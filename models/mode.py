@@ -75,6 +75,17 @@ def plane_of(case: Case) -> float | None:
     return azimuth if stays and initial.rolling_rate == 0.0 else None
 
 
+def wall_force(case: Case) -> float:
+    """Largest force that a closed base asks of the walls about it, beside friction, over the weight [-]."""
+    if case.motion is None or case.is_release:
+        return 0.0
+    acceleration, border = case.motion.until(case.length), case.friction_of_uplift
+    load = case.gravity * border / case.cylinder.tan_alpha * np.ones(len(acceleration))
+    load += acceleration[:, 2] if case.motion.has_vertical else 0.0
+    pushed = np.minimum(np.hypot(acceleration[:, 0], acceleration[:, 1]), border * load)
+    return float(max((pushed - case.friction * load).max(), 0.0) / case.gravity)
+
+
 @lru_cache(maxsize=4)
 def plane_of_shaking(motion: GroundMotion | None) -> float | None:
     """Azimuth of the vertical plane that holds the whole motion [rad]; None if there is none."""

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
+from rockwobble.compare.metrics.mode import mode_findings, slide_finding
+from rockwobble.compare.runs.choice import own_model_of
 from rockwobble.compare.runs.execution import Job, job_fingerprint, simulate_all, simulate_run
 from rockwobble.compare.runs.progress import ProgressCallback, stages
 from rockwobble.compare.storage.manifest import Number, Stored
 from rockwobble.compare.storage.results import Results
 from rockwobble.models import Case, Run, Trace
+from rockwobble.models.finding import Findings
+from rockwobble.models.mode import REST, SLIDES
 from rockwobble.models.plain_json import plain
+from rockwobble.models.support import SUPPORTS
 from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, case_facts, to_parquet
 
 from .advice.trust import BAND_STEP, copies_part_at, with_time_to_fall
@@ -42,11 +47,28 @@ class SingleRun(Results, kind="run"):
 
     trace: Trace
 
-    def headline(self) -> Mapping[str, Number]:
-        """Return outcome, peak tilt, uplift and number of passes."""
+    def findings(self) -> Findings:
+        """The mode of motion, and how far it slides."""
         trace = self.trace
+        if trace.run.support not in SUPPORTS:
+            return Findings()
+        first = mode_findings(trace.case, trace.run.support)
+        if "slides" not in trace.mode:
+            return Findings(first)
+        moved = trace.peak_displacement, trace.residual_displacement
+        return Findings([*first, slide_finding(*moved, self.facts["single_trace"].get("slid", ()))])
+
+    def headline(self) -> Mapping[str, Number]:
+        """Return outcome, mode, peak tilt or displacement, uplift and number of passes."""
+        trace = self.trace
+        slid = {
+            "peak displacement [m]": trace.peak_displacement,
+            "residual displacement [m]": trace.residual_displacement,
+        }
         return {
             "outcome": trace.outcome,
+            "mode": trace.mode,
+            **(slid if "slides" in trace.mode else {}),
             "peak tilt [alpha]": trace.peak_tilt / trace.case.cylinder.alpha,
             "uplift [s]": trace.uplift_time,
             "passes": len(trace.passes),
@@ -86,7 +108,7 @@ def single_run(
     progress : callable, optional
         Called with a `Progress` at the start and at the end of each stage.
     """
-    model = run if run.is_model else run.own_model
+    model = run if run.is_model else own_model_of(case, run)
     plan = AdvicePlan(copies=_COPIES)
     stage = stages(progress, [1.0, 1.0])
     with stage(Job(case=case, run=run).label):
@@ -97,17 +119,25 @@ def single_run(
         return single_run_of(trace, part, answer, plan.perturbation)
     with stage(f"{plan.copies} copies of the {model}"):
         own = trace if model == run else simulate_run(case, model)
-        if len(own.time) and math.isfinite(own.uplift_time):
+        slid: list[list[float]] = []
+        if len(own.time) and own.mode not in ("", REST):
             case = with_time_to_fall(case, own)
             copies = [simulate_run(each, model, sample_step=BAND_STEP) for each in plan.perturbed(case)]
-            part = copies_part_at(case, own, copies)
-    return single_run_of(trace, part, answer, plan.perturbation)
+            if trace.mode == SLIDES == own.mode and model == run:
+                slid = [[each.peak_displacement, each.residual_displacement] for each in copies]
+            elif own.mode != SLIDES:
+                part = copies_part_at(case, own, copies)
+    return single_run_of(trace, part, answer, plan.perturbation, slid)
 
 
 def single_run_of(
-    trace: Trace, part: float = math.inf, answer: str = "", perturbation: float = AdvicePlan().perturbation
+    trace: Trace,
+    part: float = math.inf,
+    answer: str = "",
+    perturbation: float = AdvicePlan().perturbation,
+    slid: Sequence[Sequence[float]] = (),
 ) -> SingleRun:
-    """Return the results of a trace, and from when on perturbed copies of it diverge [s]."""
+    """Results of a trace: when perturbed copies of it diverge [s], or how far they slide (n, 2) [m]."""
     job = Job(case=trace.case, run=trace.run)
     left_out = ("rest_intervals", "extrema", "passes")
     facts = {
@@ -115,7 +145,8 @@ def single_run_of(
         "run": job.label,
         "case": case_facts(trace.case),
         "result": {name: value for name, value in trace.to_plain().items() if name not in left_out},
-        "single_trace": {"copies_part": part, "perturbation": perturbation, "answer": answer},
+        "single_trace": {"copies_part": part, "perturbation": perturbation, "answer": answer}
+        | ({"slid": slid} if slid else {}),
         "columns": {"run.csv": COLUMNS, "passes.csv": PASS_COLUMNS},
     }
     return SingleRun(tables={"run": trace.to_frame()}, facts=plain(facts), trace=trace)

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from rockwobble.compare.metrics.pair import balance_of
 from rockwobble.models import Case, Diagnostic, Trace
 from rockwobble.models.bounds import OVERTURNED_TILT
+from rockwobble.models.mode import SLIDES
 from rockwobble.studies.advice.demands import fall_of
 from rockwobble.studies.single_run import SingleRun
 
@@ -16,6 +17,7 @@ from .cases import case_lines
 from .diagnostics import remarks
 from .page import Page
 from .table import Row, number
+from .wording import statement
 
 
 def page_of(found: SingleRun) -> Page:
@@ -23,7 +25,7 @@ def page_of(found: SingleRun) -> Page:
     trace, said = found.trace, remarks(_limits(found.trace))
     values = {
         "title": f"{trace.case.name}, {found.facts['run']}: {trace.outcome}",
-        "statements": list(_statements(trace)),
+        "statements": list(_statements(found)),
         "said": f"{said[0].upper()}{said[1:]}." if said else "",
         "warnings": list(_not_reproducible(found)),
         "answer": found.facts.get("single_trace", {}).get("answer", ""),
@@ -45,14 +47,11 @@ def _friction_at_rest(trace: Trace) -> float:
     return trace.case.friction_at_rest if trace.run.is_model and not trace.peak_tilt else 0.0
 
 
-def _statements(trace: Trace) -> Iterator[str]:
-    """Yield what became of the cylinder, and whether that is more than its method knows."""
-    yield _outcome(trace)
-    if (at_rest := _friction_at_rest(trace)) > trace.case.friction:
-        yield (
-            f"It slides: the friction demand at rest is {number(at_rest)}, and {number(trace.case.friction)} "
-            "is given. The model knows no sliding."
-        )
+def _statements(found: SingleRun) -> Iterator[str]:
+    """Yield which motion it is, and what became of the cylinder."""
+    yield from map(statement, found.findings())
+    if found.trace.mode != SLIDES:
+        yield _outcome(found.trace)
 
 
 def _outcome(trace: Trace) -> str:
@@ -117,13 +116,14 @@ def _rows(trace: Trace) -> Iterator[Row]:
     if restitution := settings.get("restitution", ""):
         yield _quantity("restitution", str(restitution))
     yield _quantity("end", _end(trace))
-    if not case.initial:
+    if not case.initial and trace.mode != SLIDES:
         towards = math.degrees(math.remainder(trace.uplift_direction, math.tau))
         uplifts = math.isfinite(trace.uplift_time)
         yield _quantity(
             "uplift", f"{trace.uplift_time:.4f} s towards {towards:.2f} deg" if uplifts else "none"
         )
-    yield _quantity("near-upright passes", str(len(trace.passes)))
+    if trace.mode != SLIDES:
+        yield _quantity("near-upright passes", str(len(trace.passes)))
     closest = float(trace.passes["minimum_tilt"].min()) / case.cylinder.alpha
     if math.isfinite(closest):
         yield _quantity("closest pass", f"{number(closest)} α")
@@ -131,8 +131,9 @@ def _rows(trace: Trace) -> Iterator[Row]:
     if math.isfinite(trace.peak_tendon_force):
         yield _quantity("tendon force", f"largest {number(trace.peak_tendon_force)} weights of a column")
     if engine or not trace.run.support.guided:  # it may leave its place
-        displacement = trace.residual_displacement / case.cylinder.base_radius
-        yield _quantity("residual displacement", f"{number(displacement)} b")
+        for name, moved in (("peak", trace.peak_displacement), ("residual", trace.residual_displacement)):
+            share = number(moved / case.cylinder.base_radius)
+            yield _quantity(f"{name} displacement", f"{number(moved)} m = {share} b")
         yield _quantity("residual twist", f"{number(math.degrees(trace.residual_twist))} deg")
     if math.isfinite(first := trace.first("wall_contact")):
         whole = number(trace.wall_contact[-1])

@@ -30,6 +30,7 @@ _BY_UNIT: Mapping[str, Callable[[float], str]] = {
     "share": lambda value: number(value, "percent"),
     "count": lambda value: number(value, ".0f"),
     "alpha": lambda value: f"{number(value)} α",
+    "weights": lambda value: f"{number(value)} weights",
     "m": lambda value: f"{number(value)} m",
     "1/a": lambda value: f"{number(value)} a year",
 }
