@@ -1,7 +1,7 @@
 """Two methods on the same members: tests keep their level, intervals their coverage, both find what is there.
 
 The simulations have fixed seeds and 2000 ensembles each: a share of 0.95 is known to 0.005 (one standard
-deviation). `python tests/benchmarks ensemble_intervals` prints a wider table.
+deviation).
 """
 
 from __future__ import annotations
