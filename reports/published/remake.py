@@ -30,6 +30,7 @@ from pathlib import Path
 from rockwobble.compare.storage.manifest import MANIFEST, Manifest, file_state, read_manifests
 from rockwobble.compare.storage.provenance import code_digests
 from rockwobble.reports.pages import stored_page
+from rockwobble.reports.published import headlines
 from rockwobble.reports.published.script import not_borne_out
 from rockwobble.reports.registry import KINDS
 
@@ -295,7 +296,7 @@ def check() -> int:
     """Print what is older than the code and what is wrong; return 1 where something is wrong."""
     for row in ages():
         print(row)
-    wrong = faults()
+    wrong = [*faults(), *headlines.faults()]
     for row in wrong:
         print(f"FAULT {row}")
     print(f"{len(manifests())} results, {len(wrong)} faults")

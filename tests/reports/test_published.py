@@ -17,6 +17,7 @@ from rockwobble.compare.check.verdict import CHANGED
 from rockwobble.models.diagnostic import CODES, codes_in
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.table import number
+from rockwobble.reports.published import headlines
 from rockwobble.studies.validity.limits import needs
 from rockwobble.studies.validity.study import Validity
 
@@ -81,6 +82,13 @@ def test_results_that_nothing_draws_or_nobody_committed_are_faults(
     words = " ".join(remake["faults"](tmp_path))
     assert "committed" in words
     assert "draws such results" in words
+
+
+def test_a_headline_that_its_table_does_not_bear_out_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    real = headlines.headline
+    monkeypatch.setattr(headlines, "headline", lambda name: real(name).replace("1.000", "1.001"))
+    (fault,) = headlines.faults()
+    assert fault.startswith("validity: its headline")
 
 
 def test_scripts_of_published_studies_use_public_names_alone() -> None:
