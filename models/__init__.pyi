@@ -22,6 +22,7 @@ from .records.folder import read_records as read_records
 from .records.folder import read_records_by_level as read_records_by_level
 from .records.p695 import far_field_motions as far_field_motions
 from .records.p695 import p695_far_field as p695_far_field
+from .records.reading import Reading as Reading
 from .suites import read_suite as read_suite
 from .suites import shipped_suites as shipped_suites
 from .synthetic import pulse as pulse

@@ -71,6 +71,7 @@ VALID: dict[str, dict[str, Any]] = {
     "GroundMotion": {"acceleration": [[0.0, 0.0], [1.0, 0.0]], "time_step": 0.1},
     "HazardCurve": {"intensity": [0.1, 0.2], "annual_frequency": [0.01, 0.001], "measure": "pga"},
     "InitialState": {"tilt": 0.1},
+    "Reading": {"units": "g"},
     "Run": {"engine": None, "support": "recess"},
     "Suite": {"cases": [CASE], "runs": [MODEL]},
     "Tendon": {},

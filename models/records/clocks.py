@@ -1,4 +1,4 @@
-"""One time step, start and length for the components of a record."""
+"""Times of the samples of a record: even steps, and one step, start and length for its components."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .component import Component
+from .component import Component, RecordFile
 
 # over a whole record two components may drift apart by this part of a step, the rounding of printed times
 _DRIFT = 0.05
@@ -16,6 +17,83 @@ _MOST_PARTS = 20  # of the smallest step: a record of more samples by that is a 
 # the peak
 _LEFT_OUT, _STILL = 0.01, 0.05
 LENGTHS = ("pad", "cut")
+# printed times are rounded, as 0.0167 for 1/60: a sample may stand this much of a step off its place
+_UNEVENNESS = 0.05
+_LONGEST_GAP = 2.0  # median steps; more are missing samples
+_EPOCH = 1e6  # [s], 11 days: no record begins so late, times since 1970 do
+
+
+def rises_evenly(time: NDArray[np.float64]) -> bool:
+    """Whether numbers rise in even steps, as times do."""
+    return len(time) > 1 and _uneven(time)[0] is None
+
+
+def is_counting(time: NDArray[np.float64]) -> bool:
+    """Whether numbers are whole and rise by 1, as row numbers do."""
+    return bool((np.diff(time) == 1.0).all() and (time[0] == round(time[0])))
+
+
+def since_epoch(time: float) -> bool:
+    """Whether a time [s] counts from an epoch such as 1970."""
+    return bool(abs(time) > _EPOCH)
+
+
+def _uneven(time: NDArray[np.float64]) -> tuple[int | None, float]:
+    """Place of the largest jump of the step, None where all are even, and the mean step."""
+    # halves, because the difference of two large floats overflows
+    step = 2.0 * float(0.5 * time[-1] - 0.5 * time[0]) / (len(time) - 1)
+    if not 0.0 < step < np.inf:
+        return 0, step
+    with np.errstate(over="ignore", invalid="ignore"):  # an infinite distance is refused like any other
+        off = np.abs((time - time[0]) / step - np.arange(len(time)))
+        # the place where the step changes, not the one where the error has grown largest
+        jump = np.abs(np.diff(time) / step - 1.0)
+    even = off.max() <= _UNEVENNESS and jump.max() <= 2.0 * _UNEVENNESS
+    return (None if even else int(jump.argmax())), step
+
+
+def even_samples(
+    file: RecordFile,
+    time: NDArray[np.float64],
+    samples: NDArray[np.float64],
+    lines: Sequence[int],
+    *,
+    resample: bool,
+) -> tuple[NDArray[np.float64], float, tuple[str, ...]]:
+    """Samples at even times, their step in the unit of the times, and a note of what was done.
+
+    Parameters
+    ----------
+    file : RecordFile
+        For messages.
+    time : ndarray, shape (n,)
+    samples : ndarray, shape (n, columns)
+    lines : sequence of int
+        Line of each.
+    resample : bool
+        Whether uneven times become even: linearly between samples, at their median step.
+
+    Raises
+    ------
+    ValueError
+        If the times do not rise in even steps and may not be resampled, or samples are missing.
+    """
+    at, step = _uneven(time)
+    if at is None:
+        return samples, step, ()
+    if not 0.0 < step < np.inf:
+        raise ValueError(f"{file.name}: times must rise [s], got {time[0]:g} s first and {time[-1]:g} s last")
+    steps = np.diff(time)
+    median = float(np.median(steps))
+    if not resample or not 0.0 < steps.min() <= steps.max() <= _LONGEST_GAP * median:
+        raise ValueError(
+            f"{file.name}, line {lines[at + 1]}: times must rise in even steps, got {time[at + 1]:g} s "
+            f"after {time[at]:g} s where the mean step is {step:.6g} s: --resample (resample=) takes samples "
+            f"at even times where no step exceeds {_LONGEST_GAP:g} times the median"
+        )
+    even = time[0] + median * np.arange(int((time[-1] - time[0]) / median * (1.0 + 1e-12)) + 1)
+    taken = np.column_stack([np.interp(even, time, column) for column in samples.T])
+    return taken, median, (f"uneven times (steps of {steps.min():.6g} to {steps.max():.6g}) resampled",)
 
 
 def require_same_clock(components: Sequence[Component]) -> None:
@@ -47,7 +125,7 @@ def require_same_clock(components: Sequence[Component]) -> None:
 def equally_long(
     components: Sequence[Component], lengths: str | None
 ) -> tuple[list[Component], tuple[str, ...]]:
-    """Return components of one length, and what was done to them.
+    """Components of one length, and what was done to them.
 
     Parameters
     ----------
@@ -85,7 +163,7 @@ def equally_long(
 
 
 def resampled(components: Sequence[Component]) -> list[Component]:
-    """Return components at the largest time step that divides the steps of all, linear between samples.
+    """Components at the largest time step that divides the steps of all, linear between samples.
 
     That changes no record: each is linear between its samples, and all of them stay.
 
@@ -113,7 +191,7 @@ def resampled(components: Sequence[Component]) -> list[Component]:
 
 
 def _refined(component: Component, count: int, step: float) -> Component:
-    """Return a component with each of its time steps cut into `count` of `step` [s]."""
+    """Component with each of its time steps cut into `count` of `step` [s]."""
     values = component.values
     places = np.arange((len(values) - 1) * count + 1) / count
     return replace(component, values=np.interp(places, np.arange(len(values)), values), time_step=step)

@@ -1,7 +1,7 @@
 """Names of columns: what a column holds by its name and unit, in the languages of the networks.
 
-Names are compared without case, accents, units and punctuation. A name that is in no list of
-column_words.toml is unknown, and an unknown column is never taken for a component.
+Words stand in column_words.toml and are compared without case, accents, units and punctuation. A name that is
+in none of its lists is unknown, and an unknown column is never taken for a component.
 """
 
 from __future__ import annotations
@@ -15,20 +15,32 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
-from typing import Literal
+from typing import Literal, cast
 
 from .component import Direction, RecordFile
+from .numbers import NUMBER
 from .units import unit_of
 
 Kind = Literal["time", "index", "acceleration", "velocity", "displacement", "other", "unknown"]
-
 _LETTERS = str.maketrans(
     {"ł": "l", "ø": "o", "đ": "d", "ı": "i", "æ": "ae", "ð": "d", "þ": "th", "œ": "oe", "№": "no"}
 )
+_MOST_LINES, _LONGEST_LINE, _LONGEST_NAME = (
+    60,
+    400,
+    80,
+)  # lines of a header at each of its ends, and characters
+_LEAST_STEP, _LARGEST_STEP, _SAME_STEP = 1e-5, 2.0, 3e-3  # [s], and relative: 0.0167 for 1/60
+_BRACKETS = re.compile(r"[\[({<]([^\[\](){}<>]*)[\])}>]")
+_QUADRANT = re.compile(r"\b([NS])\s?(\d{1,2})\s?([EW])\b")
+_DEGREES = re.compile(r"(?<![\d.])(\d{3}|\d{1,3}(?:\.\d{1,3})?(?=\s?DEG))(?![\d.])")
+_STATEMENT = re.compile(r"=\s?(?:[-+.\d]|$)")  # "dt=0.005 s" names no column
+_BLANK = "\ue000"  # inside of a cell, where blanks part cells
+_NORTH_SOUTH = "ns"  # a direction, unless it stands in brackets or behind a time: then nanoseconds
 
 
 def plain(text: str) -> str:
-    """Return a text in small letters without accents.
+    """Text in small letters without accents.
 
     Examples
     --------
@@ -39,99 +51,27 @@ def plain(text: str) -> str:
     return "".join(part for part in parts if not unicodedata.combining(part)).translate(_LETTERS)
 
 
-@dataclass(frozen=True, slots=True)
-class _Words:
-    """Words of column_words.toml, without accents.
-
-    Attributes
-    ----------
-    kinds : mapping
-        Kind of a word.
-    stems : tuple
-        Beginnings of words and their kinds.
-    senses : mapping
-        Direction and sign of a word.
-    noise : frozenset
-        Words that say nothing.
-    joined : tuple of str
-        Words that are written without blanks before the next.
-    seconds : mapping
-        Units of time [s], NaN for those that are refused.
-    """
-
-    kinds: Mapping[str, Kind]
-    stems: tuple[tuple[str, Kind], ...]
-    senses: Mapping[str, tuple[Direction, float]]
-    noise: frozenset[str]
-    joined: tuple[str, ...]
-    seconds: Mapping[str, float]
-
-
-_SENSES: Mapping[str, tuple[Direction, float]] = {
-    **{"east": ("x", 1.0), "west": ("x", -1.0), "north": ("y", 1.0), "south": ("y", -1.0)},
-    **{"up": ("z", 1.0), "down": ("z", -1.0)},
-}
-_SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "refused": math.nan}
+@cache
+def _tables() -> Mapping[str, Mapping[str, str]]:
+    text = (files("rockwobble.models") / "records" / "column_words.toml").read_text(encoding="utf-8")
+    return cast("Mapping[str, Mapping[str, str]]", tomllib.loads(text))
 
 
 @cache
-def _vocabulary() -> _Words:
-    text = (files("rockwobble.models") / "records" / "column_words.toml").read_text(encoding="utf-8")
-    tables = tomllib.loads(text)
-    kinds = {plain(word): kind for kind, words in tables["quantities"].items() for word in words.split()}
-    return _Words(
-        kinds={word: kind for word, kind in kinds.items() if not word.endswith("*")},
-        stems=tuple((word[:-1], kind) for word, kind in kinds.items() if word.endswith("*")),
-        senses={
-            plain(word): _SENSES[name] for name, words in tables["senses"].items() for word in words.split()
-        },
-        noise=frozenset(plain(tables["others"]["noise"]).split()),
-        joined=tuple(plain(tables["others"]["joined"]).split()),
-        seconds={word: _SECONDS[name] for name, words in tables["times"].items() for word in words.split()},
-    )
+def _meanings(table: str) -> Mapping[str, str]:
+    """Meaning of each word of a table."""
+    return {plain(word): meaning for meaning, words in _tables()[table].items() for word in words.split()}
 
 
-_CHANNEL = re.compile(r"[behcdfgms][nlgh]([enz])")  # of SEED, as HNE
-_AXIS_OF_ACCELERATION = re.compile(
-    r"(?:a|acc|accel|acceleration|lin|linacc|gf|gforce)([xyz]|ew|ns|ud)|([xyz]|ew|ns|ud)acc(?:el)?"
-)
-_VELOCITIES = re.compile(r"(?:[cmkdµμn]?m|in|ft)/(?:s|sec)|kines?")
-_LENGTHS = frozenset(
-    ["mm", "cm", "m", "dm", "µm", "μm", "um", "nm", "km", "in", "inch", "inches", "ft", "feet", "mils"]
-)
-_OTHER_UNITS = frozenset(
-    [
-        "deg",
-        "°",
-        "rad",
-        "rad/s",
-        "deg/s",
-        "°/s",
-        "hz",
-        "mv",
-        "v",
-        "volt",
-        "volts",
-        "pa",
-        "kpa",
-        "n",
-        "kn",
-        "kg",
-        "°c",
-        "%",
-        "µt",
-        "ut",
-        "db",
-        "count",
-        "counts",
-        "cts",
-    ]
-)
-# "acc_e_cm_s2", "ax_m_per_s2", "az_mps2", of names that allow no slash
-_UNIT_IN_NAME = re.compile(
-    r"[\s_]([cmkµμ]?m|ft|in)(?:_per_|_p_|p|_)?s(?:ec)?(?:_?\^?-?[2²]|_s)$", re.IGNORECASE
-)
-_BRACKETS = re.compile(r"[\[({<]([^\[\](){}<>]*)[\])}>]")
+@cache
+def pattern(name: str) -> re.Pattern[str]:
+    """A pattern of column_words.toml."""
+    patterns = _tables()["patterns"]
+    if name != "stated_step":
+        return re.compile(patterns[name], re.IGNORECASE)
+    unit = rf"(?:\s{{0,3}}[\[(]?\s?(?P<unit>{patterns['unit_of_step']}))?"
+    words = rf"(?:(?P<rate>{patterns['rate']})|{patterns['step']})(?P<gap>[^\d\n.+-]{{0,30}}?)"
+    return re.compile(f"{words}(?P<number>{NUMBER}){unit}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -152,27 +92,20 @@ class ColumnName:
     unit : str
         As the name states it; empty without one.
     seconds : float or None
-        Of a column of time whose unit is stated: its unit [s].
+        Of a column of time whose unit is stated: its unit [s], NaN of one that is refused.
     """
 
-    text: str
-    kind: Kind
+    text: str = ""
+    kind: Kind = "unknown"
     direction: Direction | None = None
     sign: float = 1.0
     azimuth: float | None = None
     unit: str = ""
     seconds: float | None = None
 
-    @property
-    def label(self) -> str:
-        """The name without its unit in brackets."""
-        return (
-            re.sub(rf"\s?[\[(]\s?{re.escape(self.unit)}\s?[\])]$", "", self.text) if self.unit else self.text
-        )
-
 
 def column_name(text: str) -> ColumnName:
-    """Return what a name says of its column.
+    """What a name says of its column.
 
     Examples
     --------
@@ -182,151 +115,115 @@ def column_name(text: str) -> ColumnName:
     >>> column_name("Zeit_ms").seconds, column_name("V (cm/s)").kind, column_name("V").direction
     (0.001, 'velocity', 'z')
     """
-    words, unit = _unit_apart(text[:80])
-    if unit.casefold() in ("deg", "°") and _azimuth(text[:80]) is not None:  # "CHAN 1: 90 DEG"
-        words, unit = text[:80], ""
-    quantity = _quantity_of_unit(unit)
-    named = _by_words(words)
-    found = replace(named, text=text.strip(), unit=unit)
-    seconds = _vocabulary().seconds.get(unit.casefold(), math.nan)
-    if quantity == "time":
-        # "t (s)", and "Denbora [s]": a unit of time belongs to a time in any language
-        kind: Kind = "time" if named.kind in ("time", "unknown", "index") or not words else named.kind
-        if plain(words).strip() in ("t", "s", ""):
-            kind = "time"
-        return replace(found, kind=kind, direction=None, seconds=None if math.isnan(seconds) else seconds)
-    if quantity in ("velocity", "displacement", "other"):
-        if named.kind == "acceleration" and named.direction is None and quantity != "other":
-            return found  # `files` refuses a unit that is none of an acceleration
-        kind = named.kind if named.kind in ("velocity", "displacement", "time", "index") else quantity
-        return replace(found, kind=kind, direction=None)
-    if quantity == "acceleration" and named.kind in ("unknown", "index", "time"):
-        return replace(found, kind="acceleration")
-    return found
-
-
-_NORTH_SOUTH = "ns"  # a direction, unless it stands in brackets or behind a time: then nanoseconds
+    text = text.strip()
+    words, unit = _unit_apart(text[:_LONGEST_NAME])
+    if unit.casefold() in ("deg", "°") and _azimuth(text[:_LONGEST_NAME]) is not None:  # "CHAN 1: 90 DEG"
+        words, unit = text[:_LONGEST_NAME], ""
+    name = replace(_by_words(words), text=text, unit=unit)
+    quantity = quantity_of_unit(unit)
+    if quantity == "time":  # in any language
+        known = name.kind not in ("unknown", "index") and plain(words) not in ("t", "s", "")
+        kind = name.kind if known else "time"
+        return replace(name, kind=kind, direction=None, seconds=float(_meanings("times")[plain(unit)]))
+    if quantity == "acceleration" and name.kind in ("unknown", "index", "time"):
+        return replace(name, kind="acceleration")
+    undirected = name.kind == "acceleration" and name.direction is None and quantity != "other"
+    if quantity in (None, "acceleration") or undirected:  # a unit that is none of an acceleration is refused
+        return name
+    keeps = name.kind in ("velocity", "displacement", "time", "index")
+    return replace(name, kind=name.kind if keeps else quantity, direction=None)
 
 
 def _unit_apart(text: str) -> tuple[str, str]:
-    """Return the words of a name and its unit: in brackets, behind "in", an underscore or a blank."""
-    unit = ""
-    if len(text.strip()) > 1 and _quantity_of_unit(text) and text.strip().casefold() != _NORTH_SOUTH:
-        return "", text.strip()
-
-    def keep(match: re.Match[str]) -> str:
-        nonlocal unit
-        inner = match[1].strip()
-        if not unit and _quantity_of_unit(inner):
-            unit = inner
-            return " "
-        return " " if inner in ("+", "-", "") else f" {inner} "
-
-    words = _BRACKETS.sub(keep, text)
-    if unit:
-        return words.strip(), unit
-    in_name = _UNIT_IN_NAME.search(words)
+    """Words of a name, and its unit: in brackets, behind "in", an underscore or a blank."""
+    if len(text) > 1 and quantity_of_unit(text) and text.casefold() != _NORTH_SOUTH:
+        return "", text
+    units = [each.strip() for each in _BRACKETS.findall(text) if quantity_of_unit(each)]
+    dropped = ("+", "-", *units[:1])
+    words = _BRACKETS.sub(lambda match: "" if match[1].strip() in dropped else f" {match[1]} ", text).strip()
+    if units:
+        return words, units[0]
+    in_name = pattern("unit_in_name").search(words)
     if in_name:
         return words[: in_name.start()].strip(), f"{in_name[1]}/s2"
-    behind = re.search(r"(?:[\s_,:]+in\s+|[\s_,:/]+)([^\s_]+)$", words.strip())
-    if behind and _quantity_of_unit(behind[1]):
-        rest = words.strip()[: behind.start()]
-        # a_g is a symbol; "acc g", "time_ms" and "acc_E cm/s2" state units; V E N S W D are directions
-        letters = re.sub(r"[^\w]|_", "", rest)
-        if behind[1].casefold() == _NORTH_SOUTH and _by_words(rest).kind != "time":
-            return words.strip(), ""
-        # "t/s" is a quantity over its unit, "N/S" a direction
-        over = "/" in words[behind.start() : behind.end()] and letters.casefold() not in ("", "n")
-        if len(behind[1]) > 1 or (behind[1].casefold() in "sg" and (over or len(letters) > 2)):
-            return rest, behind[1]
-    return words.strip(), ""
+    behind = re.search(r"(?:[\s_,:]+in\s+|[\s_,:/]+)([^\s_]+)$", words)
+    if behind is None or quantity_of_unit(behind[1]) is None:
+        return words, ""
+    rest, unit = words[: behind.start()], behind[1]
+    if unit.casefold() == _NORTH_SOUTH and _by_words(rest).kind != "time":
+        return words, ""
+    # a_g is a symbol; "acc g", "time_ms" and "acc_E cm/s2" state units; V E N S W D are directions; "t/s" is
+    # a quantity over its unit, "N/S" a direction
+    letters = re.sub(r"[\W_]", "", rest)
+    over = "/" in behind[0] and letters.casefold() not in ("", "n")
+    states = len(unit) > 1 or (unit.casefold() in "sg" and (over or len(letters) > 2))
+    return (rest, unit) if states else (words, "")
 
 
-def _quantity_of_unit(unit: str) -> Kind | None:
-    word = unit.strip().casefold()
-    if word in _vocabulary().seconds:
+def quantity_of_unit(unit: str) -> Kind | None:
+    """Quantity of which a word is a unit; None of other words."""
+    word = plain(unit.strip())
+    if word in _meanings("times"):
         return "time"
-    if unit_of(word) is not None:
+    if unit_of(unit.strip().casefold()) is not None:
         return "acceleration"
-    if _VELOCITIES.fullmatch(word.replace("sec", "s")):
-        return "velocity"
-    if word in _LENGTHS:
-        return "displacement"
-    if word in _OTHER_UNITS:
-        return "other"
-    if re.fullmatch(r"(?:[a-zµμ]{1,2}/s(?:ec)?(?:\^|\*\*)?[2²]|%\s?g|milli-?g|mg|[a-z]{1,2}/s/s)", word):
-        return "acceleration"
-    return None
+    other = _meanings("units").get(word.replace("sec", "s"))
+    refused = other is None and pattern("acceleration").fullmatch(word)
+    return "acceleration" if refused else cast("Kind | None", other)
 
 
 def _by_words(words: str) -> ColumnName:
-    """Return what the words of a name say, without its unit."""
-    unknown = ColumnName(text=words, kind="unknown")
+    """What the words of a name say, without its unit."""
     azimuth = _azimuth(words)
     if azimuth is not None:
-        return replace(unknown, kind="acceleration", azimuth=azimuth)
-    for joined in _vocabulary().joined:
-        words = plain(words).replace(joined, " ") if joined in plain(words) else words
-    accelerates = len(words.strip()) < 1 or any(joined in plain(words) for joined in _vocabulary().joined)
-    tokens = re.findall(r"[^\W\d_]+|\d+", plain(re.sub(r"(?<=[a-zа-я])(?=[A-ZА-Я])", " ", words)))
+        return ColumnName(kind="acceleration", azimuth=azimuth)
+    text, noise = plain(re.sub(r"(?<=[a-zа-я])(?=[A-ZА-Я])", " ", words)), _meanings("others")
+    joined = [word for word, meaning in noise.items() if meaning == "joined" and word in text]
+    for word in joined:
+        text = text.replace(word, " ")
+    tokens = re.findall(r"[^\W\d_]+|\d+", text)
     if not tokens:
-        return replace(unknown, kind="acceleration" if accelerates and words else "index")
-    kinds = [_kind(token) for token in tokens]
-    if len(tokens) > 1:  # "a" and "i" are articles, "t" a transverse direction, where more stands there
-        kinds = [
-            None if token in ("i", "k", "no") and tokens[0] != token else kind
-            for token, kind in zip(tokens, kinds, strict=True)
-        ]
+        return ColumnName(kind="acceleration" if joined else "index")
+    # "i" and "k" are articles, "t" a transverse direction, where more stands there
+    kinds = [None if at and token in ("i", "k", "no") else _kind(token) for at, token in enumerate(tokens)]
     for kind in ("velocity", "displacement", "other"):
-        if kind in kinds and not ("acceleration" in kinds and kind != "other"):
-            return replace(unknown, kind=kind)
-    directions = _directions(
-        [t for t, k in zip(tokens, kinds, strict=True) if k not in ("acceleration", "time") or t in ("t",)]
-    )
-    if len(directions) == 1:
-        ((direction, sign),) = directions
-        return replace(unknown, kind="acceleration", direction=direction, sign=sign)
-    if directions:
-        return unknown
-    if "acceleration" in kinds:
-        return replace(unknown, kind="acceleration")
-    for kind in ("time", "index"):
-        if kind in kinds and all(
-            k is not None or t in _vocabulary().noise or t.isdigit()
-            for t, k in zip(tokens, kinds, strict=True)
-        ):
-            return replace(unknown, kind=kind)
-        if kind in kinds and kinds[0] == kind:
-            return replace(unknown, kind=kind)
-    return unknown
+        if kind in kinds and (kind == "other" or "acceleration" not in kinds):
+            return ColumnName(kind=cast("Kind", kind))
+    pairs = zip(tokens, kinds, strict=True)
+    senses = _senses([token for token, kind in pairs if token == "t" or kind not in ("acceleration", "time")])
+    if len(senses) == 1:
+        (sense,) = senses
+        return ColumnName(
+            kind="acceleration", direction=cast("Direction", sense[0]), sign=float(sense[1] + "1")
+        )
+    first = kinds[0] if kinds[0] in ("time", "index") else "unknown"
+    return ColumnName(kind="unknown" if senses else "acceleration" if "acceleration" in kinds else first)
 
 
+@cache
 def _kind(token: str) -> Kind | None:
-    return _vocabulary().kinds.get(token) or next(
-        (kind for stem, kind in _vocabulary().stems if token.startswith(stem)), None
-    )
+    kinds = _meanings("quantities")
+    stem = next((word for word in kinds if word[-1] == "*" and token.startswith(word[:-1])), "")
+    return cast("Kind | None", kinds.get(token) or kinds.get(stem))
 
 
-def _directions(tokens: Sequence[str]) -> set[tuple[Direction, float]]:
-    """Return the senses that words name: one where the name is clear."""
-    words = [token for token in tokens if token not in _vocabulary().noise]
-    for joined in ("".join(words), *words):
-        axis = _AXIS_OF_ACCELERATION.fullmatch(joined) or _CHANNEL.fullmatch(joined)
-        if joined in _vocabulary().senses and (joined == "".join(words)):
-            return {_vocabulary().senses[joined]}
+def _senses(tokens: Sequence[str]) -> set[str]:
+    """The positive senses that words name, "x+" for east: one where the name is clear."""
+    senses = _meanings("senses")
+    words = [token for token in tokens if token not in _meanings("others")]
+    whole = "".join(words)
+    if whole in senses:
+        return {senses[whole]}
+    for word in (whole, *words):
+        axis = pattern("axis").fullmatch(word)
         if axis:
-            return {_vocabulary().senses[next(filter(None, axis.groups()))]}
-    pairs = {a + b for a, b in itertools.pairwise(words)}
-    of_pairs = {_vocabulary().senses[pair] for pair in pairs if pair in _vocabulary().senses}
-    return of_pairs or {_vocabulary().senses[word] for word in words if word in _vocabulary().senses}
-
-
-_QUADRANT = re.compile(r"\b([NS])\s?(\d{1,2})\s?([EW])\b")
-_DEGREES = re.compile(r"(?<![\d.])(\d{3}|\d{1,3}(?:\.\d{1,3})?(?=\s?DEG))(?![\d.])")
+            return {senses[next(filter(None, axis.groups()))]}
+    pairs = {senses[a + b] for a, b in itertools.pairwise(words) if a + b in senses}
+    return pairs or {senses[word] for word in words if word in senses}
 
 
 def _azimuth(words: str) -> float | None:
-    """Return the azimuth in a name: "N30E", "090", "H2 (105 deg)" [deg]."""
+    """The azimuth in a name: "N30E", "090", "H2 (105 deg)" [deg]."""
     text = words.strip().upper().replace("°", " DEG")
     quadrant = _QUADRANT.search(text)
     if quadrant:
@@ -336,47 +233,10 @@ def _azimuth(words: str) -> float | None:
     return float(degrees[1]) % 360.0 if degrees and float(degrees[1]) <= 360.0 else None
 
 
-_STATEMENT = re.compile(r"=\s?[-+.\d]")  # "dt=0.005 s" names no column
-_TOTALS = ("at", "tgf", "gft", "gforcet")  # of phones: the size of a vector whose components stand beside it
-_GERMAN = ("zeit", "beschl")  # words beside which "O" is Ost; in French, Spanish and Italian it is west
-
-
-def settle(names: Sequence[ColumnName]) -> list[ColumnName]:
-    """Return names, with those corrected whose meaning depends on the others.
-
-    "T" beside "Time" is no time but a transverse component, "O" beside "N" and German words is east, and "aT"
-    beside x, y and z is their resultant.
-
-    Examples
-    --------
-    >>> [name.kind for name in settle([column_name(word) for word in ("Time", "L", "T")])]
-    ['time', 'unknown', 'unknown']
-    """
-    letters = [re.sub(r"[\W\d_]+", "", plain(name.label)) for name in names]
-    named = [
-        name.kind == "time" and letter not in ("t", "") for name, letter in zip(names, letters, strict=True)
-    ]
-    directions = {name.direction for name in names}
-    german = any(letter.startswith(_GERMAN) for letter in letters)
-
-    def in_company(name: ColumnName, letter: str) -> ColumnName:
-        if name.kind == "time" and letter == "t" and any(named):
-            return replace(name, kind="unknown", seconds=None)
-        if letter == "o" and german and "y" in directions and "x" not in directions:
-            return replace(name, kind="acceleration", direction="x")
-        if letter in _TOTALS and {"x", "y", "z"} <= directions:
-            return replace(name, kind="other", direction=None)
-        return name
-
-    return [in_company(name, letter) for name, letter in zip(names, letters, strict=True)]
-
-
-_MOST_LINES = 60  # of a header, at each of its ends, in which names are looked for
-_LONGEST_LINE = 400  # [characters]
-
-
-def names_of(header: Sequence[str], width: int) -> tuple[list[ColumnName] | None, list[str]]:
-    """Return the names of `width` columns by the line of a header that has them, and the other lines.
+def names_of(
+    header: Sequence[str], width: int, wanted: Sequence[str] = ()
+) -> tuple[list[ColumnName] | None, list[str]]:
+    """The names of `width` columns by the line of a header that has them, and the other lines.
 
     Parameters
     ----------
@@ -384,6 +244,8 @@ def names_of(header: Sequence[str], width: int) -> tuple[list[ColumnName] | None
         Lines without marks of comments.
     width : int
         Number of columns.
+    wanted : sequence of str, optional
+        Words of the user, all of which are in the line of the names.
 
     Returns
     -------
@@ -393,140 +255,121 @@ def names_of(header: Sequence[str], width: int) -> tuple[list[ColumnName] | None
         The lines that are not about single columns.
     """
     lines = [*header[:_MOST_LINES], *header[max(_MOST_LINES, len(header) - _MOST_LINES) :]]
-    best: list[ColumnName] | None = None
-    units: list[str] | None = None
-    most, used = 0, set[int]()
-    of_units: set[int] = set()
-    for place in range(len(lines) - 1, -1, -1):
-        last = place == max(set(range(len(lines))) - of_units, default=0)
-        for cells in _splittings(lines[place][:_LONGEST_LINE], width):
-            if any(_STATEMENT.search(cell) or cell.endswith("=") for cell in cells):
-                continue
-            stated = [cell.strip(" []()") for cell in cells]
-            of_all = all(_quantity_of_unit(cell) or cell in ("-", "") for cell in stated)
-            are_names = all(cell in _vocabulary().senses or cell == "t" for cell in map(plain, stated))
-            if last and width > 1 and units is None and of_all and not are_names:
-                units, of_units = stated, {place}
-                break
+    keys = set(map(comparison_key, wanted))
+    units: Sequence[str] = [""] * width
+    for cells in _splittings(lines[-1], width) if lines and width > 1 else ():
+        stated = [cell.strip(" []()") for cell in cells]
+        are_names = all(word in _meanings("senses") or word == "t" for word in map(plain, stated))
+        if not are_names and all(cell in ("-", "") or quantity_of_unit(cell) for cell in stated):
+            units, lines = stated, lines[:-1]
+            break
+    best: tuple[int, int, list[ColumnName]] = (0, -1, [])
+    for place, line in enumerate(lines):
+        separated = place == len(lines) - 1 and re.search(r"[,;|\t]|\s{2}", line.strip())  # else a sentence
+        for cells in _splittings(line, width):
             names = [column_name(cell) for cell in cells]
             known = sum(name.kind != "unknown" and name.text not in ("", name.unit) for name in names)
-            separated = re.search(r"[,;|\t]|\s{2}", lines[place].strip()) is not None  # else a sentence
+            forms = {comparison_key(form) for cell in cells for form in (cell, without_unit(cell))}
+            known = width * (keys <= forms) if keys else known
             # the lower of two lines that know as much; of the last, which mostly names them, a part is enough
-            if known > most and (2 * known > width or (last and separated)):
-                best, most, used = names, known, {place}
-    place = max(set(range(len(lines))) - of_units, default=-1)
-    if best is None and place >= 0 and width > 1:
-        cells_of_last = next(iter(_splittings(lines[place][:_LONGEST_LINE], width, strict=True)), None)
-        if cells_of_last is not None and not any(map(_STATEMENT.search, cells_of_last)):
-            best, used = [column_name(cell) for cell in cells_of_last], {place}
-    if best is not None and units is not None:
-        best = [
-            column_name(f"{name.text} [{unit}]") if unit and not name.unit else name
-            for name, unit in zip(best, units, strict=True)
-        ]
-    return best and settle(best), [line for at, line in enumerate(lines) if at not in used | of_units]
-
-
-def names_that_hold(header: Sequence[str], width: int, words: Sequence[str]) -> list[ColumnName] | None:
-    """Return the names of `width` columns by the line of a header that holds all words; None without one.
-
-    For words that the user gives, which may be names that say nothing by themselves, such as HN1; numbers
-    of columns are passed over.
-    """
-    wanted = {comparison_key(word) for word in words if not word.strip().isdecimal()}
-    for line in reversed(header[:_MOST_LINES] if wanted else ()):
-        for cells in _splittings(line[:_LONGEST_LINE], width):
-            if wanted <= {
-                form for cell in cells for form in (comparison_key(cell), comparison_key(without_unit(cell)))
-            }:
-                return settle([column_name(cell) for cell in cells])
-    return None
+            if known and (2 * known > width or separated) and (known, place) > best[:2]:
+                best = (known, place, names)
+    if not best[0]:
+        return None, lines
+    named = zip(best[2], units, strict=True)
+    names = [column_name(f"{name.text} [{unit}]") if unit and not name.unit else name for name, unit in named]
+    return names, [*lines[: best[1]], *lines[best[1] + 1 :]]
 
 
 def comparison_key(name: str) -> str:
-    """Return a name as names are compared: without case, accents, blanks and punctuation."""
+    """A name as names are compared: without case, accents, blanks and punctuation."""
     return re.sub(r"[\W_]+", "", plain(name))
 
 
 def without_unit(name: str) -> str:
-    """Return a name up to its first bracket."""
-    return re.sub(r"[\[(].*", "", name)
+    """A name up to its first bracket."""
+    return re.sub(r"[\[(].*", "", name).strip()
 
 
-def quantities_of(line: str) -> set[Kind]:
-    """Return the quantities that the words of a line name."""
-    words = plain(line[:_LONGEST_LINE])
-    kinds: set[Kind] = (
-        {"acceleration"} if any(joined in words for joined in _vocabulary().joined[:2]) else set()
-    )
-    tokens = re.findall(r"[^\W\d_]{3,}|[^\x00-\x7f]{2,}", words)
-    return kinds | {kind for token in tokens if (kind := _kind(token)) is not None}
+def _splittings(line: str, width: int) -> list[list[str]]:
+    """The ways to cut a line, or what stands behind its colon, into `width` cells that state no numbers."""
+    brackets = r"\s{0,3}[\[(][^\[\]()]*[\])]"  # "time (sec)" is one cell
+    joined = re.sub(brackets, lambda match: re.sub(r"\s", _BLANK, match[0]), line[:_LONGEST_LINE])
+    texts = [text.strip(" ").rstrip(",;| \t") for text in (joined, joined.partition(":")[2])]
+    ways = [re.split(mark, text) for text in texts for mark in (";", "[,;|]", r"\t", r"\s{2,}", r"[\s,;|]+")]
+    rows = [[cell.replace(_BLANK, " ").strip() for cell in cells] for cells in ways if len(cells) == width]
+    return [cells for cells in rows if not any(map(_STATEMENT.search, cells))]
 
 
-def refuse_other_quantity(file: RecordFile, lines: Sequence[str]) -> None:
-    """Refuse a file whose header is about velocities or displacements, and not about accelerations.
+def refuse_header(
+    file: RecordFile, lines: Sequence[str], comments: Sequence[str], *, accelerates: bool
+) -> None:
+    """Refuse a header of numbers that are no accelerations, or not yet, and titles between rows.
 
-    Raises
-    ------
-    ValueError
-        Naming the line that says so.
-    """
-    kinds = [quantities_of(line) for line in lines[:_MOST_LINES]]
-    if any("acceleration" in of_line for of_line in kinds):
-        return
-    for line, of_line in zip(lines, kinds, strict=False):
-        if of_line & {"velocity", "displacement"}:
-            raise ValueError(f"{file.name} is not an acceleration record, it says {line.strip()[:60]!r}")
-
-
-def refuse_scale(file: RecordFile, lines: Sequence[str]) -> None:
-    """Refuse numbers whose header states a factor or counts: they are no accelerations yet.
+    Parameters
+    ----------
+    file : RecordFile
+        For the message.
+    lines, comments : sequence of str
+        Lines of the header, and comments between rows.
+    accelerates : bool
+        Whether the name or unit of a column is that of an acceleration.
 
     Raises
     ------
     ValueError
         Naming the line that says so.
     """
-    for line in lines[:_MOST_LINES]:
-        if _SCALE.search(line[:_LONGEST_LINE]):
+    words = [plain(line[:_LONGEST_LINE]) for line in lines[:_MOST_LINES]]
+    kinds = [_quantities(line) for line in words]
+    accelerates = accelerates or any("acceleration" in each for each in kinds)
+    scaled = [line for line, text in zip(lines, words, strict=False) if pattern("scale").search(text)]
+    others = [line for line, each in zip(lines, kinds, strict=False) if each & {"velocity", "displacement"}]
+    titles = [
+        line for line in comments if _quantities(line) or _senses(re.findall(r"[^\W\d_]+", plain(line)))
+    ]
+    for wrong, why in (
+        (scaled, "has numbers to be multiplied by a factor"),
+        ([] if accelerates else others, "is not an acceleration record"),
+        (titles, "may hold several blocks of numbers"),
+    ):
+        if wrong:
             raise ValueError(
-                f"{file.name} has numbers to be multiplied by a factor, it says {line.strip()[:60]!r}: its "
-                "format is not known here, write its accelerations as columns"
+                f"{file.name} {why}, it says {wrong[0].strip()[:60]!r}: write accelerations "
+                "alone, as columns of one file"
             )
 
 
-_SCALE = re.compile(
-    r"scal(?:e|ing)[ _]?factor|conversion[ _]?factor|\bcounts?\b(?!\s?[:=]?\s?\d)|\blsb\b|factor de escala"
-    r"|\bg\s?(?:[*x×]\s?|/\s?)10|10\s?(?:\^|\*\*)?\s?-\s?\d\s?\*?\s?(?:g|m|cm)\b",  # "g*100", "10^-3 g"
-    re.IGNORECASE,
-)
+def _is_known(token: str) -> bool:
+    return _kind(token) is not None or token in _meanings("senses") or token in _meanings("others")
 
 
-def unit_of_time(word: str) -> bool:
-    """Return whether a word is a unit of time."""
-    return _quantity_of_unit(word) == "time"
+def _quantities(line: str) -> set[str]:
+    words = plain(line[:_LONGEST_LINE])
+    tokens = re.findall(r"[^\W\d_]{3,}|[^\x00-\x7f]{2,}", words)
+    joined = {"acceleration" for word in ("加速度", "가속도") if plain(word) in words}
+    return joined | {kind for token in tokens if (kind := _kind(token)) is not None}
 
 
-_BLANK = "\ue000"  # inside of a cell, where blanks part cells
+def stated_step(file: RecordFile, header: Sequence[str]) -> float | None:
+    """Time step that a header states [s], as "dt=0.005 sec" or "Sampling rate (Hz): 200"; None without one.
 
-
-def _splittings(line: str, width: int, *, strict: bool = False) -> list[list[str]]:
-    """Return the ways to cut a line into `width` cells; `strict`: by commas, semicolons and tabs alone."""
-    ways: list[list[str]] = []
-    # "time (sec)" is one cell
-    joined = re.sub(r"\s{0,3}[\[(][^\[\]()]*[\])]", lambda match: re.sub(r"\s", _BLANK, match[0]), line)
-    behind = joined.partition(":")[2]
-    patterns = (";", "[,;|]", r"\t") if strict else (";", "[,;|]", r"\t", r"\s{2,}", r"[\s,;|]+")
-    for text in (joined.strip(" "), behind.strip(" ")):
-        for pattern in patterns if text else ():
-            cells = [cell.replace(_BLANK, " ").strip() for cell in re.split(pattern, text.rstrip(",;| \t"))]
-            if len(cells) == width and cells not in ways:
-                ways.append(cells)
-    return ways
-
-
-def column_list(names: Sequence[ColumnName] | None, width: int) -> str:
-    """Return the columns of a file for a message: their numbers, and their names where they have some."""
-    if names is None:
-        return f"{width} columns without names"
-    return ", ".join(f"{at} {name.text[:16] or '(no name)'}" for at, name in enumerate(names, start=1))[:110]
+    Raises
+    ------
+    ValueError
+        If two are stated that differ.
+    """
+    steps = []
+    for line in header[:_MOST_LINES]:
+        match = pattern("stated_step").search(plain(line[:_LONGEST_LINE].replace("\\", " ")))
+        number = float(match["number"].replace("d", "e")) if match else 0.0
+        if match is None or not 0.0 < number < math.inf:
+            continue
+        in_gap = pattern("unit_of_step").search(match["gap"])
+        unit = match["unit"] or (in_gap[0] if in_gap else "hz" if match["rate"] else "s")
+        rate = unit in ("hz", "sps") or "/" in unit
+        step = 1.0 / number if rate else number * {"m": 1e-3, "s": 1.0}.get(unit[0], 1e-6)
+        steps += [step] if _LEAST_STEP <= step <= _LARGEST_STEP else []
+    if steps and max(steps) - min(steps) > _SAME_STEP * min(steps):
+        raise ValueError(f"{file.name} states two time steps: {min(steps):g} and {max(steps):g} s")
+    return min(steps, default=None)

@@ -17,14 +17,6 @@ Direction = Literal["x", "y", "z"]
 
 # what spreadsheets call "Unicode text"
 _UTF16 = {"utf-16-le": codecs.BOM_UTF16_LE, "utf-16-be": codecs.BOM_UTF16_BE}
-# words of strong motion by which a text of another encoding than UTF-8 is known
-_OLDER_ENCODINGS = {
-    "cp932": "時間 時刻 加速度 東西 南北 上下 成分 方向 鉛直",
-    "gb18030": "时间 时刻 加速度 东西 南北 竖 垂直 方向",
-    "cp949": "시간 가속도 동서 남북 상하",
-    "cp1251": "время ускорени восток север",
-    "cp1253": "χρόνος επιτάχυνση επιταχ",
-}
 # blanks that do not break, and the minus sign of typesetters
 _TYPESET = str.maketrans({"\u00a0": " ", "\u2007": " ", "\u2009": " ", "\u202f": " ", "\u2212": "-"})
 # the largest of the networks are below 50 MB; what is larger is another file by mistake
@@ -37,54 +29,9 @@ METRES_PER_SECOND_SQUARED = _USUAL | _PARTS | {"µg": 1e-6 * _G, "ft/s2": 0.3048
 UNITS = tuple(METRES_PER_SECOND_SQUARED)
 USUAL_UNITS = tuple(_USUAL)
 ALLOWED_UNITS = ", ".join(UNITS)
-STEP_OPTION = "--record-step (time_step=)"
-_SAME_STEP = 3e-3  # relative: 0.0167 for 1/60
+STEP_OPTION, COLUMNS_OPTION = "--record-step (time_step=)", "--record-columns (columns=)"
 _END_OF_FILE = b"\x1a"  # Ctrl-Z of DOS
 _HEAD = 60  # lines; the longest headers of the networks have 55
-
-
-@dataclass(frozen=True, kw_only=True)
-class ReadingOptions:
-    """What the user says of a file where the file may not.
-
-    Attributes
-    ----------
-    units : str or None
-        One of `UNITS`; readers leave the unit of a silent file None, and `files` fills it in.
-    columns : tuple of str
-        Names or numbers of the columns of time, x, y and z, in this order; for files of columns.
-    time_step : float or None
-        Time step of a file that gives none [s]; one that gives another is refused, see `settled_step`.
-    """
-
-    units: str | None = None
-    columns: tuple[str, ...] = ()
-    time_step: float | None = None
-
-    def settled_step(self, name: str, stated: float | None) -> float:
-        """Return the time step of a file [s]: the one it states, or the one that the user gives.
-
-        Parameters
-        ----------
-        name : str
-            Name of the file, for messages.
-        stated : float or None
-            Time step that the file states [s].
-
-        Raises
-        ------
-        ValueError
-            If there is neither, or the two differ.
-        """
-        if stated is None:
-            if self.time_step is None:
-                raise ValueError(f"{name} has no times and states no time step: give it [s] by {STEP_OPTION}")
-            return self.time_step
-        if self.time_step is not None and abs(stated - self.time_step) > _SAME_STEP * stated:
-            raise ValueError(
-                f"{name} has a time step of {stated:g} s, but {STEP_OPTION} is {self.time_step:g} s"
-            )
-        return stated
 
 
 _LONGEST_LINE = 300_000  # characters: a record of 30,000 samples in one line; patterns go over each line
@@ -116,8 +63,8 @@ class RecordFile:
         content = self.content.rstrip(b" \t\r\n" + _END_OF_FILE)
         try:  # utf-8-sig drops the byte-order mark that spreadsheets write
             text = content.decode("utf-8-sig")
-        except UnicodeDecodeError:
-            text = _older_text(content)
+        except UnicodeDecodeError:  # western Europe, and Turkey, which differs in six letters of Icelandic
+            text = content.decode("cp1254", errors="replace")
         return tuple((text if text.isascii() else text.translate(_TYPESET)).splitlines())
 
     @property
@@ -174,21 +121,6 @@ def open_record(path: Path) -> RecordFile:
     return file
 
 
-def _older_text(content: bytes) -> str:
-    """Return a text in the encoding in which words of its begin are known, else in that of western Europe.
-
-    That of Turkey is the same but for six letters, which in the west only Icelandic has.
-    """
-    for encoding, words in _OLDER_ENCODINGS.items():
-        begin = content[:_SEEN_OF_TEXT].decode(encoding, errors="replace").lower()
-        if any(word in begin for word in words.split()):
-            return content.decode(encoding, errors="replace")
-    return content.decode("cp1254", errors="replace")
-
-
-_SEEN_OF_TEXT = 4000  # bytes
-
-
 def _utf16(content: bytes) -> str | None:
     """Return the encoding of a text in UTF-16, by its mark or by every second byte of its begin."""
     for encoding, (zeros, others) in {"utf-16-le": (1, 0), "utf-16-be": (0, 1)}.items():
@@ -214,12 +146,10 @@ def bytes_of(path: Path) -> bytes:
     OSError
         If it cannot be read.
     ValueError
-        If it is a device, a pipe or a socket, larger than any record, or its name holds a null byte.
+        If it is no regular file, larger than any record, or its name holds a null byte.
     """
-    if path.is_char_device():
-        raise ValueError("it is a device, which may never end")
     if path.exists() and not (path.is_file() or path.is_dir()):
-        raise ValueError("it is a pipe or a socket, which may never end")
+        raise ValueError("it is no file, but a device, a pipe or a socket")
     size = path.stat().st_size
     if size > LARGEST_FILE:
         raise ValueError(f"it has {size / 1e6:.0f} MB, allowed are {LARGEST_FILE / 1e6:.0f}")

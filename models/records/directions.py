@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .component import Component, Direction
+from .column_names import comparison_key
+from .component import COLUMNS_OPTION, Component, Direction
 
 NORTH = "north"  # rotate= : x to the east and y to the north, by the azimuths
 _LEAST_ANGLE = 30.0  # [deg] between two horizontal components that span the plane
@@ -47,7 +48,10 @@ def in_order(components: Sequence[Component], name: str) -> list[Component]:
             "(planar motion)"
         )
     if any(part.direction is None for part in parts):
-        raise DirectionError(f"{name} does not say which component is east, north and up, it has {listed}")
+        raise DirectionError(
+            f"{name} does not say which component is east, north and up: name them by {COLUMNS_OPTION}; "
+            f"it has {listed}"
+        )
     for axis, word in (("x", "east"), ("y", "north"), ("z", "up")):
         count = sum(part.direction == axis for part in parts)
         if count > 1 or (count == 0 and axis != "z"):
@@ -56,6 +60,31 @@ def in_order(components: Sequence[Component], name: str) -> list[Component]:
                 f"({word}) among {listed}"
             )
     return sorted(parts, key=lambda part: str(part.direction))
+
+
+def as_named(components: Sequence[Component], names: Sequence[str], file: str) -> list[Component]:
+    """Components that the user names as x, y and z: by label, the last word of it, or number from 1.
+
+    Raises
+    ------
+    ValueError
+        If a name is that of none or of several components, or two are of the same.
+    """
+    forms = [
+        {comparison_key(part.label), comparison_key(f" {part.label}".split()[-1]), str(at)}
+        for at, part in enumerate(components, start=1)
+    ]
+    wanted = [comparison_key(name) for name in names if name.casefold() not in ("time", "t")]
+    places = [[at for at, form in enumerate(forms) if name in form] for name in wanted]
+    chosen = [matches[0] for matches in places if len(matches) == 1]
+    if not len(set(chosen)) == len(wanted) <= 3:
+        listed = ", ".join(f"{at} {part.label}" for at, part in enumerate(components, start=1))
+        raise ValueError(
+            f"{file}: {COLUMNS_OPTION} must name each of its components of x, y and z once, got "
+            f"{','.join(names)[:60]}; it has {listed[:110]}"
+        )
+    axes: tuple[Direction, ...] = ("x", "y", "z")
+    return [replace(components[at], direction=axis) for at, axis in zip(chosen, axes, strict=False)]
 
 
 def at_the_surface(components: Sequence[Component]) -> tuple[list[Component], tuple[str, ...]]:

@@ -13,14 +13,14 @@ import numpy as np
 
 from ..argument_kinds import with_argument_kinds
 from ..ground_motion import GroundMotion
-from ..number_checks import require_finite, require_one_of, require_positive
 from ..record_source import ComponentSource, RecordSource
-from .clocks import LENGTHS, equally_long, require_same_clock, resampled
-from .component import METRES_PER_SECOND_SQUARED, Component, Direction, ReadingOptions, open_record
+from .clocks import equally_long, require_same_clock, resampled
+from .component import METRES_PER_SECOND_SQUARED, Component, Direction, open_record
 from .directions import NORTH, at_the_surface, for_place, in_order, turned_to_north
 from .formats import read_components
 from .plausibility import doubts_as_read
-from .units import factor, given_unit
+from .reading import Reading
+from .units import factor
 
 ZERO = "zero"  # in the place of a file: planar motion
 _G = METRES_PER_SECOND_SQUARED["g"]
@@ -56,26 +56,8 @@ def read_record(
         planar motion along the other.
     z_path : str or Path, optional
         Vertical component.
-    units : str, optional
-        "g", "m/s2", "cm/s2" or another unit of acceleration in any usual spelling. Required where a file
-        does not say its unit; where it does, both must agree.
-    columns : str or sequence of str or int, optional
-        Columns of time, x, y and z in this order, by name or number from 1, such as "Zeit,Ost,Nord" or
-        [1, 4, 3, 2]; the words "time,x,y,z" (and "-" for a column to leave out) name those of a file without
-        names, in the order of the file. "values": all numbers are one component, row by row.
-    time_step : float, optional
-        Time step of files that give no times [s].
-    lengths : {"pad", "cut"}, optional
-        Where components differ in length: fill the shorter with zeros, or cut the longer. Default: cut to the
-        shortest where the others are as good as over by then.
-    remove_mean : bool, optional
-        Take its mean from each component, which is the offset of the sensor.
-    rotate : float or "north", optional
-        Turn the components by this angle, counter-clockwise from above [deg]; "north": so that x is east and
-        y north, by the azimuths that the files state.
-    resample : bool, optional
-        Take components of different time steps at the largest step that divides all of them. Records are
-        linear between samples, all of which stay, so no component changes.
+    units, columns, time_step, lengths, remove_mean, rotate, resample
+        As of `Reading`.
     name : str, optional
         Default: the name of the x file without its ending.
 
@@ -103,31 +85,43 @@ def read_record(
     >>> motion.source
     pulse.csv: columns, 4 samples of 0.01 s, 0.03 s; x: EW [g] 0.2 g; y: NS [g] 0.1 g
     """
-    if units is not None:
-        units = given_unit(units)
-    if lengths is not None:
-        require_one_of("lengths", lengths, LENGTHS)
-    if time_step is not None:
-        time_step = require_positive("time_step", time_step, "s")
-    angle = None if rotate is None or rotate == NORTH else _angle(rotate)
-    options = ReadingOptions(units=units, columns=_column_texts(columns), time_step=time_step)
+    reading = Reading(
+        units=units,
+        columns=columns,
+        time_step=time_step,
+        lengths=lengths,
+        remove_mean=remove_mean,
+        rotate=rotate,
+        resample=resample,
+    )
+    return record_of(x_path, y_path, z_path, reading, name)
+
+
+def record_of(
+    x_path: str | Path | Sequence[str | Path],
+    y_path: str | Path | None,
+    z_path: str | Path | None,
+    reading: Reading,
+    name: str | None,
+) -> GroundMotion:
+    """Ground motion of files, as `read_record` reads them."""
     if y_path is None:
         if z_path is not None:
             raise ValueError(f"a file of all components has no other beside it, got {z_path} beside {x_path}")
         if isinstance(x_path, str | Path):
-            components, notes = _read_all(Path(x_path), options)
+            components, notes = _read_all(Path(x_path), reading)
         else:
-            components, notes = _read_station([Path(each) for each in x_path], "the list of files", options)
+            components, notes = _read_station([Path(each) for each in x_path], "the list of files", reading)
     elif not isinstance(x_path, str | Path):
         raise ValueError("a list of files of one station has no other beside it")
     else:
-        components, notes = _read_each(x_path, y_path, z_path, options), ()
-    if resample:
+        components, notes = _read_each(x_path, y_path, z_path, reading), ()
+    if reading.resample:
         components = resampled(components)
     first = max(components, key=lambda part: part.path.name != ZERO)
     require_same_clock([first, *(part for part in components if part is not first)])
-    units_used = ["" if part.path.name == ZERO else _unit(part, units) for part in components]
-    components, changes = equally_long(components, lengths)
+    units_used = ["" if part.path.name == ZERO else _unit(part, reading.units) for part in components]
+    components, changes = equally_long(components, reading.lengths)
     with np.errstate(over="ignore"):  # GroundMotion refuses what is not finite
         samples = np.column_stack(
             [
@@ -140,7 +134,7 @@ def read_record(
         name = Path(str(x_path)).stem if one else first.path.stem
     motion = GroundMotion(samples, first.time_step, name)  # refuses what is not finite
     source = _source(motion, components, units_used, (*notes, *changes))
-    if remove_mean:
+    if reading.remove_mean:
         means = ", ".join(f"{mean / _G:.3g}" for mean in samples.mean(axis=0))
         samples = samples - samples.mean(axis=0)
         removed = f"means of {means} g removed"
@@ -149,27 +143,12 @@ def read_record(
             changes=(removed,),
         )
     motion = GroundMotion(samples, first.time_step, name, source)
-    if rotate == NORTH:
+    if reading.rotate == NORTH:
         azimuths = [_azimuth(part, axis) for part, axis in zip(components, "xy", strict=False)]
         return motion.with_samples(turned_to_north(samples, azimuths), "turned: x is east, y north")
-    return motion if angle is None else motion.rotated(math.radians(math.fmod(angle, 360.0)))
-
-
-def _angle(rotate: float | str) -> float:
-    try:
-        return require_finite("rotate", float(rotate), "deg")
-    except ValueError:
-        raise ValueError(f"rotate must be an angle [deg] or {NORTH!r}, got {rotate!r}") from None
-
-
-def _column_texts(columns: str | Sequence[str | int] | None) -> tuple[str, ...]:
-    if columns is None:
-        return ()
-    texts = columns.split(",") if isinstance(columns, str) else [str(each) for each in columns]
-    texts = [text.strip() for text in texts]
-    if not texts or not all(texts):
-        raise ValueError(f"columns must be names or numbers, as time,x,y or 1,3,2, got {columns!r}")
-    return tuple(texts)
+    if reading.rotate is None:
+        return motion
+    return motion.rotated(math.radians(math.fmod(float(reading.rotate), 360.0)))
 
 
 def _unit(part: Component, units: str | None) -> str:
@@ -214,9 +193,7 @@ def _source(
     )
 
 
-def _read_each(
-    x: str | Path, y: str | Path, z: str | Path | None, options: ReadingOptions
-) -> list[Component]:
+def _read_each(x: str | Path, y: str | Path, z: str | Path | None, reading: Reading) -> list[Component]:
     """Read the file of each component; one of zeros has the clock of the other."""
     if str(x) == str(y) == ZERO:
         raise ValueError("one horizontal component must be a file, got zero for both")
@@ -224,7 +201,7 @@ def _read_each(
     parts = [
         None
         if str(path) == ZERO
-        else for_place(read_components(open_record(Path(path)), options), axis, Path(path).name)
+        else for_place(read_components(open_record(Path(path)), reading), axis, Path(path).name)
         for path, axis in zip((x, y, z), axes, strict=True)
         if path is not None
     ]
@@ -233,39 +210,39 @@ def _read_each(
     return [part or zero for part in parts]
 
 
-def _read_all(path: Path, options: ReadingOptions) -> tuple[list[Component], tuple[str, ...]]:
+def _read_all(path: Path, reading: Reading) -> tuple[list[Component], tuple[str, ...]]:
     """Read the components of a file or a folder, and what of a folder was not read."""
     try:
         is_folder = path.is_dir()
     except (OSError, ValueError):  # a null byte in the name
         is_folder = False
     if not is_folder:
-        return in_order(read_components(open_record(path), options), path.name), ()
-    return _read_folder(path, options)
+        return in_order(read_components(open_record(path), reading), path.name), ()
+    return _read_folder(path, reading)
 
 
 _MOST_FILES = 60  # of the folder of a station; more are those of many stations
 
 
-def _read_folder(folder: Path, options: ReadingOptions) -> tuple[list[Component], tuple[str, ...]]:
+def _read_folder(folder: Path, reading: Reading) -> tuple[list[Component], tuple[str, ...]]:
     paths = sorted(path for path in folder.iterdir() if path.is_file() and not path.name.startswith("."))
     if not 0 < len(paths) <= _MOST_FILES:
         raise ValueError(
             f"the folder {folder} must hold the files of one station, got {len(paths)} files: a folder of "
             "many records is for --records"
         )
-    return _read_station(paths, folder.name, options, others=True)
+    return _read_station(paths, folder.name, reading, others=True)
 
 
 def _read_station(
-    paths: Sequence[Path], name: str, options: ReadingOptions, *, others: bool = False
+    paths: Sequence[Path], name: str, reading: Reading, *, others: bool = False
 ) -> tuple[list[Component], tuple[str, ...]]:
     """Read the files of one station; `others`: some may be none of records, and are noted."""
     components: list[Component] = []
     refusals: list[tuple[str, ValueError]] = []
     for path in paths:
         try:
-            components += read_components(open_record(path), options)
+            components += read_components(open_record(path), reading)
         except ValueError as error:
             if not others:
                 raise

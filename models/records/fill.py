@@ -1,9 +1,8 @@
-"""What stands where a sample is missing: numbers such as -999 and 1e10, the word NaN, empty cells."""
+"""Numbers that stand where a sample is missing, such as -999 and 1e10."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,36 +14,6 @@ _FILL = re.compile(r"-?9{3,}(?:\.(?:9+|0))?|-12345\.0")
 _FAR = 5.0  # times the largest of all other samples
 _BEYOND = 1e6  # times the largest of all other samples: no record has such a spike, whatever its digits
 _LEAST = 999.0  # of a number that fills a place
-_NO_SAMPLE = re.compile(r"[-+]?nan|na|n/a|null|none|-|", re.IGNORECASE)  # a word for it, or an empty cell
-
-
-def without_missing_end(rows: Sequence[str]) -> tuple[Sequence[str], tuple[str, ...]]:
-    """Return rows without those at the end whose cells, but for a time in front, are NaN or empty.
-
-    Examples
-    --------
-    >>> without_missing_end(["0.0,1", "0.1,2", "0.2,NaN", "0.3,", ","])
-    (['0.0,1', '0.1,2'], ('3 rows without samples at the end are left out',))
-    """
-    count = len(rows)
-    while count and _is_missing(rows[count - 1]):
-        count -= 1
-    left = len(rows) - count
-    if not left:
-        return rows, ()
-    return rows[:count], (f"{left} row{'s' * (left > 1)} without samples at the end are left out",)
-
-
-def _is_missing(row: str) -> bool:
-    separator = next((mark for mark in ";,\t" if mark in row), None)
-    first, *others = (
-        (cell.strip(' "') for cell in row[:_LONGEST_ROW].split(separator)) if row.strip() else [""]
-    )
-    whole = others or [first]
-    return bool(row.strip()) and all(_NO_SAMPLE.fullmatch(cell) for cell in whole)
-
-
-_LONGEST_ROW = 400  # characters
 
 
 def without_fill(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], tuple[str, ...]]:

@@ -6,55 +6,36 @@ import csv
 import io
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TypedDict, cast
 
 from ..argument_kinds import with_argument_kinds
 from ..ground_motion import GroundMotion
 from .component import bytes_of
 from .directions import DirectionError
-from .files import ZERO, read_record
+from .files import ZERO, record_of
+from .reading import Reading
 
 TABLE = "records.csv"
 PEER_TABLE = "_SearchResults.csv"
-_WAYS = ("units", "columns", "time_step", "lengths", "remove_mean", "rotate", "resample")
-_COLUMNS = ("name", "record", "x", "y", "z", "scale", "level", *_WAYS)
+_COLUMNS = ("name", "record", "x", "y", "z", "scale", "level", "units")
 
 
 Row = Mapping[str | None, str | list[str]]
 """Cells by column; those under no column by None."""
 
 
-class RecordOptions(TypedDict, total=False):
-    """The options of `read_record`, as those of a row and of all rows are merged."""
-
-    units: str | None
-    columns: str | Sequence[str | int] | None
-    time_step: float | None
-    lengths: str | None
-    remove_mean: bool
-    rotate: float | str | None
-    resample: bool
-
-
 @with_argument_kinds
 def read_records(
     folder: str | Path,
-    *,
-    units: str | None = None,
-    columns: str | Sequence[str | int] | None = None,
-    time_step: float | None = None,
-    lengths: str | None = None,
-    remove_mean: bool = False,
-    rotate: float | str | None = None,
-    resample: bool = False,
+    reading: Reading | None = None,
 ) -> list[GroundMotion]:
     r"""Return the ground motions of a folder, as its records.csv lists them, or all of a download from PEER.
 
     A row of records.csv is a motion: columns x and y, the files of the two horizontal components beside the
     table ("zero" is a component of zeros) and maybe z (vertical), or record, a file or folder of all
-    components; and maybe name, scale, level (see `read_records_by_level`) and the options of `read_record`,
-    which count before those given here.
+    components; and maybe name, scale, level (see `read_records_by_level`) and units, which count before those
+    given here.
 
     A folder without one that holds the _SearchResults.csv of PEER, or files named ``RSN6_...``, is read as it
     comes: the files of one record sequence number are one motion, unscaled, with its vertical component where
@@ -64,8 +45,8 @@ def read_records(
     ----------
     folder : str or Path
         Or the table itself.
-    units, columns, time_step, lengths, remove_mean, rotate, resample
-        As of `read_record`, for the rows that do not say.
+    reading : Reading, optional
+        How the files are read. Default: by what they say.
 
     Returns
     -------
@@ -87,29 +68,13 @@ def read_records(
     >>> [(motion.name, motion.peak) for motion in read_records(folder)]
     [('pulse', 0.5)]
     """
-    ways = RecordOptions(
-        units=units,
-        columns=columns,
-        time_step=time_step,
-        lengths=lengths,
-        remove_mean=remove_mean,
-        rotate=rotate,
-        resample=resample,
-    )
-    return _read(Path(folder), ways)
+    return _read(Path(folder), reading or Reading())
 
 
 @with_argument_kinds
 def read_records_by_level(
     folder: str | Path,
-    *,
-    units: str | None = None,
-    columns: str | Sequence[str | int] | None = None,
-    time_step: float | None = None,
-    lengths: str | None = None,
-    remove_mean: bool = False,
-    rotate: float | str | None = None,
-    resample: bool = False,
+    reading: Reading | None = None,
 ) -> dict[float, list[GroundMotion]]:
     r"""Return the ground motions of a folder by the column level of its records.csv: multiple stripes.
 
@@ -117,7 +82,7 @@ def read_records_by_level(
     ----------
     folder : str or Path
         Or the table itself.
-    units, columns, time_step, lengths, remove_mean, rotate, resample
+    reading : Reading, optional
         As of `read_records`.
 
     Returns
@@ -143,16 +108,7 @@ def read_records_by_level(
     table = Path(folder) / TABLE if Path(folder).is_dir() else Path(folder)
     if not table.exists() or table.name.endswith(PEER_TABLE) or "level" not in _table(table)[0]:
         return {}
-    read = read_records(
-        table,
-        units=units,
-        columns=columns,
-        time_step=time_step,
-        lengths=lengths,
-        remove_mean=remove_mean,
-        rotate=rotate,
-        resample=resample,
-    )
+    read = read_records(table, reading)
     levels = [_level(row) for _, row in _table(table)[1]]
     if 0 < (without := levels.count(None)) < len(levels):
         raise ValueError(f"each row must have a level, or none: {without} of {len(levels)} have none")
@@ -163,20 +119,20 @@ def read_records_by_level(
     return motions
 
 
-def _read(path: Path, ways: RecordOptions) -> list[GroundMotion]:
+def _read(path: Path, reading: Reading) -> list[GroundMotion]:
     if path.is_dir() and not (path / TABLE).exists():
         stations, listed = _stations(path)
         if stations or listed:
-            return _peer_motions(path, ways)
+            return _peer_motions(path, reading)
     path = path / TABLE if path.is_dir() else path
     if path.name.endswith(PEER_TABLE):
-        return _peer_motions(path.parent, ways)
+        return _peer_motions(path.parent, reading)
     columns_of_table, rows = _table(path)
     wrong = [column for column in columns_of_table if column not in _COLUMNS]
     if wrong or not ({"x", "y"} <= set(columns_of_table) or "record" in columns_of_table):
         raise ValueError(
-            f"{path} must have the columns x and y, or record, and may have z, name, scale, level, "
-            f"{', '.join(_WAYS)}, got {', '.join(columns_of_table)[:100] or 'none'}"
+            f"{path} must have the columns x and y, or record, and may have z, name, scale, level and units "
+            f"(other options are those of all rows), got {', '.join(columns_of_table)[:100] or 'none'}"
         )
     if not rows:
         raise ValueError(f"{path} must list ground motions, one in a line, got none")
@@ -184,7 +140,7 @@ def _read(path: Path, ways: RecordOptions) -> list[GroundMotion]:
     for number, row in rows:
         try:
             _level(row)  # refused where it stands
-            motions.append(_motion(path.parent, row, ways))
+            motions.append(_motion(path.parent, row, reading))
         except ValueError as error:
             raise ValueError(f"{path.name}, line {number}: {error}") from None
     return motions
@@ -213,27 +169,23 @@ def _place(folder: Path, name: str | None) -> str | Path | None:
     return name if name == ZERO else folder / name if name else None
 
 
-_TRUE, _FALSE = ("1", "true", "yes"), ("", "0", "false", "no")
-
-
-def _motion(folder: Path, row: Row, ways: RecordOptions) -> GroundMotion:
+def _motion(folder: Path, row: Row, reading: Reading) -> GroundMotion:
     beyond = list(row.get(None, ()))  # cells under no column
     if any(cell.strip() for cell in beyond):
         raise ValueError(f"must have {len(row) - 1} cells, got {len(row) - 1 + len(beyond)}")
     cells = {name: (cell or "").strip() for name, cell in row.items() if isinstance(cell, str)}
-    of_row = cast("RecordOptions", {name: _way(name, cells[name]) for name in _WAYS if cells.get(name)})
-    options: RecordOptions = {**ways, **of_row}
+    reading = replace(reading, units=cells.get("units") or reading.units)
     name = cells.get("name") or None
     if cells.get("record"):
         if any(cells.get(axis) for axis in "xyz"):
             raise ValueError("record holds all components, got x, y or z beside it")
-        motion = read_record(folder / cells["record"], name=name, **options)
+        motion = record_of(folder / cells["record"], None, None, reading, name)
     else:
         if not (cells.get("x") and cells.get("y")):
             raise ValueError("both horizontal components are needed, x and y")
         x, y, z = (_place(folder, cells.get(axis)) for axis in ("x", "y", "z"))
         assert x is not None
-        motion = read_record(x, y, z, name=name, **options)
+        motion = record_of(x, y, z, reading, name)
     factor = _positive("scale", cells.get("scale"))
     return motion if factor is None else motion.scaled(factor)
 
@@ -250,22 +202,6 @@ def _positive(name: str, cell: object) -> float | None:
     if not 0.0 < value < float("inf"):
         raise ValueError(f"{name} must be a positive number, got {text!r}")
     return value
-
-
-def _way(name: str, text: str) -> object:
-    """Return the value of an option of reading from its cell."""
-    if name in ("remove_mean", "resample"):
-        if text.lower() not in (*_TRUE, *_FALSE):
-            raise ValueError(f"{name} must be yes or no, got {text!r}")
-        return text.lower() in _TRUE
-    if name == "columns":
-        return text.replace(";", ",").replace(" ", ",") if "," not in text else text
-    if name == "time_step":
-        try:
-            return float(text)
-        except ValueError:
-            raise ValueError(f"time_step must be a number [s], got {text!r}") from None
-    return text
 
 
 _RSN = re.compile(r"RSN(\d{1,6})_", re.IGNORECASE)
@@ -330,7 +266,7 @@ def _listed_stations(table: Path) -> list[tuple[str, list[Path]]]:
     return found
 
 
-def _peer_motions(folder: Path, ways: RecordOptions) -> list[GroundMotion]:
+def _peer_motions(folder: Path, reading: Reading) -> list[GroundMotion]:
     stations, listed = _stations(folder)
     if not stations:
         raise ValueError(f"the table of PEER in {folder} lists no records")
@@ -340,21 +276,21 @@ def _peer_motions(folder: Path, ways: RecordOptions) -> list[GroundMotion]:
     for name, paths in stations:
         files = paths if verticals else paths[:2]
         try:
-            motions.append(_of_station(files, name, ways, listed=listed))
+            motions.append(_of_station(files, name, reading, listed=listed))
         except ValueError as error:
             raise ValueError(f"{name}: {error}") from None
     return motions
 
 
-def _of_station(paths: Sequence[Path], name: str, ways: RecordOptions, *, listed: bool) -> GroundMotion:
+def _of_station(paths: Sequence[Path], name: str, reading: Reading, *, listed: bool) -> GroundMotion:
     if not 2 <= len(paths) <= 3:
         raise ValueError(f"must have two or three files, got {', '.join(path.name for path in paths)[:120]}")
     try:
-        return read_record(paths, name=name, **ways)
+        return record_of(paths, None, None, reading, name)
     except DirectionError:
         if not listed:
             raise
     # titles such as L and T: the table still tells horizontal from vertical
-    motion = read_record(*paths, name=name, **ways)
+    motion = record_of(paths[0], paths[1], paths[2] if paths[2:] else None, reading, name)
     order = "x is horizontal 1 and y horizontal 2 of the table, their azimuths are not stated"
     return motion.with_samples(motion.acceleration, order)

@@ -1,14 +1,11 @@
 """Numbers as the files of records print them: Fortran exponents, columns that touch.
 
-Numbers that blanks part are read as they stand. Where some touch, they are parted by what Fortran keeps the
-same in all numbers of a format: the decimals behind the point and the digits of the exponent; where these
-differ from column to column, by the places at which the columns end. What can be parted in no such way is
-refused.
+Numbers that blanks part are read as they stand. Where some touch, as those of AT2 may, they are parted by
+what Fortran keeps the same in all numbers of a format: the decimals and the digits of the exponent.
 """
 
 from __future__ import annotations
 
-import itertools
 import math
 import re
 from collections.abc import Sequence
@@ -50,12 +47,12 @@ def parse_number(path: Path, line_number: int, token: str) -> float:
 
 
 def is_number(cell: str) -> bool:
-    """Return whether a text is a number, also one that is not finite."""
+    """Whether a text is a number, also one that is not finite."""
     return re.fullmatch(NUMBER, cell) is not None or cell.lower().lstrip("+-") in ("nan", "inf", "infinity")
 
 
 def plain_numbers(text: str) -> NDArray[np.float64] | None:
-    """Return the numbers of a text that blanks part; None where it holds anything else, or they touch."""
+    """The numbers of a text that blanks part; None where it holds anything else, or they touch."""
     if "D" in text or "d" in text:
         text = text.replace("D", "E").replace("d", "E")
     if not text.isascii():
@@ -73,14 +70,14 @@ def plain_numbers(text: str) -> NDArray[np.float64] | None:
 
 
 def _begins(content: bytes) -> NDArray[np.bool_]:
-    """Return at which characters of a text a cell begins that blanks part from the one before."""
+    """At which characters of a text a cell begins that blanks part from the one before."""
     blank = np.frombuffer(content, dtype=np.uint8) <= ord(" ")
     before = np.concatenate([[True], blank[:-1]]) if len(blank) else blank
     return np.asarray(~blank & before)
 
 
 def widths_of(text: str) -> NDArray[np.int64]:
-    """Return the number of cells that blanks part in each line, none of which is blank (n,)."""
+    """The number of cells that blanks part in each line, none of which is blank (n,)."""
     content = text.encode()
     ends = np.flatnonzero(np.frombuffer(content, dtype=np.uint8) == ord("\n"))
     before = np.searchsorted(np.flatnonzero(_begins(content)), np.concatenate([[0], ends, [len(content)]]))
@@ -88,7 +85,7 @@ def widths_of(text: str) -> NDArray[np.int64]:
 
 
 def separate(text: str) -> str | None:
-    """Return a text of numbers of which some touch with blanks between them; None if none or several ways do.
+    """A text of numbers of which some touch with blanks between them; None if none or several ways do.
 
     Lines stay lines. The numbers of the answer are still to be read by `plain_numbers`.
 
@@ -108,7 +105,7 @@ def separate(text: str) -> str | None:
     ends = set(_ENDED.findall(text))
     shapes = {(len(decimals), len(exponent)) for decimals, exponent in ends}
     if len(shapes) != 1:
-        return _parted_at_places(text.split("\n"))
+        return None
     ((decimals, digits),) = shapes
     exponent = rf"[EeDd][-+]?\d{{{digits}}}" if digits else ""
     answer, count = re.subn(rf"[-+]?\d*\.\d{{{decimals}}}{exponent}", r" \g<0> ", text)
@@ -119,25 +116,8 @@ def separate(text: str) -> str | None:
     return None if mixed else answer
 
 
-def _parted_at_places(lines: Sequence[str]) -> str | None:
-    """Part lines of fixed columns by the places at which columns end: those that are certain in some line."""
-    full = [line.rstrip() for line in lines if line.strip()]
-    points = [match.start() for match in re.finditer(r"\.", full[0])] if full else []
-    ends: list[set[int]] = [set() for _ in points]
-    for line in full:
-        if [match.start() for match in re.finditer(r"\.", line)] != points[: line.count(".")]:
-            return None
-        for match in _ENDED.finditer(line):
-            ends[points.index(match.start())].add(match.end())
-    if not points or any(len(of_column) != 1 for of_column in ends):
-        return None
-    places = [0, *(end for (end,) in ends)]
-    cuts = list(itertools.pairwise(places))
-    return "\n".join(" ".join(line[a:b] for a, b in cuts) + line[places[-1] :] for line in lines)
-
-
 def block_of_numbers(file: RecordFile, first: int, last: int | None = None) -> NDArray[np.float64]:
-    """Return the numbers of lines `first` (counted from 0) to `last` (left out), in reading order.
+    """The numbers of lines `first` (counted from 0) to `last` (left out), in reading order.
 
     Parameters
     ----------
@@ -155,29 +135,20 @@ def block_of_numbers(file: RecordFile, first: int, last: int | None = None) -> N
         If a line holds something else, or a number that is not finite: the line is named. If numbers touch
         and can be parted in no way, or in several.
     """
-    return numbers_of_lines(file, file.text[first:last], first + 1)
-
-
-def numbers_of_lines(file: RecordFile, lines: Sequence[str], begin: int) -> NDArray[np.float64]:
-    """Return the numbers of lines of which the first is line `begin` (from 1) of a file.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-
-    Raises
-    ------
-    ValueError
-        As `block_of_numbers`.
-    """
+    lines, begin = file.text[first:last], first + 1
     text = "\n".join(lines)
     whole = _MANY_DIGITS.search(text) is None
     values = plain_numbers(text) if whole else None
     if values is not None:
         return values
-    damaged = damaged_line(lines)
+    damaged = _damaged_line(lines)
     if damaged is None:
-        refuse_long_touching(file, lines)
+        length = sum(map(len, lines))
+        if length > _LONGEST_TOUCHING:
+            raise ValueError(
+                f"{file.name}: its numbers touch, which is read up to {_LONGEST_TOUCHING:,} characters, got "
+                f"{length:,}: write them with blanks between"
+            )
         answer = separate(text) if whole else None
         values = None if answer is None else plain_numbers(answer)
         if values is not None:
@@ -186,7 +157,10 @@ def numbers_of_lines(file: RecordFile, lines: Sequence[str], begin: int) -> NDAr
             (at for at, line in enumerate(lines) if plain_numbers(line) is None or _MANY_DIGITS.search(line)),
             0,
         )
-        raise ValueError(touching(file, begin + damaged, lines[damaged]))
+        raise ValueError(
+            f"{file.name}, line {begin + damaged}: its numbers touch, and no way to part them is the only "
+            f"one: write them with blanks between, got {lines[damaged].strip()[:60]!r}"
+        )
     line = lines[damaged]
     for token in line.split():
         if re.fullmatch(NUMBER, token):
@@ -196,40 +170,40 @@ def numbers_of_lines(file: RecordFile, lines: Sequence[str], begin: int) -> NDAr
     )
 
 
-def only_numbers(text: str) -> bool:
-    """Return whether a text holds nothing but finite numbers, which may touch."""
+def _only_numbers(text: str) -> bool:
+    """Whether a text holds nothing but finite numbers, which may touch."""
     left = re.sub(NUMBER, " ", text)
     if left.strip() and re.sub(r"[\s.]", "", left):
         return False
     return all(math.isfinite(float(re.sub("[Dd]", "E", token))) for token in re.findall(NUMBER, text))
 
 
-def foreign_line(text: str) -> int | None:
-    """Return the place of the first line with a character that stands in no number; None without one."""
+def _foreign_line(text: str) -> int | None:
+    """The place of the first line with a character that stands in no number; None without one."""
     foreign = _FOREIGN.search(text)
     return None if foreign is None else text.count("\n", 0, foreign.start())
 
 
-CHUNK = 4096  # lines that are read at once, to find the one that is damaged
+_CHUNK = 4096  # lines that are read at once, to find the one that is damaged
 
 
-def damaged_line(lines: Sequence[str]) -> int | None:
-    """Return the place of the first line that holds anything but numbers; None without one.
+def _damaged_line(lines: Sequence[str]) -> int | None:
+    """The place of the first line that holds anything but numbers; None without one.
 
     Numbers may touch; of more such text than is parted no more is looked at.
     """
-    at = foreign_line("\n".join(lines))
+    at = _foreign_line("\n".join(lines))
     if at is not None:
         return at
     touched = 0
-    for begin in range(0, len(lines), CHUNK):
-        chunk = lines[begin : begin + CHUNK]
+    for begin in range(0, len(lines), _CHUNK):
+        chunk = lines[begin : begin + _CHUNK]
         text = "\n".join(chunk)
         if plain_numbers(text) is not None:
             continue
-        if not only_numbers(text):
+        if not _only_numbers(text):
             for at, line in enumerate(chunk, start=begin):
-                if plain_numbers(line) is None and not only_numbers(line):
+                if plain_numbers(line) is None and not _only_numbers(line):
                     return at
         touched += len(text)
         if touched > _LONGEST_TOUCHING:
@@ -238,26 +212,3 @@ def damaged_line(lines: Sequence[str]) -> int | None:
 
 
 _LONGEST_TOUCHING = 3_000_000  # characters: to part them takes a second
-
-
-def refuse_long_touching(file: RecordFile, lines: Sequence[str]) -> None:
-    """Refuse a text of touching numbers that is longer than any record.
-
-    Raises
-    ------
-    ValueError
-    """
-    length = sum(map(len, lines))
-    if length > _LONGEST_TOUCHING:
-        raise ValueError(
-            f"{file.name}: its numbers touch, which is read up to {_LONGEST_TOUCHING:,} characters, got "
-            f"{length:,}: write them with blanks between"
-        )
-
-
-def touching(file: RecordFile, number: int, line: str) -> str:
-    """Return the refusal of a line whose numbers touch."""
-    return (
-        f"{file.name}, line {number}: its numbers touch, and no way to part them is the only one: write them "
-        f"with blanks between, got {line.strip()[:60]!r}"
-    )

@@ -1,4 +1,4 @@
-"""Text of columns as a table: header lines, and rows of equally many numbers."""
+"""Free text as a table: header lines, and rows of numbers that blanks, tabs, commas or semicolons part."""
 
 from __future__ import annotations
 
@@ -10,32 +10,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .component import RecordFile
-from .dates import has_clock_time, with_seconds
-from .fill import without_missing_end
-from .numbers import (
-    CHUNK,
-    damaged_line,
-    foreign_line,
-    is_number,
-    only_numbers,
-    parse_number,
-    plain_numbers,
-    refuse_long_touching,
-    separate,
-    touching,
-    widths_of,
-)
+from .numbers import is_number, plain_numbers, widths_of
 
 _QUOTED = re.compile(r'"([^"]*)"')
 _NO_SEPARATORS = str.maketrans(",;", "  ")
-_COMMENTS = ("#", "%", "!", "//")
-_WORD = re.compile(r"[^\W\d_]{2}")
+_COMMENT = re.compile(r"\s*(?:[#%!]|//|;.*[^\W\d_]{2}|$)")  # or blank; ";0.1" is an empty cell
 _COMMA_NUMBER = re.compile(r"[-+]?\d*,\d+(?:[EeDd][-+]?\d+)?")
+_EMPTY_CELL = re.compile(r"[,;][ \t]*[,;]|^[ \t]*[,;]", re.MULTILINE)
+_NUMBERS = re.compile(r"[-+.,;\deEdD\s]*")
+_STAMP = re.compile(r'"?(\d{4}-\d\d-\d\d)[T ](\d\d:\d\d:\d\d(?:\.\d{1,9})?)Z?"?(?=[ \t,;]|$)')  # ISO 8601
+_FOREIGN_WORD = re.compile(
+    r"[^\x00-\x7f]{3}"
+)  # in western Europe and Turkey letters with accents stand singly
 _LONGEST_HEADER = 5000  # lines in which numbers begin, if the text is a record
-_BEGIN_OF_NUMBER = frozenset("0123456789+-.,nNiI")
-_LONGEST_BARRED = 400  # characters of a line that is looked at for bars
-_RULE = re.compile(r"[-+:|= ]{1,400}")  # of a table, below its names; also a blank line
-_EMPTY_CELL = re.compile(r"[,;][ \t]*[,;]|(?:^|\n)[ \t]*[,;]")
+_LONGEST_LINE = 400  # [characters] of a row with a stamp
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,58 +32,100 @@ class Table:
 
     Attributes
     ----------
-    header : tuple of str
+    header : list of str
         Lines above the first row, without marks of comments.
-    values : ndarray, shape (n, columns)
+    values : ndarray
+        All numbers in the order of reading.
+    width : int
+        Numbers of a row; the last row may be shorter.
     lines : sequence of int
         Number of the line of each row, from 1.
-    notes : tuple of str
-        What was left out.
+    comments : sequence of str
+        Comments between the rows.
     """
 
-    header: tuple[str, ...]
+    header: list[str]
     values: NDArray[np.float64]
+    width: int
     lines: Sequence[int]
-    notes: tuple[str, ...] = ()
+    comments: Sequence[str] = ()
+
+    @property
+    def rows(self) -> NDArray[np.float64]:
+        """Numbers of the rows of full width, shape (n, width)."""
+        return self.values[: len(self.values) // self.width * self.width].reshape(-1, self.width)
 
 
-def bare_header(line: str) -> str:
-    """Return a line of a header without quotation marks, blanks and the mark of a comment.
+def table_of(file: RecordFile) -> Table:
+    """Header and rows of a text; ISO stamps in its rows become seconds from the first.
 
-    Within quotation marks, commas and semicolons are blanks: they part no cells.
-
-    Examples
-    --------
-    >>> bare_header('# "Acc., east";"Acc., north"')
-    'Acc.  east;Acc.  north'
+    Raises
+    ------
+    ValueError
+        If a row has another width than the first, a cell is empty or no finite number, the header may hold a
+        row, or the text is in another encoding than UTF-8, UTF-16 and that of western Europe and Turkey.
     """
-    if '"' in line:
-        line = _QUOTED.sub(lambda match: match[1].translate(_NO_SEPARATORS), line)
-    return re.sub(r"^(?:[#%!;$*]+|//+)", "", line.replace('"', "").strip()).strip()
+    lines = _with_seconds(file.text)
+    first = _first_row(lines)
+    if first is None:
+        end = next(line.strip() for line in reversed(lines) if line.strip())
+        raise ValueError(
+            f"{file.name} must hold at least two samples, got 0 rows of numbers: write them as columns below "
+            f"a line such as 'time,E,N'; it ends in {end[:60]!r}"
+        )
+    if not _is_utf8(file.content) and _FOREIGN_WORD.search("\n".join(file.text)):
+        raise ValueError(f"{file.name} is text in an encoding that is not read: save it as UTF-8")
+    places = [at for at in range(first, len(lines)) if not _COMMENT.match(lines[at])]
+    text = _blank_separated(file, places, [lines[at] for at in places])
+    values, widths = plain_numbers(text), widths_of(text)
+    width = int(widths[0])
+    if values is None or (widths[:-1] != width).any() or widths[-1] > width:
+        raise ValueError(_damage(file, places, text.split("\n"), width))
+    _refuse_rows_in_header(file, lines[:first], width)
+    header = [text for line in lines[:first] if (text := _bare(line))]
+    comments = [line for line in lines[first : places[-1]] if line.strip() and _COMMENT.match(line)]
+    return Table(header, values, width, [at + 1 for at in places], comments)
 
 
-def is_comment(text: str) -> bool:
-    """Return whether a line, without blanks at its begin, is a comment; ";0.1" is an empty cell."""
-    return text.startswith(_COMMENTS) or (text.startswith(";") and _WORD.search(text) is not None)
+def _with_seconds(lines: Sequence[str]) -> Sequence[str]:
+    """Lines whose ISO stamps are seconds from the first."""
+    if not _STAMP.search(lines[-1][:_LONGEST_LINE]):
+        return lines
+    rows = [_STAMP.split(line[:_LONGEST_LINE], maxsplit=1) for line in lines]
+    stamped = [len(row) > 1 and _is_row(f"{row[0]}0{row[-1]}") for row in rows]
+    stamps = [f"{row[1]}T{row[2]}" for row, is_row in zip(rows, stamped, strict=True) if is_row]
+    times = np.array(stamps, dtype="datetime64[ns]")
+    seconds = iter(((times - times[:1]).astype(np.int64) / 1e9).tolist())
+    return [
+        f"{row[0]}{next(seconds)!r}{row[-1]}" if is_row else line
+        for line, row, is_row in zip(lines, rows, stamped, strict=True)
+    ]
 
 
-def cells_of(line: str) -> list[str]:
-    """Return the cells of a row of numbers, with points for decimal commas.
+def _first_row(lines: Sequence[str]) -> int | None:
+    """First of two rows one after another, counted from 0; numbers above words belong to the header."""
+    first = None
+    for at, line in enumerate(lines[:_LONGEST_HEADER]):
+        if not _COMMENT.match(line):
+            row = _is_row(line)
+            if row and first is not None:
+                return first
+            first = at if row else None
+    return first
 
-    Examples
-    --------
-    >>> cells_of("0,01; 1,5"), cells_of("0.01, 1.5,"), cells_of("0.01 1.5"), cells_of("0,01 1,5")
-    (['0.01', '1.5'], ['0.01', '1.5'], ['0.01', '1.5'], ['0.01', '1.5'])
-    """
+
+def _is_row(line: str) -> bool:
     text = line.replace('"', "").strip().rstrip(",;\t ")
+    if not text or not (_NUMBERS.fullmatch(text) or "n" in text.casefold()):  # NaN is refused as a number
+        return False
     separator, comma = _form(text)
-    if comma:
-        text = text.replace(",", ".")
-    return [cell.strip() for cell in text.split(separator)] if text else []
+    return all(
+        is_number(cell.strip()) for cell in (text.replace(",", ".") if comma else text).split(separator)
+    )
 
 
 def _form(text: str) -> tuple[str | None, bool]:
-    """Return what separates the cells of a row (None: blanks), and whether a comma is its decimal point."""
+    """Separator of the cells of a row (None: blanks), and whether a comma is its decimal point."""
     if ";" in text:
         return ";", "," in text and "." not in text
     cells = text.split()
@@ -105,245 +135,58 @@ def _form(text: str) -> tuple[str | None, bool]:
     return (None, True) if comma else (",", False)
 
 
-def _is_row(text: str) -> bool:
-    """Return whether a line holds nothing but numbers, which may touch."""
-    # a clock time takes long to refuse cell by cell
-    if text[:1] not in _BEGIN_OF_NUMBER or ":" in text:
-        return False
-    cells = cells_of(text)
-    return all(map(is_number, cells)) or (not re.search("[,;]", text) and only_numbers(text))
-
-
-def first_row(lines: Sequence[str]) -> int:
-    """Return the place of the first row; the number of lines where there is none.
-
-    A line of numbers alone among words, or above rows of another width, such as "4096 0.025", belongs to the
-    header.
-    """
-    candidate, width = None, 0
-    for place, line in enumerate(lines[:_LONGEST_HEADER]):
-        text = line.replace('"', "").strip()
-        if not text or is_comment(text):
-            continue
-        if not _is_row(text):
-            candidate = None
-            continue
-        count = len(cells_of(text))
-        # rows of touching numbers differ in what blanks part, and the last may be shorter
-        if candidate is not None and not (count > width and _may_be_count(lines[candidate])):
-            return candidate
-        candidate, width = place, count
-    return len(lines) if candidate is None else candidate
-
-
-def notes_of_header(
-    lines: Sequence[str], first: int, width: int, step: float | None = None
-) -> tuple[str, ...]:
-    """Say which lines above the first row, and above words, are numbers as its rows are.
-
-    They are what is left of samples where a row below them is damaged. A count and the time step `step` [s]
-    of a record stand there by right.
-    """
-    notes = []
-    for number, line in enumerate(lines[:first], start=1):
-        text = line.replace('"', "").strip()
-        if is_comment(text) or not text or not _is_row(text) or _may_be_count(text):
-            continue
-        cells = cells_of(text)
-        alike = len(cells) == width and all(map(is_number, cells))  # numbers may touch in a row
-        if alike and float(cells[0].upper().replace("D", "E")) != step:
-            notes.append(
-                f"line {number} holds numbers alone, {text[:30]!r}, above words: taken for the header"
-            )
-    return tuple(notes)
-
-
-def _may_be_count(line: str) -> bool:
-    """Return whether a line may hold the number of samples, and their time step: "240", "4096 0.025"."""
-    cells = cells_of(line)
-    # more digits than a count has make none
-    return 1 <= len(cells) <= 2 and cells[0].isdecimal() and len(cells[0]) < 12 and int(cells[0]) > 1
-
-
-def rows_of(file: RecordFile, first: int) -> tuple[Sequence[int], list[str]]:
-    """Return number (from 1) and text of the lines from `first` on that are neither comments nor blank."""
-    lines = file.text[first:]
-    whole = "\n".join(lines)
-    if not any(mark in whole for mark in (*_COMMENTS, '"', "\n;")) and whole[:1] != ";":
-        close = whole.replace(" ", "").replace("\t", "")  # to strip each line takes longer than to read
-        if "\n\n" not in close and close[:1] != "\n" != close[-1:] and close.isascii():
-            return range(first + 1, first + 1 + len(lines)), list(lines)
-    numbers, rows = [], []
-    for number, line in enumerate(whole.replace('"', "").split("\n"), start=first + 1):
-        text = line.strip()
-        if text and (text[0] in _BEGIN_OF_NUMBER or not is_comment(text)):
-            numbers.append(number)
-            rows.append(text)
-    return numbers, rows
-
-
-def with_clock(file: RecordFile) -> RecordFile:
-    """Return a file whose clock times in its rows are seconds from the first; the same without any."""
-    if not has_clock_time(file.text[-1]):
-        return file
-    return RecordFile(file.path, "\n".join(with_seconds(file.text, _is_row)).encode())
-
-
-def without_bars(file: RecordFile) -> RecordFile:
-    """Return a file whose bars between columns, "| 0.01 | 0.2 |", are semicolons; the same without any."""
-    if "|" not in file.text[-1][:_LONGEST_BARRED]:
-        return file
-    lines = [
-        "" if _RULE.fullmatch(text := line.strip()) else text.strip("|").replace("|", ";")
-        for line in file.text
-    ]
-    return RecordFile(file.path, "\n".join(lines).encode())
-
-
-def table_of(file: RecordFile) -> Table:
-    """Return the header and the rows of a file.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than two rows, one has another width than the first, a cell is empty or no finite
-        number, or numbers touch and cannot be parted.
-    """
-    lines = file.text
-    first = first_row(lines)
-    if first == len(lines):
-        _refuse_damaged_row(file, first)
-        raise ValueError(_without_rows(file))
-    header = tuple(text for line in lines[:first] if (text := bare_header(line)))
-    numbers, filled = rows_of(file, first)
-    rows, notes = without_missing_end(filled)
-    numbers = numbers[: len(rows)]
-    _refuse_damaged_row(file, first)
-    if len(rows) < 2:
-        raise ValueError(f"{file.name} must hold at least two samples, got {len(rows)}")
-    text, width = _blank_separated(file, numbers, rows)
-    values = plain_numbers(text)
-    if values is None and ("." in text):
-        text = _parted_rows(file, numbers, rows, text)
-        values = plain_numbers(text)
-        width = len(text[: text.find("\n")].split())
-    if values is None or (widths_of(text) != width).any():
-        raise ValueError(_damage(file, numbers, rows, text.split("\n"), width))
-    values = values.reshape(len(rows), width)
-    if width == 2 and values[0, 0] == len(values) - 1 > _FEWEST_COUNTED and 0.0 < values[0, 1] < 1.0:
-        header = (*header, rows[0].strip())  # "4096 0.025" above two columns
-        return Table(header, values[1:], numbers[1:], notes)
-    return Table(header, values, numbers, (*notes, *notes_of_header(lines, first, width)))
-
-
-_FEWEST_COUNTED = 10  # rows; a number of fewer may be a sample by chance
-
-
-def _blank_separated(file: RecordFile, numbers: Sequence[int], rows: Sequence[str]) -> tuple[str, int]:
-    """Return the rows with blanks between the cells, and how many cells the first has."""
-    first = rows[0].replace('"', "").strip().rstrip(",;\t ")
-    separator, comma = _form(first)
+def _blank_separated(file: RecordFile, places: Sequence[int], rows: Sequence[str]) -> str:
+    text = re.sub(r"[,;\t ]+$", "", "\n".join(rows).replace('"', ""), flags=re.MULTILINE)
+    separator, comma = _form(text.split("\n", 1)[0])
     if not comma and len(rows) > 1:  # the first may hold whole numbers only
-        separator, comma = _form(rows[1].replace('"', "").strip().rstrip(",;\t "))
-    text = "\n".join(rows)
-    if '"' in text:
-        text = text.replace('"', "")
-    if separator is not None:
-        close = text.replace(" ", "").replace("\t", "")  # as patterns, these take longer than to read
-        text = text.replace(separator + "\n", "\n")  # of each row, which is quicker than row by row
-        close = text.replace(" ", "").replace("\t", "") if separator + "\n" in close else close
-        if any(mark + "\n" in close or close.endswith(mark) for mark in ",;"):
-            text = "\n".join(row.rstrip(",;\t ") for row in text.split("\n"))
-            close = text.replace(" ", "").replace("\t", "")
-        doubled = any(pair in close for pair in (2 * separator, "\n" + separator))
-        if doubled or close.startswith((",", ";")):
-            empty = _EMPTY_CELL.search(text)
-            assert empty is not None  # what was found without blanks is there with them
-            at = text.count("\n", 0, empty.end() - 1)
-            raise ValueError(
-                f"{file.name}, line {numbers[at]}: a cell is empty, got {rows[at].strip()[:60]!r}"
-            )
-    if comma:
-        text = text.replace(",", ".")
-    if separator is not None:
-        text = text.replace(separator, " ")
-    return text, len(text.split("\n", 1)[0].split())
+        separator, comma = _form(text.split("\n", 2)[1])
+    empty = _EMPTY_CELL.search(text) if separator else None
+    if empty:
+        at = text.count("\n", 0, empty.start())
+        raise ValueError(
+            f"{file.name}, line {places[at] + 1}: a cell is empty, got {rows[at].strip()[:60]!r}"
+        )
+    text = text.replace(",", ".") if comma else text
+    return text.replace(separator, " ") if separator else text
 
 
-def _parted_rows(file: RecordFile, numbers: Sequence[int], rows: Sequence[str], text: str) -> str:
-    """Return rows of which some hold numbers that touch with blanks between them."""
-    lines = text.split("\n")
-    if damaged_line(lines) is not None:
-        return text
-    refuse_long_touching(file, lines)
-    answer = separate(text)
-    if answer is None or plain_numbers(answer) is None:
-        at = next((at for at, line in enumerate(lines) if plain_numbers(line) is None), 0)
-        raise ValueError(touching(file, numbers[at], rows[at]))
-    return answer
-
-
-def _damage(
-    file: RecordFile, numbers: Sequence[int], rows: Sequence[str], texts: Sequence[str], width: int
-) -> str:
-    """Return what is wrong with the first damaged row."""
-    begin = _first_damaged(texts, width)
-    for number, row, text in zip(numbers[begin:], rows[begin:], texts[begin:], strict=True):
-        cells = text.split()
-        if len(cells) != width or not all(map(is_number, cells)):
-            return (
-                f"{file.name}, line {number}: expected {width} number{'s' * (width > 1)} as in line "
-                f"{numbers[0]}, got {row.strip()[:60]!r}"
-            )
-        try:
-            for cell in cells:
-                parse_number(file.path, number, cell)
-        except ValueError as error:
-            return str(error)
-    return f"{file.name} holds something else than numbers"
-
-
-def _first_damaged(texts: Sequence[str], width: int) -> int:
-    """Return the place from which the first damaged row is not far."""
-    whole = "\n".join(texts)
-    if plain_numbers(whole) is not None:
-        return int((widths_of(whole) != width).argmax())
-    foreign = foreign_line(whole)
-    if foreign is not None:
-        return foreign
-    for begin in range(0, len(texts), CHUNK):
-        if plain_numbers("\n".join(texts[begin : begin + CHUNK])) is None:
-            return begin
-    return 0
-
-
-_DATES = re.compile(r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}|\d{1,2}:\d{2}:\d{2}")
-
-
-def _without_rows(file: RecordFile) -> str:
-    """Return the refusal of a text without any row of numbers."""
-    line = next((text for line in reversed(file.text) if (text := line.strip())), "")
-    dates = (
-        ": its times are dates, which are read in one column, as 2024-11-26T10:20:30.005"
-        if _DATES.search(line[:200])
-        else ""
+def _damage(file: RecordFile, places: Sequence[int], rows: Sequence[str], width: int) -> str:
+    """What is wrong with the first damaged row."""
+    damaged = (
+        at
+        for at, row in zip(places, rows, strict=True)
+        if widths_of(row) != width or plain_numbers(row) is None
     )
+    at = next(damaged)
     return (
-        f"{file.name} must hold at least two samples, got 0 rows of numbers{dates}; it ends in {line[:60]!r}"
+        f"{file.name}, line {at + 1}: expected {width} finite number{'s' * (width > 1)}, blanks or "
+        f"separators between, as in line {places[0] + 1}, got {file.text[at].strip()[:60]!r}"
     )
 
 
-def _refuse_damaged_row(file: RecordFile, first: int) -> None:
-    """Refuse a header whose last line is a damaged first row: without it the record would be another."""
-    for number in range(first, 0, -1):
-        text = file.text[number - 1].replace('"', "").strip()
-        if not text:
-            continue
-        cells = re.split(r"\s*[,;]\s*", text) if re.search("[,;]", text) else text.split()
-        known = sum(map(is_number, cells))
-        damaged = 2 * known >= len(cells) and is_number(cells[0]) and not all(map(str.isdecimal, cells))
-        if damaged and not is_comment(text) and not _may_be_count(text):
-            if "" in cells:
-                raise ValueError(f"{file.name}, line {number}: a cell is empty, got {text[:60]!r}")
-            raise ValueError(f"{file.name}, line {number}: expected numbers alone, got {text[:60]!r}")
-        return
+def _refuse_rows_in_header(file: RecordFile, header: Sequence[str], width: int) -> None:
+    """Refuse numbers in a header that may be samples above a damaged row."""
+    texts = {
+        at: line.replace('"', "").strip() for at, line in enumerate(header, 1) if not _COMMENT.match(line)
+    }
+    for at, text in texts.items():
+        cells = [cell.strip() for cell in re.split("[,;]" if re.search("[,;]", text) else r"\s+", text)]
+        known, last = sum(map(is_number, cells)), at == max(texts)
+        row = known == len(cells) == width or (last and _NUMBERS.fullmatch(text))
+        damaged = last and is_number(cells[0]) and 2 * known >= len(cells)
+        if (row or damaged) and not all(map(str.isdecimal, cells)):
+            raise ValueError(f"{file.name}, line {at}: expected words or a whole row, got {text[:60]!r}")
+
+
+def _is_utf8(content: bytes) -> bool:
+    try:
+        content.decode()
+    except UnicodeDecodeError:
+        return False
+    return True
+
+
+def _bare(line: str) -> str:
+    """Line of a header without quotation marks, which part no cells, and the mark of a comment."""
+    line = _QUOTED.sub(lambda match: match[1].translate(_NO_SEPARATORS), line)
+    return re.sub(r"^(?:[#%!;$*]+|//+)", "", line.replace('"', "").strip()).strip()

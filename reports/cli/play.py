@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -23,7 +23,7 @@ from .problem import (
     FREE_DURATION,
     PROBLEM,
     Problem,
-    Reading,
+    ReadingOptions,
     Record,
     Release,
     Steel,
@@ -133,15 +133,16 @@ def _shakings(context: typer.Context, problem: Problem, records: Path | None) ->
     from ..pages.explore import Shaking, standard_shakings
 
     one = first_given(problem, "record", "record_x", "record_y", "record_z")
-    ways = {name: value for name, value in problem.ways().items() if value not in (None, False)}
+    reading = problem.reading()
+    ways = {name: value for name, value in asdict(reading).items() if value not in (None, False)}
     if records is not None:
         if one:
             raise ValueError(f"--records names all ground motions, got {one} beside it")
-        motions = rw.read_records(records, **problem.ways())
-        made = _call("rw.read_records", str(records), **ways)
+        motions = rw.read_records(records, reading)
+        made = f"rw.read_records({str(records)!r}, {_call('rw.Reading', **ways)})"
         return [Shaking(motion=motion, python=f"{made}[{place}]") for place, motion in enumerate(motions)]
     if not one:
-        if lone := first_given(problem, *(field.name for field in fields(Reading))):
+        if lone := first_given(problem, *(field.name for field in fields(ReadingOptions))):
             raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
         return standard_shakings()
     motion = replace(problem, scale=1.0).motion()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -19,7 +19,6 @@ from . import options
 
 if TYPE_CHECKING:
     from rockwobble.models import RockingBody
-    from rockwobble.models.records.folder import RecordOptions
 
 # length of a free response where the user does not say [s]
 FREE_DURATION = 10.0
@@ -109,7 +108,7 @@ def first_given(stated: Plan, *names: str) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reading(Plan):
+class ReadingOptions(Plan):
     """The options that say how files of records are read, the same for one record and for many."""
 
     units: str | None = _ground(None, options.UNITS)
@@ -120,24 +119,23 @@ class Reading(Plan):
     rotate: str | None = _ground(None, options.ROTATE)
     resample: bool = _ground(False, options.RESAMPLE, flag="--resample")
 
-    def ways(self) -> RecordOptions:
-        """Return the options as keywords of `read_record` and `read_records`."""
-        return {
-            "units": self.units,
-            "columns": self.record_columns,
-            "time_step": self.record_step,
-            "lengths": self.lengths,
-            "remove_mean": self.remove_mean,
-            "rotate": self.rotate,
-            "resample": self.resample,
-        }
+    def reading(self) -> rw.Reading:
+        """Return the options as a value.
+
+        Raises
+        ------
+        ValueError
+            If one is out of range.
+        """
+        names = {"record_columns": "columns", "record_step": "time_step"}
+        return rw.Reading(**{names.get(name, name): getattr(self, name) for name in WAYS})
 
 
-WAYS = tuple(field.name for field in fields(Reading))
+WAYS = tuple(field.name for field in fields(ReadingOptions))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Record(Reading):
+class Record(ReadingOptions):
     """The options that state a ground motion."""
 
     record: Path | None = _ground(
@@ -165,7 +163,7 @@ class Record(Reading):
         if whole is not None:
             if any(path is not None for path in (x, y, z)):
                 raise ValueError("--record holds all components, got --record-x, -y or -z beside it")
-            return rw.read_record(whole, **self.ways()).scaled(scale)
+            return rw.read_record(whole, **asdict(self.reading())).scaled(scale)
         if x is None and y is None:
             if lone := first_given(self, "record_z", *WAYS):
                 raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
@@ -180,7 +178,7 @@ class Record(Reading):
                 f"both horizontal components are needed, got {given} without {missing}: for planar motion "
                 f"give {missing} zero, one file of all by --record"
             )
-        return rw.read_record(x, y, z, **self.ways()).scaled(scale)
+        return rw.read_record(x, y, z, **asdict(self.reading())).scaled(scale)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -397,7 +395,7 @@ class Problem(Release, Record, Restraint, Body):
 
 def unread(problem: Problem) -> Problem:
     """Return a problem without the options of reading, which belong to other motions."""
-    defaults: dict[str, Any] = {each.name: each.default for each in fields(Reading)}
+    defaults: dict[str, Any] = {each.name: each.default for each in fields(ReadingOptions)}
     return replace(problem, **defaults)
 
 

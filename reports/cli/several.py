@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,14 +17,14 @@ from .options import settings
 
 if TYPE_CHECKING:
     from rockwobble.models import RockingBody
-from .problem import WAYS, Body, Reading, first_given, under_slab
+from .problem import WAYS, Body, ReadingOptions, first_given, under_slab
 
 DEFAULT_COUNT = 100  # of synthetic motions, where the user does not say
 _motions = OptionsIn("Many ground motions")
 
 
 @dataclass(frozen=True, kw_only=True)
-class ManyMotions(Reading):
+class ManyMotions(ReadingOptions):
     """The options that name many ground motions."""
 
     p695: bool = _motions(
@@ -33,8 +33,7 @@ class ManyMotions(Reading):
     records: Path | None = _motions(
         None,
         "Folder of records: a PEER download with its _SearchResults.csv, or files with a table "
-        "records.csv (columns x and y, or record; optional z, name, units, scale, level and options "
-        "such as lengths).",
+        "records.csv (columns x and y, or record; optional z, name, units, scale and level).",
     )
     synthetic: int | None = _motions(None, "Number of synthetic motions.", least=2)
 
@@ -50,7 +49,7 @@ class ManyMotions(Reading):
 
     def by_level(self) -> dict[float, list[rw.GroundMotion]]:
         """Return the motions of each level of the intensity; empty where the table of --records has none."""
-        return {} if self.records is None else rw.read_records_by_level(self.records, **self.ways())
+        return {} if self.records is None else rw.read_records_by_level(self.records, self.reading())
 
     def read(self, seed: int) -> tuple[list[rw.GroundMotion], str]:
         """Return the ground motions and what they are; synthetic ones where none are named.
@@ -71,7 +70,7 @@ class ManyMotions(Reading):
         if self.p695:
             return recorded_far_field(), "far-field pairs of FEMA P-695"
         if self.records is not None:
-            return rw.read_records(self.records, **self.ways()), self.source
+            return rw.read_records(self.records, self.reading()), self.source
         count = DEFAULT_COUNT if self.synthetic is None else self.synthetic
         return rw.synthetic_motions(count, peak=1.0, seed=seed), f"synthetic ground motions, seed {seed}"
 
@@ -234,7 +233,7 @@ _motion = OptionsIn("Ground motion")
 
 
 @dataclass(frozen=True, kw_only=True)
-class GridOptions(GridPlan, Reading):
+class GridOptions(GridPlan, ReadingOptions):
     """The options that state a grid."""
 
     record: list[Path] | None = _motion(
@@ -267,7 +266,7 @@ class GridOptions(GridPlan, Reading):
         if self.record:
             if lone := first_given(self, "record_x", "record_y", "record_z"):
                 raise ValueError(f"--record holds all components, got {lone} beside it")
-            return [rw.read_record(path, **self.ways()) for path in self.record]
+            return [rw.read_record(path, **asdict(self.reading())) for path in self.record]
         if not x and not y:
             if lone := first_given(self, "record_z", *WAYS):
                 raise ValueError(f"{lone} belongs to a record, give --record, or --record-x and --record-y")
@@ -279,5 +278,6 @@ class GridOptions(GridPlan, Reading):
             )
         ups: list[Path | None] = list(z) if z else [None] * len(x)
         return [
-            rw.read_record(east, north, up, **self.ways()) for east, north, up in zip(x, y, ups, strict=True)
+            rw.read_record(east, north, up, **asdict(self.reading()))
+            for east, north, up in zip(x, y, ups, strict=True)
         ]

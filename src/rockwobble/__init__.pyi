@@ -15,6 +15,7 @@ from .models import Diagnostic as Diagnostic
 from .models import GroundMotion as GroundMotion
 from .models import HazardCurve as HazardCurve
 from .models import InitialState as InitialState
+from .models import Reading as Reading
 from .models import Run as Run
 from .models import Suite as Suite
 from .models import Tendon as Tendon

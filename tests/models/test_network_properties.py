@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from rockwobble.models.records.component import Component, ReadingOptions, open_record
+from rockwobble.models.records.component import Component, open_record
 from rockwobble.models.records.formats import read_components
+from rockwobble.models.records.reading import Reading
 
 Values = NDArray[np.float64]
 Parts = dict[str, Values]
@@ -86,7 +87,7 @@ def any_motion(chance: np.random.Generator) -> Parts:
 def read(folder: Path, name: str, content: str | bytes) -> list[Component]:
     path = folder / name
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
-    return read_components(open_record(path), ReadingOptions())
+    return read_components(open_record(path), Reading())
 
 
 # lengths that fill the last line and lengths that do not

@@ -17,7 +17,7 @@ GOOD = "Zeit [ms];Nord [mg];Ost [mg]\n" + "".join(
 BAD = {
     "missing.csv": (None, "No such file"),
     "empty.csv": ("", "is empty"),
-    "lengths.csv": (GOOD.replace("[mg]", "[mm]"), "'Ost [mm]'"),
+    "lengths.csv": (GOOD.replace("[mg]", "[mm]"), "Ost [mm]"),
     "columns.csv": (GOOD.replace("Ost", "H1"), "--record-columns"),
     "damaged.csv": (GOOD.replace("300;", "300;x"), "line 32"),
     "silent.csv": (GOOD.replace("[mg]", ""), "does not say its unit"),
@@ -104,7 +104,7 @@ def test_a_good_file_is_stated_in_the_same_words(
     command: str,
 ) -> None:
     no_engines()
-    monkeypatch.setattr(Page, "files", lambda _: {})  # the pages have their own test
+    monkeypatch.setattr(Page, "files", lambda *_, **__: {})  # the pages have their own test
     assert exit_code(*COMMANDS[command], "--record", "good.csv", "--out", "out") == 0
     written = capsys.readouterr()
     # a terminal breaks lines where they are full

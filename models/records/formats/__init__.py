@@ -12,14 +12,14 @@ Write a module here with the members of `Reader`, and name it in READERS. What i
   raises nothing, whatever stands in the file, and takes no more than some microseconds: it is asked of every
   file. A binary file has no lines; look at `content`.
 * READERS are asked in their order and the first that recognises the file reads it: a format with a signature
-  stands before the readers of columns and of bare values, which take what is left.
+  stands before that of free text, which takes what is left.
 * `read` returns every component that the file holds, in the order of the file, in the unit of the file after
   its own scale factor (counts times gal per count are gal). It guesses nothing: what the file does not say
   stays None, and what contradicts itself is refused.
 * Directions are stated where the file states them: x for east, y for north, z for up; `azimuth` where it
   gives degrees, of the positive sense (the positive sense of a component named W is 270). `label` is the
   component as the file has it ("HNE", "Chan 2: 90 Deg").
-* `options` are what the user says. A reader of a format that says its own unit leaves `options.units` alone:
+* `reading` is what the user says. A reader of a format that says its own unit leaves `reading.units` alone:
   `files` compares the two.
 * Bad input raises ValueError in one printable line below 250 characters that begins with `file.name`, has
   the line where there is one, and says what was expected and what stands there.
@@ -34,14 +34,14 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from ..component import Component, ReadingOptions, RecordFile
+from ..component import Component, RecordFile
+from ..directions import as_named
 from ..fill import without_filled_end
+from ..reading import Reading
 from . import (
     afad,
     at2,
     bbp,
-    blocks,
-    columns,
     cosmos,
     csmip,
     csmnc,
@@ -50,13 +50,11 @@ from . import (
     geonet,
     jma,
     knet,
-    lists,
     miniseed,
     others,
     sac,
     smc,
-    timeseries,
-    values,
+    text,
 )
 
 
@@ -68,7 +66,7 @@ class Reader(Protocol):
     def recognizes(self, file: RecordFile) -> bool:
         """Return whether a file is of this format."""
 
-    def read(self, file: RecordFile, options: ReadingOptions) -> list[Component]:
+    def read(self, file: RecordFile, reading: Reading) -> list[Component]:
         """Return the components of a file.
 
         Raises
@@ -94,16 +92,12 @@ READERS: tuple[Reader, ...] = (
     bbp,
     miniseed,
     sac,
-    timeseries,
     at2,
-    lists,
-    blocks,
-    values,
-    columns,
+    text,
 )
 
 
-def read_components(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read_components(file: RecordFile, reading: Reading) -> list[Component]:
     """Return the components of a file by the first reader that recognises it.
 
     Raises
@@ -112,10 +106,12 @@ def read_components(file: RecordFile, options: ReadingOptions) -> list[Component
         If no reader does, or its reader refuses it.
     """
     for reader in READERS:
-        if reader.recognizes(file) or (reader is values and options.columns == (values.ROW_BY_ROW,)):
-            components = reader.read(file, options)
+        if reader.recognizes(file):
+            components = reader.read(file, reading)
+            if reading.columns and reader is not text and len(components) > 1:
+                components = as_named(components, reading.column_texts, file.name)
             for component in components:  # a step that the user gives must be that of the file
-                options.settled_step(component.path.name, component.time_step)
+                reading.settled_step(component.path.name, component.time_step)
             return [without_filled_end(component) for component in components]
     file.text  # noqa: B018 - says that the file is binary where it is
     raise ValueError(f"{file.name} has no format that can be read")

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 
-from ..component import Component, ReadingOptions, RecordFile
+from ..component import Component, RecordFile
 from ..fixed_width import table_of_numbers
 from ..headers import compare_peak, direction_of
+from ..reading import Reading
 
 NAME = "AFAD text"
 _HEADER_LINES = 30
@@ -18,7 +19,7 @@ def recognizes(file: RecordFile) -> bool:
     return any("STRONG GROUND MOTION RECORDS OF TURK" in line for line in file.head[:_HEADER_LINES])
 
 
-def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read(file: RecordFile, reading: Reading) -> list[Component]:
     """Read the three columns, in gal.
 
     Raises

@@ -5,14 +5,17 @@ from __future__ import annotations
 import re
 
 from ..column_names import column_name
-from ..component import Component, ReadingOptions, RecordFile
+from ..component import Component, RecordFile
 from ..fill import without_fill
 from ..numbers import NUMBER, block_of_numbers, parse_number
+from ..reading import Reading
 from ..units import stated_unit
 
 NAME = "PEER AT2"
-# titles of the forms in circulation are three lines long; one comment more does no harm
-_HEADER_LINES = 6
+# titles of the forms in circulation are three lines long, those of rotated components six
+_HEADER_LINES = 7
+_AZIMUTH = re.compile(r"\bAZIMUTH\s{0,9}=\s{0,9}(\d{1,3}(?:\.\d{0,3})?)(?![\d.])")
+_END = re.compile(r"\s*\*{3}[^\d*]{1,60}\*{3}\s*")  # "*** End Data ***" of the examples of OpenSees
 _WORDS_OF_TITLE = 3  # event, date, station and component
 _MOST_FILLED = 10  # numbers; no line of the forms in circulation has more
 _LONGEST_HEADER = 200  # the line has 80 characters; bounds what a pattern can cost on one that is damaged
@@ -23,7 +26,7 @@ def recognizes(file: RecordFile) -> bool:
     return any("NPTS" in line for line in file.head[:_HEADER_LINES])
 
 
-def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read(file: RecordFile, reading: Reading) -> list[Component]:
     """Read the lines of an AT2 file.
 
     Raises
@@ -34,9 +37,10 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
     at = next(index for index, line in enumerate(file.head) if "NPTS" in line)
     count, time_step = _counts(file, at)
     if time_step > 0.0:
-        options.settled_step(file.name, time_step)
+        reading.settled_step(file.name, time_step)
     unit = stated_unit(file.path, list(file.text[:at]))
-    values = block_of_numbers(file, at + 1)
+    ended = len(file.text) > at + 1 and _END.fullmatch(file.text[-1]) is not None
+    values = block_of_numbers(file, at + 1, len(file.text) - ended)
     rest = values[count:]
     # the last line may be filled up, with zeros or 9999, and the ground is still after the record anyway
     filled = without_fill(rest)[0] if len(rest) < _MOST_FILLED else rest
@@ -60,10 +64,13 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
 
 
 def _orientation(file: RecordFile, at: int) -> tuple[float | None, float]:
-    """Return the azimuth [deg], and 1 up or -1 down, by the title "event, date, station, 180"."""
+    """Azimuth [deg], and 1 up or -1 down, by "azimuth = 310.0" or the title "event, date, station, 180"."""
+    stated = {float(match[1]) % 360.0 for line in file.head[:at] if (match := _AZIMUTH.search(line))}
+    if stated:  # of a rotated component, whose other lines are about those it is made of
+        return (stated.pop() if len(stated) == 1 else None), 0.0
     for line in file.head[:at]:
         words = [word.strip() for word in line.split(",")]
-        if len(words) < _WORDS_OF_TITLE:
+        if len(words) < _WORDS_OF_TITLE or "ROTATION" in line:
             continue
         if re.fullmatch(r"\d{1,3}", words[-1]) and int(words[-1]) <= 360:
             return float(words[-1]) % 360.0, 0.0

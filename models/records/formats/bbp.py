@@ -8,9 +8,10 @@ from itertools import takewhile
 import numpy as np
 from numpy.typing import NDArray
 
-from ..component import Component, ReadingOptions, RecordFile
+from ..component import Component, RecordFile
 from ..fixed_width import table_of_numbers
 from ..headers import direction_of
+from ..reading import Reading
 from ..units import stated_unit
 
 NAME = "SCEC BBP"
@@ -28,7 +29,7 @@ def recognizes(file: RecordFile) -> bool:
     return file.name.lower().endswith(".bbp") and file.lines is not None
 
 
-def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read(file: RecordFile, reading: Reading) -> list[Component]:
     """Read the three components of an acceleration file.
 
     Raises
@@ -44,7 +45,7 @@ def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
             f"{file.name} ({NAME}): expected N-S, E-W and U-D in one unit behind the time, got "
             f"{', '.join(f'{name} ({unit})' for name, unit in columns)[:100]}"
         )
-    unit = _unit(file, words.pop(), options)
+    unit = _unit(file, words.pop(), reading)
     table = table_of_numbers(file, len(header), 4)
     time_step = _even_step(file, table[:, 0])
     return [
@@ -74,7 +75,7 @@ def _columns(header: list[str]) -> list[tuple[str, str]]:
     return [(name, velocity) for name in _SEQUENCE]
 
 
-def _unit(file: RecordFile, word: str, options: ReadingOptions) -> str | None:
+def _unit(file: RecordFile, word: str, reading: Reading) -> str | None:
     """Return the unit of acceleration, by the columns, else by the name of the file."""
     acceleration = file.name.lower().endswith(".acc.bbp")
     if re.fullmatch(r"c?m/s(ec)?", word, re.IGNORECASE):
@@ -86,7 +87,7 @@ def _unit(file: RecordFile, word: str, options: ReadingOptions) -> str | None:
         return stated_unit(file.path, [f"unit: {word}"])
     if acceleration:
         return "cm/s2"
-    if options.units is None:
+    if reading.units is None:
         raise ValueError(
             f"{file.name} ({NAME}) names no columns, which may be velocities: give the .acc.bbp of the "
             "station, or the unit of its accelerations (--units)"

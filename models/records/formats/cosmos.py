@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from ..component import Component, Direction, ReadingOptions, RecordFile
+from ..component import Component, Direction, RecordFile
 from ..fixed_width import fixed_width_block, stated_format
 from ..headers import azimuth_of, compare_peak, direction_at, direction_of
+from ..reading import Reading
 
 NAME = "COSMOS V1/V2"
 # "   7000  acceleration pts, approx   70 secs, units=cm/sec2(04),Format=(8F10.5)"
@@ -38,7 +39,7 @@ def recognizes(file: RecordFile) -> bool:
     return bool(file.head) and "(FORMAT V" in file.head[0]
 
 
-def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read(file: RecordFile, reading: Reading) -> list[Component]:
     """Read the acceleration of every channel; velocities and displacements are passed over.
 
     Raises

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 
-from ..component import Component, ReadingOptions, RecordFile
+from ..component import Component, RecordFile
 from ..fixed_width import fixed_width_block, stated_format
 from ..headers import azimuth_of, compare_peak, direction_at, direction_of
+from ..reading import Reading
 from ..units import stated_unit
 
 NAME = "CSMIP V1/V2"
@@ -29,7 +30,7 @@ def recognizes(file: RecordFile) -> bool:
     return "CORRECTED ACCELEROGRAM" in title and not others
 
 
-def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read(file: RecordFile, reading: Reading) -> list[Component]:
     """Read the acceleration of every channel; velocities and displacements of volume 2 are passed over.
 
     Raises

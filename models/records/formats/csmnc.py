@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 
-from ..component import Component, ReadingOptions, RecordFile
+from ..component import Component, RecordFile
 from ..headers import azimuth_of, compare_peak, direction_at, direction_of
 from ..numbers import block_of_numbers
+from ..reading import Reading
 from ..units import stated_unit
 
 NAME = "CSMNC text"
@@ -24,7 +25,7 @@ def recognizes(file: RecordFile) -> bool:
     return any("EQUALLY SPACED INTERVALS OF:" in line for line in file.head[:_HEADER_LINES])
 
 
-def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read(file: RecordFile, reading: Reading) -> list[Component]:
     """Read the samples of a component.
 
     Raises

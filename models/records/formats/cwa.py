@@ -6,9 +6,10 @@ import re
 
 import numpy as np
 
-from ..component import Component, ReadingOptions, RecordFile
+from ..component import Component, RecordFile
 from ..fixed_width import fixed_width_block, stated_format
 from ..headers import compare_peak, direction_of
+from ..reading import Reading
 from ..units import stated_unit
 
 NAME = "CWA/TSMIP text"
@@ -23,7 +24,7 @@ def recognizes(file: RecordFile) -> bool:
     )
 
 
-def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read(file: RecordFile, reading: Reading) -> list[Component]:
     """Read the columns by the sequence that the header gives, "Time U(+); N(+); E(+)".
 
     Raises

@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from itertools import takewhile
 
-from ..component import Component, ReadingOptions, RecordFile
+from ..component import Component, RecordFile
 from ..fixed_width import table_of_numbers
 from ..headers import compare_peak, direction_of
+from ..reading import Reading
 from ..units import stated_unit
 
 NAME = "ESM/ITACA ASC"
@@ -21,7 +22,7 @@ def recognizes(file: RecordFile) -> bool:
     return "SAMPLING_INTERVAL_S" in keys and bool(keys & {"STREAM", "COMPONENT", "NDATA"})
 
 
-def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read(file: RecordFile, reading: Reading) -> list[Component]:
     """Read the samples of a component of acceleration.
 
     Raises

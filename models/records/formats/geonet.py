@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 
-from ..component import Component, ReadingOptions, RecordFile
+from ..component import Component, RecordFile
 from ..fixed_width import fixed_width_block
 from ..headers import azimuth_of, compare_peak, direction_at, direction_of
+from ..reading import Reading
 
 NAME = "GeoNet V1A/V2A"
 _TEXT_LINES, _NUMBER_LINES = 16, 10  # of the header of a component
@@ -22,7 +23,7 @@ def recognizes(file: RecordFile) -> bool:
     return bool(file.head) and "CORRECTED ACCELEROGRAM" in file.head[0] and "GNS SCIENCE" in file.head[0]
 
 
-def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read(file: RecordFile, reading: Reading) -> list[Component]:
     """Read the acceleration of each component; velocities and displacements of V2A are passed over.
 
     Raises

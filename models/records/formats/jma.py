@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 
-from ..component import Component, ReadingOptions, RecordFile
+from ..component import Component, RecordFile
 from ..fixed_width import table_of_numbers
 from ..headers import direction_of
+from ..reading import Reading
 from ..units import stated_unit
 
 NAME = "JMA text"
@@ -21,7 +22,7 @@ def recognizes(file: RecordFile) -> bool:
     return any(line.startswith("SITE CODE") for line in head) and any("INITIAL TIME" in line for line in head)
 
 
-def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read(file: RecordFile, reading: Reading) -> list[Component]:
     """Read the columns by their names, "NS,EW,UD".
 
     Raises

@@ -7,9 +7,10 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
-from ..component import Component, Direction, ReadingOptions, RecordFile
+from ..component import Component, Direction, RecordFile
 from ..headers import compare_peak
 from ..numbers import block_of_numbers
+from ..reading import Reading
 
 NAME = "K-NET/KiK-net"
 _HEADER_LINES = 17
@@ -39,7 +40,7 @@ def recognizes(file: RecordFile) -> bool:
     return titled and any("(HZ)" in line for line in head)
 
 
-def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read(file: RecordFile, reading: Reading) -> list[Component]:
     """Read counts times the scale factor, in gal, with the offset of the sensor.
 
     NIED states the largest acceleration after the mean was taken off, and leaves the mean in the counts.

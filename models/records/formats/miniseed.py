@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from ..component import Component, ReadingOptions, RecordFile
+from ..component import Component, RecordFile
 from ..headers import direction_of
+from ..reading import Reading
 from ..waveforms import read_waveforms, require_accelerations
 
 NAME = "miniSEED"
@@ -23,7 +24,7 @@ def recognizes(file: RecordFile) -> bool:
     )
 
 
-def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read(file: RecordFile, reading: Reading) -> list[Component]:
     """Read every channel; the format states no unit, and most files hold counts.
 
     Raises

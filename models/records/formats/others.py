@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-from ..component import Component, ReadingOptions, RecordFile
+from ..component import Component, RecordFile
+from ..reading import Reading
 
 NAME = "format that is not read"
 _COLUMNS = "write its accelerations as columns 'time [s], E, N, Z' (CSV) and give their unit"
+_VALUES = "write its accelerations alone, one in a line, and give their step (--record-step) and unit"
 _UNPACK = "unpack it and give the files in it"
 
 
@@ -69,6 +71,11 @@ _FORMATS: tuple[tuple[str, Callable[[RecordFile], bool], str], ...] = (
         _ends(".evt"),
         "convert it to COSMOS V1, SAC or miniSEED (Kinemetrics: kw2cosmos, kw2asc)",
     ),
+    (
+        "TIMESERIES text (SLIST, TSPAIR)",
+        _says("^TIMESERIES .*SAMPLE", 1),
+        "convert it to SAC or miniSEED (obspy)",
+    ),
     ("GSE2/IMS", _says(r"^WID[12] "), "convert it to SAC or miniSEED of accelerations (obspy)"),
     (
         "USC or Caltech Volume I",
@@ -108,6 +115,12 @@ _FORMATS: tuple[tuple[str, Callable[[RecordFile], bool], str], ...] = (
         _says(r"^<\?XML|^<Q:QUAKEML|^<FDSNSTATIONXML", 2),
         "give the waveforms: SAC or miniSEED",
     ),
+    (
+        "a list of a program",
+        _says(r"\bSET\s+\w+\s+[{\"]|-VALUES\s+\{|=\s*(?:\w+\.)?(?:ARRAY\(|\[\s*[-+.\d])"),
+        _VALUES,
+    ),
+    ("an input of DIANA", _says(r"^:\s?DIANA DATAFILE", 1), _VALUES),
     ("JSON", _says(r"^\s*(?:\{\s*(?:\"|$)|\[\s*[{\[])", 1), _COLUMNS),
     ("a web page", _says(r"^\s*<(!DOCTYPE HTML|HTML)", 3), "give the file of the record itself"),
 )
@@ -122,7 +135,7 @@ def recognizes(file: RecordFile) -> bool:
     return _name_and_advice(file) is not None
 
 
-def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read(file: RecordFile, reading: Reading) -> list[Component]:
     """Refuse the file by the name of its format.
 
     Raises

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import struct
 
-from ..component import Component, Direction, ReadingOptions, RecordFile
+from ..component import Component, Direction, RecordFile
 from ..headers import direction_at, direction_of
+from ..reading import Reading
 from ..waveforms import Waveform, read_waveforms, require_accelerations
 
 NAME = "SAC"
@@ -22,7 +23,7 @@ def recognizes(file: RecordFile) -> bool:
     return any(struct.unpack(f"{order}i", version)[0] in _VERSIONS for order in "<>") and file.lines is None
 
 
-def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read(file: RecordFile, reading: Reading) -> list[Component]:
     """Read the samples; the format states no unit.
 
     Raises

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from ..component import Component, Direction, ReadingOptions, RecordFile
+from ..component import Component, Direction, RecordFile
 from ..fixed_width import fixed_width_block
 from ..headers import compare_peak, direction_at
+from ..reading import Reading
 
 NAME = "SMC"
 _TITLES = ("1 UNCORRECTED ACCELEROGRAM", "2 CORRECTED ACCELEROGRAM")
@@ -27,7 +28,7 @@ def recognizes(file: RecordFile) -> bool:
     )
 
 
-def read(file: RecordFile, options: ReadingOptions) -> list[Component]:
+def read(file: RecordFile, reading: Reading) -> list[Component]:
     """Read the samples of a corrected accelerogram, in cm/s^2.
 
     Raises
