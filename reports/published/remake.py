@@ -27,6 +27,8 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+from jinja2 import UndefinedError
+
 from rockwobble.compare.storage.manifest import MANIFEST, Manifest, file_state, read_manifests
 from rockwobble.compare.storage.provenance import code_digests
 from rockwobble.reports.pages import stored_page
@@ -256,7 +258,7 @@ def _today(folder: Path, made: Manifest) -> tuple[str, str] | None:
     try:
         page = stored_page(made.kind, folder)
         return (folder / f"{page.name}.md").read_text(encoding="utf-8"), page.markdown()
-    except (KeyError, TypeError, AttributeError, ValueError):  # of older code: the report says so
+    except (KeyError, TypeError, AttributeError, ValueError, UndefinedError):  # of older code, as is said
         return None
 
 
