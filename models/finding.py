@@ -37,6 +37,7 @@ QUANTITIES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "until": ("s", "end of a span that begins with the motion"),
         "predicted": ("s", "predicted end of such a span"),
         "duration": ("s", "length of time"),
+        "years": ("a", "mean time between two such events"),
         "tilt": ("rad", "tilt of the axis from vertical"),
         "peak": ("alpha", "largest tilt"),
         "difference": ("alpha", "difference of two tilts"),

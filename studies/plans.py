@@ -167,10 +167,13 @@ class FragilityPlan(YieldPlan):
     period: float = option(1.0, "Period of sa and sa_mean, in s.", group="Intensity", above=0.0)
     limits: Sequence[str] | None = option(
         None,
-        'Limit state: uplift, "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", overturned or '
-        "contact_lost; may be repeated. Default: all but contact_lost.",
+        'Limit state: uplift, "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", overturned, contact_lost or '
+        '"tendon yields"; may be repeated. Default: all but contact_lost.',
         group="Statistics",
-        choices=("uplift", "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", "overturned", "contact_lost"),
+        choices=(
+            *("uplift", "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha"),
+            *("overturned", "contact_lost", "tendon yields"),
+        ),
         flag="--limit",
     )
     margin: float = option(
@@ -210,6 +213,10 @@ class FragilityPlan(YieldPlan):
                 require_increasing(name, getattr(self, name))
         if self.limits is not None and not list(self.limits):
             raise ValueError("a fragility needs at least one limit, got none")
+        if self.tendon_yield is None and "tendon yields" in (self.limits or ()):
+            raise ValueError(
+                'the limit "tendon yields" needs the yield force (--tendon-yield, tendon_yield=)'
+            )
 
 
 # Finest step of a search, over the intensity at which the peak of the horizontal resultant is g tan(alpha):

@@ -83,6 +83,7 @@ def fragility(
     with interruptible(out):
         with user_input():
             from rockwobble.studies.fragility.runs import methods_of
+            from rockwobble.studies.fragility.study import limits_of
 
             claim_folder(context)
             if cylinder:
@@ -93,7 +94,7 @@ def fragility(
             tied = plan.tendon is not None
             chosen = methods.methods(next(iter(bodies.values())), tendon=tied)
             methods_of(chosen, restitution=plan.restitution)  # before motions are read
-            site = hazard.curve(plan.period)
+            site = hazard.curve(plan.period, limits_of(plan))
             stripes = many.by_level()
             if stripes:
                 lone = {"levels", "scales"}
@@ -126,7 +127,13 @@ def fragility(
                 **dataclasses.asdict(plan),
             )
             if site is not None:
-                found = found.with_risk(site, hazard.risk_years, total_dispersion=hazard.total_dispersion)
+                found = found.with_risk(
+                    site,
+                    hazard.risk_years,
+                    total_dispersion=hazard.total_dispersion,
+                    limit=hazard.risk_limit,
+                    target=hazard.target,
+                )
         show_and_save(found, out)
 
 

@@ -194,6 +194,13 @@ class Hazard(Plan):
     )
     hazard_site: int | None = _hazard(None, "Number of the site in an OpenQuake file of several.", least=1)
     risk_years: float = _hazard(50.0, "Period of the overturning probability, in years.", above=0.0)
+    risk_limit: str = _hazard("overturned", 'Limit state of the annual frequency, such as "tendon yields".')
+    target: float = _hazard(
+        2e-4,
+        "Annual frequency that the result is compared with. Default: 2e-4, collapse of 1 % in 50 years "
+        "(ASCE/SEI 7-16, 21.2.1.2).",
+        above=0.0,
+    )
     total_dispersion: float | None = _hazard(
         None,
         "Dispersion of the lognormal curves, such as the total dispersion of FEMA P-695. Default: the "
@@ -201,8 +208,8 @@ class Hazard(Plan):
         above=0.0,
     )
 
-    def curve(self, period: float) -> rw.HazardCurve | None:
-        """Return the hazard curve, None without a file; `period`: that of Sa [s].
+    def curve(self, period: float, limits: Sequence[str]) -> rw.HazardCurve | None:
+        """Return the hazard curve, None without a file; `period`: that of Sa [s], `limits`: those asked for.
 
         Raises
         ------
@@ -210,15 +217,16 @@ class Hazard(Plan):
             If an option stands without what it belongs to, or the file cannot be read.
         """
         from rockwobble.models.hazard import HAZARD_MEASURES
+        from rockwobble.models.number_checks import require_one_of
 
         if self.hazard is None:
-            if lone := first_given(
-                self, "hazard_measure", "hazard_units", "hazard_years", "hazard_site", "total_dispersion"
-            ):
+            alone = ("hazard_measure", "hazard_units", "hazard_years", "hazard_site", "total_dispersion")
+            if lone := first_given(self, *alone):
                 raise ValueError(f"{lone} belongs to a hazard curve, give --hazard as well")
             return None
         if self.hazard_measure is None:
             raise ValueError(f"--hazard needs --hazard-measure, one of {', '.join(HAZARD_MEASURES)}")
+        require_one_of("--risk-limit", self.risk_limit, dict.fromkeys(["overturned", *limits]))
         return rw.read_hazard(
             self.hazard,
             measure=self.hazard_measure,

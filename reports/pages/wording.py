@@ -33,6 +33,7 @@ _BY_UNIT: Mapping[str, Callable[[float], str]] = {
     "weights": lambda value: f"{number(value)} weights",
     "m": lambda value: f"{number(value)} m",
     "1/a": lambda value: f"{number(value)} a year",
+    "a": lambda value: f"{value:,.0f} years",
 }
 
 

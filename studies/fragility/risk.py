@@ -1,187 +1,43 @@
-"""Annual frequency of overturning: a hazard curve times what overturns at each intensity, integrated.
+"""Annual frequency of exceeding a limit by the motions of a fragility: its interval, and what it rests on.
 
-The mean annual frequency is the integral of p(theta) |d lambda(theta)|, with the frequency of exceedance
-lambda of a site and the probability p of overturning at an intensity theta. Without a fitted curve p is the
-share of the motions that overturn, the mean of the indicator of each: 1 where the motion, scaled to theta,
-overturns the cylinder. So safe gaps above the first overturning count as what they are.
-
-Rule of integration. Lambda is a power of theta between the points of its curve, and the indicator is linear
-in ln theta between two levels: where it changes, it changes at a place that is unknown and equally probable
-anywhere between them. For both the integral is exact, whatever the points and levels,
-
-    int p |d lambda| = [-p lambda] + sum of dp/d ln theta int lambda d ln theta.
-
-Below the lowest level the indicator falls linearly to 0 at the uplift of the motion: what does not uplift
-does not overturn. Beyond the last level, or the last point of the curve, nothing was run or is known: there
-the indicator stays what it was, and the share of the frequency that rests on this is stated (tail_share)
-beside the bound in which all motions overturn there (annual_frequency_most). For a lognormal curve the
-integral is exact, too: C. A. Cornell, F. Jalayer, R. O. Hamburger and D. A. Foutch, J. Struct. Eng. 128,
-526-533, 2002, on each piece of the hazard curve.
+One interval serves frequencies and ratios of two, motions at all levels and motions of each level alone. The
+logarithm of a frequency is, to first order, a sum of parts, one a motion, and so is that of a ratio. Its
+standard error is that of the parts, and the interval that of the logarithm over its standard error in
+resamples of the motions (bootstrap-t: B. Efron and R. J. Tibshirani, An Introduction to the Bootstrap, 1993,
+12.5): of a mean of which few motions have the most the plain percentiles are too narrow, on the side of the
+danger. It is wider by what a quantile of Student's t has over that of as many motions, with the degrees of
+freedom that motions of which few have the most leave (F. E. Satterthwaite, Biometrics Bulletin 2, 110-114,
+1946). `python tests/benchmarks risk_coverage` says how often it holds the truth.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.compare.metrics.statistics import Interval, share_interval
+from rockwobble.models.finding import Finding, Level, Value
 from rockwobble.models.hazard import HazardCurve
 
 from .fit import EXTRAPOLATED, FITTED, KINDS, Array, Sample, interval
+from .integral import Frequencies, continued, frequencies_of, lognormal_frequency, rate_at
 from .tables import OVERTURNED, Blocks
 
-TARGET = 2e-4  # [1/year], a common bound on collapse: 1 % in 50 years
+TARGET = 2e-4  # [1/year], collapse of 1 % in 50 years: ASCE/SEI 7-16, 21.2.1.2
 RARE = -math.log1p(-0.02) / 50.0  # exceeded with 2 % in 50 years [1/year]
 FAR = 5.0  # factor on a motion beyond which its scaling is doubted
-# motions that overturn: of fewer, resamples are mostly of none, and each share has its exact bound instead
-_FEWEST_OVERTURNING = 3
+# motions that exceed the limit: of fewer, too many resamples are of none, and each share has its exact bound
+FEWEST_EXCEEDING = 5
 # standard error of a resample, at least, over that of all motions: one that lacks the few which have most of
 # the mean knows nothing of its error
 _LEAST_ERROR = 0.6
-
-
-def lognormal_frequency(hazard: HazardCurve, centre: float, dispersion: float) -> float:
-    """Return the annual frequency [1/year] by a lognormal curve.
-
-    Parameters
-    ----------
-    hazard : HazardCurve
-        A power law between its points. Below the first the frequency of the first counts, beyond the last
-        the probability of the last.
-    centre, dispersion : float
-        Logarithm of the median, in the unit of the hazard, and standard deviation of the logarithm.
-    """
-    from scipy.special import ndtr
-
-    x, y = np.log(hazard.intensity), np.log(hazard.annual_frequency)
-    if dispersion == 0.0:
-        return float(np.exp(np.interp(centre, x, y, right=-math.inf)))
-    k = -np.diff(y) / np.diff(x)
-    shift = k * dispersion
-    ends = (x[:-1] - centre) / dispersion + shift, (x[1:] - centre) / dispersion + shift
-    # lambda at the median by the power law of the piece, times exp(k^2 beta^2 / 2)
-    height = np.exp(y[:-1] + k * (x[:-1] - centre) + 0.5 * shift**2)
-    # in the tail in which the difference keeps its digits
-    upper = ends[0] > 0.0
-    shares = np.where(upper, ndtr(-ends[0]) - ndtr(-ends[1]), ndtr(ends[1]) - ndtr(ends[0]))
-    with np.errstate(invalid="ignore"):
-        pieces = np.where(shares > 0.0, height * shares, 0.0)
-    return float(ndtr((x[0] - centre) / dispersion) * hazard.annual_frequency[0] + pieces.sum())
-
-
-def mean_over(hazard: HazardCurve, low: Array, high: Array) -> Array:
-    """Return the mean of the annual frequency over ln theta between two of its values each [1/year].
-
-    Parameters
-    ----------
-    hazard : HazardCurve
-    low, high : ndarray, shape (n,)
-        Within the ends of the curve.
-    """
-    x, y = np.log(hazard.intensity), np.log(hazard.annual_frequency)
-    k = -np.diff(y) / np.diff(x)
-    whole = np.concatenate([[0.0], np.cumsum(-np.diff(hazard.annual_frequency) / k)])
-
-    def primitive(at: Array) -> Array:
-        piece = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(k) - 1)
-        # lambda of the piece times (1 - exp(-k d))/k
-        inside = hazard.annual_frequency[piece] * -np.expm1(-k[piece] * (at - x[piece])) / k[piece]
-        return np.asarray(whole[piece] + inside, dtype=np.float64)
-
-    width = high - low
-    with np.errstate(divide="ignore", invalid="ignore"):
-        mean = (primitive(high) - primitive(low)) / width
-    return np.where(width > 0.0, mean, np.exp(np.interp(low, x, y)))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Frequencies:
-    """Annual frequencies of R motions [1/year].
-
-    Attributes
-    ----------
-    total : ndarray, shape (R,)
-        With the indicator beyond the last level, or point of the curve, as it is there.
-    tail : ndarray, shape (R,)
-        Part of the total that lies beyond.
-    missing : ndarray, shape (R,)
-        What would come to the total if the motion overturned everywhere beyond.
-    far : ndarray, shape (R,)
-        Part of the total at factors on the motion beyond `FAR`.
-    """
-
-    total: Array
-    tail: Array
-    missing: Array
-    far: Array
-
-
-def frequencies_of(hazard: HazardCurve, x: Array, y: Array, uplift: Array, far: Array) -> Frequencies:
-    """Return the annual frequencies of indicators.
-
-    Parameters
-    ----------
-    hazard : HazardCurve
-    x : ndarray, shape (R, S)
-        Logarithms of the levels in the unit of the hazard, increasing.
-    y : ndarray, shape (R, S)
-        Indicator, or share, that overturns there; NaN where it is not known: as between its neighbours.
-    uplift : ndarray, shape (R,)
-        Logarithms of the intensities below which nothing overturns.
-    far : ndarray, shape (R,)
-        Logarithms of the intensities beyond which the motions are scaled far.
-    """
-    known = y.copy()
-    for row in np.flatnonzero(np.isnan(y).any(axis=1)):
-        known[row] = _fill(x[row], y[row])
-    # from 0 at uplift, unless that lies above the lowest level
-    first = np.minimum(uplift, x[:, 0])
-    x = np.column_stack([first, x])
-    y = np.column_stack([np.where(uplift < x[:, 1], 0.0, known[:, 0]), known])
-    begin, end = np.log(hazard.intensity[[0, -1]])
-    last = np.clip(x[:, -1], begin, end)
-    share = y[:, -1].copy()
-    for row in np.flatnonzero(x[:, -1] > end):
-        share[row] = np.interp(end, x[row], y[row])
-    tail, inside = share * _rate(hazard, last), _integral(hazard, x, y, np.full(len(x), begin))
-    far_tail = np.where(far < end, share * _rate(hazard, np.maximum(last, far)), 0.0)
-    return Frequencies(
-        total=inside + tail,
-        tail=tail,
-        missing=(1.0 - share) * _rate(hazard, last),
-        far=_integral(hazard, x, y, np.clip(far, begin, end)) + far_tail,
-    )
-
-
-def _fill(x: Array, y: Array) -> Array:
-    """Return an indicator, unknown values interpolated between neighbours; all NaN if none is known."""
-    known = ~np.isnan(y)
-    return y if known.all() or not known.any() else np.interp(x, x[known], y[known])
-
-
-def _integral(hazard: HazardCurve, x: Array, y: Array, low: Array) -> Array:
-    """Return the integral of each row (R,) over the intervals of its nodes, from `low` to the last point."""
-    end = math.log(hazard.intensity[-1])
-    a = np.clip(x[:, :-1], low[:, None], max(end, low.max()))
-    b = np.clip(x[:, 1:], low[:, None], max(end, low.max()))
-    b = np.minimum(b, end)
-    width, wide = np.diff(x, axis=1), b > a
-    slope = np.divide(np.diff(y, axis=1), width, out=np.zeros_like(width), where=width > 0.0)
-    p_a, p_b = (y[:, :-1] + slope * (each - x[:, :-1]) for each in (a, b))
-    mean = mean_over(hazard, np.where(wide, a, end), np.where(wide, b, end))
-    pieces = p_a * (_rate(hazard, a) - mean) + p_b * (mean - _rate(hazard, b))
-    return np.asarray(np.where(wide, pieces, 0.0).sum(axis=1))
-
-
-def _rate(hazard: HazardCurve, x: Array) -> Array:
-    """Return annual frequencies at logarithms of intensities, constant beyond the ends."""
-    return np.asarray(np.exp(np.interp(x, np.log(hazard.intensity), np.log(hazard.annual_frequency))))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -213,6 +69,11 @@ class Exposure:
         """Whether levels have motions of their own, so that no motion has an indicator of all levels."""
         return not self.made.all()
 
+    @property
+    def exceeding(self) -> int:
+        """Number of motions that exceed the limit at one level at least."""
+        return int((np.nansum(self.y, axis=1) > 0.0).sum())
+
     def frequencies(self, hazard: HazardCurve) -> Frequencies:
         """Return the annual frequency of each motion; of stripes that of the shares, once."""
         if self.stripes:
@@ -223,97 +84,77 @@ class Exposure:
             return replace(self.of_shares(hazard, shares), far=of_far)
         return frequencies_of(hazard, self.x, self.y, self.uplift, self.far)
 
+    def terms(self, hazard: HazardCurve, single: Frequencies) -> Array:
+        """Return terms (R, G) of the frequency, the sum of the means of their columns; NaN where not known.
+
+        One column, the frequency of each motion; of stripes one a level, to whose share it is proportional.
+        """
+        if not self.stripes:
+            return single.total[:, None]
+        return self.y * self.of_shares(hazard, np.eye(self.y.shape[1])).total
+
     def of_shares(self, hazard: HazardCurve, shares: Array) -> Frequencies:
         """Return the annual frequency of each of some sets of shares (B, S)."""
         x, ones = np.tile(self.x.mean(axis=0), (len(shares), 1)), np.ones(len(shares))
         return frequencies_of(hazard, x, shares, self.uplift.min() * ones, np.inf * ones)
 
+    def between_levels(self, hazard: HazardCurve) -> tuple[float, float]:
+        """Return the annual frequency with each change between two levels at the upper, or at the lower."""
+        known = ~np.isnan(self.y).all(axis=0)
+        x, y = self.x.mean(axis=0)[known], np.nanmean(self.y[:, known], axis=0)
+        uplift, far = self.uplift.min(keepdims=True), np.array([np.inf])
+        low, high = (
+            frequencies_of(
+                hazard, np.repeat(x, 2)[None], np.r_[y[:1], np.repeat(of, 2), y[-1:]][None], uplift, far
+            )
+            for of in (np.minimum(y[:-1], y[1:]), np.maximum(y[:-1], y[1:]))
+        )
+        return float(low.least[0]), float(high.most[0])
+
     def largest(self, hazard: HazardCurve) -> float:
         """Return the annual frequency by the upper ends of the intervals of the shares (Clopper-Pearson)."""
         runs, over = (~np.isnan(self.y)).sum(axis=0), np.nansum(self.y, axis=0)
         ends = [share_interval(int(k), int(n)).high if n else 1.0 for k, n in zip(over, runs, strict=True)]
-        bound = self.of_shares(hazard, np.array([ends]))
-        return float((bound.total + bound.missing)[0])
+        longer = continued(hazard, float(self.uplift.min()))
+        bound = self.of_shares(longer, np.array([ends]))
+        missing = (1.0 - ends[-1]) * rate_at(longer, self.x.mean(axis=0)[-1:])
+        return float((bound.total + missing)[0])
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Resampled:
-    """An annual frequency with those of resamples of its motions.
+    """The logarithm of an annual frequency, or of a ratio of two, by all motions and by resamples of them.
 
     Attributes
     ----------
-    value : float
-    drawn : ndarray, shape (B,)
-        Draws of each resample.
-    errors : ndarray, shape (1 + B,) or None
-        Standard errors of the logarithm of the value and of each that is drawn; None of stripes, whose levels
-        have motions of their own.
-    parts : ndarray, shape (R,) or None
-        What each motion adds to the logarithm of the value, to first order; None of stripes.
+    logs : ndarray, shape (1 + B,)
+        Of all motions, and of each resample; minus infinity of none that exceeds the limit.
+    parts : ndarray, shape (1 + B, R)
+        What each motion adds to it, to first order.
+    counts : ndarray, shape (1 + B, R)
+        How often each is drawn.
     """
 
-    value: float
-    drawn: Array
-    errors: Array | None
-    parts: Array | None
+    logs: Array
+    parts: Array
+    counts: Array
 
-    def over(self, other: Resampled, motions: int) -> Interval:
-        """Return the ratio to another of the same resamples, with its 95 % interval: that of their ratios.
-
-        It is wider by what a quantile of Student's t has over that of as many motions, with the degrees of
-        freedom that motions of which few have the most leave (F. E. Satterthwaite, Biometrics Bulletin 2,
-        110-114, 1946).
-        """
-        if not other.value > 0.0:
-            return Interval(value=math.nan, low=math.nan, high=math.nan)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            found = interval(self.value / other.value, np.asarray(self.drawn / other.drawn), motions)
-        if self.parts is None or other.parts is None or not found.value > 0.0:
-            return found
-        wider = _few_parts_factor(self.parts - other.parts)
-        # an end that is not known or not bounded stays so
-        low, high = (
-            found.value * (end / found.value) ** wider if 0.0 < end < math.inf else end
-            for end in (found.low, found.high)
-        )
-        return Interval(value=found.value, low=low, high=high)
+    def over(self, other: Resampled) -> Resampled:
+        """Return the ratio to another of the same resamples."""
+        with np.errstate(invalid="ignore"):  # of two that are 0 there is none
+            return replace(self, logs=self.logs - other.logs, parts=self.parts - other.parts)
 
     def interval(self, motions: int) -> Interval:
-        """Return the 95 % interval: of the logarithm over its standard error, as the resamples have it.
-
-        A frequency is a mean of which few motions have the most. The shares of the resamples themselves (the
-        percentiles) are too narrow for it, on the side of the danger: B. Efron and R. J. Tibshirani, An
-        Introduction to the Bootstrap, 1993, 12.5.
-        """
-        if self.errors is None or not self.value > 0.0:
-            return interval(self.value, self.drawn, motions)
-        error, of_drawn = self.errors[0], np.maximum(self.errors[1:], _LEAST_ERROR * self.errors[0])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            deviations = (np.log(self.drawn) - math.log(self.value)) / of_drawn
-        found = interval(0.0, deviations, motions)
-        low, high = (self.value * np.exp(-end * error) for end in (found.high, found.low))
-        return Interval(value=self.value, low=float(low), high=float(high))
-
-
-def resampled(exposure: Exposure, hazard: HazardCurve, single: Array, weights: Array) -> Resampled:
-    """Return the annual frequency with that of each set of weights (B, R), from that of each motion (R,)."""
-    if exposure.stripes:
-        runs, over = Sample(x=exposure.x, y=exposure.y).counts(weights)[1:]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            shares = over / runs  # NaN where all motions of a level that were drawn failed
-        drawn = exposure.of_shares(hazard, shares).total
-        return Resampled(value=float(single.mean()), drawn=drawn, errors=None, parts=None)
-    known = ~np.isnan(single)
-    counted = np.vstack([np.ones((1, weights.shape[1])), weights])[:, known]
-    counts = counted.sum(axis=1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        means = counted @ single[known] / counts
-        # what each motion adds to the logarithm of the mean, to first order
-        parts = (single[known] / means[:, None] - 1.0) / counts[:, None]
-    errors = np.sqrt((counted * parts**2).sum(axis=1))
-    all_parts = np.zeros(len(single))
-    all_parts[known] = parts[0]
-    return Resampled(value=float(means[0]), drawn=means[1:], errors=errors, parts=all_parts)
+        """Return the value with its 95 % interval; ends are NaN where no motion differs from the others."""
+        value = float(np.exp(self.logs[0]))
+        errors = np.sqrt((self.counts * self.parts**2).sum(axis=1))
+        if not (0.0 < value < math.inf and errors[0] > 1e-9):
+            return Interval(value=value, low=math.nan, high=math.nan)
+        with np.errstate(invalid="ignore"):
+            deviations = (self.logs[1:] - self.logs[0]) / np.maximum(errors[1:], _LEAST_ERROR * errors[0])
+        ends, error = interval(0.0, deviations, motions), errors[0] * _few_parts_factor(self.parts[0])
+        low, high = (value * float(np.exp(-end * error)) for end in (ends.high, ends.low))
+        return Interval(value=value, low=low, high=high)
 
 
 def _few_parts_factor(parts: Array) -> float:
@@ -326,6 +167,20 @@ def _few_parts_factor(parts: Array) -> float:
     return float(stdtrit(freedom, 0.975) / stdtrit(most, 0.975)) if most > 0 else 1.0
 
 
+def resampled(terms: Array, weights: Array) -> Resampled:
+    """Return the sum of the means of terms (R, G) with that of each set of weights (B, R)."""
+    known = ~np.isnan(terms)
+    values = np.where(known, terms, 0.0)
+    counts = np.vstack([np.ones((1, len(terms))), weights])
+    with np.errstate(divide="ignore", invalid="ignore"):  # all that were drawn failed, or none exceeds
+        runs = counts @ known
+        means = (counts @ values) / runs
+        sums = means.sum(axis=1)
+        each = 1.0 / (runs * sums[:, None])
+        parts = each @ values.T - (each * means) @ known.T
+        return Resampled(logs=np.log(sums), parts=parts, counts=counts)
+
+
 def risk_tables(
     blocks: Blocks,
     exposures: Mapping[tuple[str, str], Exposure],
@@ -334,8 +189,9 @@ def risk_tables(
     *,
     weights: Array,
     years: float,
+    target: float,
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Return the risk of overturning of each cylinder and method, and what contributes to it.
+    """Return the risk of exceeding a limit of each cylinder and method, and what contributes to it.
 
     Parameters
     ----------
@@ -347,6 +203,8 @@ def risk_tables(
         How often each motion is drawn.
     years : float
         For the probability.
+    target : float
+        Annual frequency that is compared with the interval [1/year].
 
     Returns
     -------
@@ -363,7 +221,7 @@ def risk_tables(
             if exposure is None:
                 continue
             single = exposure.frequencies(hazard)
-            drawn = resampled(exposure, hazard, single.total, weights)
+            drawn = resampled(exposure.terms(hazard, single), weights)
             stated = _frequency_row(hazard, exposure, single, drawn, blocks.fewest)
             value = float(stated["annual_frequency"])
             reference = drawn if reference is None else reference
@@ -375,37 +233,103 @@ def risk_tables(
                     **about,
                     **stated,
                     "annual_frequency_fit": fit,
+                    "verdict": _verdict(stated, target),
                     "probability": -math.expm1(-value * years),
                     "margin": math.nan if curve is None else math.exp(curve[0]) / hazard.intensity_at(RARE),
-                    **drawn.over(reference, blocks.fewest).columns("ratio"),
+                    **drawn.over(reference).interval(blocks.fewest).columns("ratio"),
                 }
             )
             parts.append(_contributions(hazard, exposure, curve).assign(**about))
     return pd.DataFrame(rows), pd.concat(parts, ignore_index=True)
 
 
+def _verdict(row: Mapping[str, float], target: float) -> str:
+    """Return where the interval of a frequency lies: "below" a target, "above" it, or "inconclusive"."""
+    if row["annual_frequency_high"] < target:
+        return "below"
+    return "above" if row["annual_frequency_low"] > target else "inconclusive"
+
+
+# shares of the frequency from which it is said what they rest on
+_OPEN, _SCALED = 0.1, 0.5
+_LEVELS: Mapping[str, Level] = {"below": "satisfied", "inconclusive": "caution", "above": "not satisfied"}
+
+
+def risk_findings(rows: Sequence[Mapping[str, Any]], site: Mapping[str, Any]) -> Iterator[Finding]:
+    """Yield what a table of risk says: the frequencies of its first method, and what all rest on.
+
+    Parameters
+    ----------
+    rows : sequence of mapping
+        Of the table.
+    site : mapping
+        Facts of the hazard: limit, target.
+    """
+    limit, target = site.get("limit", OVERTURNED), site.get("target", TARGET)
+    values: dict[str, Value]
+    for row in rows:
+        if row["method"] != rows[0]["method"]:
+            continue
+        verdict = _verdict(row, target)
+        value, low, high = (row[f"annual_frequency{end}"] for end in ("", "_low", "_high"))
+        values = {"name": row["cylinder"], "detail": limit, "reason": verdict, "frequency_target": target}
+        values |= {"frequency": (value, low, high), "years": 1.0 / value} if value > 0.0 else {}
+        values |= {"frequency_high": high}
+        yield Finding(
+            key="risk.frequency" if value > 0.0 else "risk.none",
+            level=_LEVELS[verdict],
+            values=values,
+            runs=row["method"],
+        )
+    for row in rows:
+        few, runs = row["overturning_motions"], row["method"]
+        head, tail, far = (row.get(f"{part}_share", 0.0) for part in ("head", "tail", "far"))
+        values = {"name": row["cylinder"], "detail": limit}
+        values |= {f"frequency_{end}": row[f"annual_frequency_{end}"] for end in ("low", "high", "most")}
+        if few < FEWEST_EXCEEDING:
+            yield Finding(key="risk.few", level="caution", values=values | {"count": few}, runs=runs)
+        if head > _OPEN:
+            yield Finding(key="risk.head", level="caution", values=values | {"share": head}, runs=runs)
+        if tail > _OPEN:
+            yield Finding(key="risk.tail", level="caution", values=values | {"share": tail}, runs=runs)
+        if far > _SCALED:
+            scaled = {"share": far, "factor": FAR}
+            yield Finding(key="risk.far", level="caution", values=values | scaled, runs=runs)
+
+
+def frequency_interval(
+    hazard: HazardCurve, exposure: Exposure, single: Frequencies, drawn: Resampled, motions: int
+) -> Interval:
+    """Return an annual frequency with its 95 % interval, wider by what levels and hazard leave open."""
+    total, least, most = (float(np.nanmean(each)) for each in (single.total, single.least, single.most))
+    of_motions = drawn.interval(motions)
+    few = exposure.exceeding < FEWEST_EXCEEDING
+    if few or of_motions.high == math.inf:
+        low = 0.0 if few else of_motions.low * least / total
+        high = max(exposure.largest(hazard), most)
+    elif math.isnan(of_motions.low):  # no motion differs from the others: only the levels bound it
+        low, high = exposure.between_levels(hazard)
+    else:
+        low, high = of_motions.low * least / total, of_motions.high + most - total
+    return Interval(value=total, low=low, high=high)
+
+
 def _frequency_row(
     hazard: HazardCurve, exposure: Exposure, single: Frequencies, drawn: Resampled, motions: int
 ) -> dict[str, float | int]:
     """Return the annual frequency with its interval and with what it rests on."""
-    total, tail, missing, far = (
-        float(np.nanmean(each)) for each in (single.total, single.tail, single.missing, single.far)
+    total, head, tail, most, far = (
+        float(np.nanmean(each)) for each in (single.total, single.head, single.tail, single.most, single.far)
     )
-    overturning = int((np.nansum(exposure.y, axis=1) > 0.0).sum())
-    if overturning < _FEWEST_OVERTURNING:
-        found = Interval(value=total, low=0.0, high=exposure.largest(hazard))
-    else:
-        found = drawn.interval(motions)
-        # where so few overturn that many resamples are of none, these have no upper end
-        found = replace(found, high=min(found.high, max(exposure.largest(hazard), total)))
     share = 1.0 / total if total > 0.0 else math.nan
     return {
-        **found.columns("annual_frequency"),
-        "annual_frequency_most": total + missing,
+        **frequency_interval(hazard, exposure, single, drawn, motions).columns("annual_frequency"),
+        "annual_frequency_most": most,
+        "head_share": head * share,
         "tail_share": tail * share,
         "far_share": far * share,
         "motions": len(exposure.y),
-        "overturning_motions": overturning,
+        "overturning_motions": exposure.exceeding,
         "failed": int((np.isnan(exposure.y) & exposure.made).sum()),
     }
 
@@ -424,7 +348,7 @@ def _contributions(
     else:
         rows = [_indicator(x, *each) for each in zip(exposure.x, exposure.y, exposure.uplift, strict=True)]
         share = np.nanmean(rows, axis=0)
-    rate = _rate(hazard, x)
+    rate = rate_at(hazard, x)
     slope = -np.gradient(np.log(rate), x)
     fit = np.full(_POINTS, np.nan)
     if curve is not None:
@@ -488,6 +412,7 @@ def exposures_of(
     points: pd.DataFrame,
     of_hazard: Mapping[str, tuple[str, float]],
     dispersion: float | None,
+    limit: str,
 ) -> tuple[dict[tuple[str, str], Exposure], dict[tuple[str, str], tuple[float, float] | None]]:
     """Return the exposure and the lognormal curve of each cylinder and method in the unit of a hazard.
 
@@ -500,6 +425,7 @@ def exposures_of(
         By cylinder: a measure of the points, and the factor on it that gives that of the hazard.
     dispersion : float or None
         Total dispersion of the curves, in the place of that of the motions.
+    limit : str
     """
     exposures, curves = {}, {}
     for cylinder in blocks.cylinders:
@@ -516,7 +442,7 @@ def exposures_of(
         synthetic = "synthetic" in points and np.nanmax(of_points("synthetic"), axis=1) > 0.0
         far = np.where(synthetic, np.inf, as_recorded + math.log(FAR))
         for method in blocks.methods:
-            y = blocks.exceedance(cylinder, method, OVERTURNED)
+            y = blocks.exceedance(cylinder, method, limit)
             if np.isnan(y).all():
                 continue
             key = cylinder, method

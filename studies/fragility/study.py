@@ -19,7 +19,8 @@ from rockwobble.compare.storage.results import Results
 from rockwobble.models import GroundMotion, HazardCurve, RockingBody, Run
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
-from rockwobble.models.number_checks import require_each, require_positive
+from rockwobble.models.finding import Findings
+from rockwobble.models.number_checks import require_each, require_one_of, require_positive
 from rockwobble.models.plain_json import Facts, fields_of, plain
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.support import RECESS
@@ -28,7 +29,7 @@ from rockwobble.models.trace import NO_PEAK
 from ..plans import FragilityPlan
 from .fit import TOO_FEW
 from .intensity import velocity_unit
-from .risk import RARE, exposures_of, measure_factor, risk_tables
+from .risk import RARE, TARGET, exposures_of, measure_factor, risk_findings, risk_tables
 from .runs import (
     MODEL_LABELS,
     Method,
@@ -44,6 +45,7 @@ from .tables import (
     DEFAULT_LIMITS,
     LIMITS,
     OVERTURNED,
+    TENDON_YIELDS,
     blocks_of,
     contrast_table,
     count_table,
@@ -132,7 +134,13 @@ class Fragility(Results, kind=KIND):
         return f"> {run.max():.3g}" if median > 0.0 else f"< {run.min():.3g}"
 
     def risk(
-        self, hazard: HazardCurve, years: float = 50.0, *, total_dispersion: float | None = None
+        self,
+        hazard: HazardCurve,
+        years: float = 50.0,
+        *,
+        total_dispersion: float | None = None,
+        limit: str = OVERTURNED,
+        target: float = TARGET,
     ) -> pd.DataFrame:
         """Return the mean annual frequency of overturning at a site, with and without a fitted curve.
 
@@ -149,33 +157,48 @@ class Fragility(Results, kind=KIND):
         total_dispersion : float, optional
             Dispersion of the lognormal curves, as that of FEMA P-695 which holds uncertainty of design, tests
             and modelling. Default: that of the motions.
+        limit : str, optional
+            Limit state, one of `LIMITS`.
+        target : float, optional
+            Annual frequency that is compared with the interval [1/year]. Default: 2e-4, the collapse of 1 %
+            in 50 years of ASCE/SEI 7-16, 21.2.1.2.
 
         Returns
         -------
         DataFrame
             For each cylinder and method annual_frequency [1/year] and its 95 % interval by resampling the
-            motions (where fewer than three overturn: from 0 to the bound of Clopper and Pearson at each
-            level); annual_frequency_most, if all motions overturned beyond the last level or the last point
-            of the hazard; annual_frequency_fit by the lognormal curve; probability of one or more in so many
-            years; margin, the median over the intensity that is exceeded with 2 % in 50 years; tail_share,
-            the part that rests on intensities beyond the last level or point; far_share, on factors above 5
-            on the motions; ratio to the first method, its interval of the same resamples; motions,
-            overturning_motions, failed (runs).
+            motions, wider by what the levels and the ends of the hazard leave open (where fewer than five
+            overturn: from 0 to the bound of Clopper and Pearson at each level); annual_frequency_most, if
+            what overturns at the lowest level did so from uplift on and all overturned beyond the last level
+            or the last point of the hazard; annual_frequency_fit by the lognormal curve; verdict ("below" the
+            target, "above", or "inconclusive"); probability of one or more in so many years; margin, the
+            median over the intensity that is exceeded with 2 % in 50 years; head_share, the part of motions
+            that overturn at the lowest level, or at the first point of the hazard, already; tail_share, that
+            rests on intensities beyond the last level or point; far_share, on factors above 5 on the motions;
+            ratio to the first method, its interval of the same resamples; motions, overturning_motions,
+            failed (runs).
 
         Raises
         ------
         ValueError
             If the hazard is of a measure or a period that this fragility does not have.
         """
-        return self._risk_tables(hazard, years, total_dispersion)[0]
+        return self._risk_tables(hazard, years, total_dispersion, limit, target)[0]
 
     def with_risk(
-        self, hazard: HazardCurve, years: float = 50.0, *, total_dispersion: float | None = None
+        self,
+        hazard: HazardCurve,
+        years: float = 50.0,
+        *,
+        total_dispersion: float | None = None,
+        limit: str = OVERTURNED,
+        target: float = TARGET,
     ) -> Fragility:
         """Return the same with the tables risk and contributions, and the hazard among its facts."""
-        risk, contributions = self._risk_tables(hazard, years, total_dispersion)
+        risk, contributions = self._risk_tables(hazard, years, total_dispersion, limit, target)
         site = {"name": hazard.name, "title": hazard.title, "years": years, "rare": hazard.intensity_at(RARE)}
         site |= {"source": hazard.source, "total_dispersion": total_dispersion}
+        site |= {"limit": limit, "target": target}
         doubts = [{"record": hazard.name or "hazard"} | fields_of(fact) for fact in hazard.doubts]
         return replace(
             self,
@@ -185,9 +208,12 @@ class Fragility(Results, kind=KIND):
         )
 
     def _risk_tables(
-        self, hazard: HazardCurve, years: float, total_dispersion: float | None
+        self, hazard: HazardCurve, years: float, total_dispersion: float | None, limit: str, target: float
     ) -> tuple[pd.DataFrame, pd.DataFrame]:
         require_positive("years", years, "years")
+        require_positive("target", target, "1/year")
+        allowed = [name for name in LIMITS if name in (OVERTURNED, *self.facts["limits"])]
+        require_one_of("the limit of a risk", limit, allowed)
         if total_dispersion is not None:
             require_positive("total_dispersion", total_dispersion)
         facts = self.facts
@@ -195,9 +221,19 @@ class Fragility(Results, kind=KIND):
             name: measure_factor(hazard, body, facts["period"]) for name, body in facts["cylinders"].items()
         }
         blocks = blocks_of(self.runs, self.points, facts["limits"], str(facts["measure"]))
-        exposures, curves = exposures_of(blocks, self.points, of_hazard, total_dispersion)
+        exposures, curves = exposures_of(blocks, self.points, of_hazard, total_dispersion, limit)
         weights = blocks.weights(int(facts["resamples"]), int(facts["seed"]))
-        return risk_tables(blocks, exposures, curves, hazard, weights=weights, years=years)
+        return risk_tables(blocks, exposures, curves, hazard, weights=weights, years=years, target=target)
+
+    def findings(self) -> Findings:
+        """Return what the tables of the risk say; see `Results.findings`."""
+        if "risk" not in self.tables:
+            return Findings()
+        rows = [
+            {str(name): value for name, value in row.items()}
+            for row in self.tables["risk"].to_dict("records")
+        ]
+        return Findings(risk_findings(rows, self.facts["hazard"]))
 
     def sheets(self) -> dict[str, bytes]:
         """Return the counts as CSV and as JSON, for tools that fit curves of their own."""
@@ -368,7 +404,7 @@ def fragility(
     period : float, optional
         Period of "sa" and "sa_mean" [s].
     limits : sequence of str, optional
-        Limits, from `LIMITS`. Default: all but contact_lost.
+        Limits, from `LIMITS`. Default: all but contact_lost, and "tendon yields" without a yield force.
     margin : float, optional
         Relative difference within which two medians are equivalent.
     resamples, seed : int, optional
@@ -474,12 +510,17 @@ def _facts(plan: RunPlan) -> dict[str, object]:
         "scales": list(plan.scales) if asked.levels is None else None,
         # by level, where each has motions of its own
         "motions_of_levels": None if plan.stripes is None else plan.motions_of_levels(),
-        "limits": [name for name in LIMITS if name in (asked.limits or DEFAULT_LIMITS)],
+        "limits": [name for name in LIMITS if name in limits_of(asked)],
         **{name: getattr(asked, name) for name in named},
         **({"rolling_resistance": asked.rolling_resistance} if asked.rolling_resistance else {}),
         **({} if asked.tendon is None else {"tendon": fields_of(asked.tendon)}),
         "inputs": fingerprint([(task.name, task.label, task.key()) for task in plan.tasks()]),
     }
+
+
+def limits_of(asked: FragilityPlan) -> Sequence[str]:
+    """Return the limits of a plan; by default those that take no forces, "tendon yields" where it can."""
+    return asked.limits or (*DEFAULT_LIMITS, *((TENDON_YIELDS,) if asked.tendon_yield is not None else ()))
 
 
 def _description(method: Method, methods: Sequence[Method]) -> dict[str, object]:

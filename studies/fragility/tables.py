@@ -36,7 +36,7 @@ from .fit import (
 )
 from .intensity import MEASURES
 
-OVERTURNED, CONTACT_LOST = "overturned", "contact_lost"
+OVERTURNED, CONTACT_LOST, TENDON_YIELDS = "overturned", "contact_lost", "tendon yields"
 # name: the tilt that is reached [alpha]; NaN where it is no tilt that decides
 LIMITS: Mapping[str, float] = {
     "uplift": 0.0,
@@ -46,9 +46,10 @@ LIMITS: Mapping[str, float] = {
     "1 alpha": 1.0,
     OVERTURNED: math.nan,
     CONTACT_LOST: math.nan,
+    TENDON_YIELDS: math.nan,
 }
 YIELDED = "yielded"  # outcome of a run of which no more is known than that its tendon yields
-DEFAULT_LIMITS = tuple(name for name in LIMITS if name != CONTACT_LOST)
+DEFAULT_LIMITS = tuple(name for name in LIMITS if name not in (CONTACT_LOST, TENDON_YIELDS))
 
 
 def exceedance(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
@@ -72,6 +73,8 @@ def exceedance(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
     if limit == CONTACT_LOST:
         lost = runs["contact_lost"].to_numpy(float)
         found = np.where(fell & ~np.isnan(lost), 1.0, lost)
+    elif limit == TENDON_YIELDS:
+        found = yielded.astype(float)
     elif limit == OVERTURNED:
         found = fell.astype(float)
     else:

@@ -2,26 +2,37 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 
 import pytest
 
-from benchmarks.risk_coverage import coverage
+from benchmarks.risk_coverage import PROBLEMS, coverage
 
 GUIDE = Path(__file__).parents[2] / "docs" / "guide" / "risk.md"
-SAID = re.compile(
-    r"with 22 motions where the truth is known the first holds it in (\d+) to (\d+) of 100 "
-    r"\(the plain percentiles of the resamples in (\d+) to (\d+)\), the second in (\d+) to (\d+):"
+ROW = re.compile(
+    r"\| (\d+)(, at each level)? \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \| (\d+) \| (\d+) \| (\d+) \|"
 )
+TRIALS = 80
 
 
-def test_the_shares_of_the_guide_are_those_of_the_trials() -> None:
-    found = SAID.search(" ".join(GUIDE.read_text(encoding="utf-8").split()))
-    assert found
-    rows = [row for row in coverage(600, 4) if row["motions"] == 22]
-    shares = [[row[name] for row in rows] for name in ("frequency", "percentiles", "ratio")]
-    ends = [100.0 * end for each in shares for end in (min(each), max(each))]
-    assert [float(each) for each in found.groups()] == pytest.approx(
-        ends, abs=0.6
-    )  # a trial or two by rounding
+def said() -> dict[tuple[object, ...], tuple[float, ...]]:
+    rows = [row.groups() for row in ROW.finditer(GUIDE.read_text(encoding="utf-8"))]
+    return {
+        (int(row[0]), bool(row[1]), *map(float, row[2:5])): tuple(0.01 * float(each) for each in row[5:])
+        for row in rows
+    }
+
+
+def test_the_guide_states_every_problem() -> None:
+    assert list(said()) == [(problem[0], problem[1], problem[2], *problem[4:]) for problem in PROBLEMS]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("place", [0, 3, 8])
+def test_the_shares_of_the_guide_are_those_of_the_trials(place: int) -> None:
+    (row,) = coverage(TRIALS, 7, [PROBLEMS[place]])
+    for name, share in zip(("frequency", "above", "ratio"), list(said().values())[place], strict=True):
+        error = math.sqrt(max(share * (1.0 - share), 0.02) * (1.0 / TRIALS + 1.0 / 400.0))
+        assert row[name] == pytest.approx(share, abs=3.0 * error)  # three standard errors of both

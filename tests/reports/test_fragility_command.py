@@ -152,7 +152,7 @@ def test_files_of_a_small_study_and_its_page_again(tmp_path, capsys):
 
 @pytest.mark.slow
 def test_a_cloud_by_another_measure(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(Page, "files", lambda _: {})  # of a page that is drawn the test above tells
+    monkeypatch.setattr(Page, "files", lambda *_, **__: {})  # of a page that is drawn the test above tells
     options = ["--synthetic", "8", "--scale", "3,6", "--measure", "pgv", "--model", "worse-plane"]
     assert call("fragility", *options, "--resamples", "20", "--workers", "1", "--out", str(tmp_path)) == 0
     assert "as they are" in " ".join(capsys.readouterr().out.split())
