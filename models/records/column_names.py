@@ -18,6 +18,7 @@ from importlib.resources import files
 from typing import Literal, cast
 
 from .component import Direction, RecordFile
+from .headers import azimuth_of
 from .numbers import NUMBER
 from .units import unit_of
 
@@ -32,7 +33,7 @@ _MOST_LINES, _LONGEST_LINE, _LONGEST_NAME = (
 )  # lines of a header at each of its ends, and characters
 _LEAST_STEP, _LARGEST_STEP, _SAME_STEP = 1e-5, 2.0, 3e-3  # [s], and relative: 0.0167 for 1/60
 _BRACKETS = re.compile(r"[\[({<]([^\[\](){}<>]*)[\])}>]")
-_QUADRANT = re.compile(r"\b([NS])\s?(\d{1,2})\s?([EW])\b")
+_QUADRANT = re.compile(r"\b[NS]\s?\d{1,2}\s?[EW]\b")
 _DEGREES = re.compile(r"(?<![\d.])(\d{3}|\d{1,3}(?:\.\d{1,3})?(?=\s?DEG))(?![\d.])")
 _STATEMENT = re.compile(r"=\s?(?:[-+.\d]|$)")  # "dt=0.005 s" names no column
 _BLANK = "\ue000"  # inside of a cell, where blanks part cells
@@ -227,8 +228,7 @@ def _azimuth(words: str) -> float | None:
     text = words.strip().upper().replace("°", " DEG")
     quadrant = _QUADRANT.search(text)
     if quadrant:
-        angle = float(quadrant[2]) if quadrant[1] == "N" else 180.0 - float(quadrant[2])
-        return (angle if quadrant[3] == "E" else -angle) % 360.0
+        return azimuth_of(quadrant[0])
     degrees = _DEGREES.search(text)
     return float(degrees[1]) % 360.0 if degrees and float(degrees[1]) <= 360.0 else None
 

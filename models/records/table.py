@@ -73,7 +73,8 @@ def table_of(file: RecordFile) -> Table:
             f"{file.name} must hold at least two samples, got 0 rows of numbers: write them as columns below "
             f"a line such as 'time,E,N'; it ends in {end[:60]!r}"
         )
-    if not _is_utf8(file.content) and _FOREIGN_WORD.search("\n".join(file.text)):
+    utf8 = file.content.decode(errors="ignore").encode() == file.content
+    if not utf8 and _FOREIGN_WORD.search("\n".join(file.text)):
         raise ValueError(f"{file.name} is text in an encoding that is not read: save it as UTF-8")
     places = [at for at in range(first, len(lines)) if not _COMMENT.match(lines[at])]
     text = _blank_separated(file, places, [lines[at] for at in places])
@@ -176,14 +177,6 @@ def _refuse_rows_in_header(file: RecordFile, header: Sequence[str], width: int) 
         damaged = last and is_number(cells[0]) and 2 * known >= len(cells)
         if (row or damaged) and not all(map(str.isdecimal, cells)):
             raise ValueError(f"{file.name}, line {at}: expected words or a whole row, got {text[:60]!r}")
-
-
-def _is_utf8(content: bytes) -> bool:
-    try:
-        content.decode()
-    except UnicodeDecodeError:
-        return False
-    return True
 
 
 def _bare(line: str) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from rockwobble.models import read_record
 from rockwobble.models.records.component import Component, open_record
 from rockwobble.models.records.formats import read_components
 from rockwobble.models.records.reading import Reading
@@ -91,11 +92,14 @@ def read(folder: Path, name: str, content: str | bytes) -> list[Component]:
 
 
 # lengths that fill the last line and lengths that do not
-@pytest.mark.parametrize(("count", "step"), [(16, 0.02), (37, 0.01), (80, 0.005), (121, 0.02), (240, 0.01)])
+SHAPES = [(16, 0.02), (37, 0.01), (80, 0.005), (121, 0.02), (240, 0.01)]
+
+
 @pytest.mark.parametrize("name", ALL)
 def test_any_motion_is_read_and_turned_round_with_its_sign(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, count: int, step: float
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
+    count, step = SHAPES[list(ALL).index(name) % len(SHAPES)]
     monkeypatch.setattr(networks, "COUNT", count)
     monkeypatch.setattr(networks, "STEP", step)
     parts = any_motion(np.random.default_rng(count))
@@ -118,17 +122,13 @@ def test_any_motion_is_read_and_turned_round_with_its_sign(
     [
         (0.49, "refused"),
         (0.51, "noted"),
-        (0.97, "noted"),
         (0.985, "agrees"),
-        (1.0, "agrees"),
-        (1.015, "agrees"),
         (1.03, "noted"),
-        (1.95, "noted"),
         (2.05, "refused"),
         (-1.0, "agrees"),  # headers state it with either sign
     ],
 )
-@pytest.mark.parametrize("name", WITH_PEAKS)
+@pytest.mark.parametrize("name", ["a.EW", "csmip.V2", "geonet.V2A"])
 def test_the_peak_of_the_header_is_compared_with_that_of_the_samples(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, ratio: float, verdict: str
 ) -> None:
@@ -148,6 +148,15 @@ def test_the_peak_of_the_header_is_compared_with_that_of_the_samples(
         for match in said:
             assert float(match[1]) == pytest.approx(ratio * largest, rel=1e-3)
             assert float(match[2]) == pytest.approx(largest, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", WITH_PEAKS)
+def test_every_network_that_states_a_peak_has_it_compared(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    monkeypatch.setattr(networks, "STATED", 0.45)
+    with pytest.raises(ValueError, match="the file is damaged"):
+        read(tmp_path, name, WITH_PEAKS[name](any_motion(np.random.default_rng(5))))
 
 
 SPELLINGS = {
@@ -171,18 +180,14 @@ def test_esm_names_a_component_by_its_direction_or_by_a_stream(tmp_path: Path, k
         assert (part.direction, part.label) == (direction, name)
 
 
-@pytest.mark.parametrize(
-    ("axis", "name"), [(axis, name) for axis, words in SPELLINGS.items() for name in words]
-)
-def test_csmnc_names_a_component_by_its_direction(tmp_path: Path, axis: str, name: str) -> None:
+def test_csmnc_names_a_component_by_its_direction(tmp_path: Path) -> None:
     values = any_motion(np.random.default_rng(7))["x"]
-    (part,) = read(tmp_path, "a.dat", networks.csmnc(values, name))
-    assert (part.direction, part.azimuth, part.label) == (axis, None, name.upper())
+    for axis, name in [(axis, name) for axis, words in SPELLINGS.items() for name in words]:
+        (part,) = read(tmp_path, "a.dat", networks.csmnc(values, name))
+        assert (part.direction, part.azimuth, part.label) == (axis, None, name.upper())
 
 
-QUADRANTS = [
-    (f"{a}{angle:02d}{b}", a, angle, b) for a in "NS" for angle in (0, 1, 30, 45, 89, 90) for b in "EW"
-]
+QUADRANTS = [(f"{a}{angle:02d}{b}", a, angle, b) for a in "NS" for angle in (0, 30, 90) for b in "EW"]
 
 
 @pytest.mark.parametrize(("name", "first", "angle", "second"), QUADRANTS)
@@ -205,9 +210,28 @@ def test_a_quadrant_is_the_azimuth_from_north_or_south_to_east_or_west(
         assert part.direction == ("x" if east > 1.0 - 1e-12 else "y" if north > 1.0 - 1e-12 else None)
 
 
+@pytest.mark.parametrize("columns", ["H1,H2,Up", [1, 3, 2], "time,Chan 1: H1,h2,up"])
+def test_the_channels_that_the_user_names_win(tmp_path: Path, columns: str | list[str | int]) -> None:
+    parts = any_motion(np.random.default_rng(7))
+    path = tmp_path / "a.V2"
+    path.write_text(networks.csmip(parts, {"x": "H1", "z": "Up", "y": "H2"}, volume=2))
+    with pytest.raises(ValueError, match=r"--record-columns.*CHAN 1: H1"):
+        read_record(path)
+    motion = read_record(path, columns=columns)
+    assert motion.acceleration == pytest.approx(
+        0.01 * np.column_stack([parts[axis] for axis in "xyz"]), abs=1e-4
+    )
+    swapped = read_record(path, columns="H2,H1").acceleration
+    assert swapped == pytest.approx(motion.acceleration[:, [1, 0]], rel=1e-12)
+    for wrong in ("H1,H3", "1,1", "1,2,3,3", "4,1"):
+        with pytest.raises(ValueError, match="must name each of its components"):
+            read_record(path, columns=wrong)
+
+
 def test_damage_is_refused_with_the_words_of_obspy_in_a_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    read(tmp_path, "a.sac", BINARY["a.sac"](networks.motion()))  # imports it, with its warnings left out
     import obspy
 
     def fail(*args: object, **options: object) -> None:

@@ -81,6 +81,26 @@ def test_carriage_returns_trailing_blanks_and_empty_lines_do_no_harm(write: Writ
     assert values_in_g(write("\ufeff" + text)) == pytest.approx(IN_G, rel=1e-15)
 
 
+def test_words_may_end_it(write: Write) -> None:
+    for end in ("*** End Data ***\n", "  *** end of data ***"):
+        assert values_in_g(write(record() + end)) == values_in_g(write(record()))
+    with pytest.raises(ValueError, match=r"line \d: expected accelerations"):
+        read_record(write(record() + "*** 0.5 ***\n"), "zero")
+
+
+@pytest.mark.parametrize("turned", [1, 2])
+def test_a_rotated_component_looks_along_its_own_azimuth(write: Write, turned: int) -> None:
+    sources = "".join(
+        f"  H{at} for rotation: A 01/01/01, STATION, {90 * at:03d}\n" for at in range(1, turned + 1)
+    )
+    head = f"Orig filename = A/FN.acc, Scale factor = 2\n{sources}  rotation angle - clockwise   -50.0\n"
+    for azimuth, due in {"  FN component, azimuth =   310.0\n": 310.0, "  FN component\n": None}.items():
+        path = write(f"{head}{azimuth}Acceleration in g\n6 0.0200 NPTS, DT\n{SIX}")
+        source = read_record(path, "zero").source
+        assert source is not None
+        assert (source.components[0].azimuth, source.time_step, source.samples) == (due, 0.02, 6)
+
+
 def test_a_last_line_filled_up_with_zeros_is_cut(write: Write) -> None:
     filled = SIX.rstrip("\n") + "  .0  .0  .0  .0\n"
     assert values_in_g(write(f"{TITLE}{UNITS}NPTS= 6, DT= .01 SEC\n{filled}")) == pytest.approx(IN_G)

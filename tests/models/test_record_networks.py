@@ -322,13 +322,6 @@ class TestRefusals:
         if damage != "cut":
             assert f"line {at + 1}" in message
 
-    def test_a_peak_that_is_not_that_of_the_header(self, tmp_path: Path) -> None:
-        content = networks.esm(PARTS["x"])
-        stated = f"{np.abs(PARTS['x']).max():.6f}"
-        (part,) = components(tmp_path, "a.ASC", content.replace(f"2: {stated}", "2: 85.0"))
-        assert "85 cm/s2" in part.notes[0]
-        assert "damaged" in refusal(tmp_path, "a.ASC", content.replace(f"2: {stated}", "2: 12.0"))
-
 
 class TestWaveforms:
     """Of SAC and miniSEED, which obspy reads."""

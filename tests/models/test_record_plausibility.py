@@ -92,7 +92,7 @@ def found(motion: GroundMotion) -> dict[str, tuple[float, float, str]]:
 
 
 @pytest.mark.parametrize("axis", ["x", "y"])
-@pytest.mark.parametrize("part", [-0.6, -0.0505, -0.0495, 0.0, 0.0495, 0.0505, 0.6])
+@pytest.mark.parametrize("part", [-0.6, -0.0505, 0.0495])
 def test_an_offset_above_a_twentieth_of_the_peak_is_doubted(tmp_path: Path, axis: str, part: float) -> None:
     """The mean over the peak, of the component where it is largest."""
     # an offset moves the peak, too: part = offset/(largest + offset) of the larger side
@@ -125,7 +125,7 @@ def test_a_mean_of_about_1_g_is_that_of_gravity(
         assert facts["gravity_in_record"] == (pytest.approx(abs(mean), rel=1e-9), 1.0, axis)
 
 
-@pytest.mark.parametrize("ratio", [1.0, 29.9, 30.1, 500.0])
+@pytest.mark.parametrize("ratio", [29.9, 30.1])
 @pytest.mark.parametrize("axis", ["x", "y"])
 def test_peaks_of_components_that_differ_by_a_factor_of_30_are_doubted(
     tmp_path: Path, axis: str, ratio: float
@@ -140,7 +140,7 @@ def test_peaks_of_components_that_differ_by_a_factor_of_30_are_doubted(
 
 
 @pytest.mark.parametrize("unit", ["g", "m/s2", "cm/s2"])
-@pytest.mark.parametrize("peak", [0.5, 1.99, 2.01, 39.0, 39.5, 2000.0])
+@pytest.mark.parametrize("peak", [1.99, 2.01, 39.5, 2000.0])
 def test_a_peak_above_2_g_is_doubted_with_a_smaller_unit_that_makes_sense(
     tmp_path: Path, unit: str, peak: float
 ) -> None:
@@ -158,14 +158,14 @@ def test_a_peak_above_2_g_is_doubted_with_a_smaller_unit_that_makes_sense(
     assert facts == {"large_peak": (pytest.approx(peak, rel=1e-9), 2.0, detail)}
 
 
-@pytest.mark.parametrize("step", [0.99e-4, 1e-4, 1.01e-4, 0.005, 0.099, 0.1, 0.101, 1.0])
+@pytest.mark.parametrize("step", [0.99e-4, 1e-4, 0.1, 0.101])
 def test_a_time_step_that_no_recorder_has_is_doubted(tmp_path: Path, step: float) -> None:
     facts = found(record(tmp_path, X, Y, step))
     due = {} if 1e-4 <= step <= 0.1 else {"unlikely_step": (step, 0.1 if step > 0.1 else 1e-4, "")}
     assert facts == due
 
 
-@pytest.mark.parametrize("part", [0.0, 0.29, 0.31, 1.0])
+@pytest.mark.parametrize("part", [0.29, 0.31])
 @pytest.mark.parametrize("sample", [-9, -8, -1])
 def test_strong_motion_in_the_last_fiftieth_is_doubted(tmp_path: Path, part: float, sample: int) -> None:
     """Of what is left of the means."""
