@@ -19,7 +19,7 @@ from rockwobble.models.support import RECESS
 from rockwobble.models.trace import NO_PEAK
 
 from . import kernels, sliding
-from ._compile import announce
+from ._compile import announce, in_memory, on_disk
 from .columns import sample_times
 from .integration.result import COMPLETED, OVER_BUDGET, OVERTURNED, REST, UNDECIDED, IntegrationResult
 from .problem import REST_TILT, Problem
@@ -100,6 +100,12 @@ def simulate(
         times = sample_times(result.end, sample_step)
         result, azimuth = problem.solve(times)
     return _trace(problem, result, azimuth, times, time.perf_counter() - started)
+
+
+def is_compiled(model: str) -> bool:
+    """Whether the code of `model` is in memory or on disk."""
+    entry = kernels.INTEGRATORS[model]
+    return in_memory(entry) or on_disk(entry)
 
 
 def make_ready(model: str) -> None:

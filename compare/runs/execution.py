@@ -34,6 +34,9 @@ SAMPLE_STEP = 0.01
 _EQUAL_STEPS: dict[str | None, float] = {"auto": 2.5e-5, "extrapolated": FINEST / 1.75}
 
 
+_FEW = 16  # runs of reduced models that take less than to start a process
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Job(Brief):
     """One run of one case.
@@ -184,6 +187,7 @@ def simulate_all(
     >>> [trace.outcome for trace in simulate_all(jobs, workers=1)]
     ['stands', 'stands']
     """
+    few = sum(job.run.is_model for job in jobs) <= _FEW
     found = run_tasks(
         run_job,
         jobs,
@@ -193,11 +197,22 @@ def simulate_all(
         label=lambda job: job.name,
         progress=progress,
         cache=cache,
+        here=lambda job: few and _is_compiled(job),
     )
     return [
         lost_trace(job.case, job.run, result.why) if isinstance(result, Lost) else result
         for job, result in zip(jobs, found, strict=True)
     ]
+
+
+def _is_compiled(job: Job) -> bool:
+    """Whether a run takes milliseconds: that of a reduced model whose code is on disk."""
+    if not job.run.is_model:
+        return False
+    from rockwobble.reduced.problem import Problem
+    from rockwobble.reduced.simulation import is_compiled
+
+    return is_compiled(Problem(job.case, **job.run.settings, support=job.run.support).kernel)
 
 
 def open_trace_cache(

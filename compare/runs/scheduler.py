@@ -159,6 +159,7 @@ def run_tasks(
     cache: Cache[T, R] | None = None,
     tries: int = 1,
     makers: Callable[[], Mapping[str, str]] = reduced_makers,
+    here: Callable[[T], bool] = lambda task: False,
 ) -> list[R | Lost]:
     """Run a function on each task, and return the results in the order of the tasks.
 
@@ -187,6 +188,9 @@ def run_tasks(
     makers : callable, optional
         Versions and code that results depend on, as they are where it is called: workers of another machine
         must have the same.
+    here : callable, optional
+        Whether a task is run in this process while others run elsewhere: one of milliseconds, for which no
+        process need be started or taught.
 
     Returns
     -------
@@ -217,6 +221,8 @@ def run_tasks(
     tell = Clock(progress, list(known.values()), len(results), damaged)
     # a number that is given holds even for one task: in a process of its own it can be ended in a long call
     count = min(usable_cpus(), len(waiting)) if workers is None else workers
+    brief = [index for index in waiting if count > 1 and scheduler is None and here(tasks[index])]
+    waiting = [index for index in waiting if index not in brief]
     if scheduler is not None:
         backend = on_cluster(scheduler, makers)
     elif count > 1:
@@ -226,13 +232,20 @@ def run_tasks(
     tried: Counter[int] = Counter()
     running: dict[Future[R], int] = {}
     with backend as (submit, capacity, losses):
-        while waiting or running:
+        while waiting or running or brief:
             for _ in range(min(len(waiting), capacity() - len(running))):
                 index = waiting.pop()
                 if not tried[index]:
                     tell("started", label(tasks[index]))
                 tried[index] += 1
                 running[submit(function, tasks[index])] = index
+            while brief:
+                index = brief.pop()
+                tell("started", label(tasks[index]))
+                results[index] = result = function(tasks[index])
+                if cache is not None:
+                    cache.keep(tasks[index], result)
+                tell("finished", label(tasks[index]), known[index])
             for future in wait(running, timeout=_LOOK, return_when=FIRST_COMPLETED).done:
                 index = running.pop(future)
                 try:

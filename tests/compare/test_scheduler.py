@@ -16,7 +16,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 import scheduled
-from scheduled import die_once, killed, multiples, never_the_same, refuse, signalled
+from scheduled import die_once, killed, multiples, never_the_same, process_of, refuse, signalled
 
 from rockwobble.compare.runs import dask_backend, scheduler
 from rockwobble.compare.runs.cache import open_table_cache, unfinished_results
@@ -69,6 +69,11 @@ def test_processes_are_kept_and_are_not_this_one():
     pids = run_tasks(os.getpgid, [0] * 8, workers=2)
     assert len(set(pids)) <= 2
     assert os.getpgid(0) not in pids
+
+
+def test_a_task_of_milliseconds_runs_here_among_others_that_do_not():
+    found = run_tasks(process_of, [1, 2, 3], workers=2, here=lambda task: task == 2)
+    assert [process == os.getpid() for process in found] == [False, True, False]
 
 
 def test_bad_input_is_raised_here_with_where_it_came_from():
