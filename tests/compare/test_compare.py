@@ -40,6 +40,7 @@ CONTRACT = [
     "diverged",
     "agreed_passes",
     "predicted_agreement_time",
+    "displacement_difference",
     "residual_displacement",
     "residual_twist",
     "energy_loss",

@@ -50,6 +50,7 @@ def row(agreement: float = 20.0, predicted: float = 18.0, **values: Any) -> Any:
     """A row of a summary, under shaking: the reference uplifts at 1.7 s."""
     common = {"case": "El Centro", "run": "mujoco recess", "engine": "mujoco", "support": "recess"}
     ended = {"outcome": "stands", "reference_outcome": "stands", "left_tolerance": True, "divergence": ""}
+    common |= {"mode": "rocks", "reference_mode": "rocks"}
     pass_ = {"predicted_by": "pass", "closest_pass": 3e-3, "tolerance": 0.01, "whole_rms": math.nan}
     times = {
         "reference_uplift_time": 1.7,
@@ -91,6 +92,7 @@ def found(*rows: Any, **traces: Any) -> dict[str, Any]:
         (RING | OWN, {}, "pass"),
         # its own walls, at a finer step: no difference of support
         (RING | HALF, {"touched": True}, "pass"),
+        ({"mode": "rocks and slides"}, {}, "slides"),
         # only what changes tilts is a reason for them to diverge
         (TABLE | SLOWER, {}, "mistake"),
         (TABLE | TURNED, {}, "near_passes"),
@@ -146,7 +148,7 @@ def test_agreement_is_of_the_runs_of_a_support_and_their_own_model():
 
 
 def test_runs_that_fail_rest_or_end_before_their_peak_are_named():
-    trace = {"outcome": "stands", "peak_time": 12.5, "time": [0.0, 12.0], "uplift_time": 1.7}
+    trace = {"outcome": "stands", "peak_time": 12.5, "time": [0.0, 12.0], "mode": "rocks"}
     keys = found(row(), late=SimpleNamespace(**trace), lost=SimpleNamespace(**trace | {"outcome": "failed"}))
     assert value(keys["late_peak"], "names") == ("late", "lost")
     assert value(keys["failed"], "name") == "lost"

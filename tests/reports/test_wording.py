@@ -34,7 +34,7 @@ def keys_in_code() -> set[str]:
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Finding":
                 (key,) = (each.value for each in node.keywords if each.arg == "key")
                 keys |= {each.value for each in ast.walk(key) if isinstance(each, ast.Constant)}
-    return {key for key in keys if isinstance(key, str)}
+    return {key for key in keys if isinstance(key, str) and re.fullmatch(r"\w+\.\w+", key)}
 
 
 def texts_of_code() -> set[object]:
@@ -45,7 +45,9 @@ def texts_of_code() -> set[object]:
 
 def test_each_key_in_the_code_has_a_line_and_each_line_a_key():
     lines = {key.partition(":")[0] for key in SENTENCES}
-    assert keys_in_code() <= lines <= texts_of_code()
+    assert keys_in_code() <= lines
+    texts = texts_of_code()  # of some keys the name is put behind the group, as "mode."
+    assert not [key for key in lines if not texts & {key, f"{key.partition('.')[0]}."}]
 
 
 @pytest.mark.parametrize("key", SENTENCES)
