@@ -111,9 +111,10 @@ Out = Annotated[
 Forms = Annotated[
     list[str] | None,
     options.output(
-        "Further files: figures as pdf or png, tables as tex (LaTeX). May be repeated.",
+        "Further files: figures as pdf or png, tables as tex (LaTeX); of a fragility nrml (OpenQuake) or "
+        "pelicun. May be repeated.",
         "--format",
-        metavar="pdf|png|tex",
+        metavar="pdf|png|tex|nrml|pelicun",
     ),
 ]
 
@@ -135,9 +136,13 @@ def report(
         from rockwobble.compare.storage.files import sole_writer
         from rockwobble.compare.storage.manifest import manifests_in, read_manifests, write_pages
         from rockwobble.models.number_checks import require_one_of
+        from rockwobble.studies import Fragility
+        from rockwobble.studies.fragility.export import EXPORTS, exported
 
+        data = [form for form in forms or () if form in EXPORTS]
+        drawings = [form for form in forms or () if form not in EXPORTS]
         for form in forms or ():
-            require_one_of("--format", form, ("pdf", "png", "tex"))
+            require_one_of("--format", form, ("pdf", "png", "tex", *EXPORTS))
         if not folder.is_dir():
             raise ValueError(f"{folder} is not a folder of results")
         require_writable(place)
@@ -154,7 +159,12 @@ def report(
                 f"the folder {place} holds {listed}: choose another by --out, or write there by --overwrite"
             )
         found = {kind: stored_page(kind, folder) for kind in kinds}
-        drawn = {kind: {**page.files(), **page.exports(forms or ())} for kind, page in found.items()}
+        drawn = {kind: {**page.files(), **page.exports(drawings)} for kind, page in found.items()}
+        if data:
+            if Fragility.kind not in drawn:
+                raise ValueError(f"--format {data[0]} is of a fragility, got {', '.join(drawn)} in {folder}")
+            study = Fragility.load(folder)
+            drawn[study.kind] |= dict(exported(study, form) for form in data)
         with sole_writer(place):
             for kind, pages in drawn.items():
                 write_pages(place, kind, pages)

@@ -1,0 +1,209 @@
+"""Fragilities for other programs: NRML 0.5 of OpenQuake, and damage functions of pelicun.
+
+Both take limit states of which each contains the next: uplift, tilts and overturned are written, as far as
+they were asked for. Intensities are in g, velocities in cm/s (NRML) or m/s (pelicun). A limit is its
+lognormal curve where it is fitted, else the shares that were counted, linear between levels, from 0 at the
+least uplift on; a share that falls with the intensity (a safe gap) stays what it was.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree as Tree
+
+import numpy as np
+
+from .fit import FITTED, Array
+from .tables import LIMITS, OVERTURNED
+
+if TYPE_CHECKING:
+    from .study import Fragility
+
+_NESTED = tuple(name for name, tilt in LIMITS.items() if not math.isnan(tilt) or name == OVERTURNED)
+_NAMES = {
+    "0.1 alpha": "tenth_alpha",
+    "0.25 alpha": "quarter_alpha",
+    "0.5 alpha": "half_alpha",
+    "1 alpha": "alpha",
+}
+# measure of a fragility: intensity measure type and words
+_TYPES = {
+    "peak_acceleration": ("PGA", "peak of the horizontal resultant"),
+    "peak_velocity": ("PGV", "peak of the horizontal resultant"),
+    "pga": ("PGA", "geometric mean of both components"),
+    "pgv": ("PGV", "geometric mean of both components"),
+    "sa": ("SA", "horizontal resultant, 5 % damped"),
+    "sa_mean": ("SA", "geometric mean of both components, 5 % damped"),
+}
+_PELICUN = {
+    "PGA": "Peak Ground Acceleration",
+    "PGV": "Peak Ground Velocity",
+    "SA": "Spectral Acceleration|{:g}",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limit:
+    """One limit state of one body by one method.
+
+    Attributes
+    ----------
+    name : str
+    median, dispersion : float
+        Of the lognormal curve [g or m/s, -]; NaN where it is not fitted.
+    intensity, share : ndarray, shape (n,)
+        Levels [g or m/s] and the share that exceeds it, not falling; the first is 0.
+    """
+
+    name: str
+    median: float
+    dispersion: float
+    intensity: Array
+    share: Array
+
+    @property
+    def fitted(self) -> bool:
+        """Whether it has a lognormal curve."""
+        return math.isfinite(self.median)
+
+
+def limits_by_function(found: Fragility) -> Iterator[tuple[str, list[Limit]]]:
+    """Yield name and limit states of each body and method.
+
+    Raises
+    ------
+    ValueError
+        If motions are not scaled to levels, where nothing is fitted either.
+    """
+    facts, measure = found.facts, str(found.facts["measure"])
+    names = [name for name in _NESTED if name in facts["limits"]]
+    for (cylinder, method), of_limit in found.fits.groupby(["cylinder", "method"], sort=False):
+        body = facts["cylinders"][cylinder]
+        unit = {"peak_acceleration": body["tan_alpha"], "peak_velocity": body["velocity_unit"]}.get(
+            measure, 1.0
+        )
+        points = found.points[found.points["cylinder"] == cylinder]
+        uplift = unit * float((points[measure] / points["scale"] * points["uplift_scale"]).min())
+        limits = []
+        for fit in of_limit[of_limit["limit"].isin(names)].to_dict("records"):
+            known = fit["kind"] == FITTED
+            if not known and not facts["levels"]:
+                raise ValueError(
+                    f"{fit['limit']} of {method} has no curve, and no levels whose shares could stand for it"
+                )
+            counts = found.counts[
+                (found.counts["cylinder"] == cylinder)
+                & (found.counts["method"] == method)
+                & (found.counts["limit"] == fit["limit"])
+            ].sort_values("intensity")
+            x = unit * counts["intensity"].to_numpy(float)
+            share = np.maximum.accumulate((counts["k"] / counts["n"]).to_numpy(float))
+            if uplift < x[0]:
+                x, share = np.r_[uplift, x], np.r_[0.0, share]
+            limits.append(
+                Limit(
+                    name=_NAMES.get(fit["limit"], fit["limit"]),
+                    median=unit * fit["median"] if known else math.nan,
+                    dispersion=float(fit["dispersion"]) if known else math.nan,
+                    intensity=x,
+                    share=share,
+                )
+            )
+        # identifiers of OpenQuake hold no blanks
+        yield ":".join(re.sub(r"\W+", "_", str(name)) for name in (cylinder, method)), limits
+
+
+EXPORTS = {"nrml": "fragility.nrml.xml", "pelicun": "fragility.pelicun.csv"}
+"""File of each format."""
+
+
+def exported(found: Fragility, form: str) -> tuple[str, bytes]:
+    """Return the name and the content of the file of a format of `EXPORTS`.
+
+    Raises
+    ------
+    ValueError
+        If a limit state has neither a curve nor shares of levels.
+    """
+    return EXPORTS[form], {"nrml": nrml, "pelicun": pelicun}[form](found)
+
+
+def _period(found: Fragility) -> float:
+    return float(found.facts["period"])
+
+
+def nrml(found: Fragility) -> bytes:
+    """Return the fragility model of OpenQuake, NRML 0.5: continuous where all limit states are fitted."""
+    imt, words = _TYPES[str(found.facts["measure"])]
+    factor, unit = (100.0, "cm/s") if imt == "PGV" else (1.0, "g")
+    root = Tree.Element("nrml", xmlns="http://openquake.org/xmlns/nrml/0.5")
+    model = Tree.SubElement(
+        root, "fragilityModel", id="rockwobble", assetCategory="structure", lossCategory="structural"
+    )
+    Tree.SubElement(model, "description").text = f"{imt} in {unit}, {words}. {found.facts['source']}"
+    functions = list(limits_by_function(found))
+    Tree.SubElement(model, "limitStates").text = " ".join(each.name for each in functions[0][1])
+    name = f"SA({_period(found):g})" if imt == "SA" else imt
+    for label, limits in functions:
+        continuous = all(each.fitted for each in limits)
+        x = factor * limits[0].intensity
+        kind = {"format": "continuous", "shape": "logncdf"} if continuous else {"format": "discrete"}
+        function = Tree.SubElement(model, "fragilityFunction", {"id": label, **kind})
+        low, high = f"{x[0]:.9g}", f"{x[-1]:.9g}"
+        ends = {"minIML": low, "maxIML": high} if continuous else {}
+        imls = Tree.SubElement(function, "imls", {"imt": name, "noDamageLimit": low, **ends})
+        if not continuous:
+            imls.text = " ".join(f"{each:.9g}" for each in x)
+        for limit in limits:
+            if continuous:
+                mean = factor * limit.median * math.exp(0.5 * limit.dispersion**2)
+                spread = mean * math.sqrt(math.expm1(limit.dispersion**2))
+                Tree.SubElement(function, "params", ls=limit.name, mean=f"{mean:.9g}", stddev=f"{spread:.9g}")
+            else:
+                shares = " ".join(f"{each:.9g}" for each in limit.share)
+                Tree.SubElement(function, "poes", ls=limit.name).text = shares
+    Tree.indent(root)
+    return bytes(Tree.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"
+
+
+def pelicun(found: Fragility) -> bytes:
+    """Return damage functions as pelicun reads them.
+
+    Empty is a limit state without a curve that not all motions reach: pelicun takes no distribution of which
+    the end is not known.
+    """
+    imt, _ = _TYPES[str(found.facts["measure"])]
+    demand = _PELICUN[imt].format(_period(found))
+    functions = list(limits_by_function(found))
+    head = ["ID", "Incomplete", "Demand-Type", "Demand-Unit", "Demand-Offset", "Demand-Directional"]
+    for place in range(1, len(functions[0][1]) + 1):
+        head += [f"LS{place}-{name}" for name in ("Family", "Theta_0", "Theta_1")]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    for label, limits in functions:
+        row: list[object] = [label, 0, demand, "mps" if imt == "PGV" else "g", 0, 0]
+        for limit in limits:
+            row += _family(limit)
+        writer.writerow(row)
+    return text.getvalue().encode()
+
+
+def _family(limit: Limit) -> list[object]:
+    """Return family and both parameters of a limit state."""
+    if limit.fitted:
+        return ["lognormal", f"{limit.median:.9g}", f"{limit.dispersion:.9g}"]
+    share = limit.share
+    if len(share) < 2 or share[0] > 0.0 or share[-1] < 1.0:
+        return ["", "", ""]
+    # shares must rise: of equal ones the last 0, and the first of others
+    rises = np.diff(share) > 0.0
+    keep = np.where(share > 0.0, np.r_[False, rises], np.r_[rises, False])
+    x, y = (",".join(f"{each:.9g}" for each in values[keep]) for values in (limit.intensity, share))
+    return ["multilinear_CDF", f"{x}|{y}", ""]
