@@ -52,7 +52,7 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     "peak_tilt_difference": ("alpha", "run minus reference"),
     "tilt_rms": ("alpha", "root mean square of the tilt difference"),
     "tilt_rms_relative": ("", "the same over the root mean square of the reference's tilt"),
-    "contact_rms": ("b", "RMS distance of the contact points where both tilts exceed 5 % of the peak"),
+    "contact_rms": ("b", "RMS of the contact-point difference where both tilts exceed 5 % of the peak"),
     "turn_difference": (
         "deg",
         "angle-of-turn difference: how far apart the contact points have rolled at the end of agreement, or "
@@ -77,10 +77,10 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     "energy_loss": ("", "energy lost by the run over the largest energy reached"),
     "wall_time": ("s", "computing time of the run"),
     "time_ratio": ("", "the same over that of the reference, both without loading or compiling"),
-    "largest_tilt_difference": ("alpha", "until within_tolerance_until, as the next two"),
+    "largest_tilt_difference": ("alpha", "largest tilt difference until within_tolerance_until"),
     "largest_contact_difference": (
         "b",
-        "largest distance of the contact points, where both tilts exceed 5 % of the peak",
+        "largest contact-point difference until then, where both tilts exceed 5 % of the peak",
     ),
     "largest_turn_difference": (
         "deg",
