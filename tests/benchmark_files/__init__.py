@@ -1,1 +1,1 @@
-"""What writes reports/published/benchmark: eleven cases and their certified references."""
+"""What writes reports/published/benchmark: twelve cases and their certified references."""

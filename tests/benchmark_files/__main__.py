@@ -1,6 +1,7 @@
 """The command `python tests/benchmark_files`: write reports/published/benchmark, or parts of it.
 
 python tests/benchmark_files cases [CASE ...]       the references, and how well each is known
+python tests/benchmark_files mistakes               which mistake of a code which case sees
 python tests/benchmark_files results [ENGINE ...]   what check.py says of our models and engines, scoreboard
                                      [--only CASE]  these cases alone; the results of the others stay
 """
@@ -34,6 +35,20 @@ def cases(names: list[str], only: list[str]) -> None:
         print(f"{definition.name}: {number} quantities, largest bound {worst:.0e}; traces {found.bounds}")
 
 
+def mistakes(names: list[str], only: list[str]) -> None:
+    """Write which mistake of a code which case sees."""
+    from benchmark_files.planted import table
+    from benchmark_files.write import PUBLISHED
+
+    head = """# Which mistake which case sees
+
+The second formulation with one thing wrong, judged by `check.py`: verdict, and the largest error over the
+bound of a pass. Nothing stands where a case has nothing of it.
+
+"""
+    (PUBLISHED / "mistakes.md").write_text(f"{head}{table()}\n")
+
+
 def results(names: list[str], only: list[str]) -> None:
     """Write the results, and the scoreboard."""
     from benchmark_files.engines import DEFAULT, REDUCED, VARIANTS, results_of
@@ -48,11 +63,11 @@ def results(names: list[str], only: list[str]) -> None:
 def main() -> None:
     """Do what is asked for."""
     parser = argparse.ArgumentParser(prog="python tests/benchmark_files", description=__doc__)
-    parser.add_argument("part", choices=("cases", "results"))
+    parser.add_argument("part", choices=("cases", "mistakes", "results"))
     parser.add_argument("names", nargs="*", help="default: all")
     parser.add_argument("--only", action="append", default=[], metavar="CASE")
     given = parser.parse_args()
-    {"cases": cases, "results": results}[given.part](given.names, given.only)
+    {"cases": cases, "mistakes": mistakes, "results": results}[given.part](given.names, given.only)
 
 
 if __name__ == "__main__":

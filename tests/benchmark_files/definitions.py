@@ -1,4 +1,4 @@
-"""The eleven cases: bodies, starts, motions, and what is asked of a trajectory.
+"""The twelve cases: bodies, starts, motions, and what is asked of a trajectory.
 
 The bounds mean the same everywhere: a body 1 % too large fails in every free motion; "good" is a tenth of
 "pass", and "exact" what only a converged solution of the same equations reaches. Under shaking the bound is
@@ -125,6 +125,29 @@ def turns(name: str, support: Support, words: str) -> Definition:
         step=0.002,
         criteria=(*asked, *lean_and_tilt(3.0, 1e-5)),
         needed=("turn_1", "period_1", "tilt"),
+    )
+
+
+def disc() -> Definition:
+    """Return a thick disc that rolls fast, whose axial inertia and gyroscopic term decide where it leans."""
+    body = Cylinder.from_dimensions(base_radius=1.0, height=0.6)
+    start = InitialState(0.3 * body.alpha, 0.0, AZIMUTH, 3.0)
+    runs = tuple(
+        BenchmarkRun(name=support, cylinder=body, support=support, duration=4.0, initial=start, friction=2.0)
+        for support in SUPPORTS
+    )
+    return Definition(
+        name="rolling-disc",
+        title="A thick disc that rolls fast",
+        runs=runs,
+        step=0.002,
+        criteria=(
+            quantity("turn_1", "rad", 0.01, 1e-6),
+            quantity("period_1", "relative", 0.002, 1e-6),
+            *lean_and_tilt(3.0, 1e-5),
+        ),
+        needed=("turn_1", "period_1", "tilt"),
+        needs="any",
     )
 
 
@@ -400,10 +423,11 @@ def tendon() -> Definition:
 
 
 def definitions() -> tuple[Definition, ...]:
-    """Return the eleven cases, in the order of the page."""
+    """Return the twelve cases, in the order of the page."""
     return (
         turns("turn-flat", "flat", "on flat ground"),
         turns("turn-recess", "recess", "in a recess"),
+        disc(),
         steady(),
         uplift(),
         near_upright(),

@@ -89,7 +89,9 @@ def sampled(run: BenchmarkRun, spacing: float, end: float, *, rtol: float = 1e-1
             moving = False
             y = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, y[6]])
         states[float(finish)] = y
-    chosen = np.array([states[float(time)] for time in np.round(times, 12)])
+        if y[2] <= 0.0:  # on its side, where it stays
+            break
+    chosen = np.array([states.get(float(time), y) for time in np.round(times, 12)])
     tilts = [tilt_of(one) if one[0] or one[1] else (0.0, 0.0) for one in chosen]
     return Sampled(times, *np.array(tilts).T, chosen[:, 6])
 

@@ -10,7 +10,10 @@ import numpy as np
 import pytest
 
 from benchmark_files.conftest import SINGLE, SPIN, Judge
-from benchmark_files.definitions import G
+from benchmark_files.definitions import G, definitions
+from benchmark_files.planted import MISTAKES as MISTAKES_OF_A_CODE
+from benchmark_files.planted import WITHOUT_GYROSCOPIC_TERM
+from benchmark_files.planted import judged as planted
 from benchmark_files.submission import (
     Table,
     cases_of,
@@ -119,6 +122,21 @@ def test_a_body_one_percent_too_large_fails_and_is_recognised(judge: Judge, name
     assert 1.0 <= 100.0 * (judged.mistakes["time_scale"] ** 2 - 1.0) <= 1.2
     # times go with the root of the size
     assert 0.95 < judged.errors["period_1"] / (np.sqrt(1.01) - 1.0) < 1.3
+
+
+@pytest.mark.slow
+def test_the_published_table_says_what_each_planted_mistake_does() -> None:
+    lines = [line for line in (PUBLISHED / "mistakes.md").read_text().splitlines() if line.startswith("|")]
+    rows = {row[0]: row[1:] for row in ([cell.strip() for cell in line.split("|")[1:-1]] for line in lines)}
+    assert set(rows) == {"case", "---", *CASES}
+    assert rows["case"] == list(MISTAKES_OF_A_CODE)
+    seen = zip(*(rows[case] for case in CASES), strict=True)
+    assert all(any(cell.startswith("fail") for cell in column) for column in seen)
+    (definition,) = (one for one in definitions() if one.name == "rolling-disc")
+    for mistake in ("axial inertia 10 % too large", WITHOUT_GYROSCOPIC_TERM):
+        found = planted(definition, mistake)
+        assert found is not None
+        assert rows["rolling-disc"][rows["case"].index(mistake)] == f"fail, {found[1]:.2g}"
 
 
 @pytest.mark.slow

@@ -1,0 +1,144 @@
+"""Which mistake of a code which case sees: the second formulation with one thing wrong."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib.util
+import math
+import sys
+from collections.abc import Callable, Mapping
+from functools import cache
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from rockwobble.models import Cylinder, GroundMotion, Tendon
+from rockwobble.reduced.body import body_of
+
+from .definitions import BenchmarkRun, Definition, G, definitions
+from .second import Array, sampled
+from .write import PUBLISHED
+
+RTOL = 1e-10
+Change = Callable[[BenchmarkRun], BenchmarkRun]
+
+
+def _of_body(
+    *, radius: float = 1.0, height: float = 1.0, transverse: float = 1.0, axial: float = 1.0
+) -> Change:
+    """Return a change of base radius, height of the mass centre and inertias by factors."""
+
+    def changed(run: BenchmarkRun) -> BenchmarkRun:
+        body = body_of(run.cylinder, G)
+        b, h = radius * body.b, height * body.h
+        other = Cylinder(
+            semidiagonal=math.hypot(b, h),
+            tan_alpha=b / h,
+            transverse_inertia=transverse * body.I1,
+            axial_inertia=axial * body.I2,
+        )
+        return dataclasses.replace(run, cylinder=other)
+
+    return changed
+
+
+def _with_motion(factors: tuple[float, float, float]) -> Change:
+    def changed(run: BenchmarkRun) -> BenchmarkRun:
+        if run.motion is None:
+            return run
+        samples = np.array(run.motion.acceleration)
+        scaled = samples * factors[: samples.shape[1]]
+        if np.array_equal(scaled, samples):
+            return run
+        return dataclasses.replace(run, motion=GroundMotion(scaled, run.motion.time_step))
+
+    return changed
+
+
+def _with_tendon(run: BenchmarkRun) -> BenchmarkRun:
+    held = run.tendon
+    if held is None:
+        return run
+    other = Tendon(prestress=1.02 * held.prestress, stiffness=1.02 * held.stiffness)
+    return dataclasses.replace(run, tendon=other)
+
+
+WITHOUT_GYROSCOPIC_TERM = "gyroscopic term left out"
+MISTAKES: Mapping[str, Change] = {
+    "size 1 % too large": _of_body(radius=1.01, height=1.01, transverse=1.01**2, axial=1.01**2),
+    "base radius 1 % too large": _of_body(radius=1.01),
+    "mass centre 1 % too high": _of_body(height=1.01),
+    "transverse inertia 2 % too large": _of_body(transverse=1.02),
+    "axial inertia 10 % too large": _of_body(axial=1.1),
+    WITHOUT_GYROSCOPIC_TERM: lambda run: run,
+    "ground acceleration 1 % too large": _with_motion((1.01, 1.01, 1.01)),
+    "vertical acceleration left out": _with_motion((1.0, 1.0, 0.0)),
+    "tendon 2 % too strong": _with_tendon,
+}
+
+
+@cache
+def check() -> ModuleType:
+    """The published check.py."""
+    spec = importlib.util.spec_from_file_location("published_check", PUBLISHED / "check.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # its dataclasses look there
+    spec.loader.exec_module(module)
+    return module
+
+
+def slid(run: BenchmarkRun, spacing: float) -> dict[str, Array]:
+    """Columns of a cylinder that slides in x on a ramp of the ground: x'' = -(a_x - mu (g + a_z))."""
+    assert run.motion is not None
+    ax, _, az = run.motion.acceleration[-1] / run.motion.duration
+    time = spacing * np.arange(round(run.duration / spacing) + 1)
+    rate = ax - run.friction * az
+    past = np.maximum(time - run.friction * G / rate, 0.0)
+    still, height = np.zeros_like(time), np.full_like(time, run.cylinder.mass_centre_height)
+    return {
+        "time": time,
+        "tilt": still,
+        "azimuth": still,
+        "x": -rate * past**3 / 6.0,
+        "y": still,
+        "z": height,
+    }
+
+
+def judged(definition: Definition, mistake: str) -> tuple[str, float] | None:
+    """Return verdict, and largest error over the bound of a pass; None where the mistake changes no run."""
+    changed = {run.name: MISTAKES[mistake](run) for run in definition.runs}
+    gyroscopic = 0.0 if mistake == WITHOUT_GYROSCOPIC_TERM else 1.0
+    if gyroscopic and all(changed[run.name] == run for run in definition.runs):
+        return None
+    case: Any = check().Case(PUBLISHED / "cases" / definition.name)
+    motions = {}
+    for name, run in changed.items():
+        spacing = definition.step * run.time_unit
+        if "slide_level" in run.levels:  # it slides, which this formulation does not
+            motions[name] = check().read_motion(case.runs[name], slid(run, spacing))
+            continue
+        end = spacing * round(run.duration / spacing)
+        found = sampled(run, spacing, end, rtol=RTOL, gyroscopic=gyroscopic)
+        values = {"time": found.time, "tilt": found.tilt, "azimuth": found.azimuth}
+        motions[name] = check().read_motion(case.runs[name], values)
+    judgement = check().Judgement(case.judge(motions), (), ())
+    return judgement.verdict, case.score(motions)
+
+
+def table() -> str:
+    """Return the page: case by mistake."""
+    titles = ["case", *MISTAKES]
+    lines = [" | ".join(titles), " | ".join("---" for _ in titles)]
+    for definition in definitions():
+        cells = [definition.name]
+        for mistake in MISTAKES:
+            found = judged(definition, mistake)
+            cells.append(
+                "" if found is None else f"{found[0]}, {found[1]:.2g}" if found[1] < math.inf else found[0]
+            )
+        lines.append(" | ".join(cells))
+    return "\n".join(f"| {line} |" for line in lines)
