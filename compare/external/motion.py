@@ -42,6 +42,8 @@ class Motion:
         x + i y of the axis, a unit vector; None where no azimuth is known.
     path : ndarray, shape (n, 3), or None
         Mass centre from O [m]; None where it is not known.
+    twist : ndarray, shape (n,), or None
+        Turn about the axis since the start [rad]; None where it is not known.
     noise, path_noise : float
         Standard deviations of the noise of the axis [rad] and of each coordinate of the mass centre [m].
     """
@@ -50,6 +52,7 @@ class Motion:
     tilt: Array
     lean: Complex | None
     path: Array | None = None
+    twist: Array | None = None
     noise: float = 0.0
     path_noise: float = 0.0
 
@@ -60,13 +63,15 @@ class Motion:
 
     def rotated(self, angle: float, *, mirrored: bool = False) -> Motion:
         """Return the motion turned by `angle` [rad] counter-clockwise, with y reversed first if mirrored."""
-        turn, lean, path = np.exp(1j * angle), self.lean, self.path
+        turn, lean, path, twist = np.exp(1j * angle), self.lean, self.path, self.twist
+        if twist is not None and mirrored:
+            twist = -twist
         if lean is not None:
             lean = turn * (lean.conj() if mirrored else lean)
         if path is not None:
             flat = turn * (path[:, 0] + (-1j if mirrored else 1j) * path[:, 1])
             path = np.column_stack([flat.real, flat.imag, path[:, 2]])
-        return replace(self, lean=lean, path=path)
+        return replace(self, lean=lean, path=path, twist=twist)
 
     def at(self, time: Array) -> Motion:
         """Return the motion at other times [s], linear between its samples."""
@@ -75,7 +80,8 @@ class Motion:
         path = self.path
         if path is not None:
             path = np.column_stack([np.interp(time, self.time, part) for part in path.T])
-        return replace(self, time=time, tilt=tilt, lean=lean, path=path)
+        twist = None if self.twist is None else np.interp(time, self.time, self.twist)
+        return replace(self, time=time, tilt=tilt, lean=lean, path=path, twist=twist)
 
     def with_clock(self, *, offset: float = 0.0, rate: float = 1.0) -> Motion:
         """Return the motion with its times multiplied by `rate`, then moved by `offset` [s]."""
@@ -258,6 +264,8 @@ class Difference:
         Integral [rad s] and largest value [rad] of the tilt of the reference over the agreement.
     tilt, azimuth, path : Part or None
         None where they are not known, or the cylinder does not lean enough while the tilts agree.
+    twist : Part or None
+        Turn about the axis since the start [rad]; None where it is not known.
     """
 
     start: float
@@ -269,12 +277,13 @@ class Difference:
     tilt: Part
     azimuth: Part | None = None
     path: Part | None = None
+    twist: Part | None = None
 
     @property
     def differs_in(self) -> tuple[str, ...]:
-        """What differs, of "tilt", "azimuth" and "path"."""
-        parts = (("tilt", self.tilt), ("azimuth", self.azimuth), ("path", self.path))
-        return tuple(name for name, part in parts if part is not None and part.differs)
+        """What differs, of "tilt", "azimuth", "path" and "twist"."""
+        parts = {name: getattr(self, name) for name in ("tilt", "azimuth", "path", "twist")}
+        return tuple(name for name, part in parts.items() if part is not None and part.differs)
 
     @property
     def length(self) -> float:
@@ -342,6 +351,7 @@ class Reference:
             tilt=tilt,
             azimuth=self._azimuth(model, trial, within),
             path=self._path(model, trial, within),
+            twist=self._twist(model, trial, within),
         )
 
     def leaning(self, model: Motion, trial: Motion, within: Mask) -> Mask:
@@ -389,6 +399,14 @@ class Reference:
         noise = trial.path_noise / self.base_radius
         bound = math.hypot(PATH_BOUND, self.azimuth_bound * beside, math.sqrt(3.0) * noise * few)
         return _part(model.time[within], size, bound, apart > bound + ABOVE_NOISE * noise)
+
+    def _twist(self, model: Motion, trial: Motion, within: Mask) -> Part | None:
+        if model.twist is None or trial.twist is None or np.count_nonzero(within) < FEWEST_COMPARED:
+            return None
+        apart = np.abs(trial.twist[within] - model.twist[within])
+        bound = math.hypot(self.azimuth_bound, BOTH_DIRECTIONS * trial.noise)
+        size = float(np.sqrt(np.mean(apart**2)))
+        return _part(model.time[within], size, bound, apart > bound)
 
 
 def explains(before: Part, after: Part | None) -> bool:

@@ -19,8 +19,13 @@ _STANDS = 1e-4
 _ABOVE_NOISE = 5.0
 # a step this much longer than the usual one is a gap
 _GAP = 2.5
+# times since 1970 in these units, from 2001 to 2286, begin between this [s] and ten times it
+_SINCE_1970 = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
+_IN_2001 = 1e9
 # longest step, over the time scale of rocking sqrt(R/g): a quarter period of small tilts is longer
 _COARSE = 0.5
+# shortest trajectory, over the length of the run
+_SHORTEST = 2e-3
 # of the length of a quaternion; digits printed, not another convention
 _UNIT_LENGTH = 1e-2
 # tilts of both kinds that differ by more come from two conventions, not from rounding [rad]
@@ -97,11 +102,11 @@ def poses_of(table: Table, case: Case, *, noise: float | None = None, time_offse
         the number of the line.
     """
     values, cylinder = table.values, case.cylinder
-    time = _checked_time(table, time_offset, case)
+    time, notes = _from_start(table)
+    time = _checked_time(table, time, time_offset, case)
     for name in values.keys() & {*POSITION, *QUATERNION}:
         table.complete(name)
     pose = pose_of(values, base_radius=cylinder.base_radius, mass_centre_height=cylinder.mass_centre_height)
-    notes: list[str] = []
     given = ["tilt", "azimuth"] if pose.azimuth_known else ["tilt"]
     if pose.twist is not None:
         notes += _checked_quaternions(table, pose.axis, pose.twist)
@@ -183,8 +188,19 @@ def unwrapped(axis: Array, leans: Mask) -> tuple[Array, Mask]:
     return angles[np.maximum(last, 0)], followed
 
 
-def _checked_time(table: Table, offset: float, case: Case) -> Array:
-    time = table.complete("time") + offset
+def _from_start(table: Table) -> tuple[Array, list[str]]:
+    """Return the times of a table [s], from the first where they are since 1970, and notes on them."""
+    time = table.complete("time")
+    for unit, factor in _SINCE_1970.items():
+        if _IN_2001 <= time[0] / factor < 10.0 * _IN_2001:
+            return (time - time[0]) / factor, [
+                f"times are since 1970 in {unit}: the first is the start of the run"
+            ]
+    return time, []
+
+
+def _checked_time(table: Table, time: Array, offset: float, case: Case) -> Array:
+    time = time + offset
     steps, count = np.diff(time, prepend=-math.inf), np.arange(len(time))
     table.require(
         steps > 0.0,
@@ -208,7 +224,7 @@ def _checked_time(table: Table, offset: float, case: Case) -> Array:
         ),
     )
     table.require(
-        (count < len(time) - 1) | (time > usual),
+        (count < len(time) - 1) | (time > max(usual, _SHORTEST * case.length)),
         lambda _: f"the trajectory ends {time[-1]:g} s after the start of the run",
     )
     return time

@@ -7,7 +7,7 @@ with # are comments. Units stand behind a name in brackets: "time [s], tilt [deg
 column         unit         meaning
 ============== ============ =======================================================================
 run            none         name of the run, where a file holds several
-time           s, ms        s where the header is silent
+time           s, ms        s where the header is silent; or since 1970, in s, ms, us or ns
 tilt           rad, deg     angle of the axis from the vertical; a negative one, as of a planar test,
                             leans to the side opposite to its azimuth
 azimuth        rad, deg     direction of the lean, counter-clockwise from x (east) as seen from above;
@@ -17,6 +17,7 @@ x, y, z        m, cm, mm    mass centre from the original base centre, which mov
                             m where the header is silent
 ============== ============ =======================================================================
 
+A column that is not named so is read by the end of its title, as pose.orientation.w, Can_QX, posX or q0.
 The run.csv of `rockwobble simulate` is read as it is: its names have one unit each, its rolling angle is the
 azimuth, and its centre x, y and z.
 
@@ -27,6 +28,7 @@ was lost.
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -38,13 +40,15 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Rows = Iterator[tuple[int, list[str]]]  # number and cells of each line
+Stated = dict[str, tuple[int, str | None]]  # place and unit of each known column, by name
 Values = dict[str, Array]  # of the columns of one run, in SI units and radians, by name
 
 QUATERNION = ("qw", "qx", "qy", "qz")
 POSITION = ("x", "y", "z")
 ANGLE_UNITS = {"rad": 1.0, "deg": math.pi / 180.0}
 COLUMN_UNITS = {
-    "time": {"s": 1.0, "ms": 1e-3},
+    "time": {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3},
     "tilt": ANGLE_UNITS,
     "azimuth": ANGLE_UNITS,
     **{name: {"-": 1.0, "": 1.0} for name in QUATERNION},
@@ -59,6 +63,54 @@ OWN_TITLES = {
     "centre_x": "x [m]",
     "centre_y": "y [m]",
     "centre_z": "z [m]",
+}
+# ends of titles, after a mark that is no letter
+_BEFORE_AXIS = {
+    QUATERNION: "q|quat|quaternion|ori|orientation|rot|rotation",
+    POSITION: "t|pos|position|translation",
+}
+ENDS = {
+    "time": "t|time|timestamp|seconds|elapsed",
+    **{
+        name: rf"(?:{before})[\W_]?{name[-1]}" + (f"|q{at}" if names == QUATERNION else "")
+        for names, before in _BEFORE_AXIS.items()
+        for at, name in enumerate(names)
+    },
+}
+# columns that an option names in their order, by their number
+IN_ORDER = {
+    len(names): names
+    for names in (
+        ("time", "tilt"),
+        ("time", "tilt", "azimuth"),
+        ("time", *POSITION),
+        ("time", *QUATERNION),
+        ("time", *QUATERNION, *POSITION),
+    )
+}
+# what programs write that is not read: in the first lines; what to do
+PROGRAMS = {
+    "an export of OptiTrack Motive": (
+        r"^Format Version",
+        "export quaternions with z up, and give --trajectory-columns by number, time first: 2,6,3,4,5",
+    ),
+    "an export of Vicon Nexus": (
+        r"^(Trajectories|Segments|Joints|Model Outputs)\b",
+        "turn RX, RY and RZ into a quaternion, in columns time, qw, qx, qy, qz",
+    ),
+    "an export of Qualisys": (
+        r"^NO_OF_FRAMES",
+        "turn the rotation matrix into a quaternion, in columns time, qw, qx, qy, qz",
+    ),
+    "an export of OpenSim": (
+        r"^endheader",
+        "drop the lines up to endheader, and turn the angles into a quaternion: time, qw, qx, qy, qz",
+    ),
+    "an export of rostopic": (r"^%time", "export a topic of type geometry_msgs/PoseStamped"),
+    "a TUM trajectory": (
+        r"\A(?:#.*\n)*[-+.\deE]+(?: +[-+.\deE]+){7}$",
+        "write time,x,y,z,qx,qy,qz,qw above it, and commas for the blanks",
+    ),
 }
 LISTED, LONGEST_NAME = 80, 40  # characters of a list of names in a message, and of one of them
 FEWEST_SAMPLES = 3
@@ -120,7 +172,7 @@ def name_list(names: Sequence[str]) -> str:
     return ", ".join(short[:count]) + (f" and {len(short) - count} more" if count < len(short) else "")
 
 
-def read_tables(path: Path, angle_unit: str | None = None) -> dict[str, Table]:
+def read_tables(path: Path, angle_unit: str | None = None, columns: Sequence[str] = ()) -> dict[str, Table]:
     """Read the runs of a CSV file by name, "" where it has no column `run`.
 
     Parameters
@@ -128,6 +180,8 @@ def read_tables(path: Path, angle_unit: str | None = None) -> dict[str, Table]:
     path : Path
     angle_unit : {"rad", "deg"}, optional
         Unit of angles where the header is silent.
+    columns : sequence of str, optional
+        Titles or numbers of the columns of `IN_ORDER`, each with its unit where the header is silent.
 
     Raises
     ------
@@ -136,11 +190,9 @@ def read_tables(path: Path, angle_unit: str | None = None) -> dict[str, Table]:
     """
     if angle_unit not in (None, *ANGLE_UNITS):
         raise ValueError(f"the unit of angles must be one of {', '.join(ANGLE_UNITS)}, got {angle_unit!r}")
-    rows = _rows(path)
-    first, header = next(rows, (0, []))
-    if not first:
-        raise ValueError(f"the trajectory {path} is empty")
-    known = _known_columns(path.name, header, angle_unit)
+    lines = _lines(path)
+    header, stated, rows = _chosen(path.name, _rows(lines), columns) if columns else _named(path, lines)
+    known = _factors(path.name, stated, angle_unit)
     column_of_run = header.index("run") if "run" in header else None
     samples: dict[str, list[tuple[int, list[float]]]] = {}
     for number, cells in rows:
@@ -175,8 +227,55 @@ def _table(
     return Table(name, [line for line, _ in kept], values, ignored, len(samples) - len(kept))
 
 
-def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
-    """Yield number and cells of each line that is neither empty nor a comment."""
+def _advice(lines: Sequence[str]) -> str:
+    """Return the program that wrote a file, by its first lines, and what to do; empty if none is known."""
+    start = "\n".join(lines[:20])
+    programs = (
+        f"is {name}: {advice}"
+        for name, (pattern, advice) in PROGRAMS.items()
+        if re.search(pattern, start, re.MULTILINE)
+    )
+    return next(programs, "")
+
+
+def _chosen(file: str, rows: Rows, columns: Sequence[str]) -> tuple[list[str], Stated, Rows]:
+    """Return the header, place and unit of the columns that an option names, and the rows below it.
+
+    Raises
+    ------
+    ValueError
+        If as many columns are none of `IN_ORDER`, or no line has them.
+    """
+    names, asked = IN_ORDER.get(len(columns)), [_title(column) for column in columns]
+    if names is None:
+        orders = "; ".join(", ".join(each) for each in IN_ORDER.values())
+        raise ValueError(f"columns of a trajectory must be {orders}, got {len(columns)}")
+    by_number, header = all(name.isdecimal() for name, _ in asked), list[str]()
+    for number, cells in rows:
+        titles = [str(at + 1) if by_number else _title(cell)[0] for at, cell in enumerate(cells)]
+        if all(titles.count(name) == 1 for name, _ in asked):
+            places = [titles.index(name) for name, _ in asked]
+            if not by_number:
+                header = cells
+                break
+            if all(re.fullmatch(r"[-+]?\.?\d.*", cells[place]) for place in places):
+                header = header if len(header) == len(cells) else [""] * len(cells)
+                rows = itertools.chain([(number, cells)], rows)
+                break
+        header = cells
+    else:
+        raise ValueError(f"{file} has no line with the columns {', '.join(columns)}, each once")
+    units = [unit or _title(header[place])[1] for (_, unit), place in zip(asked, places, strict=True)]
+    return header, dict(zip(names, zip(places, units, strict=True), strict=True)), rows
+
+
+def _title(text: str) -> tuple[str, str | None]:
+    """Return name and unit of a title, which stands in brackets; None without one."""
+    match = re.fullmatch(r"(.*?)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?", text.strip())
+    return (match[1], match[2]) if match else (text, None)
+
+
+def _lines(path: Path) -> list[str]:
     try:
         endless = path.is_char_device()
         lines = [] if endless else path.read_text(encoding="utf-8-sig").splitlines()
@@ -185,6 +284,11 @@ def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
         raise ValueError(f"cannot read the trajectory {path}: {reason}") from None
     if endless:
         raise ValueError(f"cannot read the trajectory {path}: it is a device, which may never end")
+    return lines
+
+
+def _rows(lines: Sequence[str]) -> Rows:
+    """Yield number and cells of each line that is neither empty nor a comment."""
     mark = ""
     for number, line in enumerate(lines, start=1):
         text = line.strip()
@@ -195,39 +299,64 @@ def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
         yield number, [cell.strip().strip('"').strip() for cell in line.split(mark)]
 
 
-def _known_columns(file: str, header: list[str], angle_unit: str | None) -> dict[str, tuple[int, float]]:
-    """Return place and factor to SI units of each known column, by name."""
-    found: dict[str, tuple[int, float]] = {}
+def _named(path: Path, lines: Sequence[str]) -> tuple[list[str], Stated, Rows]:
+    """Return the header, place and unit of its columns by name, and the rows below it."""
+    file, rows = path.name, _rows(lines)
+    header = next(rows, (0, []))[1]
+    if not header:
+        raise ValueError(f"the trajectory {path} is empty")
     own = set(OWN_TITLES) <= set(header)
-    for at, given in enumerate(header):
-        title = OWN_TITLES.get(given, given) if own else given
-        match = re.fullmatch(r"(\w+)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?", title)
-        name = match[1].lower() if match else ""
-        if match is None or name not in COLUMN_UNITS:
-            continue
-        if name in found:
-            raise ValueError(f"{file} must have each column once, got {name} twice")
-        unit = match[2] if match[2] is not None else SILENT_UNITS.get(name, angle_unit)
+    titles = [_title(OWN_TITLES.get(given, given) if own else given) for given in header]
+    named = [(name.lower(), at) for at, (name, _) in enumerate(titles) if name.lower() in COLUMN_UNITS]
+    exact = {name for name, _ in named}
+    for at, (title, _) in enumerate(titles):
+        ends = (name for name, end in ENDS.items() if re.fullmatch(rf"(?:.*[\W_])?(?:{end})", title, re.I))
+        named += [(name, at) for name in ends if name not in exact]
+    # of a quaternion or a place some ends alone are other quantities
+    partial = {
+        name
+        for group in (QUATERNION, POSITION)
+        if not set(group) <= {name for name, _ in named}
+        for name in group
+    }
+    named = [(name, at) for name, at in named if name in exact or name not in partial]
+    known: Stated = {}
+    for name, at in named:
+        if name in known:
+            both = f"{header[known[name][0]]!r} and {header[at]!r}"
+            raise ValueError(f"{file} must have each column once, got {name} as {both}: name them by columns")
+        known[name] = at, titles[at][1]
+    for group in (QUATERNION, POSITION):
+        missing = [name for name in group if name not in known]
+        if missing and len(missing) < len(group):
+            raise ValueError(f"{file} must have {', '.join(group)} together, got no {missing[0]}")
+    if "azimuth" in known and "tilt" not in known:
+        raise ValueError(f"{file} must have tilt where it has azimuth, got no tilt")
+    if "time" not in known or not {"tilt", "qw", "x"} & set(known):
+        raise ValueError(
+            f"{file} {advice}"
+            if (advice := _advice(lines))
+            else f"{file} must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x, y and z, "
+            f"got {name_list([each for each in header if each]) or 'none'}; --trajectory-columns names them"
+        )
+
+    return header, known, rows
+
+
+def _factors(file: str, stated: Stated, angle_unit: str | None) -> dict[str, tuple[int, float]]:
+    """Return place and factor to SI units of each column, by name."""
+    factors: dict[str, tuple[int, float]] = {}
+    for name, (at, given) in stated.items():
+        unit = SILENT_UNITS.get(name, angle_unit) if given is None else given
         if unit is None:
             raise ValueError(
                 f"{file} does not say the unit of {name}: name the column '{name} [deg]' or "
                 f"'{name} [rad]', or give the unit of angles"
             )
-        if unit not in COLUMN_UNITS[name]:
+        if unit.lower() not in COLUMN_UNITS[name]:
             raise ValueError(f"{file}: {name} must be in {' or '.join(COLUMN_UNITS[name])}, got {unit!r}")
-        found[name] = at, COLUMN_UNITS[name][unit]
-    for group in (QUATERNION, POSITION):
-        missing = [name for name in group if name not in found]
-        if missing and len(missing) < len(group):
-            raise ValueError(f"{file} must have {', '.join(group)} together, got no {missing[0]}")
-    if "azimuth" in found and "tilt" not in found:
-        raise ValueError(f"{file} must have tilt where it has azimuth, got no tilt")
-    if "time" not in found or not {"tilt", "qw", "x"} & set(found):
-        raise ValueError(
-            f"{file} must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x, y and z, "
-            f"got {name_list([title for title in header if title]) or 'none'}"
-        )
-    return found
+        factors[name] = at, COLUMN_UNITS[name][unit.lower()]
+    return factors
 
 
 def _number(file: str, line: int, title: str, cell: str) -> float:

@@ -44,6 +44,9 @@ class External(Brief):
         Angle unit of tilt and azimuth where the header does not say.
     time_offset : float, optional
         Added to the times of the file [s], so that the run starts at 0 with the ground motion or the release.
+    columns : sequence of str, optional
+        Titles or numbers of the columns of time and tilt; time, tilt and azimuth; time, x, y and z; time, qw,
+        qx, qy and qz; or time, qw, qx, qy, qz, x, y and z. Default: by the names in the header.
     noise : float, optional
         Tilt below which the cylinder counts as standing [rad]. Default: what the scatter of the samples
         asks for, 5 standard deviations, and at least 1e-4 alpha.
@@ -64,6 +67,7 @@ class External(Brief):
     angle_unit: str | None = None
     time_offset: float = 0.0
     noise: float | None = None
+    columns: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", Path(self.path))
@@ -134,7 +138,13 @@ def external_motion(trace: Trace) -> Motion:
     )
     path = trace.centre_of_mass if "path" in poses.given else None
     motion = motion_at(trace.time, trace.tilt, azimuth, path)
-    return replace(motion, noise=poses.noise, path_noise=poses.position_noise)
+    return replace(motion, twist=twist_since_start(trace), noise=poses.noise, path_noise=poses.position_noise)
+
+
+def twist_since_start(trace: Trace) -> Array | None:
+    """Return the turn about the axis since the start, shape (n,) [rad]; None where it is not known."""
+    turn: Array = trace.twist - trace.twist[0]
+    return turn if np.isfinite(turn).all() else None
 
 
 def read_trajectory(external: External | str | Path, case: Case) -> Trace:
@@ -156,7 +166,7 @@ def read_trajectory(external: External | str | Path, case: Case) -> Trace:
         the run; the message names the file, the line, and what makes it readable where that is known.
     """
     given = external if isinstance(external, External) else External(path=Path(external))
-    tables = read_tables(given.path, given.angle_unit)
+    tables = read_tables(given.path, given.angle_unit, given.columns)
     if len(tables) > 1:
         raise ValueError(f"{given.path.name} must hold one run, got {name_list(list(tables))}")
     (table,) = tables.values()

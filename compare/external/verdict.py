@@ -19,7 +19,7 @@ from .loss import Loss, losses
 from .mistakes import Mistake
 from .motion import Motion, Part, Reference, exceeds, motion_at
 from .table import Values
-from .trajectory import external_motion, measurement, trajectory_of
+from .trajectory import external_motion, measurement, trajectory_of, twist_since_start
 
 # standard deviations of the noise: the first of some hundred samples that is above a tilt is sought
 CONFIDENCE = 4.0
@@ -27,7 +27,10 @@ CONFIDENCE = 4.0
 Row = dict[str, Any]  # of a summary
 # columns of the summary that only external trajectories have: unit, meaning
 VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = {
-    "differs_in": ("", "of an external trajectory: tilt, azimuth, path, uplift_time, uplift_direction"),
+    "differs_in": (
+        "",
+        "of an external trajectory: tilt, azimuth, path, twist, uplift_time, uplift_direction",
+    ),
     "not_compared": (
         "",
         "azimuth or path, where not given or where the tilts agree over too little motion",
@@ -37,6 +40,8 @@ VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = {
     "azimuth_differs_from": ("s", "time of the first difference of the azimuths above its bound"),
     "path_rms": ("b", "distance of the mass centres while the tilts agree"),
     "path_differs_from": ("s", "time of the first distance above its bound"),
+    "twist_rms": ("deg", "difference of the turns about the axis while the tilts agree"),
+    "twist_differs_from": ("s", "time of the first difference of these turns above its bound"),
     "tilt_bound": ("alpha", "tilt difference that ends the agreement: 1 % of alpha, and more with noise"),
     "noise": ("alpha", "standard deviation of the scatter of the samples"),
     "uplift_time_uncertainty": (
@@ -47,7 +52,7 @@ VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = {
     "likely_mistake": ("", "codes of what explains the differences: see `Mistake`"),
     "likely_mistake_in": ("", "what each of them concerns"),
     "likely_mistake_value": ("", "their values, in the units of the codes"),
-    "differs_without_mistake": ("", "what still differs, of tilt, azimuth and path"),
+    "differs_without_mistake": ("", "what still differs, of tilt, azimuth, path and twist"),
     "agreement_without_mistake": ("s", "from uplift or release, as it would be without them"),
 }
 # those of them that hold a tuple
@@ -62,8 +67,9 @@ NO_VERDICT: Row = {name: () if name in LISTS else math.nan for name in VERDICT_C
 def reference_of(trace: Trace, case: Case) -> Reference:
     """Return what an external trajectory of a case is compared with."""
     cylinder = case.cylinder
+    motion = motion_at(trace.time, trace.tilt, trace.rolling_angle, trace.centre_of_mass)
     return Reference(
-        motion=motion_at(trace.time, trace.tilt, trace.rolling_angle, trace.centre_of_mass),
+        motion=replace(motion, twist=twist_since_start(trace)),
         alpha=cylinder.alpha,
         base_radius=cylinder.base_radius,
         time_scale=math.sqrt(cylinder.semidiagonal / case.gravity),
@@ -100,9 +106,9 @@ def judge(trajectory: Trace, reference: Trace, case: Case) -> Row:
     for name, part in uplift.items():
         if part is not None:
             row |= {f"{name}_difference": part.size, f"{name}_uncertainty": part.bound}
-    for name, part, _ in parts:
+    for name, part in {"azimuth": found.azimuth, "path": found.path, "twist": found.twist}.items():
         if part is not None:
-            size = math.degrees(part.size) if name == "azimuth" else part.size
+            size = part.size if name == "path" else math.degrees(part.size)
             row |= {f"{name}_rms": size, f"{name}_differs_from": part.first_time}
 
     def read(values: Values) -> Motion | None:

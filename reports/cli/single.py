@@ -50,6 +50,11 @@ class Trajectories(Plan):
     trajectory_angles: str | None = _external(
         None, "Unit of its angles if the header does not state it: deg or rad."
     )
+    trajectory_columns: str | None = _external(
+        None,
+        "Its columns by name or number, in this order: time, tilt[, azimuth]; time, x, y, z; time, qw, "
+        "qx, qy, qz; or time, qw, qx, qy, qz, x, y, z. A unit may follow: 2,7 [mm],8 [mm],9 [mm].",
+    )
     trajectory_offset: float = _external(
         0.0, "Offset added to its times, in s, so that 0 is the start of the run."
     )
@@ -72,14 +77,15 @@ class Trajectories(Plan):
         angles, offset = self.trajectory_angles, self.trajectory_offset
         noise_deg = self.trajectory_noise_deg
         if not self.trajectory:
-            if angles is not None or offset or noise_deg is not None:
-                raise ValueError("--trajectory-angles, -offset and -noise-deg need a --trajectory")
+            if angles is not None or offset or noise_deg is not None or self.trajectory_columns:
+                raise ValueError("--trajectory-angles, -columns, -offset, -noise-deg need a --trajectory")
             return []
         if len(cases) > 1:
             raise ValueError(f"--trajectory belongs to one case, got a suite of {len(cases)}")
+        columns = self.trajectory_columns.split(",") if self.trajectory_columns else ()
         noise = None if noise_deg is None else math.radians(noise_deg)
         found = [
-            rw.External(path=path, angle_unit=angles, time_offset=offset, noise=noise)
+            rw.External(path=path, angle_unit=angles, columns=columns, time_offset=offset, noise=noise)
             for path in self.trajectory
         ]
         for each in found:  # whatever is wrong with a file is said before anything runs

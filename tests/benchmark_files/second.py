@@ -52,14 +52,16 @@ def advance(
     return y, size
 
 
-def sampled(run: BenchmarkRun, spacing: float, end: float, *, rtol: float = 1e-13) -> Sampled:
-    """Integrate a run, and return samples that are `spacing` apart."""
+def sampled(
+    run: BenchmarkRun, spacing: float, end: float, *, rtol: float = 1e-13, gyroscopic: float = 1.0
+) -> Sampled:
+    """Integrate a run, perhaps without its gyroscopic term, and return samples that are `spacing` apart."""
     body = body_of(run.cylinder, G)
     held = (0.0, 0.0)
     if run.tendon is not None:
         assert run.model == "recess", "on flat ground the base wanders from the anchor"
         held = run.tendon.prestress * G, run.tendon.stiffness * G / body.b
-    P = np.array([body.b, body.h, body.I1, body.I2, G, float(run.model == "recess"), *held])
+    P = np.array([body.b, body.h, body.I1, body.I2, G, float(run.model == "recess"), *held, gyroscopic])
     times = spacing * np.arange(round(end / spacing) + 1)
     record, dt = _record(run)
     kinks = dt * np.arange(len(record)) if len(record) else np.array([0.0])

@@ -45,8 +45,8 @@ BAD = {
     GOOD.replace("tilt [deg]", "tilt"): "does not say the unit of tilt: name the column 'tilt [deg]'",
     GOOD.replace("tilt [deg]", "tilt [grad]"): "tilt must be in rad or deg, got 'grad'",
     GOOD.replace("tilt [deg]", "lean [deg]"): "must have tilt where it has azimuth, got no tilt",
-    GOOD.replace("time [s]", "t"): "must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x",
-    GOOD.replace("azimuth", "tilt"): "must have each column once, got tilt twice",
+    GOOD.replace("time [s]", "n"): "must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x",
+    GOOD.replace("azimuth", "tilt"): "must have each column once, got tilt as 'tilt [deg]' and 'tilt [deg]'",
     GOOD.split("0.01")[0]: "must hold at least 3 samples, got 1",
     f"{TURN}\n0,1,0,0,0\n0.01,2,0,0,0\n0.02,1,0,0,0\n": "line 3: a quaternion must have the length 1, got 2",
     f"{TURN},tilt [rad],azimuth [rad]\n0,1,0,0,0,0,0\n.01,.99875,.04998,0,0,.1,0\n.02,0,0,0,1,.1,0\n": (
@@ -120,6 +120,65 @@ def test_a_file_that_is_not_there_and_options_out_of_range(tmp_path):
 @pytest.fixture(scope="module")
 def response():
     return reduced.simulate(Case(PIER, initial=START, duration=4.0))
+
+
+def as_quaternions(run, time):
+    half = 0.5 * run.tilt
+    x, y = -np.sin(half) * np.sin(run.rolling_angle), np.sin(half) * np.cos(run.rolling_angle)
+    return np.column_stack([time, np.cos(half), x, y, 0.0 * x, run.centre_of_mass])
+
+
+TITLES = (
+    "%time,field.orientation.w,field.orientation.x,field.orientation.y,field.orientation.z,x,y,z",
+    "timestamp,can_qw,can_qx,can_qy,can_qz,can_tx,can_ty,can_tz",
+    "t,q0,q1,q2,q3,posX,posY,posZ",
+    "Time (Seconds),rotW,rotX,rotY,rotZ,a.position.x,a.position.y,a.position.z",
+)
+
+
+@pytest.mark.parametrize("titles", TITLES)
+def test_columns_are_read_by_the_end_of_their_titles(save, response, titles):
+    rows = as_quaternions(response, response.time)
+    text = "\n".join([titles, *(",".join(map(repr, row)) for row in rows.tolist())])
+    trajectory = read_trajectory(save(text), RELEASE)
+    assert trajectory.tilt == pytest.approx(response.tilt, abs=ROUNDING)
+    assert trajectory.centre_of_mass == pytest.approx(response.centre_of_mass)
+    assert "not read" not in notes(trajectory)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e3, 1e6, 1e9])
+def test_times_since_1970_are_from_the_first(save, response, unit):
+    rows = as_quaternions(response, unit * (1.7e9 + response.time))
+    text = "\n".join(["time,qw,qx,qy,qz,x,y,z", *(",".join(map(repr, row)) for row in rows.tolist())])
+    trajectory = read_trajectory(save(text), RELEASE)
+    assert trajectory.tilt == pytest.approx(response.tilt, abs=1e-6)  # the digits of such a time
+    assert "since 1970" in notes(trajectory)
+
+
+MOTIVE = """Format Version,1.23
+,,Rigid Body,
+frame,n,lean,to
+5,0,1,0
+5,0.01,2,1
+5,0.02,3,2
+5,0.03,2,3
+"""
+
+
+@pytest.mark.parametrize("asked", ["2,3 [deg],4 [deg]", "n,lean [deg],to [deg]"])
+def test_columns_that_an_option_names_are_read_whatever_stands_above(save, asked):
+    trajectory = read_trajectory(External(path=save(MOTIVE), columns=asked.split(",")), RELEASE)
+    assert trajectory.tilt.max() == pytest.approx(math.radians(3.0))
+
+
+def test_columns_that_are_not_there_and_a_known_program_are_named(save):
+    for asked, words in (
+        {"n,az": "no line with the columns n, az", "n": "must be time, tilt; time, "}
+    ).items():
+        with pytest.raises(ValueError, match=words):
+            read_trajectory(External(path=save(MOTIVE), columns=asked.split(",")), RELEASE)
+    with pytest.raises(ValueError, match="is an export of OptiTrack Motive: export quaternions"):
+        read_trajectory(save(MOTIVE), RELEASE)
 
 
 def columns(response, **others) -> pd.DataFrame:
@@ -222,5 +281,5 @@ def test_columns_that_are_not_read_are_named_whole(tmp_path):
     assert set(listed.split(", ")) <= set(more)
     assert rest == f"{len(more) - len(listed.split(', '))} more"
     path.write_text("time [s]," + ",".join(more) + "\n0" + ",0" * len(more))
-    with pytest.raises(ValueError, match=r", got time \[s\], gauge_0, .*, gauge_\d+ and \d+ more$"):
+    with pytest.raises(ValueError, match=r", got time \[s\], gauge_0, .*, gauge_\d+ and \d+ more;"):
         read_trajectory(path, RELEASE)

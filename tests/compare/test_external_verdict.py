@@ -171,6 +171,7 @@ MISTAKES = {
     "path alone": (lambda t: turned(t, 90.0, mirrored=True, of=["x"]), "path", "axes_exchanged", None),
     "late": (lambda t: later(t, 0.3), "time", "time_offset", -0.3),
     "early": (lambda t: later(t, -0.3), "time", "time_offset", 0.3),
+    "slow motion": (lambda t: scaled(t, 2.0, "time"), "time", "clock", 2.0),
     "radians": (lambda t: scaled(t, RADIAN, *ANGLES), "tilt and azimuth", "angle_unit", RADIAN),
     "radians of azimuth": (lambda t: scaled(t, RADIAN, ANGLES[1]), "azimuth", "angle_unit", RADIAN),
     "degrees of azimuth": (lambda t: scaled(t, DEGREES, ANGLES[1]), "azimuth", "angle_unit", DEGREES),
@@ -244,6 +245,24 @@ def test_quaternions_of_the_inverse_turn_are_named(save):
     inverse = {name: (1.0 if name == "qw" else -1.0) * values for name, values in table.items()}
     found = verdict("pier wobbles", save(pd.DataFrame({"time": trace.time} | inverse)))
     assert named(found) == [("quaternion", "quaternion_inverse")]
+
+
+@pytest.mark.parametrize("model", ["recess", "flat"])
+def test_a_spin_about_its_axis_on_the_spot_is_named(save, model):
+    trace = response("pier wobbles", model)
+    half = 0.5 * (trace.twist + 0.4 * trace.time)
+    q = quaternions(trace)
+    turns = {
+        "qw": q["qw"] * np.cos(half),
+        "qx": q["qx"] * np.cos(half) + q["qy"] * np.sin(half),
+        "qy": q["qy"] * np.cos(half) - q["qx"] * np.sin(half),
+        "qz": q["qw"] * np.sin(half),
+    }
+    found = verdict("pier wobbles", save(pd.DataFrame({"time": trace.time} | turns)), model)
+    assert found.differs_in == ("twist",)
+    assert named(found) == [("twist", "spin")]
+    assert found.mistakes[0].value == pytest.approx(math.degrees(0.4), rel=1e-3)
+    assert found.twist_rms == pytest.approx(math.degrees(0.4 * 6.0 / math.sqrt(3.0)), rel=0.01)
 
 
 @pytest.mark.parametrize("placed", [False, True])

@@ -60,9 +60,10 @@ def lifted_base(P: Array, n: Array) -> Array:
 def rates(P: Array, y: Array, a: Array) -> Array:
     """Derivative of axis (3), angular velocity (3) and azimuth.
 
-    P is b, h, I1, I2, g, 1 in the recess, and prestress [m/s^2] and stiffness [1/s^2] of a tendon.
+    P is b, h, I1, I2, g, 1 in the recess, prestress [m/s^2] and stiffness [1/s^2] of a tendon, and the
+    factor of the gyroscopic term: 1, or 0 for a body that lacks it.
     """
-    b, h, I1, I2, g, recess, prestress, stiffness = P
+    b, h, I1, I2, g, recess, prestress, stiffness, gyroscopic = P
     n, w = y[:3], y[3:6]
     turn = cross(w, n)
     s = math.sqrt(n[0] * n[0] + n[1] * n[1])
@@ -75,7 +76,7 @@ def rates(P: Array, y: Array, a: Array) -> Array:
     force[2] += g
     momentum = I1 * w + (I2 - I1) * np.dot(w, n) * n
     right, matrix = np.zeros(4), np.zeros((4, 4))
-    right[:3] = -cross(w, momentum) - cross(arm, force)
+    right[:3] = -gyroscopic * cross(w, momentum) - cross(arm, force)
     if prestress + stiffness > 0.0:
         base = lifted_base(P, n)
         length = math.sqrt(np.dot(base, base))
@@ -106,7 +107,7 @@ def tilt_of(y: Array) -> tuple[float, float]:
 
 @jit
 def energy(P: Array, y: Array) -> float:
-    b, h, I1, I2, g, _, prestress, stiffness = P
+    b, h, I1, I2, g, _, prestress, stiffness, _ = P
     n, w = y[:3], y[3:6]
     v = cross(w, arm_of(P, n))
     s = math.sqrt(n[0] * n[0] + n[1] * n[1])
@@ -254,7 +255,7 @@ def integrate_arrays(
 def integrate(given: Problem, *, rtol: float = 1e-12, rest: float = 1e-8) -> Result:
     """Integrate a problem of the recess or the flat-ground model."""
     body = body_of(given.cylinder, G)
-    P = np.array([body.b, body.h, body.I1, body.I2, G, float(given.model == "recess"), 0.0, 0.0])
+    P = np.array([body.b, body.h, body.I1, body.I2, G, float(given.model == "recess"), 0.0, 0.0, 1.0])
     record = np.zeros((len(given.motion.acceleration), 3))
     record[:, : given.motion.acceleration.shape[1]] = given.motion.acceleration
     y = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
