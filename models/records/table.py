@@ -173,7 +173,8 @@ def _refuse_rows_in_header(file: RecordFile, header: Sequence[str], width: int) 
     for at, text in texts.items():
         cells = [cell.strip() for cell in re.split("[,;]" if re.search("[,;]", text) else r"\s+", text)]
         known, last = sum(map(is_number, cells)), at == max(texts)
-        row = known == len(cells) == width or (last and _NUMBERS.fullmatch(text))
+        touching = "." in text and known < len(cells)
+        row = known == len(cells) == width or (_NUMBERS.fullmatch(text) and (last or touching))
         damaged = last and is_number(cells[0]) and 2 * known >= len(cells)
         if (row or damaged) and not all(map(str.isdecimal, cells)):
             raise ValueError(f"{file.name}, line {at}: expected words or a whole row, got {text[:60]!r}")

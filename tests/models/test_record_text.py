@@ -173,6 +173,7 @@ REFUSED: Mapping[str, tuple[str | bytes, str]] = {
         "DT = 0.01 SEC   UNITS: CM/SEC2\n" + lines(-EAST - 900.0, 8, "%9.4f"),
         "0 rows of numbers",
     ),
+    "touching_above.txt": ("0.1-0.2\ndamaged\n" + table("", EAST, first=None), "line 1.*whole row"),
     "stacked.txt": (
         "Acceleration, dt = 0.01 s\n" + lines(EAST, 5) + "Velocity\n" + lines(NORTH, 5),
         "line 14",
