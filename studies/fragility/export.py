@@ -104,6 +104,7 @@ def limits_by_function(found: Fragility) -> Iterator[tuple[str, list[Limit]]]:
             ].sort_values("intensity")
             x = unit * counts["intensity"].to_numpy(float)
             share = np.maximum.accumulate((counts["k"] / counts["n"]).to_numpy(float))
+            # of a level below uplift, at which nothing uplifts, the 0 is there
             if uplift < x[0]:
                 x, share = np.r_[uplift, x], np.r_[0.0, share]
             limits.append(
@@ -158,15 +159,16 @@ def nrml(found: Fragility) -> bytes:
         low, high = f"{x[0]:.9g}", f"{x[-1]:.9g}"
         ends = {"minIML": low, "maxIML": high} if continuous else {}
         imls = Tree.SubElement(function, "imls", {"imt": name, "noDamageLimit": low, **ends})
+        # of points OpenQuake itself adds a 0 at the noDamageLimit
         if not continuous:
-            imls.text = " ".join(f"{each:.9g}" for each in x)
+            imls.text = " ".join(f"{each:.9g}" for each in x[1:])
         for limit in limits:
             if continuous:
                 mean = factor * limit.median * math.exp(0.5 * limit.dispersion**2)
                 spread = mean * math.sqrt(math.expm1(limit.dispersion**2))
                 Tree.SubElement(function, "params", ls=limit.name, mean=f"{mean:.9g}", stddev=f"{spread:.9g}")
             else:
-                shares = " ".join(f"{each:.9g}" for each in limit.share)
+                shares = " ".join(f"{each:.9g}" for each in limit.share[1:])
                 Tree.SubElement(function, "poes", ls=limit.name).text = shares
     Tree.indent(root)
     return bytes(Tree.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"

@@ -67,7 +67,7 @@ def poes_of_nrml(text: bytes) -> dict[tuple[str, str], np.ndarray]:
         for row in [*function.iter(f"{NRML}poes"), *function.iter(f"{NRML}params")]:
             if function.get("format") == "discrete":
                 x, y = (np.array(str(each.text).split(), dtype=float) for each in (imls, row))
-                poe = np.interp(AT, x, y)
+                poe = np.interp(AT, np.r_[float(imls.attrib["noDamageLimit"]), x], np.r_[0.0, y])
             else:
                 mean, spread = float(row.attrib["mean"]), float(row.attrib["stddev"])
                 sigma = math.sqrt(math.log(spread**2 / mean**2 + 1.0))
@@ -101,13 +101,14 @@ def test_nrml_gives_the_numbers_of_the_tables(fitted: bool, found: Fragility) ->
 
 def test_openquake_reads_the_same_numbers(found: Fragility, tmp_path: Path) -> None:
     nrml = pytest.importorskip("openquake.hazardlib.nrml")
+    pytest.importorskip("openquake.risklib.read_nrml")  # registers what is made of a fragility model
     name, text = exported(found, "nrml")
     (tmp_path / name).write_bytes(text)
     poes = poes_of_nrml(text)
-    for label, functions in nrml.to_python(str(tmp_path / name)).items():
-        cylinder = label[1] if isinstance(label, tuple) else label
-        for function in functions:
-            assert function(AT) == pytest.approx(poes[str(cylinder), function.limit_state], abs=1e-6)
+    model = nrml.to_python(str(tmp_path / name))
+    for (_, label), functions in model.items():
+        for function in functions.build(model.limitStates):
+            assert function(AT) == pytest.approx(poes[label, function.limit_state], abs=1e-6)
 
 
 def rows_of_pelicun(text: bytes) -> list[dict[str, str]]:
