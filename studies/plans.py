@@ -73,6 +73,12 @@ class AdvicePlan(Copies):
         f"Support: {SUPPORT_WORDS}.",
         group="Method",
     )
+    gap: float | None = option(
+        None,
+        "Gap to a neighbour on flat ground, in m: how often a slide uses it up.",
+        group="Method",
+        least=0.0,
+    )
     mass: float | None = option(
         None,
         MASS,

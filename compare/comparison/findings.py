@@ -9,11 +9,12 @@ from rockwobble.models import AGREEMENT, Case, Trace
 from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL, REDUCED
 from rockwobble.models.finding import Finding, Value
 from rockwobble.models.frames import pd
-from rockwobble.models.mode import REST, SLIDES
+from rockwobble.models.mode import REST, SLIDES, expected_mode
 from rockwobble.models.support import EXTERNAL, SUPPORTS
 
 from ..external.loss import ENERGY_LOSS
 from ..external.verdict import mistakes_of
+from ..metrics.mode import mode_findings, slide_finding
 from ..metrics.pair import make_pair
 from .budget import LARGEST_SHARE, WORTH_EXPLAINING, unexplained_rows
 from .prediction import BEATEN
@@ -40,6 +41,12 @@ def case_findings(
     """
     summary = list(rows_of(rows))
     sound = [row for row in summary if "failed" not in (row.outcome, row.reference_outcome)]
+    driven = {row.support: "" for row in summary if row.engine != REDUCED and row.support != EXTERNAL}
+    modes = {expected_mode(case, each) for each in driven}
+    for each in list(driven)[: 1 if len(modes) == 1 else None]:  # one mode is said once
+        yield from mode_findings(case, each, named=len(modes) > 1)
+    slid = [trace for trace in traces.values() if trace.run.is_model and trace.mode == SLIDES]
+    yield from (slide_finding(each.peak_displacement, each.residual_displacement) for each in slid)
     for label, trace in traces.items():
         if trace.outcome == "failed":
             yield Finding(key="comparison.failed", level="caution", values={"name": label})

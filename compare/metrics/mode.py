@@ -15,7 +15,9 @@ from rockwobble.models.support import support_named
 _KEYS = {SLIDES: "mode.slides", ROCKS_AND_SLIDES: "mode.rocks_and_slides", REST: "mode.rest"}
 
 
-def mode_findings(case: Case, support: str, *, friction_given: bool = True) -> Iterator[Finding]:
+def mode_findings(
+    case: Case, support: str, *, friction_given: bool = True, named: bool = False
+) -> Iterator[Finding]:
     """Findings on the mode that a case has on a support: which, near its border both, and what walls take.
 
     Parameters
@@ -24,17 +26,20 @@ def mode_findings(case: Case, support: str, *, friction_given: bool = True) -> I
     support : str
     friction_given : bool, optional
         Whether the friction of the case is known, not a default.
+    named : bool, optional
+        Whether to name the support, as one of several.
     """
     mode, border = expected_mode(case, support), case.friction_of_uplift
     given = case.friction if friction_given else math.nan
-    values = {"given": given, "bound": border, "demand": case.friction_at_rest}
+    where: dict[str, Value] = {"reason": str(support) if named else None}
+    values = where | {"given": given, "bound": border, "demand": case.friction_at_rest}
     yield Finding(key=_KEYS.get(mode, f"mode.{mode.replace(' ', '_')}"), values=values)
     if case.is_release or not friction_given:
         return
     if not support_named(support).lets_slide:
         force = wall_force(case)
         if force > 0.0:
-            yield Finding(key="mode.walls", values={"given": given, "bound": border, "force": force})
+            yield Finding(key="mode.walls", values=where | {"given": given, "bound": border, "force": force})
     elif border / BORDER < given < border and mode == SLIDES and case.uplifts:
         yield Finding(key="mode.border", level="caution", values={"given": given, "bound": border})
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from rockwobble.models import Case, InitialState, Run
 from rockwobble.models.case import REDUCED_MODELS, TimeStep
-from rockwobble.models.mode import REST, SLIDES, expected_mode, plane_of
+from rockwobble.models.mode import plane_of
 from rockwobble.models.support import MODELLED, RECESS, SUPPORTS
 from rockwobble.multibody import BrokenEngineError, EngineNotInstalledError, available_engines
 from rockwobble.multibody.engines.registry import (
@@ -375,15 +375,14 @@ def models_of(case: Case, run: Run) -> tuple[Run, ...]:
     """The reduced models that a run of a case is compared with; the last is the nearest to it.
 
     Those that its support names. From rest in one plane an engine's base closes with an impact: the planar
-    model takes it by the moment of momentum. What slides, or stays at rest, on flat ground does so by the
+    model takes it by the moment of momentum. What friction lets slide on flat ground is compared with the
     model of that support alone.
     """
     if not run.is_model and run.support in SUPPORTS:
         plane = plane_of(case)
-        mode = expected_mode(case, run.support)
-        if mode in (REST, SLIDES):
+        if run.support.lets_slide and not case.is_release and case.friction < case.friction_of_uplift:
             return run.compared_with[-1:]
-        if plane is not None and not case.is_release:
+        if plane is not None and case.uplifts and not case.is_release:
             return (Run(None, RECESS, plane=plane, restitution="momentum"),)
     return run.compared_with
 

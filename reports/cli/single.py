@@ -313,8 +313,11 @@ def advise(
     with interruptible():
         with user_input():
             from rockwobble.studies.advice.advice import require_judged
+            from rockwobble.studies.advice.slides import usual_support
 
-            case = problem.case()
+            case, given = problem.case(), given_options(context)
+            if "support" not in given:
+                plan = replace(plan, support=usual_support(case, friction_given="friction" in given))
             require_judged(case, plan.support)
             run = _run(case, engine, plan.support, time_step)
             claim_folder(context)
@@ -323,7 +326,7 @@ def advise(
             found = rw.advise(
                 case,
                 run,
-                friction_given="friction" in given_options(context),
+                friction_given="friction" in given,
                 progress=progress,
                 **dataclasses.asdict(plan),
             )

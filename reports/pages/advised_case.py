@@ -17,6 +17,7 @@ from rockwobble.studies.advice.scales import AS_STRONG
 
 from .cases import conditions
 from .table import number
+from .wording import statement
 
 # in words, the range of shaking as strong as that given
 STRONG = f"{100.0 * (1.0 - AS_STRONG[0]):.0f} % weaker to {100.0 * (AS_STRONG[1] - 1.0):.0f} % stronger"
@@ -24,11 +25,16 @@ STRONG = f"{100.0 * (1.0 - AS_STRONG[0]):.0f} % weaker to {100.0 * (AS_STRONG[1]
 _NO_SCALE = 1e9
 
 
+_PLAIN = ("mode.rest", "mode.rocks", "mode.rocks_in_one_plane", "mode.no_friction_given")
+
+
 def opening(found: Advice) -> Iterator[str]:
-    """Yield what a reader must not miss: the vertical component, why nothing moves, limit of a tendon."""
+    """Yield what a reader must not miss: motion, vertical component, why nothing moves, limit of a tendon."""
+    if said := [each for each in found.mode_findings if each.key not in _PLAIN]:
+        yield " ".join(map(statement, said))
     if found.vertical_matters:
         yield vertical_words(found)
-    if not found.moves:
+    if not found.moves and not found.slides:
         yield _at_rest(found)
     yield from _limit_of_tendon(found)
 
@@ -71,14 +77,14 @@ def _at_rest(found: Advice) -> str:
         words += f", {number(found.vertical.uplift_factor)} times with the vertical component of the record"
     # an earlier version stated none
     if demand := motion.get("friction_at_rest", 0.0):
-        slides = f", more than the {number(found.facts['friction'])} given: it slides, which the models do "
-        slides = f"{slides}not know" if found.slides_at_rest else ""
-        words = f"At rest the friction demand is {number(demand)}{slides}. {words}"
+        words = f"At rest the friction demand is {number(demand)}. {words}"
     return f"{words}."
 
 
 def problem_lines(found: Advice) -> Iterator[str]:
     """Yield what was asked: cylinder or frame, ground motion or release, support, and what is not usual."""
+    if found.moves:
+        yield from (statement(each) for each in found.mode_findings if each.key in _PLAIN)
     facts, cylinder = found.facts, found.cylinder
     if frame := facts["cylinder"] if "columns" in facts["cylinder"] else None:
         columns = f"{frame['columns']} columns" if frame["columns"] > 1 else "One column"

@@ -36,7 +36,7 @@ from .diagnostics import code_counts, remarks
 from .page import Page
 from .sentences import fragment
 from .table import Row, enumeration
-from .wording import lines_of, sentence, statement
+from .wording import lines_of, sentence, statement, words
 
 # up to so many cases each has a part of the report of its own
 SINGLY = 3
@@ -112,12 +112,13 @@ def _case(view: CaseView, found: Comparison, *, many: bool) -> dict[str, object]
     }
 
 
-_HEADLINE = ("comparison.agree", "comparison.agree_to_end", "comparison.none")
+_MODES = tuple(f"mode.{name}" for name in words()["mode"])
+_HEADLINE = (*_MODES, "comparison.agree", "comparison.agree_to_end", "comparison.none")
 _SUPPORTS = ("comparison.on_guide", "comparison.on_flat", "comparison.on_walls")
 
 
 def headline(findings: Sequence[Finding]) -> str:
-    """How long runs of each support follow their own model."""
+    """Which motion it is, and how long runs of each support follow their own model."""
     return " ".join(statement(each) for each in findings if each.key in _HEADLINE)
 
 

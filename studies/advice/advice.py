@@ -13,6 +13,7 @@ import pandas as pd
 
 from rockwobble import reduced
 from rockwobble.compare.metrics.contrast import pairs_of
+from rockwobble.compare.metrics.mode import mode_findings
 from rockwobble.compare.metrics.pair import beyond_yield, overturned, tolerance_of
 from rockwobble.compare.runs.choice import require_runnable
 from rockwobble.compare.runs.execution import Job, job_fingerprint, simulate_run
@@ -33,7 +34,8 @@ from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL, TERMS
 from rockwobble.models.cylinder import WobblingFrame, cylinder_of
 from rockwobble.models.doubts import doubts_of_cases
-from rockwobble.models.finding import Grade
+from rockwobble.models.finding import Finding, Findings, Grade
+from rockwobble.models.mode import SLIDES
 from rockwobble.models.plain_json import plain
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.support import RECESS, support_named
@@ -77,6 +79,7 @@ from .members import (
     without_vertical,
 )
 from .scales import AS_STRONG, held_by, planar_runs, scan_as_strong, scan_scales
+from .slides import slide_findings, slide_rows, usual_support
 from .trust import (
     BAND_STEP,
     Trust,
@@ -126,6 +129,9 @@ class Response(TypedDict):
     """
 
     outcome: str
+    mode: str
+    displacement: float  # of the base centre over the ground, largest [m]
+    residual_displacement: float  # at the end [m]
     diagnostics: list[str]
     uplift_time: float
     peak_tilt: float
@@ -216,6 +222,31 @@ class Advice(Results, kind=KIND):
     def moves(self) -> bool:
         """Whether the cylinder ever tilts."""
         return _moves(self.response["outcome"], self.response["uplift_time"])
+
+    @property
+    def slides(self) -> bool:
+        """Whether it slides on flat ground and does nothing else."""
+        return len(self.tables.get("slides", ())) > 0
+
+    @property
+    def mode_findings(self) -> Findings:
+        """Which motion it is, and how far it slides."""
+        first = [
+            Finding(
+                key=each["key"],
+                level=each["level"],
+                values={name: part["value"] for name, part in each["values"].items()},
+            )
+            for each in self.facts.get("mode", ())  # an earlier version stated none
+        ]
+        response, facts = self.response, self.facts
+        if self.slides:
+            moved = response["displacement"], response["residual_displacement"]
+            first += slide_findings(self.tables["slides"], *moved, source=facts["records"], gap=facts["gap"])
+        elif facts["friction"] is None and facts["motion"] is not None:
+            bound = self.cylinder.tan_alpha
+            first.append(Finding(key="mode.no_friction_given", values={"bound": bound}))
+        return Findings(first)
 
     @property
     def slides_at_rest(self) -> bool:
@@ -327,6 +358,8 @@ class Advice(Results, kind=KIND):
         tendon = facts.get("tendon")  # none in what an earlier version saved
         if response["outcome"] in NO_PEAK:
             return {"trace": "not satisfied"}
+        if self.slides:
+            return {}
         if not self.moves:
             return {"friction": "not satisfied"} if self.slides_at_rest else {}
         shaken, friction = facts["motion"] is not None, facts["friction"]
@@ -383,6 +416,8 @@ class Advice(Results, kind=KIND):
             return f"no advice, the {model} failed"
         if self.response["outcome"] in NO_PEAK:
             return f"no advice, the {model} is undecided: it stays by its balance"
+        if self.slides:
+            return f"it slides up to {self.response['displacement']:.3g} m and cannot uplift"
         if self.slides_at_rest:
             return f"the cylinder does not uplift, it slides; {USE['not satisfied'].format(model)}"
         if not self.moves:
@@ -443,6 +478,7 @@ def advise(
     copies: int = 100,
     perturbation: float = 0.01,
     seed: int = 1,
+    gap: float | None = None,
     mass: float | None = None,
     friction_given: bool = True,
     progress: ProgressCallback | None = None,
@@ -456,7 +492,8 @@ def advise(
     run : Run, optional
         Engine that verifies the prediction; without one it stays unverified.
     support : {"recess", "flat", "ring"}, optional
-        That is built. Default: that of the run, else "recess".
+        That is built. Default: that of the run, else "flat" for what slides by the friction given, else
+        "recess".
     copies : int, optional
         Number of perturbed copies.
     perturbation : float, optional
@@ -464,6 +501,8 @@ def advise(
         of the ground motion.
     seed : int, optional
         Seed of the perturbations.
+    gap : float, optional
+        Distance to a neighbour on flat ground [m]: how often a slide uses it up.
     mass : float, optional
         Mass of the cylinder, or of one column without a slab [t]: forces in kN and moments in kNm.
     friction_given : bool, optional
@@ -490,12 +529,18 @@ def advise(
     ('trace', 'not tested')
     """
     plan = AdvicePlan(
-        support=support or (RECESS if run is None else run.support),
+        support=support
+        or (usual_support(case, friction_given=friction_given) if run is None else run.support),
         copies=copies,
         perturbation=perturbation,
         seed=seed,
+        gap=gap,
         mass=mass,
     )
+    if gap is not None and not support_named(plan.support).lets_slide:
+        raise ValueError(
+            f"a gap is for a slide on flat ground, got {gap:g} m with support {str(plan.support)!r}"
+        )
     require_judged(case, plan.support)
     if run is not None:
         if run.support != plan.support:
@@ -522,11 +567,16 @@ def advise(
             groups[COPIES] = plan.perturbed(case)
             perturbed = [simulate_run(each, model, sample_step=DEMAND_STEP) for each in groups[COPIES]]
             # the other model has no anchor; and where the base never opens, chatter takes it minutes
-            if not case.anchor and trace.peak_tilt > CLOSED_TILT * case.cylinder.alpha:
+            stays = case.is_release or case.friction >= case.friction_of_uplift  # on flat ground, too
+            if stays and not case.anchor and trace.peak_tilt > CLOSED_TILT * case.cylinder.alpha:
                 others = [simulate_run(each, other, sample_step=BAND_STEP) for each in groups[COPIES]]
         rows = [*member_rows(COPIES, perturbed), *member_rows(OTHER, others)]
     with stage("other records as strong, planar analysis and the vertical component"):
         records, source = ({}, "") if trace.outcome in NO_PEAK else other_records(case)
+        slides = trace.mode == SLIDES
+        slid = slide_rows({COPIES: plan.perturbed(case), **records} if slides else {}, model)
+        if slides:  # nothing of it uplifts
+            records = {}
         groups |= records
         for name, cases in records.items():
             rows += run_rows(name, cases, model)
@@ -539,8 +589,9 @@ def advise(
     with stage("weaker shaking by the same records"):
         weaker = weaker_rows(case, groups, model)
     with stage("other scales of the ground motion"):
-        scales, lowest = scan_scales(case, model.support)
-        as_strong = scan_as_strong(case, model.support, trace.peak_tilt)
+        scaled = dataclasses.replace(case, motion=None, duration=case.length) if slides else case
+        scales, lowest = scan_scales(scaled, model.support)
+        as_strong = scan_as_strong(scaled, model.support, trace.peak_tilt)
     prediction, verification, engine = model_prediction(case, trace, run), None, None
     if run is not None:
         with stage(str(run)):
@@ -559,6 +610,7 @@ def advise(
     )
     tables = {
         "members": members,
+        **({"slides": slid} if slides else {}),
         "band": band,
         "weaker": pd.DataFrame(weaker, columns=None if weaker else list(members.columns)),
         "scales": scales,
@@ -582,6 +634,8 @@ def advise(
         "other_support": None if form is None else ratios_of(form),
         "vertical": dataclasses.asdict(vertical),
         "records": source,
+        "gap": plan.gap,
+        "mode": [each.to_json() for each in mode_findings(case, plan.support, friction_given=friction_given)],
         "mass": plan.mass,
         "options": None,
         "doubts": doubts_of_cases([case], plan.mass),
@@ -698,6 +752,9 @@ def _response(trace: Trace) -> Response:
     own = demands_of(trace)
     return {
         "outcome": trace.outcome,
+        "mode": trace.mode,
+        "displacement": trace.peak_displacement,
+        "residual_displacement": trace.residual_displacement,
         "diagnostics": [fact.code for fact in trace.facts],
         "uplift_time": trace.uplift_time,
         "peak_tilt": trace.peak_tilt / trace.case.cylinder.alpha,

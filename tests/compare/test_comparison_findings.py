@@ -50,13 +50,13 @@ def row(agreement: float = 20.0, predicted: float = 18.0, **values: Any) -> Any:
     """A row of a summary, under shaking: the reference uplifts at 1.7 s."""
     common = {"case": "El Centro", "run": "mujoco recess", "engine": "mujoco", "support": "recess"}
     ended = {"outcome": "stands", "reference_outcome": "stands", "left_tolerance": True, "divergence": ""}
-    common |= {"mode": "rocks", "reference_mode": "rocks"}
     pass_ = {"predicted_by": "pass", "closest_pass": 3e-3, "tolerance": 0.01, "whole_rms": math.nan}
     times = {
         "reference_uplift_time": 1.7,
         "within_tolerance_until": agreement + 1.7,
         "predicted_until": predicted + 1.7,
     }
+    common |= {"mode": "rocks", "reference_mode": "rocks"}
     return SimpleNamespace(**common | MODEL | ended | pass_ | times | NO_VERDICT | values)
 
 
@@ -71,7 +71,7 @@ def value(finding: Any, name: str) -> Any:
 def found(*rows: Any, **traces: Any) -> dict[str, Any]:
     """Findings on a case by key."""
     causes = [cause(each, LENGTH) if each.left_tolerance else "" for each in rows]
-    case: Any = SimpleNamespace(length=LENGTH, cylinder=None)
+    case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940(), duration=LENGTH)
     return {each.key.partition(".")[2]: each for each in case_findings(case, table(*rows), traces, causes)}
 
 
@@ -126,7 +126,8 @@ def test_the_support_divides_only_what_its_models_tell_apart(monkeypatch, moved_
     assert causes[1] != "support"
     assert (causes[0] == "support") == of_support
     keys = [each.key for each in comparison.findings()]
-    assert keys[0] == "comparison.agree"
+    assert keys[0].startswith("mode.")
+    assert keys[1] == "comparison.agree"
     assert f"comparison.{causes[0]}" in keys
 
 
@@ -149,6 +150,7 @@ def test_agreement_is_of_the_runs_of_a_support_and_their_own_model():
 
 def test_runs_that_fail_rest_or_end_before_their_peak_are_named():
     trace = {"outcome": "stands", "peak_time": 12.5, "time": [0.0, 12.0], "mode": "rocks"}
+    trace["run"] = SimpleNamespace(is_model=True)
     keys = found(row(), late=SimpleNamespace(**trace), lost=SimpleNamespace(**trace | {"outcome": "failed"}))
     assert value(keys["late_peak"], "names") == ("late", "lost")
     assert value(keys["failed"], "name") == "lost"

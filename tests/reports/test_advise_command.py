@@ -292,7 +292,6 @@ def test_what_slides_at_rest_is_not_said_to_stay_there(found):
         assert ("stays at rest" in given.verdict) == (not slides)
         words = " ".join(page_of(given).markdown().split())
         assert "At rest the friction demand is 0.0859" in words
-        assert ("more than the 0.05 given: it slides" in words) == slides
         assert ("0.05 is below the demand at rest, 0.0859: it slides" in words) == slides
     del motion["friction_at_rest"]  # of an earlier version
     assert changed(still, friction=0.05).verdict == "the cylinder stays at rest"
@@ -326,7 +325,7 @@ def test_the_case_and_its_assumptions_are_stated_as_they_were_asked(found):
         with_columns(found, 3), rolling_resistance=0.012, friction=None, support="flat", mass=45.0
     )
     lines = list(problem_lines(asked))
-    assert lines[0] == "3 columns under a slab of 0.5 times their mass:"
+    assert "3 columns under a slab of 0.5 times their mass:" in lines
     assert "Flat ground, friction not given, rolling resistance 0.012 m." in lines
     assert weight_words(asked).startswith("weight of one column with its share of the slab, a mass of 67.5 t")
     assert weight_words(found) == "weight of the cylinder"

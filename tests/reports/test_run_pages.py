@@ -56,8 +56,9 @@ def swept() -> dict[str, Page]:
 def test_a_run_says_what_its_method_gives_and_no_more():
     shaken = rw.Case(PIER, rw.el_centro_1940(), duration=15.0)
     page = page_of_run(shaken, rw.Run(None, "recess"))
-    title, opening = page.markdown().split("\n\n")[:2]
+    title, mode, opening = page.markdown().split("\n\n")[:3]
     assert title.endswith(": stands")
+    assert "rocks and wobbles" in mode
     assert "0.2471 α = 2.7950 deg" in opening
     said = facts(page)
     assert said["uplift"] == "2.0885 s towards 121.56 deg"
@@ -79,7 +80,7 @@ def test_a_model_at_rest_says_where_its_base_slides():
         page = page_of_run(rw.Case(PIER, weak, friction=friction, duration=15.0), rw.Run(None, "recess"))
         assert facts(page)["friction demand"] == "0.086"
         assert "has not uplifted" in page.markdown()
-        assert ("It slides: the friction demand at rest is 0.0859, and 0.05" in page.markdown()) == slides
+        assert ("the walls stop the slide with up to 0.0359 weights" in page.markdown()) == slides
 
 
 def test_a_planar_run_says_in_which_plane_and_with_what_loss():

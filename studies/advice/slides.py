@@ -1,0 +1,78 @@
+"""Slide of a case: how far, over its perturbed copies and over other records as strong."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from rockwobble.compare.metrics.mode import slide_finding
+from rockwobble.compare.metrics.statistics import share_interval
+from rockwobble.compare.runs.execution import simulate_run
+from rockwobble.models import Case, Run
+from rockwobble.models.finding import Finding, Value
+from rockwobble.models.frames import pd
+from rockwobble.models.support import FLAT, RECESS
+
+from .grades import grade_chance
+from .members import ACCELERATION, COPIES
+
+_COLUMNS = ["group", "member", "displacement", "residual_displacement"]
+
+
+def slide_rows(groups: Mapping[str, Sequence[Case]], model: Run) -> pd.DataFrame:
+    """Peak and residual displacement [m] of each case of each group, by the sliding model."""
+    rows = [
+        (name, case.name, trace.peak_displacement, trace.residual_displacement)
+        for name, cases in groups.items()
+        for case in cases
+        for trace in [simulate_run(case, model)]
+    ]
+    return pd.DataFrame(rows, columns=_COLUMNS)
+
+
+def slide_findings(
+    rows: pd.DataFrame, peak: float, residual: float, *, source: str, gap: float | None
+) -> Iterator[Finding]:
+    """Findings on a slide: as given with the interval of its copies, each other group, and a gap [m].
+
+    Parameters
+    ----------
+    rows : DataFrame
+        Of `slide_rows`.
+    peak, residual : float
+        Displacements of the case as given [m].
+    source : {"p695", "synthetic"}
+        Of the other records.
+    gap : float, optional
+        Distance to a neighbour [m].
+    """
+    moved = rows[["displacement", "residual_displacement"]]
+    copies = moved[rows["group"] == COPIES].dropna()
+    yield slide_finding(peak, residual, copies.to_numpy().tolist())
+    kind = "measured records" if source == "p695" else "synthetic motions"
+    for group, members in rows.groupby("group", sort=False):
+        runs = members.dropna()
+        name = f"{len(runs)} copies"
+        if group != COPIES:
+            name = f"{len(runs)} {kind}, same {'PGA' if group == ACCELERATION else 'PGV'}"
+            most, end = runs[["displacement", "residual_displacement"]].quantile(0.95, interpolation="higher")
+            values: dict[str, Value] = {
+                "name": name,
+                "displacement_most": float(most),
+                "displacement_end": float(end),
+            }
+            yield Finding(key="mode.slide_group", values=values, runs=str(group))
+        if gap is not None and len(runs):
+            yield _gap(name, int((runs["displacement"] > gap).sum()), len(runs), gap)
+
+
+def _gap(name: str, used: int, runs: int, gap: float) -> Finding:
+    interval = share_interval(used, runs)
+    share = (used / runs, interval.low, interval.high)
+    values: dict[str, Value] = {"name": name, "length": gap, "share": share}
+    return Finding(key="mode.gap", level=grade_chance(share[0]), values=values)
+
+
+def usual_support(case: Case, *, friction_given: bool) -> str:
+    """Support of an advice that names none: flat ground for what friction does not hold, else a recess."""
+    alone = case.tendon is None and case.cylinder.slab_mass_ratio == 0.0 and not case.is_release
+    return FLAT if friction_given and alone and case.friction < case.friction_of_uplift else RECESS

@@ -1,0 +1,46 @@
+"""An advice on what slides: the mode first, how far, and a gap."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import rockwobble as rw
+from rockwobble import reduced
+
+CASK = rw.Cylinder(semidiagonal=3.0, tan_alpha=0.5)
+CASE = rw.Case(CASK, rw.el_centro_1940().scaled(2.5), duration=8.0, friction=0.3)
+
+
+def test_advice_on_a_slide_says_how_far_and_uses_up_a_gap() -> None:
+    found = rw.advise(CASE, copies=20, gap=0.1)
+    first, slide, *others = found.mode_findings
+    trace = reduced.simulate(CASE, support="flat")
+    assert (found.facts["support"], first.key, found.grades) == ("flat", "mode.slides", {})
+    peak, low, high = slide.values["displacement"]
+    assert peak == trace.peak_displacement
+    assert low < peak < high
+    assert slide.values["displacement_end"][0] == trace.residual_displacement
+    shares = [each.values["share"][0] for each in others if each.key == "mode.gap"]
+    rows = found.tables["slides"].groupby("group", sort=False)["displacement"]
+    assert shares == [(moved > 0.1).mean() for _, moved in rows]
+    assert not len(found.groups)
+
+
+def test_walls_stop_a_slide_with_what_friction_does_not_take() -> None:
+    found = rw.advise(CASE, copies=20, support="recess")
+    first, walls = found.mode_findings
+    assert (first.key, walls.key) == ("mode.rocks", "mode.walls")
+    assert walls.values["force"] == pytest.approx(0.5 - 0.3)  # until it uplifts
+    with pytest.raises(ValueError, match="gap"):
+        rw.advise(CASE, copies=20, support="recess", gap=0.1)
+
+
+def test_friction_near_the_border_and_friction_unknown_are_said() -> None:
+    near = rw.Case(CASK, CASE.motion, duration=8.0, friction=0.46)
+    assert [each.key for each in rw.advise(near, copies=20).mode_findings][1] == "mode.border"
+    unknown = rw.advise(rw.Case(CASK, CASE.motion, duration=3.0), copies=20, friction_given=False)
+    assert unknown.mode_findings[-1].key == "mode.no_friction_given"
+    assert unknown.mode_findings[-1].values["bound"] == 0.5
+    assert math.isnan(unknown.mode_findings[0].values["given"])
