@@ -39,8 +39,6 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "rolling_loss": ("", "rolling resistance took of the energy of the motion, besides"),
         "undecided": ("", "it stays by its balance: rounding decides whether it falls or turns back"),
         "solver": ("steps", "the solver had not converged in some of the steps looked at"),
-        "mode": ("", "another mode of motion than the mechanics lets the case have"),
-        "unresolved_slide": ("", "the displacement is off that of Coulomb's law, over its peak"),
         "early_uplift": ("", "the base opened before the load was at its rim"),
         "unresolved_pass": ("passes", "passes are closer to upright than contact resolves"),
         "settled": ("alpha", "error that the time step leaves, by extrapolation"),
@@ -49,7 +47,6 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "not_extrapolated": ("", "runs at successive time steps do not agree well enough to extrapolate"),
         "one_column": ("columns", "the engine runs one column, under a slab that only translates"),
         "side": ("", "it passed through upright itself: the side to which it goes on is undetermined"),
-        "spent_spin": ("", "rolling resistance took the spin: passes go on in the sense in which it rolled"),
         "tendon_yield": ("weights", "the tendon would yield: what comes after is not modelled"),
         # what makes a record of the ground improbable
         "large_peak": ("g", "no record has such a peak: is its unit another?"),

@@ -27,7 +27,7 @@ from ._compile import jit, kernel
 from .body import Body
 from .equations import base_inertia, energy, flat_rhs
 from .restoring import TiedBody, tendon_pull
-from .rolling import couple_on, twist_share
+from .rolling import couple, twist_share
 
 # columns of what `derived_quantities` returns
 ROLLING_RATE, ENERGY, FORCE_X, FORCE_Y, FORCE_Z, MOMENT = range(6)
@@ -54,9 +54,7 @@ def contact_force(
     turning = 0.0
     if body.delta > 0.0:
         spin = tau_rate - phi_rate
-        tilting, turning = couple_on(
-            body, theta, omega, phi, spin, tau_rate, theta_acceleration, (ax, ay, az), free_twist
-        )
+        tilting, turning, _ = couple(body, s, c, omega, spin, theta_acceleration, az)
         theta_acceleration += tilting / body.A
         S_rate += twist_share(body, s, c) * turning
     t = s / (1.0 + c)

@@ -10,7 +10,7 @@ from ._compile import kernel
 from .body import Body, body_of
 from .integration.driver import make_driver
 from .integration.progress import spin_momentum
-from .integration.resisted import RESISTED_FLAT, RESISTED_PLANAR, RESISTED_RECESS, STEPPERS
+from .integration.resisted import RESISTED_FLAT, RESISTED_RECESS, STEPPERS
 from .integration.result import Driver, IntegrationResult, Options, Task
 from .integration.stepping import runge_kutta, taylor_series
 from .integration.systems import (
@@ -26,7 +26,6 @@ from .integration.systems import (
 _driver_planar = make_driver(PLANAR, runge_kutta(PLANAR, planar_combine, planar_ratio))
 _driver_recess = make_driver(RECESS, taylor_series())
 _driver_flat = make_driver(FLAT, runge_kutta(FLAT, flat_combine, flat_ratio))
-_driver_resisted_planar = make_driver(RESISTED_PLANAR, STEPPERS["planar"])
 _driver_resisted_recess = make_driver(RESISTED_RECESS, STEPPERS["recess"])
 _driver_resisted_flat = make_driver(RESISTED_FLAT, STEPPERS["flat"])
 
@@ -50,14 +49,8 @@ def integrate_flat(body: Body, options: Options, task: Task) -> IntegrationResul
 
 
 @kernel
-def integrate_resisted_planar(body: Body, options: Options, task: Task) -> IntegrationResult:
-    """Solve the planar model with rolling resistance."""
-    return _driver_resisted_planar(body, options, task)
-
-
-@kernel
 def integrate_resisted_recess(body: Body, options: Options, task: Task) -> IntegrationResult:
-    """Solve the recess model with rolling resistance."""
+    """Solve the recess model, and without spin the planar one, with rolling resistance."""
     return _driver_resisted_recess(body, options, task)
 
 
@@ -77,13 +70,12 @@ INTEGRATORS: dict[str, Driver] = {
     "planar": integrate_planar,
     "recess": integrate_recess,
     "flat": integrate_flat,
-    "resisted planar": integrate_resisted_planar,
+    "resisted planar": integrate_resisted_recess,
     "resisted recess": integrate_resisted_recess,
     "resisted flat": integrate_resisted_flat,
 }
-# variables of a state: with rolling resistance two more, energy lost and side, in the recess the sense of
-# rolling before them (`integration.resisted`)
-SIZES = {"planar": 3, "recess": 4, "flat": 8, "resisted planar": 5, "resisted recess": 7, "resisted flat": 10}
+# variables of a state: with rolling resistance the energy lost behind them (`integration.resisted`)
+SIZES = {"planar": 3, "recess": 4, "flat": 8, "resisted planar": 5, "resisted recess": 5, "resisted flat": 9}
 
 
 def load(model: str) -> None:

@@ -141,7 +141,7 @@ def _trace(
         time=times,
         states=full,
         roll_out=states[:, 6:8] if states.shape[1] >= 8 else np.zeros((len(states), 2)),
-        energy_lost=states[:, -2] if case.rolling_resistance else None,
+        energy_lost=states[:, -1] if case.rolling_resistance else None,
         uplift_time=result.uplift_time,
         extrema=extrema,
         rest_intervals=result.rests,
@@ -190,8 +190,7 @@ def _facts(problem: Problem, result: IntegrationResult) -> Iterator[Diagnostic]:
     yield from _yield(problem, result)
     straight = result.extrema[result.extrema[:, 1] == 0.0, 0]
     if len(straight) and not problem.is_planar():
-        spent = straight[0] == result.spent
-        yield Diagnostic(code="spent_spin" if spent else "side", time=float(straight[0]))
+        yield Diagnostic(code="side", time=float(straight[0]))
 
 
 _DIVISIONS, _ROUNDS = 64, 5  # of the time in which a tendon yields: to 1e-9 of a swing

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rockwobble.models import Case, Trace
+from rockwobble.models.case import MOST_RESISTANCE
 
 from ..runs.execution import simulate_run
 from .mistakes import Mistake
@@ -22,7 +23,7 @@ from .table import Array
 LEAST_LOSS = 5e-3  # of a maximum from swing to swing, that is named
 FEWEST_MAXIMA = 3
 LESS_DIFFERENCE = 0.25  # what is left of the difference of the tilts with the resistance that explains it
-LEAST, MOST = 1e-4, 0.3  # of b, resistances that are tried
+LEAST = 1e-4  # of b, smallest resistance that is tried
 _COARSE, _FINE, _ROUNDS = 17, 7, 4
 ENERGY_LOSS, ROLLING_RESISTANCE = "energy_loss", "rolling_resistance"
 CODES = (ENERGY_LOSS, ROLLING_RESISTANCE)
@@ -116,7 +117,7 @@ def _resistance(motion: Motion, reference: Reference, trace: Trace, case: Case) 
         follows = replace(reference, motion=moved)
         return follows.difference(motion).tilt.size, length, follows
 
-    low, high, count = LEAST * radius, MOST * radius, _COARSE
+    low, high, count = LEAST * radius, MOST_RESISTANCE * radius, _COARSE
     for _ in range(_ROUNDS):
         lengths = np.geomspace(low, high, count).tolist()
         tried = [with_resistance(length) for length in lengths]

@@ -21,7 +21,6 @@ ground the first is the largest, but on flat ground with a loss:
 
 from __future__ import annotations
 
-from math import inf
 from typing import cast
 
 import numpy as np
@@ -53,7 +52,6 @@ from .result import (
 from .stepping import Stepper
 from .systems import System
 
-_STILL_GROUND = (0.0, 0.0, 0.0)
 _FIRST_STEP = 1e-3  # of 1/p, where a run begins in motion
 # a literal 0 has a type of its own, for which its users would be compiled too
 _FIRST_SAMPLE = cast("int", np.int64(0))
@@ -66,8 +64,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
     """Return the compiled time integration of one model by one method."""
     lifted, lift_in, at_beginning, at_rest, stood, moved = make_progress(system, stepper)
     workspace, derivative = stepper.workspace, system.derivative
-    resists, hold, momenta, grows = system.resists, system.hold, system.momenta, system.grows
-    sense = system.sense
+    momenta, creeps, grows = system.momenta, system.creeps, system.grows
 
     @once
     def integrate(body: Body, options: Options, task: Task) -> IntegrationResult:
@@ -82,7 +79,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         uplift = (np.nan, np.nan) if resting else (0.0, initial[2])  # time and direction
         h_next = _FIRST_STEP / body.p
         run = Stage(0.0, initial, initial, h_next, True, resting, initial[0], _FIRST_SAMPLE, 0, COMPLETED)
-        now, index, turned, spent = 0.0, 0, np.nan, np.nan
+        now, index, turned = 0.0, 0, np.nan
         still = still_from(record, time_step)
         end, following, mark = options.duration, False, mark_of(run.y, log)
 
@@ -101,7 +98,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     rises = grows and may_rise_above(body, momenta, run.y, run.peak)
                     if has_turned(log, still) and not rises:
                         break
-                    if resists and hold(body, options.rtol, run.y, _STILL_GROUND, _STILL_GROUND) == inf:
+                    if creeps(body, run.y):
                         break
                     end, following, mark = now + _LONGEST / body.p, True, mark_of(run.y, log)
                     index, jumps = len(record), True
@@ -133,8 +130,6 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     log.extrema.append((turned, turn.tilt, turn.angle, turn.kind))
                 if landing.kind != NO_TURN:
                     log.extrema.append((now, landing.tilt, landing.angle, landing.kind))
-                    if resists and np.isnan(spent) and sense(run.y) != 0.0:
-                        spent = now
                 if options.record_steps and now > begin:
                     log.steps.append((now, *run.y))
                 if run.resting:
@@ -146,8 +141,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         if following:
             followed = turned if status == TURNED else log.rests[-1][0] if run.resting else now
         falls = status == OVERTURNED
-        stuck = resists and hold(body, options.rtol, run.y, _STILL_GROUND, _STILL_GROUND) == inf
-        moves = not run.resting and not stuck
+        moves = not run.resting and not creeps(body, run.y)
         if moves and now >= still and status in (OVERTURNED, COMPLETED, TURNED):
             L = momenta(run.y)[0]
             if is_undecided(body, run.y[0], L, log, still, now, falls, grows):
@@ -165,7 +159,6 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
             status,
             now,
             followed,
-            spent,
             run.peak,
             uplift[0],
             uplift[1],

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from .._compile import inlined, jit
 from ..body import Body
-from ..rolling import PIVOTS
 from .record import Vector, ground
 from .result import MAXIMUM, MINIMUM, OVERTURNED_TILT, State
 from .stepping import Stepper
@@ -73,7 +72,6 @@ class Events(NamedTuple):
 def make_events(system: System, stepper: Stepper) -> Events:
     """Return the search for events in the steps that `stepper` takes."""
     _, restarted, advance, partial, acceleration = stepper
-    placed, resists, let_go = system.placed, system.resists, system.let_go
     is_flat = make_is_flat(system.momenta)
 
     @jit
@@ -161,24 +159,6 @@ def make_events(system: System, stepper: Stepper) -> Events:
                 high, rate_high, slope_high = at, rate, slope
         return 0.0
 
-    @jit
-    def release_in(
-        body: Body, rtol: float, work: NDArray[np.float64], path: object, h: float, a: Vector, slope: Vector
-    ) -> float:
-        """Return the time in a step at which a body that only pivots is let go, or 0; by bisection."""
-        low, high = 0.0, 0.5 * h
-        if not let_go(body, rtol, partial(body, work, path, high)[0], ground(a, slope, high), slope):
-            low, high = high, h
-            if not let_go(body, rtol, partial(body, work, path, high)[0], ground(a, slope, high), slope):
-                return 0.0
-        while high - low > _CLOSE * _CLOSE * h:
-            middle = 0.5 * (low + high)
-            if let_go(body, rtol, partial(body, work, path, middle)[0], ground(a, slope, middle), slope):
-                high = middle
-            else:
-                low = middle
-        return high
-
     @inlined
     def turn_in(
         body: Body, work: NDArray[np.float64], path: object, y: State, h: float, y_new: State
@@ -213,18 +193,8 @@ def make_events(system: System, stepper: Stepper) -> Events:
             if at > 0.0:  # two turning points in one step: it ends between them
                 h, (y_new, _) = at, partial(body, work, path, at)
                 k = restarted(body, y_new, ground(a, slope, at), work)
-        if resists and y[-1] == PIVOTS:
-            at = release_in(body, rtol, work, path, h, a, slope)
-            if at > 0.0:
-                h, (y_new, _) = at, partial(body, work, path, at)
         flat = is_flat(y) and is_flat(y_new)
         turn = turn_in(body, work, path, y, h, y_new)
-        if resists and flat:  # the couple jumps where the tilt turns
-            if y[1] == 0.0 and y_new[1] * y[-1] < 0.0:
-                return Trial(REPEATED, h, _RETRY * h, count, y_new, k, path, NONE, flat)
-            if turn.kind != NO_TURN and turn.tilt > 0.0:
-                h, (y_new, _) = turn.at, partial(body, work, path, turn.at)
-                y_new = placed(body, y_new, turn.tilt, 0.0, y_new[2], 0.0)
         if turn.kind != NO_TURN and not flat and min(turn.tilt, y_new[0]) <= 0.0:
             return Trial(REPEATED, h, _RETRY * h, count, y_new, k, path, turn, flat)
         return Trial(TAKEN, h, h_next, count, y_new, k, path, turn, flat)

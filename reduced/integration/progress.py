@@ -7,7 +7,7 @@ every step.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import hypot
+from math import hypot, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +17,7 @@ from .._compile import inlined, jit
 from ..body import Body
 from ..equations import base_inertia, energy
 from ..restoring import balance, surely_overturns, with_prestress_share
-from ..rolling import PIVOTS, across_inertia, across_rate, rolling_momentum
+from ..rolling import rolling_momentum
 from ..trigonometry import sin_cos
 from .balance import may_rise_above
 from .events import NONE, REPEATED, Turn, make_events
@@ -36,7 +36,7 @@ from .result import (
     write,
 )
 from .stepping import Stepper
-from .systems import System, make_is_flat
+from .systems import System
 from .uplift import excess, nearest_branch, start, start_length, uplift_in
 
 
@@ -50,20 +50,12 @@ def may_sit_down(
     acceleration takes off the restoring moment, to which the couple of rolling resistance adds: it wears the
     motion down where the ground overcomes the weight but not both. With it a twist rate may be left over,
     which near upright stays what it is, as B phi' does: then the bound is the energy with both at that tilt,
-    beyond which the motion cannot rise. The twist is left to the friction of the base that closes: also where
-    the ground would lift what stands, of a motion that sinks there with less than the couple takes on the way
-    up to `rest_tilt` alpha.
+    beyond which the motion cannot rise. The twist is left to the friction of the base that closes.
     """
     limit = rest_tilt * body.alpha
     if theta > 10.0 * limit:  # above the bound, unless az exceeds 9 g
         return False
     standing = energy(body, limit, 0.0, 0.0, 0.0)
-    if body.delta > 0.0 and S != 0.0 and theta < limit and omega <= 0.0:
-        s, c = sin_cos(theta)
-        across = across_rate(body, s, c, L, S)
-        moving = body.A * omega * omega + across_inertia(body, s, c, True) * across * across
-        if moving < 2.0 * body.delta / body.b * standing:
-            return True
     held = (1.0 + a[2] / body.g) * (1.0 + body.delta / body.b)
     share = held - hypot(a[0], a[1]) * body.cos_alpha / (body.g * body.sin_alpha)
     share = with_prestress_share(body, share, 1.0 + body.delta / body.b)
@@ -209,10 +201,9 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     """Return what carries the runs of one model on by one method."""
     _, restarted, _, partial, _ = stepper
     tried, ending_of = make_events(system, stepper)
-    momenta, is_flat = system.momenta, make_is_flat(system.momenta)
+    momenta = system.momenta
     placed: Callable[..., State] = system.placed
-    resists, hold, set_off, stopped = system.resists, system.hold, system.set_off, system.stopped
-    ready, rebound, grows = system.ready, system.rebound, system.grows
+    prepares, ready, grows = system.prepares, system.ready, system.grows
 
     @jit
     def uplift_state(
@@ -240,8 +231,8 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     @inlined
     def bounce(body: Body, y: State, restitution: float) -> State:
         """Return the state after the base met the ground in planar motion: contact changes sides."""
-        turn, ratio = rebound(body, y, restitution)
-        return placed(body, y, 0.0, ratio * abs(y[1]), y[2] + turn, 0.0)
+        turn = -pi if y[2] > 0.0 else pi
+        return placed(body, y, 0.0, restitution * abs(y[1]), y[2] + turn, 0.0)
 
     sample_rest, sample_uplift, sample_step = make_sampling(uplift_state, partial)
 
@@ -279,21 +270,6 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         return Stage(elapsed, lift.y, k, h_next, True, False, peak, sample, step_count, status)
 
     @inlined
-    def is_still(y: State) -> bool:
-        """Return whether a body stands still, tilted."""
-        return bool(y[1] == 0.0 and is_flat(y))
-
-    @inlined
-    def stay(piece: Piece, wait: float, wanted: Wanted, run: Stage) -> Stage:
-        """Carry a body that rolling resistance holds to the end of that time, or of the piece."""
-        elapsed, y, k, h_next, _, resting, peak, sample, step_count, status = run
-        elapsed = min(elapsed + wait, piece.length)
-        later = sample_rest(wanted, sample, time_in(piece, elapsed), y)
-        for i in range(sample, later):
-            wanted[2][i] = True
-        return Stage(elapsed, y, k, h_next, True, resting, peak, later, step_count, status)
-
-    @inlined
     def move(
         body: Body,
         options: Options,
@@ -311,16 +287,10 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         """
         elapsed, y, k, h_next, restart, _, peak, sample, step_count, status = run
         a = ground(piece.a, piece.slope, elapsed)
-        if resists:
-            spun = not is_flat(y)
+        if prepares:
+            before = momenta(y)
             y = ready(body, options.rtol, y, a, piece.slope)
-            restart = restart or (spun and is_flat(y))
-        if resists and (is_still(y) or y[-1] == PIVOTS):
-            wait = hold(body, options.rtol, y, a, piece.slope) if is_still(y) else 0.0
-            if wait > 0.0:
-                return Step(stay(piece, wait, wanted, run), NONE, NONE)
-            y, longest = set_off(body, options.rtol, y, a, piece.slope)
-            h_next, restart = min(h_next, longest), True
+            restart = restart or momenta(y) != before
         if restart:
             k = restarted(body, y, a, work)
         trial = tried(body, options.rtol, y, k, work, h_next, piece.length - elapsed, a, piece.slope)
@@ -357,9 +327,6 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
                 if options.rest_tilt > 0.0:
                     L, S = momenta(y)
                     resting = resting or may_sit_down(body, options.rest_tilt, y[0], y[1], L, S, a)
-                if resists and not resting:
-                    y = stopped(body, options.rtol, y, a, piece.slope)
-                    restart = restart or is_still(y)
         after = Stage(elapsed, y, k, h_next, restart, resting, peak, sample, step_count, status)
         return Step(after, turn, landing)
 

@@ -51,7 +51,6 @@ class IntegrationResult(NamedTuple):
     status: int
     end: float  # time reached [s]; later than the duration only where it overturns after it
     followed_until: float  # time to which it was followed after the duration [s]; NaN if it did not move then
-    spent: float  # first pass of which rolling resistance has left no spin but its sense [s]; NaN if none
     peak: float  # largest tilt, until then [rad]
     uplift_time: float  # first uplift, or 0 for a release [s]; NaN if there is none
     uplift_direction: float  # rolling angle there [rad]

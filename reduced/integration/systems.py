@@ -14,7 +14,7 @@ flat     theta, theta', phi, Lambda, tau, S, X, Y; the rim rolls on the circle a
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import inf, pi, sqrt
+from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -33,36 +33,15 @@ Weights = tuple[float, ...]
 
 
 @jit
-def _never(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> float:
-    return 0.0
-
-
-@jit
-def _in_motion(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> bool:
-    return False
-
-
-@jit
-def _as_it_is(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> tuple[State, float]:
-    return y, inf
-
-
-@jit
 def as_it_was(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> State:
     """Return the state."""
     return y
 
 
 @jit
-def half_turn(body: Body, y: State, restitution: float) -> tuple[float, float]:
-    """Return what an impact of planar motion adds to the rolling angle [rad], and the ratio of the rates."""
-    return (-pi if y[2] > 0.0 else pi), restitution
-
-
-@jit
-def no_sense(y: State) -> float:
-    """Return 0."""
-    return 0.0
+def in_motion(body: Body, y: State) -> bool:
+    """Return False: nothing holds a tilted body."""
+    return False
 
 
 class System(NamedTuple):
@@ -71,21 +50,9 @@ class System(NamedTuple):
     derivative: Callable[[Body, State, Vector], State]  # (body, y, a) -> y'
     momenta: Callable[[State], tuple[float, float]]  # y -> (L or Lambda, S)
     placed: Callable[..., State]  # (body, y, theta, omega, phi, L) -> y with these, and without twist rate
-    resists: bool = False  # against rolling; then those below are asked (`resisted`)
-    hold: Callable[..., float] = (
-        _never  # (body, rtol, y, a, slope) -> for how long it stands still, tilted [s]
-    )
-    # (body, rtol, y, a, slope) -> y that begins to move, its first step
-    set_off: Callable[..., tuple[State, float]] = _as_it_is
-    let_go: Callable[..., bool] = (
-        _in_motion  # (body, rtol, y, a, slope) -> does what only pivots begin to move
-    )
-    stopped: Callable[..., State] = as_it_was  # (body, rtol, y, a, slope) -> y, still where it is held
-    # (body, rtol, y, a, slope) -> y before a step, without spin where that is spent
-    ready: Callable[..., State] = as_it_was
-    # (body, y, restitution) -> what a pass through upright itself adds to phi, ratio of tilt rates
-    rebound: Callable[..., tuple[float, float]] = half_turn
-    sense: Callable[[State], float] = no_sense  # y -> of rolling where the spin is spent, or 0
+    prepares: bool = False  # a state before each step, by what follows
+    ready: Callable[..., State] = as_it_was  # (body, rtol, y, a, slope) -> y before a step
+    creeps: Callable[[Body, State], bool] = in_motion  # is it held, tilted, by rolling resistance?
     grows: bool = False  # over still ground a later maximum of the tilt may be larger than the first
 
 

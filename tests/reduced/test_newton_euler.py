@@ -17,8 +17,8 @@ from rockwobble.models import Case, Cylinder, InitialState, WobblingFrame
 from rockwobble.reduced.body import Body, body_of
 from rockwobble.reduced.equations import energy, flat_rhs, planar_rhs, recess_rhs
 from rockwobble.reduced.forces import contact_force, derived_quantities, top_force
-from rockwobble.reduced.integration.resisted import RESISTED_FLAT, RESISTED_PLANAR, RESISTED_RECESS
-from rockwobble.reduced.rolling import across_inertia, needed_to_stand, pivot, rolling_momentum
+from rockwobble.reduced.integration.resisted import RESISTED_FLAT, RESISTED_RECESS
+from rockwobble.reduced.rolling import creep_rate, rolling_momentum
 
 AGREEMENT = 1e-12  # relative to the terms of each sum; measured 4e-14, and 4e-16 without twist
 DIGITS = 40
@@ -131,6 +131,11 @@ def resisted(given: Sample, share: float) -> Sample:
     """Return it with a length of rolling resistance over the base radius, at both ends in a frame."""
     delta = share * given.body.b
     return given._replace(body=given.body._replace(delta=delta), column=given.column._replace(delta=delta))
+
+
+def creep(given: Sample) -> float:
+    """The rate below which the couple of the models vanishes [rad/s]."""
+    return float(creep_rate(given.body, np.sin(given.theta)))
 
 
 def pressed(motion: Motion) -> Any:
@@ -249,21 +254,23 @@ def test_rolling_resistance(seed: int, recess: bool) -> None:
     body, ground, started = given.body, given.ground, (given.theta, given.omega, given.phi, given.Lambda)
     with mp.workdps(DIGITS):
         state = state_of(given)
-        motion = newton_euler(given.column, state, vector(*ground), recess, given.slab)
+        eps = mp.mpf(creep(given))
+        motion = newton_euler(given.column, state, vector(*ground), recess, given.slab, eps)
         if pressed(motion) <= 0:  # without contact there is no couple
             motion = newton_euler(free.column, state, vector(*ground), recess, given.slab)
             assert pressed(motion) <= 0
         Lambda_rate, S_rate = momenta_rates(given, state, motion)
         scale = scales_of(given, state)
         rolling = mp.sqrt(state.theta_rate**2 + (mp.sin(state.theta) * state.psi_rate) ** 2)
-        power = body.delta * max(pressed(motion), 0) * rolling / (1 + 2 * given.slab.share)
+        power = body.delta * max(pressed(motion), 0) * rolling**2 / mp.sqrt(rolling**2 + eps**2)
+        power /= 1 + 2 * given.slab.share
         per_power = body.delta * scale.force * rolling
         if recess:
-            found = RESISTED_RECESS.derivative(body, (*started, 0.0, 0.0, 0.0), ground)
+            found = RESISTED_RECESS.derivative(body, (*started, 0.0), ground)
             expected = (motion.theta, Lambda_rate, power)
-            assert_close((found[1], found[3], found[5]), expected, (scale.theta, scale.Lambda, per_power))
+            assert_close((found[1], found[3], found[4]), expected, (scale.theta, scale.Lambda, per_power))
         else:
-            found = RESISTED_FLAT.derivative(body, (*started, 0.3, given.S, 0.0, 0.0, 0.0, 0.0), ground)
+            found = RESISTED_FLAT.derivative(body, (*started, 0.3, given.S, 0.0, 0.0, 0.0), ground)
             expected = (motion.theta, Lambda_rate, S_rate, power)
             assert_close(
                 (found[1], found[3], found[5], found[8]),
@@ -283,32 +290,14 @@ def test_rolling_resistance_in_a_plane(seed: int, side: float) -> None:
     omega, ground = 0.5 * side * abs(given.omega), (0.3 * given.ground[0], 0.0, 0.3 * given.ground[2])
     with mp.workdps(DIGITS):
         state = State(mp.mpf(given.theta), mp.mpf(omega), mp.mpf(0), mp.mpf(0), mp.mpf(0))
-        motion = newton_euler(given.column, state, vector(*ground), True, given.slab)
+        eps = mp.mpf(creep(given))
+        motion = newton_euler(given.column, state, vector(*ground), True, given.slab, eps)
         assert pressed(motion) > 0
-        found = RESISTED_PLANAR.derivative(body, (given.theta, omega, 0.0, 0.0, side), ground)
-        power = body.delta * pressed(motion) * abs(state.theta_rate) / (1 + 2 * given.slab.share)
+        found = RESISTED_RECESS.derivative(body, (given.theta, omega, 0.0, 0.0, 0.0), ground)
+        power = body.delta * pressed(motion) * omega**2 / mp.sqrt(omega**2 + eps**2)
+        power /= 1 + 2 * given.slab.share
         scale = scales_of(given, state)
-        assert_close((found[1], found[3]), (motion.theta, power), (scale.theta, power))
-
-
-@pytest.mark.parametrize("seed", range(170, 178))
-def test_what_holds_a_body_that_pivots(seed: int) -> None:
-    """Without the couple it tilts and rolls away as the couple would have to hold it."""
-    given = sample(seed, twisting=True)
-    body, s, c = given.body, np.sin(given.theta), np.cos(given.theta)
-    rate = float(np.sqrt(body.g / body.h))
-    with mp.workdps(DIGITS):
-        state = State(mp.mpf(given.theta), mp.mpf(0), mp.mpf(given.phi), mp.mpf(rate), mp.mpf(0))
-        kinetic = kinetic_energy(given.column, state, given.slab.share) / (1 + 2 * given.slab.share)
-        motion = newton_euler(given.column, state, vector(*given.ground), False, given.slab)
-        inertia = pivot(body, s, c)[0]
-        assert_close((inertia,), (2 * kinetic / state.phi_rate**2,), (body.A,))
-        vertical = body.g + given.ground[2]
-        found = needed_to_stand(body, given.theta, given.phi, rate, vertical, given.ground, True)
-        across = -across_inertia(body, s, c, True) * mp.sin(state.theta) * motion.psi
-        size = body.A * scales_of(given, state).theta + rate**2 * body.A
-        # the inertia of what rolls and pivots is a quotient of what may nearly cancel
-        assert_close(found, (-body.A * motion.theta, across), (size, 1e3 * size))
+        assert_close((found[1], found[4]), (motion.theta, power), (scale.theta, power))
 
 
 @pytest.mark.parametrize("seed", range(200, 210))

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import dataclasses
+import csv
 import math
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
+from rolling_resistance import TIMES, case_of
 from scipy.integrate import quad
 
 from rockwobble import reduced
@@ -22,13 +24,11 @@ from rockwobble.models import (
     synthetic_motions,
 )
 from rockwobble.reduced.body import Body, body_of
-from rockwobble.reduced.equations import flat_rhs
-from rockwobble.reduced.integration import stiff
-from rockwobble.reduced.integration.resisted import RESISTED_FLAT
-from rockwobble.reduced.integration.result import State
-from rockwobble.reduced.rolling import impact_ratio, momenta_of, needed_to_stand, twist_share
+from rockwobble.reduced.rolling import CREEP, impact_ratio
 
 G = 9.81
+REFERENCE = Path(__file__).parents[1] / "reference" / "rolling_resistance.csv"
+TABLE = list(csv.DictReader(REFERENCE.read_text().splitlines()))
 BODIES = {
     "h = 2b": Cylinder(semidiagonal=math.sqrt(5.0), tan_alpha=0.5),
     "slender": Cylinder(semidiagonal=6.0, tan_alpha=0.1),
@@ -183,8 +183,9 @@ def test_the_error_follows_the_tolerance(model: str) -> None:
         np.abs(reduced.simulate(case, rtol=rtol, **reduced.MODELS[model]).tilt - exact).max()
         for rtol in tolerances
     ]
-    assert max(np.array(errors) / tolerances) < 30.0 * cylinder.alpha  # of five passes
-    assert errors[2] < 3e-8 * cylinder.alpha
+    assert max(np.array(errors) / tolerances) < 100.0 * cylinder.alpha  # of five passes
+    if model == "planar":
+        return  # each turn is a corner of the width of eps, over which no error follows its tolerance
     slope = np.polyfit(np.log(tolerances), np.log(errors), 1)[0]
     assert slope == pytest.approx(1.0, abs=0.2)
 
@@ -210,120 +211,6 @@ def test_the_couple_delays_uplift(plane: float | None, kind: str) -> None:
     jerk = body.h * 2.0 * G * cylinder.tan_alpha / (body.A + body.delta * body.mu * body.b)
     # of the next term, (p t)^2/20
     assert trace.tilt[begin][:5] == pytest.approx(jerk * time**3 / 6.0, rel=2e-3)
-
-
-@pytest.mark.parametrize("support", ["recess", "flat"])
-@pytest.mark.parametrize("share", [0.99, -0.99, 1.01, -1.01])
-def test_a_cylinder_stands_on_its_rim_where_the_couple_holds_it(support: str, share: float) -> None:
-    cylinder = BODIES["h = 2b"]
-    length = 0.01 * cylinder.base_radius
-    # the weight acts at the distance R sin(alpha - theta) from the rim
-    tilt = cylinder.alpha - share * math.asin(length / cylinder.semidiagonal)
-    case = Case(cylinder, initial=InitialState(tilt), duration=3.0, rolling_resistance=length)
-    trace = reduced.simulate(case, support=support)
-    assert bool((trace.tilt == tilt).all()) == (abs(share) < 1.0)
-    if abs(share) < 1.0:
-        assert (trace.outcome, trace.rests) == ("stands", False)
-        assert math.isnan(trace.followed_until)  # it does not move
-        assert np.array_equal(trace.contact_force, np.tile([0.0, 0.0, 1.0], (len(trace.time), 1)))
-        assert not trace.energy_lost.any()
-
-
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-@pytest.mark.parametrize("across", [0.0, 0.5])
-def test_a_standstill_ends_when_the_ground_overcomes_the_couple(sign: float, across: float) -> None:
-    cylinder = BODIES["h = 2b"]
-    length, rate = 0.01 * cylinder.base_radius, 0.02 * G
-    time = np.arange(0.0, 2.0, 0.01)
-    motion = GroundMotion(np.column_stack([sign * rate * time, across * rate * time]), 0.01)
-    release = InitialState(cylinder.alpha)
-    case = Case(cylinder, motion, initial=release, rolling_resistance=length)
-    trace = reduced.simulate(case, sample_step=1e-4)
-    # at alpha the weight has no moment: the inertia force along the lean has R, that across it D/s
-    s, c = math.sin(cylinder.alpha), math.cos(cylinder.alpha)
-    across_arm = cylinder.mass_centre_height + cylinder.base_radius * s / (1.0 + c)
-    freed = length * G / (rate * math.hypot(cylinder.semidiagonal, across * across_arm))
-    moving = trace.time[trace.tilt != cylinder.alpha]
-    assert moving[0] == pytest.approx(freed, abs=2e-3)  # it begins with the cube of the time
-    assert (trace.tilt[-1] - cylinder.alpha) * sign < 0.0
-
-
-def test_motion_in_space_comes_to_a_standstill_too() -> None:
-    """A shove that is too weak for the couple ends on the rim, with its energy accounted for."""
-    cylinder = BODIES["h = 2b"]
-    release = InitialState(cylinder.alpha, tilt_rate=1e-3, rolling_rate=2e-3)
-    case = Case(cylinder, initial=release, duration=4.0, rolling_resistance=0.02 * cylinder.base_radius)
-    trace = reduced.simulate(case, rtol=1e-9)
-    assert (trace.outcome, trace.rests) == ("stands", False)
-    assert trace.tilt_rate[-1] == 0.0 == trace.rolling_rate[-1]
-    assert trace.step_count < 500
-    assert trace.energy + trace.energy_lost == pytest.approx(trace.energy[0], rel=1e-9)  # rtol
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_the_couple_that_holds_leaves_what_pivots(seed: int) -> None:
-    """It keeps theta' = psi' = 0 by the equations of flat ground, and the moment of the ground is D'' a_t."""
-    random = np.random.default_rng(seed)
-    cylinder = [*BODIES.values(), WobblingFrame(BODIES["h = 2b"], 0.7)][seed]
-    body = body_of(cylinder, G, 0.02 * cylinder.base_radius)
-    tilt, phi, rate = random.uniform(0.05, 1.3), random.uniform(0.0, 6.0), random.normal()
-    a = tuple(random.normal(size=3))
-    s, c = math.sin(tilt), math.cos(tilt)
-    Lambda, S = momenta_of(body, s, c, rate, 0.0)
-    _, free, phi_rate, Lambda_rate, twist_rate, S_rate = flat_rhs(body, tilt, 0.0, phi, Lambda, 0.0, S, *a)
-    assert (phi_rate, twist_rate) == pytest.approx((rate, rate), rel=1e-12)  # rounding, as below
-    tilting, turning = needed_to_stand(body, tilt, phi, rate, G + a[2], a, True)
-    assert free + tilting / body.A == pytest.approx(0.0, abs=1e-12 * (abs(free) + G / body.h))
-    Lambda_rate -= s * turning
-    S_rate += twist_share(body, s, c) * turning
-    assert Lambda_rate * S == pytest.approx(S_rate * Lambda, rel=1e-9, abs=1e-12 * abs(S * Lambda))
-    inertia = body.I1 * s * s + body.I2 * c * c + body.mu * (body.b * c - body.h * s) ** 2
-    across = a[1] * math.cos(phi) - a[0] * math.sin(phi)
-    assert S_rate / S * rate * inertia == pytest.approx((body.b * c - body.h * s) * across, rel=1e-9)
-
-
-def test_a_cylinder_pivots_on_a_rim_that_the_couple_holds() -> None:
-    """Steadily over still ground; shaken across by D'' a_t/I_v, until the couple gives way."""
-    cylinder = BODIES["h = 2b"]
-    length, duration = 0.05 * cylinder.base_radius, 3.0
-    tilt = cylinder.alpha - 0.5 * math.asin(length / cylinder.semidiagonal)
-    time = np.arange(0.0, duration, 0.01)
-    push = 0.004 * G * np.sin(2.0 * math.pi * time) * (time < 1.0) * np.array([[0.0], [1.0]])
-    motion = GroundMotion(push.T, 0.01)
-    case = Case(cylinder, motion, initial=InitialState(tilt), duration=duration, rolling_resistance=length)
-    trace = reduced.simulate(case, support="flat", rtol=1e-9)
-    assert (trace.outcome, trace.rests) == ("stands", False)
-    assert (trace.tilt == tilt).all()
-    assert np.allclose(trace.twist, trace.rolling_angle, atol=1e-12)  # rounding
-    body = body_of(cylinder, G)
-    s, c = math.sin(tilt), math.cos(tilt)
-    beside = body.b * c - body.h * s
-    inertia = body.I1 * s * s + body.I2 * c * c + beside * beside
-    turned = trace.rolling_angle
-    across = np.interp(trace.time, time, push[1]) * np.cos(turned)
-    rate = np.concatenate([[0.0], np.cumsum(0.5 * (across[1:] + across[:-1]) * np.diff(trace.time))])
-    # the trapezia of the samples are exact but for the turn of the contact in one
-    assert trace.rolling_rate == pytest.approx(beside / inertia * rate, abs=1e-9)
-    assert abs(turned[-1]) > 1e-4
-    assert not trace.energy_lost.any()
-    stronger = Case(
-        cylinder,
-        motion.scaled(20.0),
-        initial=InitialState(tilt),
-        duration=duration,
-        rolling_resistance=length,
-    )
-    exact = reduced.simulate(stronger, support="flat", rtol=1e-12).tilt
-    assert np.ptp(exact) > 0.1 * cylinder.alpha
-    # samples between those of the ground motion change neither it nor when the couple gives way
-    between = np.linspace(0.0, time[-1], 5 * (len(time) - 1) + 1)
-    samples = np.column_stack([np.interp(between, time, 20.0 * component) for component in push])
-    finer = dataclasses.replace(stronger, motion=GroundMotion(samples, 0.002))
-    again = reduced.simulate(finer, support="flat", rtol=1e-12).tilt
-    assert again == pytest.approx(exact[: len(again)], abs=1e-11)
-    for rtol in (1e-7, 1e-8, 1e-9):
-        error = np.abs(reduced.simulate(stronger, support="flat", rtol=rtol).tilt - exact).max()
-        assert error / cylinder.alpha < 10.0 * rtol  # 3.4 at most, from 1e-5 to 1e-12
 
 
 @pytest.mark.parametrize(("number", "level"), [(54, 2.75), (105, 9.0)])
@@ -354,78 +241,8 @@ def test_releases_on_flat_ground_come_to_an_end(
     case = Case(cylinder, initial=start, duration=20.0 / rate, rolling_resistance=length)
     trace = reduced.simulate(case, support="flat")
     assert trace.outcome == "stands"
-    assert not trace.tilt_rate[-1]
+    assert abs(trace.tilt_rate[-1]) < 2.0 * CREEP * rate
     assert trace.energy + trace.energy_lost == pytest.approx(trace.energy[0], rel=1e-6)  # 1e2 rtol
-
-
-@pytest.mark.parametrize("seed", [35, 61, 68, 71, 78])
-def test_a_couple_as_large_as_the_restoring_one_asks_for_no_million_steps(seed: int) -> None:
-    """Its direction turns with a velocity that it holds near nothing: explicit steps took millions."""
-    random = np.random.default_rng(seed)
-    cylinder = Cylinder(
-        semidiagonal=10.0 ** random.uniform(-1.0, 1.5), tan_alpha=10.0 ** random.uniform(-1.3, 0.1)
-    )
-    peak = G * cylinder.tan_alpha * random.uniform(1.1, 4.0)
-    (motion,) = synthetic_motions(1, peak=peak, seed=seed, duration=8.0)
-    case = Case(cylinder, motion, rolling_resistance=random.uniform(0.1, 0.98) * cylinder.base_radius)
-    trace = reduced.simulate(case, support="flat", rtol=1e-8)
-    assert trace.outcome in ("stands", "overturned")
-    assert trace.step_count < 100_000  # 75,869 at most
-
-
-def rolling(seed: int, speed: float) -> tuple[Body, State]:
-    """Return a body and a state that rolls and tilts about as fast [rad/s]."""
-    random = np.random.default_rng(seed)
-    cylinder = list(BODIES.values())[seed % 4]
-    body = body_of(cylinder, G, random.uniform(0.05, 0.4) * cylinder.base_radius)
-    tilt = random.uniform(0.05, 0.9) * cylinder.alpha
-    s, c = math.sin(tilt), math.cos(tilt)
-    across = speed * random.uniform(0.5, 1.0)
-    Lambda, S = momenta_of(body, s, c, random.normal() * math.sqrt(G / cylinder.semidiagonal), across)
-    return body, (tilt, -speed, random.uniform(0.0, 6.0), Lambda, 0.0, S, 0.0, 0.0, 0.0, 1.0)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(8))
-def test_the_rates_of_a_long_step_are_those_of_the_momenta(seed: int) -> None:
-    """By the law of moments in the angular velocity, and by (18), (19) and the twist."""
-    body, y = rolling(seed, 1e-3)
-    a = tuple(np.random.default_rng(seed).normal(size=3))
-    work = np.zeros((stiff._ROWS, stiff._ALL))
-    stiff.write_rates(body, y, work)
-    assert stiff.state_of(body, work, stiff.START, 1.0) == pytest.approx(y, rel=1e-9, abs=1e-12)
-    stiff.rates_on_flat_ground(body, work, stiff.START, a, stiff.END)
-    wanted = RESISTED_FLAT.derivative(body, y, a)
-    step = 1e-6
-    found = []
-    start = work[stiff.START].copy()
-    for sign in (1.0, -1.0):
-        work[stiff.START] = start + sign * step * work[stiff.END]
-        found.append(np.array(stiff.state_of(body, work, stiff.START, 1.0)))
-    slope = (found[0] - found[1]) / (2.0 * step)
-    size = np.abs(np.array(wanted)).max()
-    assert slope[:9] == pytest.approx(np.array(wanted)[:9], rel=1e-5, abs=1e-8 * size)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(4))
-def test_a_long_step_is_of_fourth_order(seed: int) -> None:
-    body, y = rolling(seed, 0.3)
-    a, slope = (0.3, -0.2, 0.1), (0.5, 0.4, -0.3)
-
-    def after(count: int, length: float = 0.1) -> np.ndarray:
-        work = np.zeros((stiff._ROWS, stiff._ALL))
-        stiff.write_rates(body, y, work)
-        h = length / count
-        for k in range(count):
-            now = tuple(each + rate * k * h for each, rate in zip(a, slope, strict=True))
-            stiff.implicit_step(body, work, h, now, slope)
-            work[stiff.START] = work[stiff.END]
-        return work[stiff.START].copy()
-
-    exact = after(512)
-    errors = [np.abs(after(count) - exact)[:5].max() for count in (8, 16, 32)]
-    assert math.log2(errors[0] / errors[2]) / 2.0 > 3.5, errors
 
 
 def test_a_mirror_image_and_another_size_move_alike() -> None:
@@ -465,3 +282,30 @@ def test_grids_hold_the_peaks_of_runs(model: str) -> None:
 def test_a_length_is_of_a_contact_within_the_base(length: float) -> None:
     with pytest.raises(ValueError, match="rolling_resistance must be"):
         Case(BODIES["h = 2b"], duration=1.0, rolling_resistance=length)
+
+
+@pytest.mark.parametrize(
+    "row", TABLE, ids=lambda row: f"{row['support']}-{row['share']}-{float(row['release']):.2f}"
+)
+def test_the_tilt_is_that_of_the_set_valued_law(row: dict[str, str]) -> None:
+    case = case_of(row)
+    trace = reduced.simulate(case, support=row["support"], rtol=1e-10, sample_step=0.5)
+    exact = np.array([float(row[str(time)] or math.nan) for time in TIMES])[: len(trace.tilt) - 1]
+    error = np.nanmax(np.abs(trace.tilt[1 : len(exact) + 1] - exact)) / case.cylinder.alpha
+    # of what eps adds to each turn and uplift; near passes under shaking amplify it
+    limit = 1e-5 if float(row["share"]) < 0.01 else 1e-4
+    assert error < limit * (10.0 if case.motion is not None else 1.0)
+
+
+@pytest.mark.parametrize("support", ["recess", "flat"])
+@pytest.mark.parametrize("share", [0.9, -0.9, 1.1, -1.1])
+def test_what_the_couple_holds_creeps_and_what_it_does_not_moves(support: str, share: float) -> None:
+    cylinder = BODIES["h = 2b"]
+    length = 0.01 * cylinder.base_radius
+    # the weight acts at the distance R sin(alpha - theta) from the rim
+    tilt = cylinder.alpha - share * math.asin(length / cylinder.semidiagonal)
+    case = Case(cylinder, initial=InitialState(tilt), duration=1.0, rolling_resistance=length)
+    trace = reduced.simulate(case, support=support)
+    # a couple of the share 0.9 of the largest belongs to a rate of 0.9/sqrt(1 - 0.81) eps
+    crept = 2.5 * CREEP * body_of(cylinder, G).p * case.length
+    assert (abs(trace.tilt[-1] - tilt) < crept) == (abs(share) < 1.0)

@@ -54,7 +54,9 @@ def vector(*components: Any) -> Vector:
     return np.array([mp.mpf(component) for component in components], dtype=object)
 
 
-def newton_euler(body: Body, state: State, ground: Vector, recess: bool, slab: Slab = NO_SLAB) -> Motion:
+def newton_euler(
+    body: Body, state: State, ground: Vector, recess: bool, slab: Slab = NO_SLAB, eps: Any = 0
+) -> Motion:
     """Solve for accelerations, contact forces and the moment of the recess of every body by itself.
 
     `body` is a column alone. Its top, the highest point of the rim, does not slip on the slab.
@@ -112,7 +114,7 @@ def newton_euler(body: Body, state: State, ground: Vector, recess: bool, slab: S
         # rolling resistance: delta times the upward force, against the horizontal part of the spin; the slab
         # presses on the top, and the top takes it along
         if body.delta:
-            couple = body.delta * rolling / mp.sqrt(rolling @ rolling)
+            couple = body.delta * rolling / mp.sqrt(rolling @ rolling + eps**2)
             add(at + 3, at + 5, -couple)
             add(at + 3, at + 8, couple)
             add(last + 3, at + 8, -couple if slab.places else 0 * couple)

@@ -32,6 +32,7 @@ SCRIPTS = Path(__file__).parents[2] / "reports" / "pages" / "templates" / "explo
 COUNT, SEED = 40, 11
 STEP = 0.05  # of the samples [s]
 AGREES = 1e-6  # of alpha: what the page may be off while nothing but its own error counts
+AGREES_AT_CORNERS = 2e-5  # the same in a plane with rolling resistance, whose couple turns over with the tilt
 AGREES_IN_PLACE = 1e-4  # of the radius: the rolling angle turns by pi within a pass, at an error of its time
 AGREES_IN_FORCE = 1e-3  # of the weight: the centrifugal force of a pass has its peak there
 PERTURBED = 1e-9  # of gravity: a copy so far off predicts when chance comes in; the page errs by less
@@ -199,8 +200,9 @@ def complaints_of(solved: list[tuple[Problem, Trace, Trace]], runs: list[dict[st
         point = np.column_stack([rows["x"], rows["y"]])
         point += radius * np.column_stack([np.cos(rows["angle"]), np.sin(rows["angle"])])
         force, weight = trace.contact_force[:until], problem.case.gravity
+        corners = problem.support == "planar" and problem.case.rolling_resistance
         off = {
-            "tilt": (apart(rows["tilt"], trace.tilt) / body.alpha, AGREES),
+            "tilt": (apart(rows["tilt"], trace.tilt) / body.alpha, AGREES_AT_CORNERS if corners else AGREES),
             "contact": (np.abs(point - trace.contact_point[:until])[opened] / radius, AGREES_IN_PLACE),
             "normal force": (apart(rows["normal"] / weight, force[:, 2])[opened], AGREES_IN_FORCE),
             "horizontal force": (
@@ -219,7 +221,7 @@ def complaints_of(solved: list[tuple[Problem, Trace, Trace]], runs: list[dict[st
         if (
             until == len(trace.tilt)
             and run["outcome"] == "stands"
-            and float(run["relativePeak"]) != pytest.approx(peak)
+            and float(run["relativePeak"]) != pytest.approx(peak, rel=2e-5 if corners else 1e-6)
         ):
             wrong.append(f"{label}: peak {run['relativePeak']}, not {peak}")
     return wrong

@@ -94,7 +94,7 @@ def test_any_record_will_do(tmp_path: Path, monkeypatch, capsys):
         (["--support", "ring"], "support must be one of recess, flat, got 'ring'"),
         (["--search-step", "inf"], "--search-step must be at least 1e-05, got inf"),
         (["--slab-mass-ratio", "-1"], "--slab-mass-ratio must be at least 0, got -1"),
-        (["--rolling-resistance", "0.3"], "to below the base radius, 0.0497519 m, got 0.3 m"),
+        (["--rolling-resistance", "0.3"], "to 0.1 base radii, 0.00497519 m, got 0.3 m"),
         (["--tan-alpha", "0"], "tan_alpha must be positive"),
         (["--diameter", "1.6"], "--diameter and --height go together"),
         (["--diameter", "1.6", "--height", "9", "--tan-alpha", "0.2"], "stand in place of --tan-alpha"),

@@ -152,7 +152,7 @@ def test_a_slab_is_carried_in_every_cell_and_when_it_is_run_again():
         ({"support": "ring"}, "support must be one of recess, flat, got 'ring'"),
         ({"probes": -1}, "probes must be a whole number, at least 0, got -1"),
         ({"search_step": 0.0}, "search_step must be at least 1e-05, got 0.0"),
-        ({"semidiagonals": [1.0, 9.0], "rolling_resistance": 0.3}, "to below the base radius, 0.0995037 m"),
+        ({"semidiagonals": [1.0, 9.0], "rolling_resistance": 0.3}, "to 0.1 base radii, 0.00995037 m"),
         ({"slab_mass_ratio": 1e300}, "slab_mass_ratio must be"),
     ],
 )

@@ -54,16 +54,18 @@ function energy(o, theta, omega, L, S) {
   return o.A * omega * omega / 2 + spin + twist + o.g * (o.b * s - o.h * v) + tendon;
 }
 
-// What holds a tilted body that stands still: couples on the tilt and along the lean. `still` is g + az or its rate.
-function needed(o, theta, phi, ax, ay, still) {
-  const s = Math.sin(theta), c = Math.cos(theta), ar = ax * Math.cos(phi) + ay * Math.sin(phi), at = ay * Math.cos(phi) - ax * Math.sin(phi);
-  return [still * (o.b * c - o.h * s) + (o.b * s + o.h * c) * ar, -(o.h + o.b * Math.tan(theta / 2)) * at];
+// rate far below which the couple of rolling resistance vanishes; it falls with small tilts, for the sake of uplift
+const creepRate = (o, s) => 1e-6 * o.p * Math.max(1e-6, Math.min(1, s / (1e-6 * o.alpha)));
+
+// whether a tilted body is held, but for that
+function creeps(o, y, flat, slopes) {
+  const s = Math.sin(y[0]);
+  return Math.hypot(y[1], s * ((flat ? slopes[4] : 0) - slopes[2])) < creepRate(o, s);
 }
 
-// -- equations of motion: y' into `out` under the ground acceleration ax, ay, az; `side` is the sign of a tilt rate of
-// motion in one plane, which stays what it was over a step
+// -- equations of motion: y' into `out` under the ground acceleration ax, ay, az
 
-function derivative(o, flat, y, ax, ay, az, side, out) {
+function derivative(o, flat, y, ax, ay, az, out) {
   const theta = y[0], omega = y[1], phi = y[2], L = y[3], S = flat ? y[5] : 0;
   const s2 = Math.sin(theta / 2), c2 = Math.cos(theta / 2), s = 2 * s2 * c2, v = 2 * s2 * s2, c = 1 - v, t = s2 / c2, sec = 1 + t * t;
   const roll = o.E + o.C * t, H = o.J + (2 * o.E + o.C * t) * t, H1 = roll * sec, reach = o.h + o.b * t, rise = o.b * s + o.h * c;
@@ -89,19 +91,8 @@ function derivative(o, flat, y, ax, ay, az, side, out) {
   if (o.delta > 0) {  // a couple of delta N against the rolling of the rim; N has theta'' and theta'' has the couple
     const across = s * (tauRate - phiRate), lift = o.b * c - o.h * s;
     const load = o.delta * o.A * Math.max(0, o.g + az + pull(o, s, c) - o.mu * rise * omega * omega + o.mu * lift * tilting);
-    let first, second;  // on the tilt and along the lean
-    if (across !== 0 || (omega !== 0 && side === 0)) {
-      const speed = Math.hypot(omega, across), share = load / (o.A * speed + o.delta * lift * o.mu * omega);
-      first = -share * omega; second = -share * across;
-    } else if (side !== 0) {
-      first = -side * load / (o.A + o.delta * lift * o.mu * side); second = 0;
-    } else {  // still: it holds, or lags behind the push
-      [first, second] = needed(o, theta, phi, ax, ay, o.g + az);
-      first += o.b * pull(o, s, c);
-      if (at === 0) second = 0;
-      const share = Math.min(1, o.delta * (o.g + az + pull(o, s, c)) / Math.hypot(first, second));
-      first *= share; second *= share;
-    }
+    const share = load / (o.A * Math.hypot(omega, across, creepRate(o, s)) + o.delta * lift * o.mu * omega);
+    const first = -share * omega, second = -share * across;  // on the tilt and along the lean
     tilting += first / o.A;
     lRate -= s * second;
     if (flat) sRate += (s - roll / H) * second;
@@ -174,10 +165,10 @@ const E1 = 71 / 57600, E3 = -71 / 16695, E4 = 71 / 1920, E5 = -17253 / 339200, E
 const [K2, K3, K4, K5, K6, AT] = Array.from({ length: 6 }, () => new Float64Array(8));
 
 // From y with slope k1 over h, from `elapsed` of a piece on; returns the least tilt of all stages.
-function step(o, flat, n, y, k1, h, piece, elapsed, side, out, k7, error) {
+function step(o, flat, n, y, k1, h, piece, elapsed, out, k7, error) {
   const run = (share, k) => {
     const time = elapsed + share * h;
-    derivative(o, flat, AT, piece.x + piece.sx * time, piece.y + piece.sy * time, piece.z + piece.sz * time, side, k);
+    derivative(o, flat, AT, piece.x + piece.sx * time, piece.y + piece.sy * time, piece.z + piece.sz * time, k);
   };
   let lowest = y[0];
   for (let i = 0; i < n; i++) AT[i] = y[i] + h * A21 * k1[i];

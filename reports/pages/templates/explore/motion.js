@@ -8,75 +8,11 @@ const FOLLOWED = 40;  // of 1/p: for so long a motion that goes on when its time
 const BUDGET = 400000;  // steps
 const COLUMNS = ["time", "tilt", "angle", "twist", "x", "y", "outward", "across", "normal"];
 
-// -- rolling resistance: what holds a body that is tilted and still, and what a pass without spin takes
-
-function acrossOf(o, y, flat) {
-  const s = Math.sin(y[0]), t = Math.tan(y[0] / 2), H = o.J + (2 * o.E + o.C * t) * t;
-  const twist = flat ? y[5] * H / (o.J * o.C - o.E * o.E) : 0;
-  return (s - (o.E + o.C * t) / H) * twist - y[3] / (s * H);
-}
-
-function acrossInertia(o, theta, flat) {
-  const s = Math.sin(theta), c = Math.cos(theta), t = Math.tan(theta / 2), beside = o.b * c - o.h * s;
-  if (flat) return (o.J * o.C - o.E * o.E) / (o.I1 * s * s + o.I2 * c * c + o.mu * beside * beside);
-  return o.J + (2 * o.E + o.C * t) * t;
-}
-
-// Excess of the push over the couple, its rate, the push on the tilt and along the lean, and the rates of both.
-function pushOn(o, y, piece, elapsed) {
-  const ax = piece.x + piece.sx * elapsed, ay = piece.y + piece.sy * elapsed, az = piece.z + piece.sz * elapsed;
-  let [tilting, turning] = needed(o, y[0], y[2], ax, ay, o.g + az);
-  const [tilting1, turning1] = needed(o, y[0], y[2], piece.sx, piece.sy, piece.sz);
-  const tendon = pull(o, Math.sin(y[0]), Math.cos(y[0]));
-  tilting += o.b * tendon;
-  const below = (o.h + o.b) * IN_PLANE * (Math.abs(ax) + Math.abs(ay) + o.g * o.b / o.h);
-  if (Math.abs(turning) <= below) turning = 0;
-  const size = Math.hypot(tilting, turning), allowed = o.delta * (o.g + az + tendon);
-  const growth = size ? (tilting * tilting1 + turning * turning1) / size - o.delta * piece.sz : 0;
-  return { excess: size - allowed, growth, tilting, turning, tilting1, turning1, allowed, allowed1: o.delta * piece.sz };
-}
-
-// For how long the couple holds it; the squares of push and couple are parabolas in the time.
-function holdTime(o, y, piece, elapsed) {
-  const { tilting, turning, tilting1, turning1, allowed, allowed1 } = pushOn(o, y, piece, elapsed);
-  const excess = tilting ** 2 + turning ** 2 - allowed ** 2;
-  if (allowed <= 0 || excess > 0) return 0;
-  const half = tilting * tilting1 + turning * turning1 - allowed * allowed1, bend = tilting1 ** 2 + turning1 ** 2 - allowed1 ** 2;
-  const under = half * half - bend * excess;
-  if (under < 0 || (bend <= 0 && half <= 0)) return Infinity;
-  const root = Math.sqrt(under), time = half > 0 ? -excess / (half + root) : (root - half) / bend;
-  return time > 1e-9 / o.p ? time : 0;
-}
-
-// Whether a motion is so slow that what is left of the couple stops it.
-function stops(o, y, piece, elapsed) {
-  const slow = 40 * o.rtol * o.p, limit = 2 * o.A * slow * slow * o.sa * y[0], room = 0.2 * o.rtol * y[0];
-  if (o.A * y[1] * y[1] >= Math.max(limit, room * o.delta * (o.g + pull(o, Math.sin(y[0]), Math.cos(y[0]))))) return false;
-  const across = acrossOf(o, y, false), inertia = acrossInertia(o, y[0], false), kinetic = o.A * y[1] * y[1] + inertia * across * across;
-  const { excess, growth } = pushOn(o, y, piece, elapsed);
-  let time = 1e-6 / o.p;
-  if (kinetic >= limit) time = 2 * Math.sqrt(kinetic * Math.max(o.A, inertia)) / Math.max(-excess, 1e-300);
-  return (kinetic < limit || kinetic < -excess * room) && Math.max(excess, excess + growth * time) < 0;
-}
-
-// Turn of a pass of vanishing spin under the couple, and the ratio of the tilt rates: x = theta' over the speed.
-function limitOfPass(o) {
-  const e = o.delta * o.mu * o.b, parts = 400;
-  let turn = 0, taken = 0;
-  for (let i = 0; i <= parts; i++) {
-    const end = i === 0 || i === parts;
-    let x = Math.cos(Math.PI * i / parts);
-    turn += (end ? 0.5 : 1) / (x * x + (1 - x * x) * (o.J + e * x) / (o.A + e * x));
-    x = 2 * i / parts - 1;
-    taken += (end ? 1 : i % 2 ? 4 : 2) / ((o.A - o.J) * x * x + e * x + o.J);
-  }
-  return [turn * Math.PI / parts, Math.exp(-0.5 * Math.log((o.A + e) / (o.A - e)) - e * taken / (3 * parts))];
-}
-
-// Below this spin, that of a steady wobble of the same energy times a tenth of the tolerance, there is none.
+// Least spin over still ground: that of a steady wobble of the same energy times ten times the tolerance. Rolling resistance
+// takes spin by orders of magnitude in a pass, but never its sense.
 function leastSpin(o, y) {
   const lever = (o.g + o.q) * o.b, level = Math.max(energy(o, y[0], y[1], y[3], 0), 0) / (1.5 * lever);
-  return 0.1 * o.rtol * Math.sqrt(o.J * lever * level) * level;
+  return 10 * o.rtol * Math.sqrt(o.J * lever * level) * level;
 }
 
 // -- rest: too little energy is left to matter, and the ground holds the base
@@ -141,8 +77,8 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
   const y = new Float64Array(8), k = new Float64Array(8), out = new Float64Array(8), kOut = new Float64Array(8);
   const error = new Float64Array(8), part = new Float64Array(8), kPart = new Float64Array(8);
   const run = { outcome: "stands", peak: 0, upliftTime: NaN, endTime: NaN, steps: 0 };
-  let resting = true, side = 0, sense = 0, h = FIRST_STEP / o.p, restart = true, lastMaximum = -1;
-  let now = 0, index = 0, piece = pieceAfter(0), elapsed = 0, nextSample = 0, following = false, end = duration, passLimit = null;
+  let resting = true, h = FIRST_STEP / o.p, restart = true, lastMaximum = -1;
+  let now = 0, index = 0, piece = pieceAfter(0), elapsed = 0, nextSample = 0, following = false, end = duration;
 
   if (release && release.tilt > 0) {
     const s = Math.sin(release.tilt), t = Math.tan(release.tilt / 2);
@@ -150,7 +86,7 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
     y[2] = planar ? (Math.cos(release.azimuth - azimuth) >= 0 ? 0 : Math.PI) : release.azimuth;
     y[3] = planar ? 0 : s * s * (o.J + (2 * o.E + o.C * t) * t) * (release.rate || 0);
     resting = false; run.upliftTime = 0; run.peak = y[0];
-    derivative(o, flat, y, piece.x, piece.y, piece.z, 0, k);
+    derivative(o, flat, y, piece.x, piece.y, piece.z, k);
     if (k[1] < 0) lastMaximum = 0;
   }
 
@@ -161,11 +97,11 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
     if (!sampleStep) return;
     const ax = piece.x + piece.sx * elapsed, ay = piece.y + piece.sy * elapsed, az = piece.z + piece.sz * elapsed, i = count++;
     times[i] = now; tilts[i] = y[0]; angles[i] = resting ? NaN : y[2] + azimuth; twists[i] = y[4]; xs[i] = y[6]; ys[i] = y[7];
-    if (restart && !resting) derivative(o, flat, y, ax, ay, az, 0, k);
+    if (restart && !resting) derivative(o, flat, y, ax, ay, az, k);
     [outwards[i], acrosses[i], normals[i]] = resting ? [Math.hypot(ax, ay), 0, o.g + az + o.q * o.nu / o.gaps] : contactForce(o, flat, y, ax, ay, az, k);
   };
   const isPlanar = (state) => state[3] === 0 && (!flat || state[5] === 0);
-  const partial = (time) => step(o, flat, n, y, k, time, piece, elapsed, side, part, kPart, error);
+  const partial = (time) => step(o, flat, n, y, k, time, piece, elapsed, part, kPart, error);
   // time in a step at which `value` of the state changes its sign from that at `low`
   const crossing = (value, low, high, sign) => {
     let at = (low + high) / 2;
@@ -180,14 +116,14 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
     partial(at);
     return at;
   };
-  const sitDown = () => { y.fill(0, 0, 2); y[3] = y[5] = 0; resting = true; sense = 0; side = 0; };
+  const sitDown = () => { y.fill(0, 0, 2); y[3] = y[5] = 0; resting = true; };
 
   record(); nextSample = 1;
   for (;;) {
     if (now >= end) {
       const grows = flat && o.delta > 0 && energy(o, y[0], y[1], y[3], y[5]) > energy(o, Math.min(run.peak, o.alpha), 0, 0, 0);
       if (resting || (lastMaximum >= stillFrom && !grows)) break;
-      if (o.delta > 0 && !flat && y[1] === 0 && isPlanar(y) && holdTime(o, y, pieceAfter(length), 0) === Infinity) break;
+      if (o.delta > 0 && creeps(o, y, flat, k)) break;
       if (following) { run.outcome = energy(o, y[0], y[1], y[3], flat ? y[5] : 0) < energy(o, Math.min(o.balance, HALF_PI), 0, 0, 0) && y[0] < o.balance ? "stands" : "undecided"; break; }
       following = true; end = now + FOLLOWED / o.p;
       index = length; piece = pieceAfter(index); piece.begin = now; elapsed = 0; restart = true;
@@ -207,38 +143,24 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
         if (Number.isNaN(run.upliftTime)) run.upliftTime = piece.begin + at;
         elapsed = at + time; run.steps++;
         if (y[0] <= 0) { y[0] = y[1] = y[3] = 0; continue; }
-        resting = false; restart = true; h = 0.1 * time; side = 0; lastMaximum = -1;
+        resting = false; restart = true; h = 0.1 * time; lastMaximum = -1;
         run.peak = Math.max(run.peak, y[0]);
         now = Math.min(piece.begin + elapsed, until);
         continue;
       }
       const still = piece.x === 0 && piece.y === 0 && piece.sx === 0 && piece.sy === 0;
-      if (o.delta > 0) {
-        if (!flat) {
-          if (!still) sense = 0;
-          else {
-            if (sense === 0 && y[3]) sense = Math.sign(y[3]);
-            if (y[3] && Math.abs(y[3]) < leastSpin(o, y)) { y[3] = 0; side = Math.sign(y[1]); restart = true; }
-          }
-        }
-        if (y[1] === 0 && isPlanar(y)) {  // still, tilted
-          const wait = holdTime(o, y, piece, elapsed);
-          if (wait > 0) { elapsed = Math.min(elapsed + wait, stop); now = elapsed >= stop ? until : piece.begin + elapsed; restart = true; continue; }
-          const push = pushOn(o, y, piece, elapsed);
-          side = push.turning ? 0 : push.tilting < 0 ? 1 : -1; restart = true;
-          if (push.turning) h = Math.min(h, 1e-6 / o.p);
-        }
+      if (o.delta > 0 && !flat && still && y[3]) {
+        const least = leastSpin(o, y);
+        if (Math.abs(y[3]) < least) { y[3] = Math.sign(y[3]) * least; restart = true; }
       }
-      if (restart) { derivative(o, flat, y, piece.x + piece.sx * elapsed, piece.y + piece.sy * elapsed, piece.z + piece.sz * elapsed, side, k); restart = false; }
+      if (restart) { derivative(o, flat, y, piece.x + piece.sx * elapsed, piece.y + piece.sy * elapsed, piece.z + piece.sz * elapsed, k); restart = false; }
       let size = Math.min(h, stop - elapsed);
       if (stop - elapsed - size < 1e-3 * size) size = stop - elapsed;
-      const lowest = step(o, flat, n, y, k, size, piece, elapsed, side, out, kOut, error);
+      const lowest = step(o, flat, n, y, k, size, piece, elapsed, out, kOut, error);
       run.steps++;
-      if (sense && y[3] && out[3] * sense < 0) out[3] = 0;
       const inPlane = isPlanar(y) && isPlanar(out);
       let ratio = ratioOf(o, flat, y, error, inPlane);
       if (!inPlane && lowest <= 0) ratio = NaN;
-      else if (o.delta > 0 && !inPlane && ratio <= 1) ratio = Math.max(ratio, turnOfCouple(size));
       if (!(ratio <= 1)) {
         h = size * (Number.isNaN(ratio) ? 0.1 : Math.max(0.1, 0.9 * ratio ** -0.2));
         if (h < 1e-15 * Math.max(1, now)) { run.outcome = "undecided"; run.endTime = now; return finish(); }
@@ -247,8 +169,7 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
       const grown = size * Math.min(4, 0.9 * Math.max(ratio, 1e-4) ** -0.2);
       h = size < h ? Math.max(h, grown) : grown;
       let taken = size, landed = false, fell = out[0] >= HALF_PI, turned = 0;
-      if (y[1] * out[1] < 0 || (o.delta > 0 && inPlane && y[1] === 0 && out[1] * side < 0)) {
-        if (y[1] === 0) { h = size / 32; continue; }
+      if (y[1] * out[1] < 0) {
         turned = crossing((state) => state[1], 0, size, Math.sign(y[1]));
         const tilt = part[0];
         if (y[1] > 0 && (!inPlane || tilt > 0)) {
@@ -256,7 +177,6 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
           if (following && !(flat && o.delta > 0) && tilt < HALF_PI) return finish();
         }
         if (tilt >= HALF_PI) fell = true;  // it turns back beyond, within the step
-        else if (o.delta > 0 && inPlane && tilt > 0) { taken = turned; out.set(part); out[1] = 0; fell = false; }
       }
       if (inPlane && out[0] <= 0) {
         landed = true;
@@ -271,13 +191,10 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
       if (fell) { y[0] = HALF_PI; run.outcome = "overturned"; run.peak = HALF_PI; run.endTime = now; if (sampleStep) record(); return finish(); }
       run.peak = Math.max(run.peak, y[0]);
       if (landed) {
-        let turn = y[2] > 0 ? -Math.PI : Math.PI, kept = impact;
-        if (sense) { passLimit ??= limitOfPass(o); turn = sense * passLimit[0]; kept = passLimit[1]; }
-        y[0] = 0; y[1] = kept * Math.abs(y[1]); y[2] += turn; y[3] = 0; side = Math.sign(y[1]);
+        y[0] = 0; y[1] = impact * Math.abs(y[1]); y[2] += y[2] > 0 ? -Math.PI : Math.PI; y[3] = 0;
         if (y[1] === 0) { sitDown(); continue; }
-      } else if (inPlane) side = Math.sign(y[1]); else side = 0;
+      }
       if (sitsDown(o, y, flat, piece.x + piece.sx * elapsed, piece.y + piece.sy * elapsed, piece.z + piece.sz * elapsed)) sitDown();
-      else if (o.delta > 0 && !inPlane && !flat && stops(o, y, piece, elapsed)) { y[1] = y[3] = 0; side = 0; restart = true; }
     }
     now = until;
     if (sampleStep && now >= sampleTime - 1e-9 * sampleStep) { if (now < duration - 1e-9) record(); else if (following) record(); nextSample++; }
@@ -291,17 +208,6 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
     if (now >= end && !following) record();
   }
   return finish();
-
-  // over 1 where a step does not follow the turn of the couple and is too long not to matter
-  function turnOfCouple(size) {
-    const before = acrossOf(o, y, flat), after = acrossOf(o, out, flat), first = y[1] ** 2 + before ** 2, second = out[1] ** 2 + after ** 2;
-    const along = y[1] * out[1] + before * after, loss = o.delta * (o.g + pull(o, Math.sin(y[0]), Math.cos(y[0]))) * size;
-    if (along > 0 && along * along > 0.64 * first * second) {
-      const stable = 2 * Math.sqrt(Math.min(first, second));
-      return loss > 0.1 * o.A * stable ? loss / (acrossInertia(o, out[0], flat) * stable) : 0;
-    }
-    return 2 * loss / (o.A * rtol * (Math.abs(y[1]) + Math.abs(before) + o.p * Math.sqrt(o.sa * y[0])));
-  }
 
   function finish() {
     if (run.outcome !== "overturned") while (count && times[count - 1] > duration * (1 + 1e-12)) count--;
