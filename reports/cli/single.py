@@ -306,7 +306,8 @@ def advise(
 
     Without options: the 1940 El Centro record on R = 6 m, tan alpha = 0.2, in a recess.
 
-    Writes advice.html (one page, works offline), advice.md with advice.svg, and the runs as Parquet.
+    Writes advice.html (one page, works offline) and the runs as Parquet; `report` draws a document, too
+    (advice.md, advice.svg).
 
     Example: rockwobble advise --record-x EW.AT2 --record-y NS.AT2 --friction 0.5
     """
@@ -332,7 +333,7 @@ def advise(
             )
         options_given = stated_options(context, also=[field.name for field in dataclasses.fields(plan)])
         found = replace(found, facts={**found.facts, "options": options_given})
-        show_and_save(found, out, details=details)
+        show_and_save(found, out, details=details, document=False)
     if found.response["outcome"] == "failed":
         raise typer.Exit(FAILED)
 

@@ -274,7 +274,8 @@ def _reason_of_engine(found: Advice) -> str:
         return f"it {_NO_PEAK[verification.outcome]}: {_failure(verification)}"
     # copies part earlier: they are shaken by a little more or less
     until, predicted = _agreed_until(verification), _predicted_until(found)
-    agrees = f"shaken the same, it agrees until {until}, predicted until {predicted}"
+    agrees = f"shaken the same, it agrees until {until}, "
+    agrees += "as predicted" if until == predicted else f"predicted until {predicted}"
     if verification.divergence == "earlier":
         return f"{agrees}: less than half as long"
     if not verification.moves:
@@ -588,11 +589,19 @@ def _tolerance(found: Advice) -> float:
 def _predicted_until(found: Advice) -> str:
     prediction = found.facts["prediction"]
     end = found.response["uplift_time"] + prediction["length"]
-    return f"{number(end, '.4g')} s" if prediction["reason"] else "the end"
+    return f"{number(end, '.4g')} s" if prediction["reason"] else _end(found.verification)
 
 
 def _agreed_until(verification: Verification) -> str:
-    return f"{number(verification.agreed_until, '.4g')} s" if verification.diverged else "the end"
+    until = f"{number(verification.agreed_until, '.4g')} s"
+    return until if verification.diverged else _end(verification)
+
+
+def _end(verification: Verification | None) -> str:
+    """End of the run of an engine, which may be where copies part."""
+    if verification is None or math.isinf(verification.stopped):
+        return "the end"
+    return f"{number(verification.stopped, '.4g')} s, where copies diverge and it ends"
 
 
 def _failure(verification: Verification) -> str:

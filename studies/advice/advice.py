@@ -24,7 +24,6 @@ from rockwobble.compare.storage.results import Results
 from rockwobble.models import (
     CLOSED_TILT,
     Case,
-    GroundMotion,
     RockingBody,
     Run,
     Trace,
@@ -43,7 +42,6 @@ from rockwobble.models.trace import NO_PEAK
 from rockwobble.models.trace_file import motion_facts
 
 from ..plans import AdvicePlan
-from ..spectrum.maps import uplift_factor
 from ..spectrum.parts import SPATIAL
 from .demands import demand_table, demands_of, fall_of, weaker_factors
 from .grades import (
@@ -75,10 +73,11 @@ from .members import (
     ratios_of,
     run_rows,
     top_displacement,
+    uplift_of,
     with_vertical,
     without_vertical,
 )
-from .scales import AS_STRONG, held_by, planar_runs, scan_as_strong, scan_scales
+from .scales import AS_STRONG, planar_runs, scan_as_strong, scan_scales
 from .slides import slide_findings, slide_rows, usual_support
 from .trust import (
     BAND_STEP,
@@ -88,6 +87,7 @@ from .trust import (
     model_prediction,
     spread_from,
     trust_of,
+    trusted_part,
     verify_run,
     with_time_to_fall,
 )
@@ -397,7 +397,8 @@ class Advice(Results, kind=KIND):
             found["intensity"] = "not tested" if self.yields_from <= AS_STRONG[1] else grade
         found["engine"] = "not tested"
         if verification is not None:
-            differs = (verification.outcome == "overturned") != self.overturned or not verification.moves
+            fell = self.overturned and math.isinf(verification.stopped)
+            differs = (verification.outcome == "overturned") != fell or not verification.moves
             found["engine"] = grade_engine(verification.outcome, verification.divergence, differs=differs)
         return found
 
@@ -569,7 +570,8 @@ def advise(
             # the other model has no anchor; and where the base never opens, chatter takes it minutes
             stays = case.is_release or case.friction >= case.friction_of_uplift  # on flat ground, too
             if stays and not case.anchor and trace.peak_tilt > CLOSED_TILT * case.cylinder.alpha:
-                others = [simulate_run(each, other, sample_step=BAND_STEP) for each in groups[COPIES]]
+                few = groups[COPIES][:WEAKER_COUNT]  # of a ratio that no grade rests on
+                others = [simulate_run(each, other, sample_step=BAND_STEP) for each in few]
         rows = [*member_rows(COPIES, perturbed), *member_rows(OTHER, others)]
     with stage("other records as strong, planar analysis and the vertical component"):
         records, source = ({}, "") if trace.outcome in NO_PEAK else other_records(case)
@@ -592,18 +594,23 @@ def advise(
         scaled = dataclasses.replace(case, motion=None, duration=case.length) if slides else case
         scales, lowest = scan_scales(scaled, model.support)
         as_strong = scan_as_strong(scaled, model.support, trace.peak_tilt)
-    prediction, verification, engine = model_prediction(case, trace, run), None, None
+    alpha, band = case.cylinder.alpha, band_of(case, perturbed)
+    data = spread_from(band, trace.peak_tilt / alpha)
+    prediction, verification, engine = None, None, None
     if run is not None:
         with stage(str(run)):
             if moves:
-                verification, prediction, engine = verify_run(case, run, trace)
-    alpha, band = case.cylinder.alpha, band_of(case, perturbed)
+                shorter, reference = trusted_part(case, trace, data)
+                verification, prediction, engine = verify_run(shorter, run, reference)
+                if shorter.length < case.length:
+                    verification = dataclasses.replace(verification, stopped=shorter.length)
+    if prediction is None:
+        prediction = model_prediction(case, trace, run)
     trust = Trust(kind="trace", until=case.length, because="")
     if moves:
         methods = trace.uplift_time + prediction.length if prediction.reason else math.inf
         if verification is not None and verification.outcome != "failed":
             methods = verification.agreed_until if verification.diverged else math.inf
-        data = spread_from(band, trace.peak_tilt / alpha)
         trust = trust_of(methods, data, trace.peak_time, float(trace.time[-1]))
     members = pd.DataFrame(
         rows, columns=None if rows else ["group", "outcome", "peak_tilt", "yields", "member"]
@@ -620,7 +627,9 @@ def advise(
         "trace": _samples(trace, alpha).assign(friction_needed=trace.friction_needed),
         "engine": _samples(engine, alpha),
     }
-    form = pairs_of(others, perturbed).contrast() if others and _differ(group_table(members)) else None
+    form = None
+    if others and _differ(group_table(members)):
+        form = pairs_of(others, perturbed[: len(others)]).contrast()
     facts = {
         **_problem(case),
         "friction": case.friction if friction_given else None,
@@ -659,12 +668,6 @@ def require_judged(case: Case, support: str) -> None:
         raise ValueError(
             f"an advice on a body with {case.anchor} is for support {str(RECESS)!r}, got {support!r}"
         )
-
-
-def _threshold(case: Case, motion: GroundMotion) -> float:
-    """Return the factor on a ground motion at which a case uplifts [-]."""
-    alone = uplift_factor(motion, case.cylinder.tan_alpha, case.gravity, until=case.length)
-    return alone * held_by(case)
 
 
 def _restraint(case: Case) -> dict[str, object] | None:
@@ -731,8 +734,7 @@ def _problem(case: Case) -> dict[str, object]:
         **motion_facts(motion),
         "has_vertical": motion.has_vertical,
         "friction_at_rest": case.friction_at_rest,
-        "uplift_factor": held_by(case)
-        * uplift_factor(motion, cylinder.tan_alpha, case.gravity, until=case.length),
+        "uplift_factor": uplift_of(case),
     }
     return {
         "case": case.name,
@@ -794,9 +796,7 @@ def vertical_effect(
     if record is None:
         record = el_centro_1940(vertical=True)
         source, record, duration = "other", record.scaled(motion.peak / record.peak), None
-    threshold = held_by(case) * uplift_factor(
-        record, case.cylinder.tan_alpha, case.gravity, until=case.length
-    )
+    threshold = uplift_of(case, record)
     about = Vertical(source=source, record=record.name, uplift_factor=threshold)
     if plan is None:
         return about, {}
@@ -818,12 +818,9 @@ def weaker_rows(case: Case, groups: Mapping[str, Sequence[Case]], model: Run) ->
     motion = case.motion
     if motion is None or motion.peak == 0.0:
         return []
-    threshold = held_by(case) * uplift_factor(
-        motion, case.cylinder.tan_alpha, case.gravity, until=case.length
-    )
     return [
         row
-        for factor in weaker_factors(threshold)
+        for factor in weaker_factors(uplift_of(case))
         for name, cases in groups.items()
         for row in run_rows(name, cases[:WEAKER_COUNT], model, factor)
     ]

@@ -37,6 +37,7 @@ from rockwobble.models.records import p695
 from rockwobble.models.trace import NO_PEAK
 
 from ..fragility import intensity
+from ..spectrum.maps import uplift_factor
 from .demands import COVERED, SHARES, UNITS, all_alike, demands_of
 
 Array = NDArray[np.float64]
@@ -51,6 +52,7 @@ BESIDE_THE_PROBLEM = (OTHER, HORIZONTAL)
 # [s] of the samples of demands: of a short motion 99 % of the time at 0.02 s are all but its largest spike,
 # which rounding moves by a fifth; at 0.005 s they are within 2 % of those at 0.002 s
 DEMAND_STEP = 0.005
+_CLOSE = 1e-9  # relative, of an uplift threshold that rounding may pass
 _SEED = 1  # of synthetic ground motions where the records are not installed
 _QUANTILES = {"05": 0.05, "50": 0.5}
 # those of which there are percentiles over the members
@@ -133,7 +135,25 @@ def run_rows(
         trace = simulate_run(scaled(case, factor), model, sample_step=DEMAND_STEP)
         return member_row(group, trace, factor)
 
-    return list(in_threads(row, cases))
+    # what never uplifts is the same at every scale below its own: one run of it is that of all
+    still = [each for each in cases if not each.is_release and uplift_of(each) > factor * (1.0 + _CLOSE)]
+    at_rest = row(still[0]) if still else {}
+    names = {id(each) for each in still}
+    moving = iter(in_threads(row, [each for each in cases if id(each) not in names]))
+    return [at_rest | {"member": each.name} if id(each) in names else next(moving) for each in cases]
+
+
+def held_by(case: Case) -> float:
+    """Return the factor by which a tendon raises the threshold of uplift [-]."""
+    return 1.0 if case.tendon is None else case.tendon.uplift_factor(case.cylinder)
+
+
+def uplift_of(case: Case, motion: GroundMotion | None = None) -> float:
+    """Return the factor on the motion of a case, or on another, at which it uplifts [-]; inf: at none."""
+    motion = motion or case.motion
+    if motion is None:
+        return math.inf
+    return held_by(case) * uplift_factor(motion, case.cylinder.tan_alpha, case.gravity, until=case.length)
 
 
 def scaled(case: Case, factor: float) -> Case:

@@ -20,6 +20,7 @@ from ..spectrum.maps import intensity_unit, uplift_of_series
 from ..spectrum.parts import RTOL, SERIES, SPATIAL, series_options
 from ..spectrum.search import Array, lowest_on_grid, run_searches, search_lowest
 from ..spectrum.study import CHECK_RTOL, CONFIRMING
+from .members import held_by
 
 # twelve scales for each factor of two, from a quarter to sixteen times the record as it is given
 FACTORS: Array = 2.0 ** (np.arange(-24, 49) / 12.0)
@@ -154,11 +155,6 @@ def planar_shares(runs: pd.DataFrame) -> list[dict[str, float]]:
             row |= share.columns(name) | {name: int(which.sum()), f"{name}_share": share.value}
         rows.append(row)
     return rows
-
-
-def held_by(case: Case) -> float:
-    """Return the factor by which a tendon raises the threshold of uplift [-]."""
-    return 1.0 if case.tendon is None else case.tendon.uplift_factor(case.cylinder)
 
 
 def _peaks(case: Case, factors: Array, *, series: str, support: str, rtol: float = RTOL) -> Array:

@@ -70,6 +70,8 @@ class Verification:
         Whether there is such a difference.
     divergence : str
         Whether that was when predicted, as in the summary of a comparison.
+    stopped : float
+        Time at which it was ended [s], see `trusted_part`; inf where it ran as long as the case.
     """
 
     label: str
@@ -82,6 +84,7 @@ class Verification:
     agreed_until: float
     diverged: bool
     divergence: str
+    stopped: float = math.inf
 
 
 def trust_of(methods_until: float, data_until: float, peak_time: float, end: float) -> Trust:
@@ -160,6 +163,17 @@ def model_prediction(case: Case, trace: Trace, run: Run | None) -> Prediction:
         simulate=simulate_run,
         tolerance=tolerance_of(trace),
     )
+
+
+def trusted_part(case: Case, trace: Trace, until: float) -> tuple[Case, Trace]:
+    """Return a case to where its copies have diverged [s], and its run: an engine beyond tests no more.
+
+    A run that overturns is whole.
+    """
+    if trace.outcome == "overturned" or not until < case.length:
+        return case, trace
+    shorter = dataclasses.replace(case, duration=math.ceil(until / SAMPLE_STEP) * SAMPLE_STEP)
+    return shorter, simulate_run(shorter, trace.run)
 
 
 def verify_run(case: Case, run: Run, reference: Trace) -> tuple[Verification, Prediction, Trace]:

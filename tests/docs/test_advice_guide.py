@@ -18,9 +18,10 @@ GUIDE = Path(__file__).parents[2] / "docs" / "guide" / "advice.md"
 def test_the_numbers_of_the_guide_are_those_of_its_command(tmp_path: Path) -> None:
     guide = GUIDE.read_text(encoding="utf-8")
     (command,) = re.findall(r"`rockwobble (advise [^`]*--engine none)`", guide)
-    with pytest.raises(SystemExit) as ended:
-        main([*command.split(), "--out", str(tmp_path / "out")])
-    assert not ended.value.code
+    for arguments in ([*command.split(), "--out", str(tmp_path / "out")], ["report", str(tmp_path / "out")]):
+        with pytest.raises(SystemExit) as ended:
+            main(arguments)
+        assert not ended.value.code
     page = (tmp_path / "out" / "advice.md").read_text(encoding="utf-8")
     (title,) = re.findall(r"^> (.*)$", guide, flags=re.MULTILINE)
     assert page.startswith(f"# {title}\n")

@@ -23,7 +23,7 @@ from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.advice import pictures
 from rockwobble.reports.figures.picture import Line
-from rockwobble.reports.pages import page, stored_page
+from rockwobble.reports.pages import stored_page
 from rockwobble.reports.pages.advice import page_of
 from rockwobble.reports.pages.advised_case import assumptions, opening, problem_lines, weight_words
 from rockwobble.studies import Advice
@@ -95,13 +95,12 @@ def options_of(records: Path, **names: str) -> list[str]:
         ({}, ["--release-tilt-deg", "0", "--duration", "2"], {}),
     ],
 )
-def test_every_kind_of_case_gets_its_page(names, more, expected, records, tmp_path, monkeypatch, capsys):
-    if len(names) == 2:  # its page has the panels of the others: they are drawn as a file, too
-        monkeypatch.setattr(page, "svg", lambda *_, **__: b"")
+def test_every_kind_of_case_gets_its_page(names, more, expected, records, tmp_path, capsys):
     assert call(*options_of(records, **names), *more, *FAST, "--out", str(tmp_path)) == 0
     printed = capsys.readouterr().out
     assert printed.count("\n") <= SCREEN
-    found, text = Advice.load(tmp_path), (tmp_path / "advice.md").read_text()
+    found, again = Advice.load(tmp_path), stored_page("advice", tmp_path)
+    text = again.markdown()
     grades = found.grades
     assert {topic: grades[topic] for topic in expected} == expected
     assert found.moves == bool(grades) == bool(expected)
@@ -111,14 +110,8 @@ def test_every_kind_of_case_gets_its_page(names, more, expected, records, tmp_pa
     html = (tmp_path / "advice.html").read_text()
     assert len(html) < PAGE_LIMIT
     assert html.count('<details class="fold">') == html.count("</details>") == 1
-    drawn = {"advice.svg"} if len(found.scales) or found.moves else set()
-    assert {path.name for path in tmp_path.iterdir()} == DATA | drawn | {
-        "advice.html",
-        "advice.md",
-        "manifest.json",
-    }
-    again = stored_page("advice", tmp_path)
-    assert again.markdown() == text
+    # a document is drawn by a report alone
+    assert {path.name for path in tmp_path.iterdir()} == DATA | {"advice.html", "manifest.json"}
     if more == ["--scale", "2"]:  # twice: with a vertical component, and in one plane
         assert again.html() == html  # with all that the pictures show
 
