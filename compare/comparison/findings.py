@@ -131,16 +131,13 @@ def cause(row: SummaryRow, length: float, *, touched: bool = False, models_diffe
     Returns
     -------
     str
-        "failed"; "slides", which the reference does not;
-        "support" or "walls", a difference of support, not of accuracy; "mistake" of an external
-        trajectory, or "loss" of its energy;
+        "failed"; "support" or "walls", a difference of support, not of accuracy; "mistake" of an external
+        trajectory, or "loss" of its energy; "slides", which the reference does not;
         "pass", one that contact does not resolve; "near_passes", which amplify what small difference there
         is; "method", without a pass, so that it is not chance.
     """
     if "failed" in (row.outcome, row.reference_outcome):
         return "failed"
-    if "slides" in row.mode and row.reference_mode != SLIDES:
-        return "slides"
     support, reference = (SUPPORTS.get(each, EXTERNAL) for each in (row.support, row.reference_support))
     if support == EXTERNAL:
         if explains_divergence(row):
@@ -150,6 +147,8 @@ def cause(row: SummaryRow, length: float, *, touched: bool = False, models_diffe
             return "walls"
     elif not support.guided and reference.guided and models_differ:
         return "support"
+    if SLIDES in row.mode and SLIDES not in row.reference_mode:
+        return "slides"
     by_pass = row.predicted_by == "pass" and support != EXTERNAL and row.predicted_until < length
     start = row.reference_uplift_time
     agreed, predicted = row.within_tolerance_until - start, row.predicted_until - start

@@ -26,7 +26,7 @@ from ..storage.provenance import fingerprint
 from ..storage.results import Results
 from .budget import ErrorBudget
 from .findings import case_findings, causes_of, overview
-from .summary import agreement_matrix
+from .summary import SUMMARY_COLUMNS, agreement_matrix
 
 _FACTS = "comparison.json"
 _SEPARATOR = "\n"  # in no name of a case or a run: these are single lines
@@ -207,7 +207,7 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
         try:
             tables = stored.tables()
             found = cls(
-                tables=tables | {"summary": lists_of_file(tables["summary"])},
+                tables=tables | {"summary": _with_all_columns(lists_of_file(tables["summary"]))},
                 facts={"inputs": stored.manifest.inputs} | plain_json.loads(stored.content(_FACTS)),
                 manifest=stored.manifest,
             )
@@ -318,6 +318,15 @@ def comparison_of(
         },
     }
     return Comparison(tables=tables, facts=plain(facts))
+
+
+def _with_all_columns(summary: pd.DataFrame) -> pd.DataFrame:
+    """A summary of an earlier release, with what it does not know."""
+    texts = ("mode", "reference_mode")
+    absent = {
+        name: "" if name in texts else math.nan for name in SUMMARY_COLUMNS if name not in summary.columns
+    }
+    return summary.assign(**absent)
 
 
 def _facts_with_source(case: Case) -> Mapping[str, object]:

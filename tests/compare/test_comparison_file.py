@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import replace
 
 import numpy as np
@@ -95,6 +96,15 @@ def test_the_tables_say_what_made_them(saved, tmp_path):
         about = read_about(path)
         assert about["versions"]["mujoco"] == saved[0].versions["mujoco"]
         assert len(about["inputs"]) == 32
+
+
+def test_a_summary_of_an_earlier_release_lacks_columns_and_is_read(saved, tmp_path):
+    made = saved[0]
+    summary = made.summary.drop(columns=["mode", "reference_mode", "largest_turn_difference"])
+    dataclasses.replace(made, tables={**made.tables, "summary": summary}).save(tmp_path)
+    read = Comparison.load(tmp_path)
+    assert read.findings()
+    assert set(read.summary.columns) == set(made.summary.columns)
 
 
 def test_the_manifest_has_the_main_numbers(saved, tmp_path):

@@ -93,6 +93,8 @@ def found(*rows: Any, **traces: Any) -> dict[str, Any]:
         # its own walls, at a finer step: no difference of support
         (RING | HALF, {"touched": True}, "pass"),
         ({"mode": "rocks and slides"}, {}, "slides"),
+        ({"mode": "rocks and slides", "reference_mode": "rocks and slides"}, {}, "pass"),
+        (RING | {"mode": "rocks and slides"}, {}, "walls"),
         # only what changes tilts is a reason for them to diverge
         (TABLE | SLOWER, {}, "mistake"),
         (TABLE | TURNED, {}, "near_passes"),
