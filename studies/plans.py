@@ -173,12 +173,12 @@ class FragilityPlan(YieldPlan):
     period: float = option(1.0, "Period of sa and sa_mean, in s.", group="Intensity", above=0.0)
     limits: Sequence[str] | None = option(
         None,
-        'Limit state: uplift, "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", overturned, contact_lost or '
-        '"tendon yields"; may be repeated. Default: all but contact_lost.',
+        'Limit state: uplift, "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", overturned, contact_lost, '
+        '"tendon yields" or slides (more than --gap); may be repeated. Default: all but contact_lost.',
         group="Statistics",
         choices=(
             *("uplift", "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha"),
-            *("overturned", "contact_lost", "tendon yields"),
+            *("overturned", "contact_lost", "tendon yields", "slides"),
         ),
         flag="--limit",
     )
@@ -204,6 +204,9 @@ class FragilityPlan(YieldPlan):
         above=0.0,
     )
     friction: float = option(1.0, "Friction coefficient between cylinder and ground.", above=0.0)
+    gap: float | None = option(
+        None, "Displacement on flat ground that the limit state slides asks for, in m.", least=0.0
+    )
     rolling_resistance: float = option(0.0, _ROLLING, least=0.0)
     gravity: float = option(9.81, "Gravitational acceleration g, in m/s2.", above=0.0)
 
@@ -217,6 +220,8 @@ class FragilityPlan(YieldPlan):
         for name in ("levels", "scales"):
             if getattr(self, name) is not None:
                 require_increasing(name, getattr(self, name))
+        if "slides" in (self.limits or ()) and self.gap is None:
+            raise ValueError("the limit slides needs a gap, got none")
         if self.limits is not None and not list(self.limits):
             raise ValueError("a fragility needs at least one limit, got none")
         if self.tendon_yield is None and "tendon yields" in (self.limits or ()):

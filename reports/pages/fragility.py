@@ -27,6 +27,7 @@ from ..figures.risk import risk_pictures
 from .page import Page
 from .risk import risk_values
 from .table import number
+from .wording import statement
 
 _WALLED = tuple(each for each in SUPPORTS.values() if each.walls)
 # why a median of overturning is only bounded
@@ -84,6 +85,7 @@ def fragility_values(found: Fragility) -> dict[str, object]:
     margin = float(found.facts["margin"])
     return {
         "facts": found.facts,
+        "modes": [statement(each) for each in found.findings() if each.key == "mode.slides"],
         "risk": risk_values(found),
         "measure": measure,
         "bodies": list(_bodies(found)),

@@ -35,7 +35,7 @@ from rockwobble.multibody.scene import default_step
 
 from ..plans import FragilityPlan
 from .intensity import intensity, measures_of, uplift_scale
-from .tables import CONTACT_LOST, YIELDED
+from .tables import CONTACT_LOST, SLIDES, YIELDED
 
 Row = dict[str, float | str]  # of a run
 # The worse plane is no run of its own: of both planes, for each motion, the one that tilts more.
@@ -160,6 +160,8 @@ class Task:
     shakings : tuple of Shaking
     contact : bool
         Whether it is asked if a reduced model keeps its contact: that takes its forces.
+    gap : float, optional
+        Displacement of which it is asked if it is exceeded [m].
     """
 
     name: str
@@ -167,6 +169,7 @@ class Task:
     run: Run
     shakings: tuple[Shaking, ...]
     contact: bool
+    gap: float | None = None
 
     @property
     def points(self) -> list[tuple[str, int]]:
@@ -195,6 +198,7 @@ class Task:
     def key(self) -> str:
         """Return what identifies the results."""
         own = {"contact": self.contact, "rtol": _RTOL} if self.run.is_model else {}
+        own |= {} if self.gap is None else {"gap": self.gap}
         shakings = [case_inputs(shaking.case) | {"scales": shaking.scales} for shaking in self.shakings]
         return result_fingerprint({"shakings": shakings, "run": self.run, **own}, makers_of(self.run))
 
@@ -216,6 +220,14 @@ class Task:
 
         case, cylinder = shaking.case, shaking.case.cylinder
         assert case.motion is not None
+        if slides_by_model(case, self.run):
+            moved = reduced.peak_displacements(
+                [case.friction], case.motion, shaking.scales, workers=1, gravity=case.gravity
+            )[0]
+            return [
+                _row(case, 0.0 * each, "failed" if math.isnan(each) else "stands", slides=self._exceeds(each))
+                for each in moved.tolist()
+            ]
         peaks = reduced.peak_tilts(
             [cylinder.semidiagonal],
             cylinder.tan_alpha,
@@ -243,18 +255,35 @@ class Task:
         lost = math.nan
         if trace.outcome not in NO_PEAK and (self.contact or not run.is_model):
             lost = float(any(fact.code in _LOST for fact in trace.diagnostics))
-        return _row(case, trace.peak_tilt, outcome_of(trace), lost)
+        free = run.support.lets_slide and (not run.is_model or slides_by_model(case, run))
+        slides = self._exceeds(trace.peak_displacement) if free else math.nan
+        return _row(case, trace.peak_tilt, outcome_of(trace), lost, slides)
+
+    def _exceeds(self, displacement: float) -> float:
+        """1 where the gap is used up, 0 where it is not, NaN where there is none or that is not known."""
+        return math.nan if self.gap is None or math.isnan(displacement) else float(displacement > self.gap)
 
 
-def _row(case: Case, peak_tilt: float, outcome: str, contact_lost: float = math.nan) -> Row:
+def slides_by_model(case: Case, run: Run) -> bool:
+    """Whether the model of a run takes a case from rest for a slide."""
+    free = run.is_model and not run.is_planar and run.support.lets_slide
+    return free and case.friction < case.friction_of_uplift
+
+
+def _row(
+    case: Case, peak_tilt: float, outcome: str, contact_lost: float = math.nan, slides: float = math.nan
+) -> Row:
     """Row of a run; contact_lost is 1 or 0, NaN where nobody asked, the run failed or its tendon yields.
+
+    So is slides, whether the gap is used up.
 
     Of one that is no answer beyond yield the peak tilt is that of yield, which it passes.
     """
     tendon = case.tendon
     if tendon is not None and beyond_yield(peak_tilt, case):
         peak_tilt, outcome, contact_lost = tendon.yield_tilt(case.cylinder), YIELDED, math.nan
-    return {"peak_tilt": peak_tilt / case.cylinder.alpha, "outcome": outcome, "contact_lost": contact_lost}
+    found: Row = {"peak_tilt": peak_tilt / case.cylinder.alpha, "outcome": outcome}
+    return found | {CONTACT_LOST: contact_lost, SLIDES: slides}
 
 
 def run_task(task: Task) -> pd.DataFrame:
@@ -384,7 +413,14 @@ class RunPlan:
                     continue
                 run = self._with_step(method.run, cylinder)
                 tasks = [
-                    Task(name=name, label=method.label, run=run, shakings=(shaking,), contact=contact)
+                    Task(
+                        name=name,
+                        label=method.label,
+                        run=run,
+                        shakings=(shaking,),
+                        contact=contact,
+                        gap=self.options.gap,
+                    )
                     for shaking in (shakings if run.is_model else single)
                 ]
                 yield from _together(tasks) if run.is_model else tasks
@@ -439,6 +475,9 @@ def default_levels(
         for motion in motions
     ]
     held = [_hold_of(body, asked) for body in cylinders.values()]
+    if asked.gap is not None:  # it begins to slide where the friction ends
+        begin = [min(1.0, asked.friction / body.tan_alpha) for body in cylinders.values()]
+        held = [(of * share, barrier * share) for (of, barrier), share in zip(held, begin, strict=True)]
     low, high = _LOWEST * min(of for of, _ in held), _HIGHEST * max(of * barrier for of, barrier in held)
     middle = float(np.median(over))
     return tuple(float(f"{middle * level:.3g}") for level in np.geomspace(low, high, LEVELS))
@@ -497,8 +536,8 @@ def run_plan(
     -------
     DataFrame
         One row for each cylinder, method, motion and level: cylinder, motion, step (place of the level),
-        method, peak_tilt [alpha], outcome, contact_lost (1, 0, or NaN where nobody asked). A run whose
-        process died failed.
+        method, peak_tilt [alpha], outcome, contact_lost and slides (1, 0, or NaN where nobody asked). A run
+        whose process died failed.
     """
     tasks = list(plan.tasks())
     with run_tables(
@@ -525,7 +564,7 @@ def run_plan(
 def _with_labels(task: Task, table: pd.DataFrame) -> pd.DataFrame:
     motions, steps = zip(*task.points, strict=True)
     whole = table.assign(cylinder=task.name, motion=motions, step=steps, method=task.label)
-    return whole[[*KEYS, "method", "peak_tilt", "outcome", "contact_lost"]]
+    return whole[[*KEYS, "method", "peak_tilt", "outcome", "contact_lost", SLIDES]]
 
 
 _ENDS = [*NO_PEAK, "overturned", YIELDED]  # the worst first
@@ -543,6 +582,7 @@ def worse_plane(runs: pd.DataFrame) -> pd.DataFrame:
             peak_tilt=of["peak_tilt"].max(axis=1, skipna=False),  # NaN where one failed
             outcome=np.select(ends, _ENDS, parts[0]["outcome"]),
             contact_lost=of["contact_lost"].max(axis=1, skipna=False),
+            slides=math.nan,
         )
         .reset_index()
     )

@@ -19,11 +19,11 @@ from rockwobble.compare.storage.results import Results
 from rockwobble.models import GroundMotion, HazardCurve, RockingBody, Run
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
-from rockwobble.models.finding import Findings
+from rockwobble.models.finding import Finding, Findings
 from rockwobble.models.number_checks import require_each, require_one_of, require_positive
 from rockwobble.models.plain_json import Facts, fields_of, plain
 from rockwobble.models.records.units import sources_of
-from rockwobble.models.support import RECESS
+from rockwobble.models.support import FLAT, RECESS
 from rockwobble.models.trace import NO_PEAK
 
 from ..plans import FragilityPlan
@@ -45,6 +45,7 @@ from .tables import (
     DEFAULT_LIMITS,
     LIMITS,
     OVERTURNED,
+    SLIDES,
     TENDON_YIELDS,
     blocks_of,
     contrast_table,
@@ -71,7 +72,7 @@ class Fragility(Results, kind=KIND):
     ----------
     runs : DataFrame
         One row for each cylinder, motion, step (place of the level) and method: peak_tilt [alpha], outcome,
-        contact_lost (1, 0, NaN where nobody asked).
+        contact_lost and slides (1, 0, NaN where nobody asked).
     points : DataFrame
         One row for each cylinder, motion and step: scale, and every intensity of `MEASURES`.
     counts : DataFrame
@@ -226,14 +227,25 @@ class Fragility(Results, kind=KIND):
         return risk_tables(blocks, exposures, curves, hazard, weights=weights, years=years, target=target)
 
     def findings(self) -> Findings:
-        """Return what the tables of the risk say; see `Results.findings`."""
+        """Which motion it is where friction decides, and what the tables of the risk say."""
+        given, flat = float(self.facts["friction"]), str(FLAT)
+        free = any(method["support"] == flat for method in self.facts["methods"].values())
+        modes = [
+            Finding(
+                key="mode.slides",
+                values={"reason": flat, "given": given, "bound": body["tan_alpha"]},
+                runs=name,
+            )
+            for name, body in self.facts["cylinders"].items()
+            if free and given < body["tan_alpha"]
+        ]
         if "risk" not in self.tables:
-            return Findings()
+            return Findings(modes)
         rows = [
             {str(name): value for name, value in row.items()}
             for row in self.tables["risk"].to_dict("records")
         ]
-        return Findings(risk_findings(rows, self.facts["hazard"]))
+        return Findings([*modes, *risk_findings(rows, self.facts["hazard"])])
 
     def sheets(self) -> dict[str, bytes]:
         """Return the counts as CSV and as JSON, for tools that fit curves of their own."""
@@ -370,6 +382,7 @@ def fragility(
     restitution: float | str = 1.0,
     step_factor: float = 1.0,
     friction: float = 1.0,
+    gap: float | None = None,
     rolling_resistance: float = 0.0,
     tendon_prestress: float = 0.0,
     tendon_stiffness: float = 0.0,
@@ -404,7 +417,8 @@ def fragility(
     period : float, optional
         Period of "sa" and "sa_mean" [s].
     limits : sequence of str, optional
-        Limits, from `LIMITS`. Default: all but contact_lost, and "tendon yields" without a yield force.
+        Limits, from `LIMITS`. Default: all but contact_lost, "tendon yields" without a yield force and
+        "slides" without a gap.
     margin : float, optional
         Relative difference within which two medians are equivalent.
     resamples, seed : int, optional
@@ -415,6 +429,8 @@ def fragility(
         On the default time step of engines.
     friction : float, optional
         Coefficient of cylinder and ground.
+    gap : float, optional
+        Displacement on flat ground that the limit "slides" asks for [m].
     rolling_resistance : float, optional
         Length of the couple against rolling [m].
     tendon_prestress, tendon_stiffness : float, optional
@@ -473,6 +489,7 @@ def fragility(
         restitution=restitution,
         step_factor=step_factor,
         friction=friction,
+        gap=gap,
         rolling_resistance=rolling_resistance,
         tendon_prestress=tendon_prestress,
         tendon_stiffness=tendon_stiffness,
@@ -513,6 +530,7 @@ def _facts(plan: RunPlan) -> dict[str, object]:
         "limits": [name for name in LIMITS if name in limits_of(asked)],
         **{name: getattr(asked, name) for name in named},
         **({"rolling_resistance": asked.rolling_resistance} if asked.rolling_resistance else {}),
+        **({} if asked.gap is None else {"gap": asked.gap}),
         **({} if asked.tendon is None else {"tendon": fields_of(asked.tendon)}),
         "inputs": fingerprint([(task.name, task.label, task.key()) for task in plan.tasks()]),
     }
@@ -520,7 +538,8 @@ def _facts(plan: RunPlan) -> dict[str, object]:
 
 def limits_of(asked: FragilityPlan) -> Sequence[str]:
     """Return the limits of a plan; by default those that take no forces, "tendon yields" where it can."""
-    return asked.limits or (*DEFAULT_LIMITS, *((TENDON_YIELDS,) if asked.tendon_yield is not None else ()))
+    more = {TENDON_YIELDS: asked.tendon_yield, SLIDES: asked.gap}
+    return asked.limits or (*DEFAULT_LIMITS, *(name for name, given in more.items() if given is not None))
 
 
 def _description(method: Method, methods: Sequence[Method]) -> dict[str, object]:

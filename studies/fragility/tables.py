@@ -36,7 +36,7 @@ from .fit import (
 )
 from .intensity import MEASURES
 
-OVERTURNED, CONTACT_LOST, TENDON_YIELDS = "overturned", "contact_lost", "tendon yields"
+OVERTURNED, CONTACT_LOST, TENDON_YIELDS, SLIDES = "overturned", "contact_lost", "tendon yields", "slides"
 # name: the tilt that is reached [alpha]; NaN where it is no tilt that decides
 LIMITS: Mapping[str, float] = {
     "uplift": 0.0,
@@ -47,9 +47,10 @@ LIMITS: Mapping[str, float] = {
     OVERTURNED: math.nan,
     CONTACT_LOST: math.nan,
     TENDON_YIELDS: math.nan,
+    SLIDES: math.nan,
 }
 YIELDED = "yielded"  # outcome of a run of which no more is known than that its tendon yields
-DEFAULT_LIMITS = tuple(name for name in LIMITS if name not in (CONTACT_LOST, TENDON_YIELDS))
+DEFAULT_LIMITS = tuple(name for name in LIMITS if name not in (CONTACT_LOST, TENDON_YIELDS, SLIDES))
 
 
 def exceedance(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
@@ -63,15 +64,15 @@ def exceedance(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
     Parameters
     ----------
     runs : DataFrame
-        Columns peak_tilt [alpha], outcome, contact_lost.
+        Columns peak_tilt [alpha], outcome, contact_lost, slides.
     limit : str
         One of `LIMITS`.
     """
     failed = (runs["outcome"].isin(NO_PEAK) | runs["outcome"].isna()).to_numpy(bool)
     yielded = (runs["outcome"] == YIELDED).to_numpy(bool)
     fell = (runs["outcome"] == "overturned").to_numpy(bool)
-    if limit == CONTACT_LOST:
-        lost = runs["contact_lost"].to_numpy(float)
+    if limit in (CONTACT_LOST, SLIDES):
+        lost = runs[limit].to_numpy(float)
         found = np.where(fell & ~np.isnan(lost), 1.0, lost)
     elif limit == TENDON_YIELDS:
         found = yielded.astype(float)

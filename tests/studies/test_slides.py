@@ -44,3 +44,25 @@ def test_friction_near_the_border_and_friction_unknown_are_said() -> None:
     assert unknown.mode_findings[-1].key == "mode.no_friction_given"
     assert unknown.mode_findings[-1].values["bound"] == 0.5
     assert math.isnan(unknown.mode_findings[0].values["given"])
+
+
+def test_fragility_counts_the_slides_that_use_up_a_gap() -> None:
+    motions = rw.synthetic_motions(6, peak=3.0, seed=1)
+    options = {"friction": 0.2, "gap": 0.05, "measure": "pga", "resamples": 20, "workers": 1}
+    found = rw.fragility(CASK, motions, methods=["recess", "flat"], levels=[0.3, 0.6], **options)
+    flat = found.runs[found.runs["method"] == "flat-ground model"].set_index(["motion", "step"])
+    assert (flat["peak_tilt"] == 0.0).all()
+    for motion in motions:
+        for step, row in found.points[found.points["motion"] == motion.name].set_index("step").iterrows():
+            moved = reduced.peak_displacements([0.2], motion, [row["scale"]])[0, 0]
+            assert flat.loc[(motion.name, step), "slides"] == float(moved > 0.05)
+    counts = found.counts[
+        (found.counts["limit"] == "slides") & (found.counts["method"] == "flat-ground model")
+    ]
+    assert list(counts["k"]) == [int(flat["slides"].xs(step, level="step").sum()) for step in (0, 1)]
+    assert 0 < counts["k"].sum() < 12
+    curve = rw.HazardCurve([0.1, 0.3, 1.0], [1e-2, 1e-3, 1e-4], measure="pga")
+    rows = found.risk(curve, limit="slides").set_index("method")
+    assert rows.loc["flat-ground model", "annual_frequency"] > 0.0
+    with pytest.raises(ValueError, match="gap"):
+        rw.fragility(CASK, motions, limits=["slides"])
