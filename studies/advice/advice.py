@@ -78,7 +78,14 @@ from .members import (
     without_vertical,
 )
 from .scales import AS_STRONG, planar_runs, scan_as_strong, scan_scales
-from .slides import slide_findings, slide_rows, usual_support
+from .slides import (
+    engine_finding,
+    engine_rows,
+    slide_findings,
+    slide_rows,
+    slides_and_rocks,
+    usual_support,
+)
 from .trust import (
     BAND_STEP,
     Trust,
@@ -243,7 +250,9 @@ class Advice(Results, kind=KIND):
         if self.slides:
             moved = response["displacement"], response["residual_displacement"]
             first += slide_findings(self.tables["slides"], *moved, source=facts["records"], gap=facts["gap"])
-        elif facts["friction"] is None and facts["motion"] is not None:
+        if (engine := facts.get("rocks_and_slides")) is not None:
+            first.append(engine_finding(self.tables.get("slipped"), engine, response["peak_tilt"]))
+        if not self.slides and facts["friction"] is None and facts["motion"] is not None:
             bound = self.cylinder.tan_alpha
             first.append(Finding(key="mode.no_friction_given", values={"bound": bound}))
         return Findings(first)
@@ -597,8 +606,12 @@ def advise(
     alpha, band = case.cylinder.alpha, band_of(case, perturbed)
     data = spread_from(band, trace.peak_tilt / alpha)
     prediction, verification, engine = None, None, None
+    both = moves and slides_and_rocks(case, plan.support, demands_of(trace)["slip"])
+    slipped: pd.DataFrame | None = None
     if run is not None:
         with stage(str(run)):
+            if both:
+                slipped = engine_rows(groups[COPIES], run)
             if moves:
                 shorter, reference = trusted_part(case, trace, data)
                 verification, prediction, engine = verify_run(shorter, run, reference)
@@ -618,6 +631,7 @@ def advise(
     tables = {
         "members": members,
         **({"slides": slid} if slides else {}),
+        **({} if slipped is None else {"slipped": slipped}),
         "band": band,
         "weaker": pd.DataFrame(weaker, columns=None if weaker else list(members.columns)),
         "scales": scales,
@@ -644,6 +658,7 @@ def advise(
         "vertical": dataclasses.asdict(vertical),
         "records": source,
         "gap": plan.gap,
+        "rocks_and_slides": (str(run) if run else "") if both else None,
         "mode": [each.to_json() for each in mode_findings(case, plan.support, friction_given=friction_given)],
         "mass": plan.mass,
         "options": None,

@@ -6,15 +6,18 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from rockwobble.compare.metrics.mode import slide_finding
 from rockwobble.compare.metrics.statistics import share_interval
-from rockwobble.compare.runs.execution import simulate_run
+from rockwobble.compare.runs.execution import Job, simulate_all, simulate_run
 from rockwobble.models import Case, Run
 from rockwobble.models.finding import Finding, Value
 from rockwobble.models.frames import pd
-from rockwobble.models.support import FLAT, RECESS
+from rockwobble.models.mode import ROCKS_AND_SLIDES, expected_mode
+from rockwobble.models.support import FLAT, RECESS, support_named
 
 from .grades import grade_chance
 from .members import ACCELERATION, COPIES
 
+ENGINE_COPIES = 5
+SLIPS = 0.05  # share of the time in motion with too little friction from which the motion is another one
 _COLUMNS = ["group", "member", "displacement", "residual_displacement"]
 
 
@@ -27,6 +30,48 @@ def slide_rows(groups: Mapping[str, Sequence[Case]], model: Run) -> pd.DataFrame
         for trace in [simulate_run(case, model)]
     ]
     return pd.DataFrame(rows, columns=_COLUMNS)
+
+
+def slides_and_rocks(case: Case, support: str, slip: float) -> bool:
+    """Whether a case may slide while it rocks, which no reduced model knows and an engine answers.
+
+    Parameters
+    ----------
+    case : Case
+    support : str
+    slip : float
+        Share of the time in motion in which the model's friction demand exceeds the friction of the case.
+    """
+    free = support_named(support).lets_slide
+    return free and (expected_mode(case, support) == ROCKS_AND_SLIDES or slip > SLIPS)
+
+
+def engine_rows(cases: Sequence[Case], run: Run) -> pd.DataFrame:
+    """Outcome, peak_tilt [alpha] and displacement [m] of an engine under copies of a case."""
+    jobs = [Job(case=case, run=run) for case in cases[:ENGINE_COPIES]]
+    traces = simulate_all(jobs)
+    return pd.DataFrame(
+        {
+            "outcome": [trace.outcome for trace in traces],
+            "peak_tilt": [trace.peak_tilt / trace.case.cylinder.alpha for trace in traces],
+            "displacement": [trace.peak_displacement for trace in traces],
+        }
+    )
+
+
+def engine_finding(rows: pd.DataFrame | None, engine: str, peak: float) -> Finding:
+    """What an engine that can slide answers, beside the model's largest tilt without slip [alpha]."""
+    if rows is None:
+        return Finding(key="mode.no_engine", level="not tested")
+    values: dict[str, Value] = {
+        "name": engine,
+        "runs": len(rows),
+        "overturned": int((rows["outcome"] == "overturned").sum()),
+        "peak": float(rows["peak_tilt"].max()),
+        "displacement": float(rows["displacement"].max()),
+        "peak_model": peak,
+    }
+    return Finding(key="mode.engine", level="caution", values=values)
 
 
 def slide_findings(

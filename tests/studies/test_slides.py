@@ -40,6 +40,9 @@ def test_walls_stop_a_slide_with_what_friction_does_not_take() -> None:
 def test_friction_near_the_border_and_friction_unknown_are_said() -> None:
     near = rw.Case(CASK, CASE.motion, duration=8.0, friction=0.46)
     assert [each.key for each in rw.advise(near, copies=20).mode_findings][1] == "mode.border"
+    both = rw.Case(CASK, CASE.motion, duration=8.0, friction=0.52)
+    keys = [(each.key, each.level) for each in rw.advise(both, copies=20, support="flat").mode_findings]
+    assert keys == [("mode.rocks_and_slides", "note"), ("mode.no_engine", "not tested")]
     unknown = rw.advise(rw.Case(CASK, CASE.motion, duration=3.0), copies=20, friction_given=False)
     assert unknown.mode_findings[-1].key == "mode.no_friction_given"
     assert unknown.mode_findings[-1].values["bound"] == 0.5
