@@ -245,20 +245,18 @@ def print_facts(heading: Sequence[str | Text], facts: Mapping[str, str], *, comm
     print()
 
 
-def show_and_save(found: Results, out: Path, *, details: bool = False, document: bool = True) -> None:
+def show_and_save(found: Results, out: Path, *, details: bool = False) -> None:
     """Write results with their page; then print the page, with what is folded where `details` are wanted."""
-    save_with_page(found, out, details=details, document=document)()
+    save_with_page(found, out, details=details)()
 
 
-def save_with_page(
-    found: Results, out: Path, *, details: bool = False, document: bool = True
-) -> Callable[[], None]:
-    """Write results with their page, as a `document`, too, and return what prints the page."""
+def save_with_page(found: Results, out: Path, *, details: bool = False) -> Callable[[], None]:
+    """Write results with their page, without the document of `report`, and return what prints the page."""
     from .pages import page_of
 
     found = found.made_by(command_line())
     page = page_of(found)
-    pages = page.files(document=document)
+    pages = page.files(document=False)
     with user_input():
         found.save(out, pages=pages)
 

@@ -75,8 +75,7 @@ def fragility(
     With --hazard: annual frequency of overturning at the site by each method, with the counted and the
     lognormal curve.
 
-    Writes fragility.html, fragility.md with its figures, the tables as Parquet, and the counts for other
-    tools (counts.csv, counts.json).
+    Writes fragility.html, the tables as Parquet, and the counts for other tools (counts.csv, counts.json).
 
     Example: rockwobble fragility --p695 --cylinder pier=6,0.2 --engine mujoco
     """
@@ -166,7 +165,7 @@ def spectrum(
 
     An interrupted run resumes with the same command.
 
-    Writes spectrum.html, spectrum.md with spectrum.svg, and as Parquet the cells (spectrum), the overturning
+    Writes spectrum.html, and as Parquet the cells (spectrum), the overturning
     boundary (lowest), the gaps in the overturning region (gaps), the shares by size (contrast), and cells
     repeated to a tighter tolerance (checked).
 
@@ -251,7 +250,7 @@ def ensemble(
 
     An interrupted run resumes with the same command.
 
-    Writes ensemble.html, ensemble.md with ensemble.svg, and members, methods and contrasts (Parquet, CSV).
+    Writes ensemble.html, and members, methods and contrasts (Parquet, CSV).
 
     Example: rockwobble ensemble --synthetic 40 --peak 3 --engine mujoco
     """
@@ -365,7 +364,7 @@ def sweep(
 
     An interrupted run resumes with the same command.
 
-    Writes sweep.parquet (one row per run), sweep.html, sweep.md and sweep.svg.
+    Writes sweep.parquet (one row per run), and sweep.html.
 
     Example: rockwobble sweep --semidiagonal 0.5:30:100 --scale 1,2,4 --out grid
     """

@@ -32,7 +32,7 @@ def validity(
     With a slab: the same for a frame of one column, without the recess with clearance. With a tendon: shaking
     raised by the factor by which the prestress raises uplift, without the flat-ground model.
 
-    Writes validity.html, validity.md with SVG figures, and as Parquet the tables of all parts and every
+    Writes validity.html, and as Parquet the tables of all parts and every
     number of the report (limits).
 
     Example: rockwobble validity --quick --out validity

@@ -259,7 +259,7 @@ def simulate(
         if not len(found.trace.time):
             complain(f"{run} left no result: {remarks(found.trace.facts)}")
             raise typer.Exit(FAILED)
-        show_and_save(found, out, document=False)
+        show_and_save(found, out)
     if found.trace.outcome == "failed":
         raise typer.Exit(FAILED)
 
@@ -333,7 +333,7 @@ def advise(
             )
         options_given = stated_options(context, also=[field.name for field in dataclasses.fields(plan)])
         found = replace(found, facts={**found.facts, "options": options_given})
-        show_and_save(found, out, details=details, document=False)
+        show_and_save(found, out, details=details)
     if found.response["outcome"] == "failed":
         raise typer.Exit(FAILED)
 

@@ -159,7 +159,7 @@ class OutputOptions(Plan):
 
         if self.out is not None:
             save_with_page(found, self.out)
-            print(f"Written to {self.out}: check.html, check.md, manifest.json, results.parquet")
+            print(f"Written to {self.out}: check.html, manifest.json, results.parquet")
         for path, text_of in ((self.json, as_json), (self.junit, as_junit)):
             if path is not None:
                 replace_files(path.parent, {path.name: text_of(found, plan).encode()})

@@ -372,6 +372,8 @@ def main() -> int:
         else:
             words = ["-m", "rockwobble", *words, "--out", folder, "--overwrite"]
         subprocess.run([sys.executable, *words], cwd=HERE, check=True)
+        if words[0] == "-m":  # a command draws its page, and no document
+            subprocess.run([sys.executable, "-m", "rockwobble", "report", folder], cwd=HERE, check=True)
         trim(HERE / folder, only=CONTROLS.get(folder))
         compact_all()
         print(f"=== {folder}: {time.monotonic() - begin:.0f} s", flush=True)

@@ -155,9 +155,6 @@ def test_no_engine_and_no_trajectory_leave_nothing_to_compare(folder, capsys):
 @pytest.mark.slow
 def test_compare_prints_and_writes(folder, no_engines, monkeypatch, capsys):
     no_engines()
-    monkeypatch.setattr(
-        "rockwobble.reports.figures.svg.svg", lambda *_, **__: b""
-    )  # tests of the page draw it
     monkeypatch.setattr(Page, "html", lambda _, **__: "")
     (folder / "results").mkdir()
     (folder / "results" / "mine.txt").write_text("mine")
@@ -180,8 +177,6 @@ def test_compare_prints_and_writes(folder, no_engines, monkeypatch, capsys):
         "comparison.json",
         "report.json",
         "report.html",
-        "report.md",
-        "figure.svg",
     }
     summary = pd.read_csv(folder / "results" / "summary.csv")
     assert summary["case"].tolist() == ["El Centro 1940 × 1.5"] * 3

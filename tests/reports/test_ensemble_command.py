@@ -183,7 +183,7 @@ def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process,
     )
     (manifest,) = read_manifests(tmp_path)
     assert (manifest.kind, manifest.seeds) == (KIND, {"seed": 0})
-    assert stored_page(KIND, tmp_path).files() == {
+    assert stored_page(KIND, tmp_path).files(document=False) == {
         name: (tmp_path / name).read_bytes() for name in manifest.pages
     }
 

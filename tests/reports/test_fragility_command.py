@@ -136,7 +136,7 @@ def test_files_of_a_small_study_and_its_page_again(tmp_path, capsys):
     assert "Motions: 8, synthetic ground motions, seed 0" in printed
     (manifest,) = read_manifests(tmp_path)
     assert (manifest.kind, manifest.seeds) == (KIND, {"seed": 0})
-    assert stored_page(KIND, tmp_path).files() == {
+    assert stored_page(KIND, tmp_path).files(document=False) == {
         name: (tmp_path / name).read_bytes() for name in manifest.pages
     }
     counts = pd.read_csv(tmp_path / "counts.csv")
@@ -268,7 +268,7 @@ def test_records_by_level_are_stripes_of_their_own(tmp_path: Path, capsys: Any) 
     assert found.facts["levels"] == [2.0, 9.0]
     assert found.facts["motions_of_levels"] == [6, 6]
     assert len(found.runs) == 12
-    assert "6 of their own at each of 2 levels" in (out / "fragility.md").read_text()
+    assert "6 of their own at each of 2 levels" in (out / "fragility.html").read_text()
     assert call("fragility", "--records", str(records), "--levels", "1,2", "--out", str(tmp_path / "b")) == 2
     said = capsys.readouterr().err
     assert said.splitlines()[-1] == "rockwobble: --levels does not go with the column level of records.csv"

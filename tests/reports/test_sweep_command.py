@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from rockwobble import sweep
+from rockwobble.studies import sweep
 from rockwobble.compare.runs import execution, scheduler
 from rockwobble.compare.runs.progress import Lost
 from rockwobble.compare.storage.manifest import file_state, read_manifests
@@ -70,7 +70,7 @@ def test_a_full_disk_leaves_no_half_of_a_sweep_and_nothing_to_repeat(
     monkeypatch.setattr(sweep, "run_chunk", lambda _: pytest.fail("a finished chunk ran again"))
     assert call("sweep", *GRID, "--out", str(tmp_path)) == 0
     (made,) = read_manifests(tmp_path)
-    assert {"sweep.md", "sweep.html", "sweep.svg"} == set(made.pages)
+    assert {"sweep.html"} == set(made.pages)
     assert all(file_state(tmp_path, made, name) == "whole" for name in made.files)
 
 

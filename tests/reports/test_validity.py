@@ -14,8 +14,7 @@ from typer.testing import CliRunner
 
 from rockwobble.models.support import RECESS
 from rockwobble.reports.cli.main import app, main
-from rockwobble.reports.pages import page as page_module
-from rockwobble.reports.pages import page_of
+from rockwobble.reports.pages import page_of, stored_page
 from rockwobble.reports.pages.page import Page
 from rockwobble.studies.validity import study
 from rockwobble.studies.validity.study import Validity, validity_of
@@ -129,14 +128,14 @@ def test_the_command_stores_what_its_pages_are_drawn_from(
     page = (tmp_path / "validity.html").read_text()
     assert len(page) < LARGEST
     assert not re.search(r'<(script|link|img)[^>]*(src|href)="https?:', page)
-    before = (tmp_path / "validity.md").read_text()
+    before = stored_page("validity", tmp_path).markdown()
     assert "| Contact | kept in all" in before
     shaken = stored.tables["peaks"].assign(least_normal=-1.0)
     dataclasses.replace(stored, tables={**stored.tables, "peaks": shaken}).save(tmp_path)
     # drawn to the end once, above
     with monkeypatch.context() as patch:
         patch.setattr(Page, "html", lambda *_, **__: "")
-        patch.setattr(page_module, "svg", lambda *_, **__: b"")
+        patch.setattr("rockwobble.reports.figures.svg.svg", lambda *_, **__: b"")
         assert CliRunner().invoke(app, ["report", str(tmp_path)]).exit_code == 0
     assert "| Contact | lost in" in (tmp_path / "validity.md").read_text() != before
 
