@@ -88,7 +88,10 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     ),
     "mode": ("", "mode of motion: rest, slides, rocks, rocks in one plane, rocks and slides"),
     "reference_mode": ("", "that of the reference"),
-    "reference_wall_time": ("s", "computing time of the reference"),
+    "reference_wall_time": (
+        "s",
+        "computing time of the reference: the least of its run and its perturbed copies",
+    ),
     "contact_resolution": ("rad", "smallest minimum tilt of a pass that the engine resolves"),
     "closest_pass": ("alpha", "smallest minimum tilt of the reference's passes within the agreement"),
     "engine_version": ("", "version of the engine"),
@@ -141,6 +144,7 @@ def summary_row(
     budget: ErrorBudget | None = None,
     until: float | None = None,
     allowance: float = 0.0,
+    reference_time: float | None = None,
 ) -> Row:
     """Return all columns of the summary for one run and one reference.
 
@@ -166,8 +170,10 @@ def summary_row(
         [s]. Default: the whole run.
     allowance : float, optional
         For the noise of a measurement: added to the tilt difference that ends the agreement [alpha].
+    reference_time : float, optional
+        Computing time of the reference [s]. Default: that of its run.
     """
-    cylinder = case.cylinder
+    cylinder, spent = case.cylinder, reference.wall_time if reference_time is None else reference_time
     alpha, radius = cylinder.alpha, cylinder.base_radius
     whole, agreement, difference = _difference(case, trial, reference, until, allowance)
     broken = "failed" in (trial.outcome, reference.outcome)
@@ -200,8 +206,8 @@ def summary_row(
         "residual_twist": math.degrees(trial.residual_twist),
         "energy_loss": energy_loss(trial, case.motion),
         "wall_time": trial.wall_time,
-        "time_ratio": trial.wall_time / reference.wall_time if reference.wall_time > 0.0 else math.nan,
-        "reference_wall_time": reference.wall_time,
+        "time_ratio": trial.wall_time / spent if spent > 0.0 else math.nan,
+        "reference_wall_time": spent,
         "contact_resolution": trial.contact_resolution,
         "closest_pass": closest_pass(reference, agreement) / alpha,
         "engine_version": trial.version,
