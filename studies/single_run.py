@@ -20,7 +20,7 @@ from rockwobble.models.plain_json import plain
 from rockwobble.models.support import SUPPORTS
 from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, case_facts, to_parquet
 
-from .advice.trust import BAND_STEP, copies_part_at, with_time_to_fall
+from .advice.trust import BAND_STEP, copies_part_at, scatter_of, with_time_to_fall
 from .plans import AdvicePlan
 
 if TYPE_CHECKING:
@@ -40,8 +40,8 @@ class SingleRun(Results, kind="run"):
         run: the samples of the trace.
     facts : mapping
         run: its label; case and result: what the samples do not hold; single_trace: from when on copies of
-        it part [s], by how much their input is off, and the command that says what they do; columns of the
-        files.
+        it part [s], by how much their input is off, the scatter of their largest tilts over its own, and the
+        command that says what they do; columns of the files.
     trace : Trace
     """
 
@@ -114,7 +114,7 @@ def single_run(
     with stage(Job(case=case, run=run).label):
         # an engine in a process of its own, so that Ctrl-C also stops it in the middle of a long call
         (trace,) = simulate_all([Job(case=case, run=run)], workers=1 if model == run else 2)
-    part = math.inf
+    part, scatter = math.inf, math.nan
     if not len(trace.time):
         return single_run_of(trace, part, answer, plan.perturbation)
     with stage(f"{plan.copies} copies of the {model}"):
@@ -127,7 +127,8 @@ def single_run(
                 slid = [[each.peak_displacement, each.residual_displacement] for each in copies]
             elif own.mode != SLIDES:
                 part = copies_part_at(case, own, copies)
-    return single_run_of(trace, part, answer, plan.perturbation, slid)
+                scatter = scatter_of(own.peak_tilt, (copy.peak_tilt for copy in copies))
+    return single_run_of(trace, part, answer, plan.perturbation, slid, scatter)
 
 
 def single_run_of(
@@ -136,8 +137,9 @@ def single_run_of(
     answer: str = "",
     perturbation: float = AdvicePlan().perturbation,
     slid: Sequence[Sequence[float]] = (),
+    scatter: float = math.nan,
 ) -> SingleRun:
-    """Results of a trace: when perturbed copies of it diverge [s], or how far they slide (n, 2) [m]."""
+    """Results of a trace: when perturbed copies of it diverge [s], or slide (n, 2) [m]; scatter of their peaks."""
     job = Job(case=trace.case, run=trace.run)
     left_out = ("rest_intervals", "extrema", "passes")
     facts = {
@@ -145,7 +147,12 @@ def single_run_of(
         "run": job.label,
         "case": case_facts(trace.case),
         "result": {name: value for name, value in trace.to_plain().items() if name not in left_out},
-        "single_trace": {"copies_part": part, "perturbation": perturbation, "answer": answer}
+        "single_trace": {
+            "copies_part": part,
+            "perturbation": perturbation,
+            "scatter": scatter,
+            "answer": answer,
+        }
         | ({"slid": slid} if slid else {}),
         "columns": {"run.csv": COLUMNS, "passes.csv": PASS_COLUMNS},
     }

@@ -11,6 +11,8 @@ from sphinx.domains.std import StandardDomain
 
 GLOSSARY = "glossary"
 CLASS = "first-use"
+# terms that are verbs or names of files, too: a page links them by hand
+_AMBIGUOUS = ("pass", "guide", "record")
 # words in these are names, headings, or links already
 _LEFT_ALONE = (
     nodes.reference,
@@ -42,7 +44,7 @@ def _link_first_uses(app: Sphinx, doctree: nodes.document, page: str) -> None:
     standard = app.env.domains["std"]
     assert isinstance(standard, StandardDomain)
     places = {term.lower(): place for (kind, term), place in standard.objects.items() if kind == "term"}
-    waiting = dict(places)
+    waiting = {term: place for term, place in places.items() if term not in _AMBIGUOUS}
     for text in list(doctree.findall(nodes.Text)):
         if waiting and not _inside(text):
             _replace(text, waiting, lambda place: _address(app, page, place))

@@ -126,7 +126,7 @@ def _case(
 
 
 def _cylinder(table: CylinderTable, values: dict[str, float]) -> RockingBody:
-    return cylinder_of(values, Cylinder if table.base_radius is None else Cylinder.from_dimensions)
+    return cylinder_of(values, Cylinder if table.semidiagonal is not None else Cylinder.from_dimensions)
 
 
 def _release(table: ReleaseTable, values: dict[str, float], cylinder: RockingBody) -> InitialState:

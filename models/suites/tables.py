@@ -210,11 +210,12 @@ class _Table(BaseModel):
 
 
 class CylinderTable(_Table):
-    """The body: semidiagonal and tan_alpha, or base_radius and height; with a slab, one of its columns."""
+    """The body: semidiagonal and tan_alpha, or outline; with a slab, one of its columns."""
 
     semidiagonal: Positives | None = None
     tan_alpha: Positives | None = None
     base_radius: Positives | None = None
+    diameter: Positives | None = None
     height: Positives | None = None
     mass_centre_height: Positives | None = None
     transverse_inertia: Positives | None = None
@@ -224,17 +225,18 @@ class CylinderTable(_Table):
 
     @model_validator(mode="after")
     def _one_way_to_say_it(self) -> CylinderTable:
-        if self.present("base_radius"):
-            self.refuse("does not go with base_radius and height", "semidiagonal", "tan_alpha")
-            needed = ("base_radius", "height")
+        outline = "base_radius or diameter, and height"
+        if self.present("base_radius", "diameter"):
+            self.refuse(f"does not go with {outline}", "semidiagonal", "tan_alpha")
+            needed = (self.require_one_of("base_radius", "diameter"), "height")
         else:
             needed = ("semidiagonal", "tan_alpha")
-            self.refuse("belongs to base_radius and height", "mass_centre_height")
+            self.refuse(f"belongs to {outline}", "mass_centre_height")
         for name in needed:
             if not self.present(name):
                 raise KeyedError(
                     name,
-                    "must be given: either semidiagonal and tan_alpha, or base_radius and height",
+                    f"must be given: either semidiagonal and tan_alpha, or {outline}",
                 )
         return self
 

@@ -15,18 +15,16 @@ from .palette import GREY, ORDER, Style
 from .picture import TIME, Array, Axis, Layer, Line, Panel, Picture, Rule, tilt_axis
 
 _PATH = Style(colour=ORDER[0])
-_PLACES = Style(colour=ORDER[0], dash="none", symbol="circle")  # between which it only jumps, in a plane
-_JUMP = 0.5  # of b between two samples: in a near pass the point runs along the circle, not across it
-_APART = 0.1  # of b between points that are drawn
+_POINT = Style(colour=ORDER[1])
+_CLOSE = 5e-3  # of the extent of a path, between points that are drawn
+_ARC = 0.1  # [rad] between points of the rim
 _CIRCLE = Style(colour=GREY, dash="dash")
 
 
 def pictures(trace: Trace) -> list[Picture]:
-    """Return tilt over alpha against time, and the contact point over b against the original circle."""
+    """Tilt over alpha against time; path of the top and, on flat ground, of the contact point from above."""
     cylinder = trace.case.cylinder
     turn = np.linspace(0.0, 2.0 * np.pi, 181)
-    x, y = _path(trace.contact_point / cylinder.base_radius).T
-    rolls = np.nansum(np.hypot(np.diff(x), np.diff(y))) > _APART
     tilts = trace.tilt / cylinder.alpha
     tilt: list[Layer] = [Line(x=trace.time, y=tilts, style=_PATH)]
     if trace.uplift_time > 0.0:
@@ -35,35 +33,60 @@ def pictures(trace: Trace) -> list[Picture]:
     if math.isfinite(falls) and balance < OVERTURNED_TILT:
         name = "α" if balance == cylinder.alpha else "its balance"
         tilt.append(Rule(at=falls, axis="x", text=f"passes {name} for good", side="left"))
-    path = [
-        Line(x=np.cos(turn), y=np.sin(turn), style=_CIRCLE, name="original circle", width=1.0),
-        Line(x=x, y=y, style=_PATH if rolls else _PLACES, name="contact point", width=1.0),
-    ]
+    b = cylinder.base_radius
+    path = [Line(x=b * np.cos(turn), y=b * np.sin(turn), style=_CIRCLE, name="base", width=1.0)]
+    paths = {"top": (_top(trace), _PATH)}
+    if not (trace.run.support.is_recess or trace.run.is_planar):
+        paths["contact point"] = _along_the_rim(trace), _POINT
+    for name, (places, style) in paths.items():
+        x, y = _thinned(places).T
+        path.append(Line(x=x, y=y, style=style, name=name, width=1.0))
     panels = [
         Panel(x=TIME, y=tilt_axis([tilts], balance / cylinder.alpha), layers=tilt, title="tilt", height=3.4),
         Panel(
-            x=Axis(label="x / b", unit="-"),
-            y=Axis(label="y / b", unit="-"),
+            x=Axis(label="x", unit="m"),
+            y=Axis(label="y", unit="m"),
             layers=path,
-            title="contact point",
+            title="path of the top" if len(paths) == 1 else "paths of the top and the contact point",
             equal=True,
             height=3.4,
         ),
     ]
     title = f"{trace.case.name}, {trace.run}"
-    caption = "Tilt of the axis in units of alpha, and where the rim touches the ground, seen from above."
+    caption = "Tilt of the axis in units of alpha, and the centre of the top, seen from above."
     return [Picture(name="trace", title=title, caption=caption, panels=panels, columns=2)]
 
 
-def _path(places: Array) -> Array:
-    """Return as many of some places (n, 2) as a path shows, its pieces separated by NaN where it jumps.
+def _top(trace: Trace) -> Array:
+    """Places of the centre of the top (n, 2) [m], seen from above."""
+    body = trace.case.cylinder
+    out = (2.0 * body.half_height - body.mass_centre_height) * np.sin(trace.tilt)
+    angle = np.nan_to_num(trace.rolling_angle)  # at rest there is none, and no way out
+    top: Array = trace.centre_of_mass[:, :2] + out[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+    return top
 
-    While the cylinder stands it has no place: NaN, of which one is kept.
-    """
-    way = np.hypot(*np.diff(places, axis=0).T)
-    jumps = way > _JUMP
-    ends = jumps | (np.diff(np.isnan(places[:, 0])) != 0)  # between two samples, one on either side
-    travelled = np.cumsum(np.where(jumps | np.isnan(way), 0.0, way)) // _APART
-    drawn = np.append(ends, True) | np.concatenate([[True], (np.diff(travelled, prepend=0.0) > 0.0) | ends])
-    after = np.flatnonzero(np.diff(np.concatenate([[0], np.cumsum(jumps)])[drawn])) + 1
-    return np.insert(places[drawn], after, np.nan, axis=0)
+
+def _along_the_rim(trace: Trace) -> Array:
+    """Places of the contact point (n, 2) [m], joined along the rim between samples; NaN at rest."""
+    b, angle = trace.case.cylinder.base_radius, trace.rolling_angle
+    centre = trace.contact_point - b * np.column_stack([np.cos(angle), np.sin(angle)])
+    turned = np.nan_to_num(np.abs(np.diff(angle)))
+    parts = np.minimum(np.ceil(turned / _ARC), 100.0).astype(int).clip(1)
+    start = np.repeat(np.arange(len(parts)), parts)
+    share = (np.arange(len(start)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[start]
+    fine = angle[start] + share * (angle[start + 1] - angle[start])
+    along: Array = centre[start] + share[:, None] * (centre[start + 1] - centre[start])
+    along += b * np.column_stack([np.cos(fine), np.sin(fine)])
+    return along
+
+
+def _thinned(places: Array) -> Array:
+    """As many of some places (n, 2) as a path shows, and one of those that are NaN between its pieces."""
+    if not np.isfinite(places).any():
+        return places[:1]
+    apart = _CLOSE * max(float(np.nanmax(np.ptp(places[np.isfinite(places[:, 0])], axis=0))), 1e-300)
+    way = np.nan_to_num(np.hypot(*np.diff(places, axis=0).T))
+    travelled = np.diff(np.cumsum(way) // apart, prepend=-1.0, append=math.inf) != 0.0
+    ends = np.diff(np.isnan(places[:, 0]).astype(int)) != 0
+    shown: Array = places[travelled | np.append(ends, False) | np.insert(ends, 0, False)]
+    return shown

@@ -19,7 +19,7 @@ from rockwobble.studies.advice.demands import SPIKES
 from rockwobble.studies.advice.grades import CRITERIA, NEAR
 from rockwobble.studies.advice.members import ACCELERATION, COPIES, HORIZONTAL, VELOCITY, VERTICAL
 from rockwobble.studies.advice.scales import planar_shares
-from rockwobble.studies.advice.trust import Verification
+from rockwobble.studies.advice.trust import Verification, scatter_of
 from rockwobble.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.studies.spectrum.study import CHECK_RTOL, NUDGE
 
@@ -41,7 +41,7 @@ from .advised_case import (
 )
 from .command_line import command_line, spectrum_line
 from .page import Page
-from .table import NONE, number
+from .table import NONE, number, scattered
 
 # rows of the box of demands
 _DEMANDS = {
@@ -345,19 +345,20 @@ def _numbers(found: Advice) -> Iterator[Row]:
     """Rows of the numbers: the run as given, and the order statistic that 95 % of each group make."""
     alpha = math.degrees(found.cylinder.alpha)
 
-    def row(name: str, overturn: str, covered: str, peak: float) -> Row:
+    def row(name: str, overturn: str, covered: str, peak: float, form: str = ".3g") -> Row:
         tilt, top = alpha * peak, found.top(peak)
         # "21 of 22" beside "overturns" would say that so many do
         without = "no limit" if covered else "overturns"
         if overturn == _YIELDS:
             without = _YIELDS
-        words = [without if math.isinf(peak) else number(each) for each in (tilt, top)]
+        words = [without if math.isinf(peak) else number(each, form) for each in (tilt, top)]
         covered = "" if math.isinf(peak) else covered
         return {"name": name, "overturn": overturn, "covered": covered, "tilt": words[0], "top": words[1]}
 
     given = math.inf if found.overturned or found.yields else found.peak
     ends = _YIELDS if found.yields else "overturns" if found.overturned else "stands"
-    yield row("as given, one run", ends, "", given)
+    copies = found.members[found.members["group"] == COPIES]["peak_tilt"]
+    yield row("as given, one run", ends, "", given, scattered(scatter_of(found.peak, copies), most=3))
     for group in _groups(found):
         known, peak = group["runs"] - group["failed"], group["peak_tilt_95"]
         if group["single"]:

@@ -16,7 +16,7 @@ from ..figures.trace import pictures
 from .cases import case_lines
 from .diagnostics import remarks
 from .page import Page
-from .table import Row, number
+from .table import Row, number, scattered
 from .wording import statement
 
 
@@ -36,6 +36,9 @@ def page_of(found: SingleRun) -> Page:
     return Page(name="run", template="runs/run", values=values, pictures=pictures(trace))
 
 
+_WIDE = 0.1  # scatter of the copies from which on a number is about so large
+
+
 def _limits(trace: Trace) -> list[Diagnostic]:
     """Return the diagnostics of a run up to its fall, in which contact is lost and the rim slips."""
     held = trace.assumptions_until(fall_of(trace))
@@ -51,10 +54,10 @@ def _statements(found: SingleRun) -> Iterator[str]:
     """Yield which motion it is, and what became of the cylinder."""
     yield from map(statement, found.findings())
     if found.trace.mode != SLIDES:
-        yield _outcome(found.trace)
+        yield _outcome(found.trace, found.facts.get("single_trace", {}).get("scatter", math.nan))
 
 
-def _outcome(trace: Trace) -> str:
+def _outcome(trace: Trace, scatter: float) -> str:
     falls, peak, alpha = fall_of(trace), trace.peak_tilt, trace.case.cylinder.alpha
     if math.isfinite(falls):
         uplift = "" if trace.case.initial else f" it uplifts at {number(trace.uplift_time, '.4g')} s,"
@@ -63,7 +66,8 @@ def _outcome(trace: Trace) -> str:
             f"down at {number(float(trace.time[-1]), '.4g')} s."
         )
     if math.isfinite(peak):
-        tilt = f"{peak / alpha:.4f} α = {math.degrees(peak):.4f} deg"
+        form, about = scattered(scatter), "about " if scatter > _WIDE else ""
+        tilt = f"{about}{number(peak / alpha, form)} α = {number(math.degrees(peak), form)} deg"
         return f"Peak tilt {tilt}; the cylinder stands{'' if peak else ', and has not uplifted'}."
     if trace.outcome == "undecided":
         return (

@@ -53,6 +53,19 @@ def number(value: object, form: str = ".3g") -> str:
     return _short(format(found, form))
 
 
+def scattered(scatter: float, most: int = 4) -> str:
+    """Form of a number of this relative scatter: its last digit is no finer than a tenth of the scatter.
+
+    Examples
+    --------
+    >>> [number(0.24303, scattered(scatter)) for scatter in (0.6, 0.03, 1e-3, float("nan"))]
+    ['0.24', '0.243', '0.243', '0.243']
+    """
+    if not scatter > 0.0:  # nobody knows, or there is none
+        return f".{most}g"
+    return f".{min(max(1 + math.ceil(-math.log10(scatter)), 2), most)}g"
+
+
 def enumeration(words: Sequence[str]) -> str:
     """Return words with commas and, before the last, "and"."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

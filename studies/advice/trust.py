@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -125,6 +125,15 @@ def copies_part_at(case: Case, trace: Trace, copies: Sequence[Trace]) -> float:
     if trace.outcome in NO_PEAK:
         return math.inf
     return spread_from(band_of(case, copies), trace.peak_tilt / case.cylinder.alpha)
+
+
+def scatter_of(peak: float, copies: Iterable[float]) -> float:
+    """Half of the range of the largest tilts of 90 % of the copies, over that of the case; NaN of none."""
+    known = [tilt for tilt in copies if math.isfinite(tilt)]
+    if not known or not peak > 0.0:
+        return math.nan
+    low, high = np.quantile(known, [0.05, 0.95])
+    return float(0.5 * (high - low) / peak)
 
 
 def with_time_to_fall(case: Case, trace: Trace) -> Case:

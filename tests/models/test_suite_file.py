@@ -141,8 +141,9 @@ def test_a_pulse(write):
     assert case.length == 8.0
 
 
-def test_a_body_by_its_dimensions(write):
-    body = "cylinder = { base_radius = 1, height = 10, mass_centre_height = [4, 6] }"
+@pytest.mark.parametrize("width", ["base_radius = 1", "diameter = 2"])
+def test_a_body_by_its_dimensions(write, width):
+    body = f"cylinder = {{ {width}, height = 10, mass_centre_height = [4, 6] }}"
     low, high = read_suite(write(replaced("cylinder = { semidiagonal = 6, tan_alpha = 0.2 }", body))).cases
     assert low.cylinder.base_radius == pytest.approx(1.0)
     assert (low.cylinder.mass_centre_height, high.cylinder.mass_centre_height) == pytest.approx((4.0, 6.0))
@@ -168,7 +169,7 @@ WRONG = {
     ),
     replaced(", tan_alpha = 0.2", ""): "cases[0].cylinder.tan_alpha: must be given: either semidiagonal",
     replaced("tan_alpha = 0.2", "tan_alpha = 0.2, base_radius = 1"): (
-        "cylinder.semidiagonal: must be left out: it does not go with base_radius and height"
+        "cylinder.semidiagonal: must be left out: it does not go with base_radius or diameter, and height"
     ),
     replaced("tan_alpha = 0.2", "tan_alpha = 0.2, axial_inertia = 99"): (
         "cases[0].cylinder: axial_inertia must not exceed twice transverse_inertia, got 99"

@@ -145,8 +145,9 @@ def test_details_are_printed_where_they_are_asked_for(found):
 def test_the_numbers_are_those_of_the_groups(found):
     given, *groups = page_of(found).values["numbers"]
     alpha = np.degrees(found.cylinder.alpha)
-    assert float(given["tilt"]) == pytest.approx(alpha * found.peak, rel=PRINTED)
-    assert float(given["top"]) == pytest.approx(found.top(found.peak), rel=PRINTED)
+    # its digits follow the scatter of its copies
+    assert float(given["tilt"]) == pytest.approx(alpha * found.peak, rel=0.05)
+    assert float(given["top"]) == pytest.approx(found.top(found.peak), rel=0.05)
     assert len(groups) == len(found.groups)
     for row, group in zip(groups, found.groups.to_dict("records"), strict=True):
         if np.isfinite(group["peak_tilt_95"]):

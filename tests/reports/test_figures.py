@@ -18,6 +18,7 @@ from rockwobble.reports.figures.palette import ORDER, Style, label_styles
 from rockwobble.reports.figures.picture import TIME, Axis, Band, Bars, Line, Panel, Picture, Rule, Text, ecdf
 from rockwobble.reports.figures.svg import figure, svg
 from rockwobble.reports.figures.trace import pictures as trace_pictures
+from rockwobble.studies.advice.members import top_displacement
 
 ALPHA = Axis(label="tilt / α", unit="-", low=0.0)
 T = np.linspace(0.0, 10.0, 4001)
@@ -185,8 +186,8 @@ def test_trace_draws_itself():
     drawn = simulate(Case(pier, initial=release, duration=1.0)).plot()
     tilt, path = drawn.axes
     assert tilt.lines[0].get_ydata()[0] == pytest.approx(0.5)
-    # the contact point keeps to the original circle
-    assert np.hypot(*path.lines[1].get_data()) == pytest.approx(1.0)
+    # the top leans towards the rim by as much as the axis does
+    assert np.hypot(*path.lines[1].get_data())[0] == pytest.approx(top_displacement(pier, release.tilt))
 
 
 def test_only_a_model_is_drawn_as_one_whatever_a_run_is_called() -> None:
@@ -197,11 +198,18 @@ def test_only_a_model_is_drawn_as_one_whatever_a_run_is_called() -> None:
     assert len(set(styles.values())) == len(labels)
 
 
-def test_the_path_of_the_contact_point_does_not_cross_the_circle_in_a_near_pass():
+def test_the_path_of_the_contact_point_runs_along_the_rim_on_flat_ground_alone():
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    (picture,) = trace_pictures(simulate(Case(pier, el_centro_1940())))
-    path = chart(picture.panels[1], picture)["layers"][1]
-    drawn = figure(picture).axes[1].lines[1].get_data()
-    for points in (np.array(drawn), np.array([numbers(path["x"]), numbers(path["y"])])):
-        middles = np.hypot(*(0.5 * (points[:, 1:] + points[:, :-1])))
-        assert np.nanmin(middles) > 0.96  # of a chord of half the radius: sqrt(15)/4
+    names = {}
+    for support in ("recess", "flat"):
+        trace = simulate(Case(pier, el_centro_1940()), support=support)
+        (picture,) = trace_pictures(trace)
+        names[support] = [layer.name for layer in picture.panels[1].layers]
+    assert names == {"recess": ["base", "top"], "flat": ["base", "top", "contact point"]}
+    angle = trace.rolling_angle[:, None]
+    centres = trace.contact_point - pier.base_radius * np.hstack([np.cos(angle), np.sin(angle)])
+    path = np.column_stack([picture.panels[1].layers[2].x, picture.panels[1].layers[2].y])
+    path, centres = (places[np.isfinite(places[:, 0])] for places in (path, centres))
+    for points in (path, 0.5 * (path[1:] + path[:-1])):  # no chord leaves the rim in any of its places
+        apart = np.hypot(*(points[:, None] - centres[::20]).T)
+        assert np.abs(apart - pier.base_radius).min(axis=0).max() < 0.05 * pier.base_radius

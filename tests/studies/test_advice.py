@@ -672,7 +672,7 @@ def test_a_single_run_is_one_of_many_from_where_an_advice_says_so(no_records):
     slender = Cylinder(semidiagonal=6.0847320541999865, tan_alpha=0.08996054265853794)
     chaotic = Case(slender, el_centro_1940().scaled(1.28359029043245))
     single = single_run(chaotic, RECESS).facts["single_trace"]
-    advised = advise(chaotic, copies=100)
+    advised = advise(chaotic, copies=20)
     assert single["perturbation"] == advised.facts["perturbation"] == 0.01
     assert single["copies_part"] == pytest.approx(advised.copies_part)
     assert single["copies_part"] < advised.response["peak_time"]
