@@ -139,7 +139,7 @@ def single_run_of(
     slid: Sequence[Sequence[float]] = (),
     scatter: float = math.nan,
 ) -> SingleRun:
-    """Results of a trace: when perturbed copies of it diverge [s], or slide (n, 2) [m]; scatter of their peaks."""
+    """Results of a trace; its copies: when they diverge [s], slides (n, 2) [m], scatter of their peaks."""
     job = Job(case=trace.case, run=trace.run)
     left_out = ("rest_intervals", "extrema", "passes")
     facts = {
