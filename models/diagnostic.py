@@ -39,6 +39,8 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "rolling_loss": ("", "rolling resistance took of the energy of the motion, besides"),
         "undecided": ("", "it stays by its balance: rounding decides whether it falls or turns back"),
         "solver": ("steps", "the solver had not converged in some of the steps looked at"),
+        "mode": ("", "another mode of motion than the mechanics lets the case have"),
+        "unresolved_slide": ("", "the displacement is off that of Coulomb's law, over its peak"),
         "early_uplift": ("", "the base opened before the load was at its rim"),
         "unresolved_pass": ("passes", "passes are closer to upright than contact resolves"),
         "settled": ("alpha", "error that the time step leaves, by extrapolation"),

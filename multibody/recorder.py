@@ -82,6 +82,7 @@ class Recorder:
         body, start = scene.body, scene.start
         self._gains = body.gains if joined else body.gains[:1]
         self._scene, self._samples = scene, samples
+        self.mode = scene.mode
         self.asked = float(samples[-1])  # end of the run that was asked for, before it was extended [s]
         self.off_grid = False  # whether it is no sample of a run that is extended
         self._watch: UpliftWatch | None = None

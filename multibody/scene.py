@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import InitialState, RockingBody
 from rockwobble.models.bounds import OVERTURNED_TILT
+from rockwobble.models.mode import ROCKS
 from rockwobble.models.support import Support
 
 from .restraint import WEIGHT_ALONE, Restraint
@@ -211,6 +212,8 @@ class Scene:
         User seconds in one second of the scene: settings that are times are in user seconds.
     restraint : Restraint, optional
         What holds the body down besides its weight; nothing that is not among the terms of the engine.
+    mode : str
+        Mode of motion to expect, by which an engine chooses its contact.
     """
 
     body: Body
@@ -223,6 +226,7 @@ class Scene:
     unit_time: float
     rolling_resistance: float = 0.0
     restraint: Restraint = WEIGHT_ALONE
+    mode: str = ROCKS
 
     @property
     def tipping_gravity(self) -> float:

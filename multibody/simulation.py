@@ -6,6 +6,7 @@ import contextlib
 import math
 import time as clock
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy as np
 from rockwobble.models import Case, Diagnostic, InitialState, RockingBody, Run, Trace
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.case import TimeStep
+from rockwobble.models.mode import SLIDES, expected_mode
 from rockwobble.models.number_checks import require_positive, require_sample_step
 from rockwobble.models.support import RECESS, support_named
 from rockwobble.models.trace import NO_PEAK
@@ -38,6 +40,7 @@ from .scene import (
     scaled_body,
     starting_state,
 )
+from .slide import mode_facts
 from .stepping import run_steps
 
 if TYPE_CHECKING:
@@ -163,7 +166,7 @@ def _simulate(
         raise EngineNotInstalledError(
             f"engine {run.engine!r} is installed and does not load: {reason}"
         ) from error
-    return _trace(
+    trace = _trace(
         recorder,
         scene,
         scale,
@@ -174,6 +177,8 @@ def _simulate(
         settings=dict(resolved),
         wall_time=clock.perf_counter() - started,
     )
+    facts = tuple(mode_facts(trace))
+    return replace(trace, facts=trace.facts + facts) if facts else trace
 
 
 def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Trace:
@@ -362,6 +367,7 @@ def _statement(
         unit_time=scale.time,
         rolling_resistance=case.rolling_resistance / scale.length,
         restraint=scaled_restraint(case, body.base_radius, REFERENCE_GRAVITY, backend.facts.rounding),
+        mode=expected_mode(case, support),
     )
     return backend, scene, backend.settings(settings, scene)
 
@@ -381,8 +387,10 @@ def diagnostics(
             code=recorder.failure, time=recorder.end_time * unit_time, detail="; ".join(recorder.warnings)
         )
     # what never happened has the time NaN, which is no time before the end
+    # what slides must slip, and friction takes its energy
+    slides = recorder.mode == SLIDES
     for code, time in (
-        ("slip", recorder.slip_time),
+        ("slip", math.nan if slides else recorder.slip_time),
         ("tension", recorder.pull_time),
         ("friction_needed", recorder.grip_time),
         ("lift_off", recorder.flight_time),
@@ -391,7 +399,7 @@ def diagnostics(
         if time <= end:
             yield Diagnostic(code=code, time=time * unit_time)
     since, share, bound = recorder.energy.remark(end)
-    if not math.isnan(since):
+    if not math.isnan(since) and not slides:
         yield Diagnostic(code="energy", time=since * unit_time, size=share, bound=bound)
         rolled = recorder.last_value("energy_lost") / recorder.energy.largest
         if rolled > 0.0:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rockwobble.models.mode import ROCKS_IN_PLANE, SLIDES
 from rockwobble.models.support import FLAT, RECESS, RING
 
 from ..protocol import EngineFacts, SceneCounts, Settings, Stepper, Steps, Wall
@@ -35,6 +36,17 @@ _LEANS = 1e-8  # [rad] from which a lean has a direction, which a corner follows
 _LOADED, _OPENING = 0.5, 0.98
 _LAST_PRISMS, _OUT_OF_REACH = 1, 1e-3  # [-], [m]
 _FREE = 7  # coordinates of a free body
+_ROLLING, _CLOSING = (
+    2.0,
+    4.0,
+)  # damping ratios of a rim that is not followed, and of one that closes in a plane
+_STOPPING = 500.0  # [1/s] rate at which friction stops a base that slides, at the reference size
+_SLIDING: Settings = {
+    "follow_load": False,
+    "points": 16,
+    "points_damping_ratio": 3.0,
+    "contact_damping_ratio": 3.0,
+}
 # A standing cylinder that runs into a wall, or hops while it slides, leans too and then stands on: only
 # under a load on its rim does a lean mean that it has uplifted, or if it is far larger.
 _ON_RIM, _RISEN_ANYHOW = 0.9, 1e-3  # of b, [rad]
@@ -56,12 +68,25 @@ _FACTS = EngineFacts(
         "pyramidal cone": {"cone": "pyramidal"},
     },
     standing_alternatives={
-        (f"standing on {corners} corners" if corners else "standing without prisms"): {
-            "standing_corners": corners
-        }
-        for corners in (0, 4, 12, 24, 48)
+        **{
+            (f"standing on {corners} corners" if corners else "standing without prisms"): {
+                "standing_corners": corners
+            }
+            for corners in (0, 4, 12, 24, 48)
+        },
+        "nothing steered": {"follow_load": False},
     },
 )
+
+
+def _chosen(scene: Scene, given: Settings) -> Settings:
+    """Return the settings that follow from the mode to expect, and from whether the load is followed."""
+    in_plane = scene.mode == ROCKS_IN_PLANE and not scene.support.walls
+    if scene.start.standing and scene.mode == SLIDES:
+        return {**_SLIDING, "friction_damping": min(_STOPPING * scene.time_step, 1.0)}
+    follow = given.get("follow_load", not (scene.start.standing and in_plane))
+    ratio = 1.0 if follow else _CLOSING if in_plane else _ROLLING
+    return {"follow_load": follow, "contact_damping_ratio": ratio}
 
 
 class MujocoEngine(Declared):
@@ -75,7 +100,8 @@ class MujocoEngine(Declared):
         others, ring = take_ring(given, scene.support, scene.body.tan_alpha)
         if ring is not None:
             check_start(ring, scene)
-        return {**super().settings(others, scene), **({} if ring is None else asdict(ring))}
+        chosen = {**_chosen(scene, others), **others}
+        return {**super().settings(chosen, scene), **({} if ring is None else asdict(ring))}
 
     @contextlib.contextmanager
     def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
@@ -111,7 +137,7 @@ class _MujocoStepper:
         self._scene, self._settings, self._ring, self._runner = scene, settings, ring, runner
         self._columns = ["xyz".index(component) for component in scene.components]
         self._staggered = settings.integrator != "RK4"
-        self._standing = scene.start.standing and settings.standing_corners > 0
+        self._standing = scene.start.standing and settings.follow_load and settings.standing_corners > 0
         self._risen = max(_RISEN, _RISEN_DEPTHS * _depth(scene, settings) / scene.body.base_radius)
         self._model = compile_scene(scene, settings, standing=self._standing, ring=ring)
         self._data = mujoco.MjData(self._model)

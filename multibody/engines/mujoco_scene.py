@@ -16,7 +16,7 @@ import numpy as np
 from ..restraint import SceneTendon
 from ..ring import RingSettings, wall_feet, wall_orientations
 from ..scene import Array, Body, Scene, Start
-from ..settings import Count, EngineSettings, Positive, one_of, positive
+from ..settings import Count, EngineSettings, Positive, one_of, positive, whole
 
 if TYPE_CHECKING:
     import mujoco  # type: ignore[import-untyped]
@@ -32,7 +32,11 @@ class MujocoSettings(EngineSettings):
         Time in which contact removes a normal velocity [s]. 2 h removes it in one step, the stiffest
         that the engine's own safety (refsafe) lets through; from 1.5 h to 4 h nothing changes.
     contact_damping_ratio : float
-        1 is critical. Elastic contact chatters and does not converge.
+        1 is critical. Elastic contact chatters and does not converge. Above 1 a velocity is removed as fast,
+        and a depth taken back the slower, by the square. A base that closes is as deep in the ground as it
+        moved in its last step; taken back as fast as the velocity, that throws the rim up by a quarter of
+        the speed at which it came, at every step alike: half of the peak after an impact in one plane may be
+        lost. So it is 4 in one plane.
     impedance : float
         Share of a load that contact takes at once; 0.9999 is the engine's maximum. The rest sinks in: with
         0.999 a standing cylinder has leant by the time it uplifts, which adds 2e-5 to the error under El
@@ -49,7 +53,9 @@ class MujocoSettings(EngineSettings):
         while it rolls, and friction, which has no memory, lets it creep by (1/friction_damping - 1/2) h
         times its acceleration. At 1.8 that is a ninth of what it is at 1 (the engine's default), and still
         first order in h: from tan alpha 0.2 to 3 a release in the recess errs by 5e-6 alpha instead of
-        1.3e-4. A cylinder that slides hops: friction of this kind lifts it, the more the stiffer it is.
+        1.3e-4. A cylinder that slides hops: the engine's cone is convex, and friction that would stop a
+        slip velocity v lifts the contact by mu v times this share, whatever the step. So where the case
+        slides it is what stops a slip within 2 ms at the reference size.
     guide_stiffness : float
         Guide stiffness of each half of the guide, over the axial inertia [1/s^2]. (0.2/h)^2/4: the twist
         stays below 1e-6
@@ -75,6 +81,17 @@ class MujocoSettings(EngineSettings):
         that share the load let the base lean before it opens, which leaves a tilt rate: so where it is about
         to open four are left, which on their own would chatter under a load near the rim. All 48 to the end
         make a relative RMS of 5.8e-5 under El Centro on (10 m, 0.1). Not in the scene of a release.
+    follow_load : bool
+        Whether a standing base is carried by those corners, which turn with the load and leave when it has
+        uplifted. If not, nothing is steered and the scene is the same throughout: points just inside the rim,
+        and the rim as a flat ellipsoid, whose lowest point runs under the load by itself. By default what
+        wobbles is followed, for the last digit of its uplift; what closes in one plane or slides is not.
+    points : int
+        Points of a base that is not followed. On its rim alone it would shake from side to side.
+    points_damping_ratio : float
+        Of these points: softer than the rim, so that it is the rim that carries where the base opens.
+    points_inset : float
+        Their distance from the rim, over b.
     """
 
     contact_time_constant: Positive
@@ -88,6 +105,10 @@ class MujocoSettings(EngineSettings):
     tolerance: Annotated[float, positive(most=1e-3, or_zero=True)] = 1e-12
     iterations: Count = 100
     standing_corners: Annotated[int, one_of(*range(0, 49, 4))] = 48
+    follow_load: Annotated[bool, one_of(True, False)] = True
+    points: Annotated[int, whole(least=0, most=256)] = 16
+    points_damping_ratio: Positive = 10.0
+    points_inset: Annotated[float, positive(most=0.5)] = 0.01
 
     @staticmethod
     def defaults(time_step: float) -> dict[str, float]:
@@ -96,6 +117,9 @@ class MujocoSettings(EngineSettings):
 
 
 _PRISMS = 12  # in the scene file; four corners each
+# sagitta of the ellipsoid, over that at which a base rolls under its load by two radians a step
+_CROWN = 0.03
+_POINT = 1e-6  # of b, radius of a point
 _SLAB_WIDTH, _SLAB_THICKNESS = 4.0, 0.5  # half of them, of the height and in m: wider than a column can fall
 
 
@@ -118,7 +142,9 @@ def compile_scene(
     if scene.restraint.tendon is not None:
         _add_tendon(spec, scene.body, scene.restraint.tendon)
     if scene.body.slab_mass_ratio > 0.0:
-        _add_slab(spec, scene, standing and settings.standing_corners > 0)
+        _add_slab(spec, scene, standing and settings.follow_load and settings.standing_corners > 0)
+    if not settings.follow_load:
+        _add_rim(spec, scene, settings)
     _set_contact(spec, scene, settings, standing, ring)
     for component in set("xyz") - set(scene.components):
         spec.delete(spec.actuator(f"push_{component}"))
@@ -160,6 +186,33 @@ def _set_body(spec: mujoco.MjSpec, scene: Scene) -> None:
     for geom in body.geoms:
         geom.pos = [0.0, 0.0, above]
         geom.size = [radius, half, 0.0] if geom.name == "cylinder" else [radius / 2**0.5] * 2 + [half]
+
+
+def _add_rim(spec: mujoco.MjSpec, scene: Scene, settings: MujocoSettings) -> None:
+    """Put a flat ellipsoid in the place of the rim, and points just inside it; under a slab on the top, too.
+
+    On an ellipsoid of sagitta c a base of radius b rolls as on a ball of radius b^2/c, with the circular
+    frequency sqrt(g b^2/(c J)), J its inertia about the ground.
+    """
+    import mujoco
+
+    shape, body, b = scene.body, spec.body("cylinder"), scene.body.base_radius
+    inertia = shape.transverse_inertia + shape.moved_mass * shape.mass_centre_height**2
+    sagitta = _CROWN * scene.pressing_gravity * (b * scene.time_step) ** 2 / (4.0 * inertia)
+    low, high = -shape.mass_centre_height, shape.height - shape.mass_centre_height
+    free = {"contype": 0, "conaffinity": 0}
+    ellipsoid, sphere = mujoco.mjtGeom.mjGEOM_ELLIPSOID, mujoco.mjtGeom.mjGEOM_SPHERE
+    body.add_geom(name="rim", type=ellipsoid, size=[b, b, sagitta], pos=[0.0, 0.0, low + sagitta], **free)
+    next(pair for pair in spec.pairs if pair.geomname2 == "cylinder" and _bears(pair)).geomname2 = "rim"
+    spec.geom("cylinder").contype = spec.geom("cylinder").conaffinity = 0
+    size, radius = _POINT * b, (1.0 - settings.points_inset) * b
+    ends = [("ground", low + size), ("slab", high - size)][: 2 if shape.slab_mass_ratio > 0.0 else 1]
+    for other, height in ends:
+        for index in range(settings.points):
+            azimuth, name = 2.0 * np.pi * index / settings.points, f"point_{other}{index}"
+            place = [radius * np.cos(azimuth), radius * np.sin(azimuth), height]
+            body.add_geom(name=name, type=sphere, size=[size, 0.0, 0.0], pos=place, **free)
+            spec.add_pair(geomname1=other, geomname2=name)
 
 
 def _add_tendon(spec: mujoco.MjSpec, shape: Body, tendon: SceneTendon) -> None:
@@ -217,7 +270,8 @@ def _add_slab(spec: mujoco.MjSpec, scene: Scene, standing: bool) -> None:
 def _set_contact(
     spec: mujoco.MjSpec, scene: Scene, settings: MujocoSettings, standing: bool, ring: RingSettings | None
 ) -> None:
-    count = settings.standing_corners // 4 if standing else 0
+    followed = settings.follow_load
+    count = settings.standing_corners // 4 if standing and followed else 0
     if count:
         # the rounding of the rim's depth would make it hop
         spec.delete(next(pair for pair in spec.pairs if pair.geomname2 == "cylinder" and _bears(pair)))
@@ -231,7 +285,7 @@ def _set_contact(
         else:
             # the corners of all prisms stand evenly on the rim
             spec.geom(name).alt.euler = [0.0, 0.0, 90.0 * index / count]
-    rim = settings.impedance if standing else settings.rolling_impedance
+    rim = settings.impedance if standing or not followed else settings.rolling_impedance
     # friction stays as hard as it is on the corners
     spec.option.impratio = _yield(rim) / _yield(settings.impedance)
     for pair in spec.pairs:
@@ -241,7 +295,9 @@ def _set_contact(
         rolling = scene.rolling_resistance if _bears(pair) else 0.0
         pair.friction = [friction, friction, 0.0, rolling, rolling]
         pair.condim = 6 if rolling else 3
-        pair.solref = [settings.contact_time_constant / scene.unit_time, settings.contact_damping_ratio]
+        soft = pair.geomname2.startswith("point")
+        ratio = settings.points_damping_ratio if soft else settings.contact_damping_ratio
+        pair.solref = [settings.contact_time_constant / scene.unit_time, ratio]
         pair.solimp = [impedance, impedance, 1e-3, 0.5, 2.0]
         # two negative numbers are a stiffness, which friction has none of, and a damping; the engine divides
         # the damping by the impedance

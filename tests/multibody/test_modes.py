@@ -1,0 +1,58 @@
+"""What an engine does by its default settings where it is known exactly: impacts in one plane, slides."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rockwobble import multibody, reduced
+from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
+from rockwobble.multibody.slide import path_of_slide
+
+
+def one_sine(tan_alpha: float) -> Case:
+    """One component, 1.3 times what uplifts, for 0.8 s."""
+    time = np.arange(0.0, 2.4, 0.005)
+    push = 1.3 * tan_alpha * 9.81 * np.sin(2.0 * np.pi * time / 0.8) * (time <= 0.8)
+    body = Cylinder(semidiagonal=np.hypot(1.0, 2.0), tan_alpha=tan_alpha)
+    return Case(body, GroundMotion(np.column_stack([push, 0.0 * push]), 0.005), friction=5.0)
+
+
+@pytest.mark.parametrize(
+    ("tan_alpha", "support", "step"),
+    [(0.1, "flat", 5e-4), (0.5, "recess", 1e-4), (0.5, "flat", 3e-5), (1.0, "flat", 5e-4)],
+)
+def test_an_impact_in_one_plane_is_of_momentum_at_every_step(
+    tan_alpha: float, support: str, step: float
+) -> None:
+    case = one_sine(tan_alpha)
+    exact = reduced.simulate(case, plane=0.0, restitution="momentum").peak_tilt
+    run = multibody.simulate(case, support=support, time_step=step)
+    assert run.peak_tilt == pytest.approx(exact, rel=0.01)
+
+
+@pytest.mark.parametrize("share", [0.6, 0.96])
+def test_a_slide_below_the_border_neither_tilts_nor_turns(share: float) -> None:
+    case = Case(
+        Cylinder(semidiagonal=3.0, tan_alpha=0.5),
+        el_centro_1940().scaled(2.5),
+        friction=0.5 * share,
+        duration=4.0,
+    )
+    exact = reduced.simulate(case, support="flat")
+    np.testing.assert_allclose(
+        path_of_slide(case, exact.time), exact.displacement, atol=2e-3 * exact.peak_displacement
+    )
+    run = multibody.simulate(case, support="flat")
+    assert (run.mode, run.facts) == ("slides", ())
+    away = run.displacement - exact.displacement[: len(run.time)]
+    assert np.abs(away).max() < 0.05 * exact.peak_displacement
+    assert run.peak_tilt < 1e-4 * case.cylinder.alpha
+    assert np.abs(run.twist).max() < 1e-3
+
+
+def test_an_engine_that_tilts_what_slides_says_so() -> None:
+    motion = el_centro_1940().scaled(2.5)
+    case = Case(Cylinder(semidiagonal=3.0, tan_alpha=0.5), motion, friction=0.48, duration=3.0)
+    run = multibody.simulate(case, support="flat", follow_load=True, friction_damping=1.8, points=0)
+    assert {"mode", "unresolved_slide"} <= {fact.code for fact in run.facts}
