@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from .argument_kinds import in_words, with_argument_kinds
+from .argument_kinds import with_argument_kinds
 from .bounds import OVERTURNED_TILT, Bounds
 from .cylinder import RockingBody
 from .ground_motion import GroundMotion
@@ -120,16 +120,15 @@ class Case:
     tendon: Tendon | None = None
 
     def __post_init__(self) -> None:
-        kinds: dict[str, type] = {
-            "cylinder": RockingBody,
-            "motion": GroundMotion,
-            "initial": InitialState,
-            "tendon": Tendon,
-        }
+        if not isinstance(self.cylinder, RockingBody):
+            raise ValueError(  # noqa: TRY004
+                f"cylinder must be a Cylinder or a WobblingFrame, got {quoted(self.cylinder)}"
+            )
+        kinds: dict[str, type] = {"motion": GroundMotion, "initial": InitialState, "tendon": Tendon}
         for name, kind in kinds.items():
             given = getattr(self, name)
-            if not (isinstance(given, kind) or (given is None and name != "cylinder")):
-                raise ValueError(f"{name} must be {in_words(kind)}, got {quoted(given)}")
+            if given is not None and not isinstance(given, kind):
+                raise ValueError(f"{name} must be {kind.__name__} or None, got {quoted(given)}")
         object.__setattr__(self, "gravity", require_positive("gravity", self.gravity, "m/s^2"))
         object.__setattr__(self, "friction", require_not_negative("friction", self.friction))
         length = require_finite("rolling_resistance", self.rolling_resistance, "m")

@@ -19,7 +19,8 @@ import pandas as pd
 import pytest
 
 import rockwobble as rw
-from rockwobble.models.argument_kinds import in_words, with_argument_kinds
+from rockwobble.models import Case, Run
+from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.records import p695
 
 PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -173,17 +174,16 @@ def test_a_wrong_kind_is_one_line(name: str, argument: str) -> None:
 
 def test_a_decorated_function_names_argument_kind_and_value() -> None:
     @with_argument_kinds
-    def study(case: rw.Case, runs: list[rw.Run] | None = None, *, share: float = 1.0, **more: object) -> int:
+    def study(case: Case, runs: list[Run] | None = None, *, share: float = 1.0, **more: object) -> int:
         return len(runs or ())
 
     assert study(CASE, [MODEL], share=1, other=object()) == 1
     for call, text in (
-        (lambda: study(3.0), "case must be a Case, got 3.0"),  # type: ignore[arg-type]
-        (lambda: study(CASE, share="1"), "share must be a number, got '1'"),  # type: ignore[arg-type]
-        (lambda: study(CASE, [3]), "runs must be a sequence of Run or None, got [3]"),  # type: ignore[list-item]
+        (lambda: study(3.0), "case must be Case, got 3.0"),  # type: ignore[arg-type]
+        (lambda: study(CASE, share="1"), "share must be float, got '1'"),  # type: ignore[arg-type]
+        (lambda: study(CASE, [3]), "runs must be list[Run] | None, got [3]"),  # type: ignore[list-item]
     ):
         with pytest.raises(ValueError, match=f"^{re.escape(text)}$"):
             call()
     with pytest.raises(TypeError, match="missing a required argument: 'case'"):
         study()  # type: ignore[call-arg]
-    assert in_words(str | Path | None) == "a path or None"

@@ -11,20 +11,17 @@ WRONG = [None, 3.0, "case", PIER, object(), [PIER], {"a": 1}, rw.el_centro_1940(
 
 @pytest.mark.parametrize("wrong", WRONG, ids=lambda each: type(each).__name__)
 def test_a_study_says_what_it_was_given_and_what_is_allowed(wrong: object) -> None:
-    with pytest.raises(ValueError, match="case must be a Case, got"):
+    with pytest.raises(ValueError, match="case must be Case, got"):
         rw.advise(wrong)  # type: ignore[arg-type]
-    with pytest.raises(
-        ValueError, match="case_or_members must be a Case, a Suite or a sequence of Case, got"
-    ):
+    with pytest.raises(ValueError, match=r"case_or_members must be Case \| Suite .*, got"):
         rw.ensemble(wrong)  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="motions must be a sequence of GroundMotion or a mapping"):
+    with pytest.raises(ValueError, match=r"motions must be Sequence.GroundMotion. .*, got"):
         rw.fragility(PIER, wrong)  # type: ignore[arg-type]
     if wrong not in (PIER, [PIER]):
-        allowed = "a Cylinder, a WobblingFrame, a mapping .* or a sequence of Cylinder or WobblingFrame"
-        with pytest.raises(ValueError, match=f"cylinders must be {allowed}, got"):
+        with pytest.raises(ValueError, match=r"cylinders must be .*, got"):
             rw.fragility(wrong, [rw.el_centro_1940()])  # type: ignore[arg-type]
 
 
 def test_the_run_of_an_advice_is_a_run() -> None:
-    with pytest.raises(ValueError, match="run must be a Run or None, got 'mujoco'"):
+    with pytest.raises(ValueError, match=r"run must be Run \| None, got 'mujoco'"):
         rw.advise(Case(PIER, rw.el_centro_1940()), "mujoco")  # type: ignore[arg-type]

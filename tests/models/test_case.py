@@ -152,8 +152,8 @@ def test_the_name_of_a_case_is_one_line(name: str) -> None:
     [
         ((6.0, SHORT), "cylinder must be a Cylinder or a WobblingFrame, got 6.0"),
         ((SHORT, PIER), "cylinder must be a Cylinder or a WobblingFrame, got GroundMotion"),
-        ((PIER, "record.csv"), "motion must be a GroundMotion, got 'record.csv'"),
-        ((PIER, SHORT, 0.1), "initial must be an InitialState, got 0.1"),
+        ((PIER, "record.csv"), "motion must be GroundMotion or None, got 'record.csv'"),
+        ((PIER, SHORT, 0.1), "initial must be InitialState or None, got 0.1"),
     ],
 )
 def test_a_part_of_another_kind_is_refused_by_name(given: Any, said: str) -> None:
