@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from rockwobble.studies import sweep
 from rockwobble.compare.runs import execution, scheduler
 from rockwobble.compare.runs.progress import Lost
 from rockwobble.compare.storage.manifest import file_state, read_manifests
 from rockwobble.reports.cli.main import main
+from rockwobble.studies import sweep
 
 GRID = ["--semidiagonal", "1:20:4", "--tan-alpha", "0.1,0.2", "--scale", "0.3,2", "--workers", "1"]
 
