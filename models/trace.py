@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +49,46 @@ class Late:
         return (
             np.full(count if self._width == 1 else (count, self._width), math.nan) if found is None else found
         )
+
+
+T = TypeVar("T")
+
+
+class Deferred(Generic[T]):
+    """A field given as its value, or as a function that computes it when it is first asked for.
+
+    A NaN is computed from the trace `otherwise`.
+    """
+
+    def __init__(self, default: Any = None, otherwise: Callable[[Any], T] | None = None) -> None:
+        self._default, self._otherwise = default, otherwise
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __set__(self, trace: Trace, value: T | Callable[[], T]) -> None:
+        trace.__dict__[self._name] = value
+
+    def __get__(self, trace: Trace | None, owner: type) -> T:
+        if trace is None:
+            if self._default is None:  # a field that has to be given
+                raise AttributeError(self._name)
+            return self._default  # type: ignore[no-any-return]
+        value = trace.__dict__[self._name]
+        if callable(value):
+            value = trace.__dict__[self._name] = value()
+        elif self._otherwise is not None and math.isnan(value):
+            value = trace.__dict__[self._name] = self._otherwise(trace)
+        return value  # type: ignore[no-any-return]
+
+
+def _largest_displacement(trace: Trace) -> float:
+    away = np.hypot(*trace.displacement.T)
+    return math.nan if trace.outcome in NO_PEAK or not len(away) else float(away.max())
+
+
+def _last_displacement(trace: Trace) -> float:
+    return float(np.hypot(*trace.displacement[-1])) if len(trace.time) else math.nan
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -173,14 +213,14 @@ class Trace(Shown):
     tilt_rate: Array
     rolling_angle: Array
     twist: Array
-    contact_point: Array
-    centre_of_mass: Array
+    contact_point: Deferred[Array] = Deferred()
+    centre_of_mass: Deferred[Array] = Deferred()
     peak_tilt: float
     outcome: str
     uplift_time: float
     uplift_direction: float
     source: Source
-    passes: pd.DataFrame = field(default_factory=no_passes)
+    passes: Deferred[pd.DataFrame] = Deferred(no_passes)
     facts: tuple[Diagnostic, ...] = ()
     rests: bool = False
     followed_until: float = math.nan
@@ -191,8 +231,8 @@ class Trace(Shown):
     wall_time: float = math.nan
     step_count: int = 0
     contact_resolution: float = math.nan
-    peak_displacement: float = math.nan
-    residual_displacement: float = math.nan
+    peak_displacement: Deferred[float] = Deferred(math.nan, _largest_displacement)
+    residual_displacement: Deferred[float] = Deferred(math.nan, _last_displacement)
     error_estimate: float = math.nan
     settled_until: float = math.nan
 
@@ -206,13 +246,6 @@ class Trace(Shown):
     slip = Late(1)
     wall_contact = Late(1)
     wall_impulse = Late(1)
-
-    def __post_init__(self) -> None:
-        away = np.hypot(*self.displacement.T) if len(self.time) else np.full(1, math.nan)
-        peak = math.nan if self.outcome in NO_PEAK else float(away.max())
-        for name, value in (("peak_displacement", peak), ("residual_displacement", float(away[-1]))):
-            if math.isnan(getattr(self, name)):
-                object.__setattr__(self, name, value)
 
     @property
     def displacement(self) -> Array:

@@ -6,7 +6,7 @@ import importlib.metadata
 import math
 import time
 from collections.abc import Iterator
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -155,15 +155,15 @@ def _trace(
         tilt_rate=full[:, 1],
         rolling_angle=np.where(moving, full[:, 2], math.nan),
         twist=full[:, 4],
-        contact_point=solution.contact_point(moving),
-        centre_of_mass=solution.centre_of_mass(),
+        contact_point=partial(solution.contact_point, moving),
+        centre_of_mass=solution.centre_of_mass,
         peak_tilt=OVERTURNED_TILT if overturned else math.nan if outcome in NO_PEAK else result.peak,
         outcome=outcome,
         uplift_time=result.uplift_time,
         uplift_direction=result.uplift_direction + azimuth,
         followed_until=result.followed_until,
         source=solution,
-        passes=solution.passes(),
+        passes=solution.passes,
         facts=tuple(_facts(problem, result)),
         rests=result.status == REST,
         rest_intervals=result.rests,

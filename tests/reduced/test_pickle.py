@@ -18,3 +18,12 @@ def test_a_response_from_elsewhere_is_solved_again_with_the_code_that_is_compile
         sent.source.problem.solve(np.empty(0))[0].peak == response.source.problem.solve(np.empty(0))[0].peak
     )
     assert sent.source.problem._set_up.integrate is response.source.problem._set_up.integrate
+
+
+def test_a_deferred_field_is_the_same_before_and_after_a_journey():
+    response = reduced.simulate(Case(PIER, initial=InitialState(tilt=0.1, rolling_rate=0.1), duration=1.0))
+    sent = pickle.loads(pickle.dumps(response))
+    np.testing.assert_array_equal(sent.centre_of_mass, response.centre_of_mass)
+    assert sent.contact_point.shape == (len(sent.time), 2)
+    assert sent.passes.equals(response.passes)
+    assert sent.peak_displacement == response.peak_displacement == np.hypot(*response.displacement.T).max()
