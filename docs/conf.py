@@ -66,7 +66,8 @@ html_css_files = ["site.css"]
 html_math_renderer = "mathml"
 html_show_sourcelink = False
 # no list of sections where there is none, and the whole width where a table or code needs it
-html_sidebars = {name: [] for name in ("start", "glossary", "references", "citing", "guide/limits")}
+_PLAIN = ("start", "glossary", "other-software", "references", "citing", "guide/limits")
+html_sidebars = {name: [] for name in _PLAIN}
 toc_object_entries_show_parents = "hide"
 html_context = {"default_mode": "auto"}
 html_theme_options = {

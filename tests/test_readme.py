@@ -1,8 +1,9 @@
-"""What the README shows works: its Python, its commands with their options, its links."""
+"""What the README shows works: its Python, its commands, its links; documents agree on the version."""
 
 from __future__ import annotations
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,9 @@ from typer.testing import CliRunner
 
 CHECKOUT = Path(__file__).parents[1]
 README = (CHECKOUT / "README.md").read_text(encoding="utf-8")
+
+
+pytestmark = pytest.mark.checkout
 
 
 def blocks(language: str) -> list[str]:
@@ -53,3 +57,22 @@ def test_links_lead_to_files() -> None:
     targets = [target for target in re.findall(r"\]\(([^)#]+)", README) if "://" not in target]
     assert targets
     assert [target for target in targets if not (CHECKOUT / target).exists()] == []
+
+
+def test_no_document_says_another_version_author_or_address() -> None:
+    project = tomllib.loads((CHECKOUT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    citation = (CHECKOUT / "CITATION.cff").read_text(encoding="utf-8")
+    released = re.search(
+        r"^## \[(\S+)\] - (\S+)", (CHECKOUT / "CHANGELOG.md").read_text(encoding="utf-8"), re.M
+    )
+    assert released is not None
+    assert released[1] == project["version"]
+    assert f"date-released: {released[2]}" in citation
+    texts = [citation, *(path.read_text(encoding="utf-8") for path in CHECKOUT.glob("*.md"))]
+    texts += [path.read_text(encoding="utf-8") for path in (CHECKOUT / "docs").rglob("*.md")]
+    said = [each for text in texts for each in re.findall(r"(?<!cff-)\bversion\W+(\d+\.\d+\.\d+)", text)]
+    assert len(said) >= 2
+    assert set(said) == {project["version"]}
+    assert all(f"name: {each['name']}" in citation for each in project["authors"])
+    address = re.search(r"^repository-code: (\S+)", citation, re.M)
+    assert project.get("urls", {}).get("Source") == (address and address[1])

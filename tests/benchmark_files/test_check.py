@@ -26,6 +26,8 @@ from benchmark_files.write import PUBLISHED
 from rockwobble import reduced
 from rockwobble.models import Tendon, Trace
 
+pytestmark = pytest.mark.checkout
+
 CASES = sorted(path.name for path in (PUBLISHED / "cases").iterdir())
 SLIDING = "onset-of-slip"
 Form = Callable[[Trace], Table]

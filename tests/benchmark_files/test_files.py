@@ -23,6 +23,8 @@ from rockwobble import reduced
 from rockwobble.models import Case
 from rockwobble.reduced.exact import free_response, steady_wobble_rate
 
+pytestmark = pytest.mark.checkout
+
 CASES = sorted(path.name for path in (PUBLISHED / "cases").iterdir())
 SHORT = ("turn-flat", "turn-recess", "uplift-directions", "near-upright-pass", "onset-of-slip", "tendon")
 REFERENCE = Path(__file__).resolve().parents[1] / "reference"

@@ -40,6 +40,8 @@ from rockwobble.compare.check.verdict import (
 )
 from rockwobble.models import Case, GroundMotion, Trace
 
+pytestmark = pytest.mark.checkout
+
 ROOT = Path(__file__).resolve().parents[2]
 # of the faults in the sources of the recess model, each tenth: all of them take minutes in the interpreter
 WRITTEN = 1e-11  # a signal is kept to twelve digits

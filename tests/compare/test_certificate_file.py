@@ -11,6 +11,8 @@ import pytest
 from rockwobble.compare.check import verdict
 from rockwobble.compare.check.baseline import read_certificate
 
+pytestmark = pytest.mark.checkout
+
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published" / "certificates" / "reduced.json"
 HEAD: dict[str, Any] = {"kind": "rockwobble certificate", "format": 3, "method": {}}
 

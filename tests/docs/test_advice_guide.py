@@ -10,6 +10,8 @@ import pytest
 
 from rockwobble.reports.cli.main import main
 
+pytestmark = pytest.mark.checkout
+
 GUIDE = Path(__file__).parents[2] / "docs" / "guide" / "advice.md"
 
 

@@ -17,6 +17,8 @@ import yaml
 
 from rockwobble.models import el_centro_1940
 
+pytestmark = pytest.mark.checkout
+
 PAGE = Path(__file__).parents[2] / "docs" / "guide" / "own-ci.md"
 WORKFLOW = yaml.safe_load((PAGE.parent / "own-ci" / "rocking.yml").read_text(encoding="utf-8"))
 STEPS: list[dict[str, Any]] = WORKFLOW["jobs"]["rocking"]["steps"]

@@ -11,6 +11,8 @@ import pytest
 
 from rockwobble.reports.cli.main import main
 
+pytestmark = pytest.mark.checkout
+
 CHECKOUT = Path(__file__).parents[2]
 GUIDE = (CHECKOUT / "docs" / "guide" / "own-figure.md").read_text(encoding="utf-8")
 STUDY = CHECKOUT / "reports" / "published" / "fragility" / "p695"

@@ -20,6 +20,8 @@ from rockwobble.models.trace_file import COLUMNS, OF_FRAMES, OF_TENDONS, PASS_CO
 from rockwobble.reports.cli.main import app
 from rockwobble.reports.registry import COMMANDS
 
+pytestmark = pytest.mark.checkout
+
 DOCS = Path(__file__).parents[2] / "docs"
 API = DOCS / "reference" / "api"
 PACKAGES = ["models", "reduced", "multibody", "compare", "compare.check", "studies"]

@@ -22,9 +22,10 @@ THEME = "[PST]"  # what the theme tells of itself is no complaint
 # pages that one browser looks at together, in either width
 TOGETHER = 8
 
-pytestmark = pytest.mark.skipif(
-    not (BUILT / "index.html").exists(), reason=f"needs the site, built in {BUILT}"
-)
+pytestmark = [
+    pytest.mark.skipif(not (BUILT / "index.html").exists(), reason=f"needs the site, built in {BUILT}"),
+    pytest.mark.checkout,
+]
 
 _SILENT = {"a", "code", "pre", "math", "script", "style", "nav", "title", "dt"} | {
     f"h{i}" for i in range(1, 7)

@@ -10,6 +10,8 @@ import pytest
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
 
+pytestmark = pytest.mark.checkout
+
 GUIDE = (Path(__file__).parents[2] / "docs" / "guide" / "tendon.md").read_text(encoding="utf-8")
 COMMANDS = dict(re.findall(r"^rockwobble (\w+) (.*)$", GUIDE, flags=re.MULTILINE))
 STEEL = r" --mass \S+ --tendon-force \S+ --tendon-rigidity \S+ --tendon-length \S+"

@@ -17,7 +17,7 @@ from rockwobble.reports.pages import page_of, stored_page
 from rockwobble.reports.pages.ensemble import page_of as ensemble_page
 from rockwobble.reports.registry import KINDS
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.checkout]
 
 # of a player: moved, it must say where it is
 PLAYER = """

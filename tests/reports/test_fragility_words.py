@@ -21,6 +21,8 @@ from rockwobble.studies import Fragility
 from rockwobble.studies.fragility.study import fragility_of, main_contrasts
 from rockwobble.studies.fragility.tables import margin_of
 
+pytestmark = pytest.mark.checkout
+
 
 @pytest.fixture(scope="module")
 def found() -> Fragility:

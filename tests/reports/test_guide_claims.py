@@ -9,6 +9,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+pytestmark = pytest.mark.checkout
+
 CHECKOUT = Path(__file__).parents[2]
 PUBLISHED = CHECKOUT / "reports" / "published"
 ENSEMBLES = PUBLISHED / "ensemble"

@@ -21,6 +21,8 @@ from rockwobble.reports.published import headlines
 from rockwobble.studies.validity.limits import needs
 from rockwobble.studies.validity.study import Validity
 
+pytestmark = pytest.mark.checkout
+
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
 STUDIES = ("ensemble/copies", "extremes")  # one of a command, one of a script
 PUBLIC = (

@@ -16,6 +16,8 @@ from rockwobble.compare.storage.manifest import read_manifests
 from rockwobble.reports.figures.svg import figure
 from rockwobble.reports.pages import stored_page
 
+pytestmark = pytest.mark.checkout
+
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
 
 

@@ -13,6 +13,8 @@ from rockwobble.compare.storage.manifest import MANIFEST, read_manifests
 from rockwobble.models import Case, Cylinder, InitialState, Run, plain_json
 from rockwobble.reports.cli.main import main
 
+pytestmark = pytest.mark.checkout
+
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 CASE = Case(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=0.5, name="release")
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"

@@ -17,7 +17,7 @@ from rockwobble.reports.pages.table import number
 from rockwobble.studies.validity.limits import cells, contrasts
 from rockwobble.studies.validity.study import Validity
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.checkout]
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published" / "validity"
 POINT = ["tan_alpha", "semidiagonal", "intensity"]

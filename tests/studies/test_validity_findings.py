@@ -16,6 +16,8 @@ from rockwobble.studies.validity.limits import Numbers, limits_of
 from rockwobble.studies.validity.plan import Structure
 from rockwobble.studies.validity.study import Validity
 
+pytestmark = pytest.mark.checkout
+
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published" / "validity"
 
 
