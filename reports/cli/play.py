@@ -39,7 +39,7 @@ _several = OptionsIn("Many ground motions")
 _OF_PAGE = {
     *(field.name for each in (Record, Release, Steel) for field in fields(each)),
     *("semidiagonal", "tan_alpha", "diameter", "height", "slab_mass_ratio", "gravity", "rolling_resistance"),
-    *("tendon_prestress", "tendon_stiffness"),
+    *("tendon_prestress", "tendon_stiffness", "tendon_yield"),
 }
 _RECORD = {field.name for field in fields(Record)} - {"scale"}
 
@@ -202,5 +202,6 @@ def _state(problem: Problem, records: Path | None, support: str, plane: float | 
         loss=1e3 * problem.rolling_resistance,
         prestress=tendon.prestress if tendon else 0.0,
         stiffness=tendon.stiffness if tendon else 0.0,
+        yielding=(tendon.yield_force or 0.0) if tendon else 0.0,
         **released,
     )

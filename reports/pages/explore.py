@@ -68,6 +68,8 @@ class State:
         Length of rolling resistance [mm].
     prestress, stiffness : float
         As of `Tendon`.
+    yielding : float
+        Yield force of the tendon, in weights of one column; 0: elastic without limit.
     """
 
     height: float
@@ -83,6 +85,7 @@ class State:
     loss: float = 0.0
     prestress: float = 0.0
     stiffness: float = 0.0
+    yielding: float = 0.0
 
 
 def standard_shakings() -> list[Shaking]:

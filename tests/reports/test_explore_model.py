@@ -13,6 +13,7 @@ import pytest
 from browser import dumped, needs_chromium
 from numpy.typing import NDArray
 
+from rockwobble.compare.metrics.pair import beyond_yield
 from rockwobble.models import (
     CLOSED_TILT,
     Case,
@@ -63,6 +64,7 @@ class Problem:
             "height": 2.0 * body.half_height,
             "gamma": body.slab_mass_ratio,
             "delta": case.rolling_resistance,
+            "yielding": (tendon.yield_force or 0.0) if tendon else 0.0,
             "prestress": tendon.prestress if tendon else 0.0,
             "stiffness": tendon.stiffness if tendon else 0.0,
             "support": self.support,
@@ -281,3 +283,16 @@ def test_undecided_and_overturned_runs_have_no_peak(tmp_path: Path):
 def test_a_term_that_is_off_is_found(broken, solved, tmp_path: Path):
     runs = on_the_page([each for each, _, _ in solved], tmp_path, broken=broken)
     assert complaints_of(solved, runs) != []
+
+
+@needs_chromium
+@pytest.mark.slow
+@pytest.mark.parametrize("yielding", [0.0, 2.0, 3.0])
+def test_a_run_past_the_yield_of_its_tendon_is_no_answer(yielding: float, tmp_path: Path):
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    tendon = Tendon(prestress=1.0, stiffness=4.0, yield_force=yielding or None)
+    case = Case(pier, el_centro_1940().scaled(3.0), duration=12.0, tendon=tendon)
+    (run,) = on_the_page([Problem(case, "recess")], tmp_path)
+    trace = simulate(case)
+    assert bool(beyond_yield(trace.peak_tilt, case)) == (run["outcome"] == "yielded")
+    assert (run["relativePeak"] == "NaN") == (run["outcome"] == "yielded")

@@ -10,8 +10,8 @@ const HALF_PI = Math.PI / 2;
 const IN_PLANE = 1e-13;  // of the acceleration that uplifts: across a plane, as much is rounding
 
 // Constants of the equations. gamma: mass of the slab over that of the columns; delta: length of rolling resistance [m];
-// prestress in weights of one column, stiffness in these per base radius; rtol: relative tolerance of one step.
-function bodyOf({ height, diameter, gamma = 0, delta = 0, prestress = 0, stiffness = 0, gravity: g = 9.81 }, rtol) {
+// prestress and yield force (0: none) in weights of one column, stiffness in these per base radius; rtol: relative tolerance of one step.
+function bodyOf({ height, diameter, gamma = 0, delta = 0, prestress = 0, stiffness = 0, yielding = 0, gravity: g = 9.81 }, rtol) {
   const b = diameter / 2, h = height / 2, R = Math.hypot(b, h), w = 1 + 2 * gamma, mu = (1 + 4 * gamma) / w;
   const I1 = (3 * b * b + height * height) / 12 / w, I2 = b * b / 2 / w, gaps = gamma > 0 ? 2 : 1;
   const A = I1 + mu * R * R, J = I1 + mu * h * h, C = I2 + mu * b * b, E = mu * h * b;
@@ -22,6 +22,9 @@ function bodyOf({ height, diameter, gamma = 0, delta = 0, prestress = 0, stiffne
   body.fastest = p * Math.sqrt(1 + k * sa / g);
   body.slope = b / h * (1 + delta / b);  // horizontal over vertical acceleration that uplifts
   body.balance = balanceOf(body);
+  // tilt at which the tension, prestress + stiffness gaps 2 sin(theta/2), is the yield force
+  const half = (yielding - prestress) / (2 * gaps * stiffness);
+  body.yieldTilt = !yielding || !(prestress || stiffness) || half >= 1 ? Infinity : half <= 0 ? 0 : 2 * Math.asin(half);
   return body;
 }
 

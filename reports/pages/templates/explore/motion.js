@@ -213,7 +213,9 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
     if (run.outcome !== "overturned") while (count && times[count - 1] > duration * (1 + 1e-12)) count--;
     COLUMNS.forEach((name, i) => { run[name] = buffer.subarray(i * most, i * most + count); });
     run.body = o;
-    run.relativePeak = { stands: run.peak / o.alpha, overturned: Infinity, undecided: NaN }[run.outcome];
+    // a tendon that yields leaves no answer, but of what overturns before
+    if (run.peak > o.yieldTilt && !(run.outcome === "overturned" && o.yieldTilt >= Math.min(o.balance, HALF_PI))) run.outcome = "yielded";
+    run.relativePeak = { stands: run.peak / o.alpha, overturned: Infinity, undecided: NaN, yielded: NaN }[run.outcome];
     return run;
   }
 }

@@ -31,8 +31,8 @@
   const problemOf = (at) => {
     const released = at.record < 0, tendon = at.support !== "flat", lean = at.support === "planar" ? at.plane : at.lean;
     return {
-      height: at.height, diameter: at.diameter, gamma: at.slab, delta: Math.min(at.loss / 1000, 0.45 * at.diameter), gravity: GRAVITY,
-      prestress: tendon ? at.prestress : 0, stiffness: tendon ? at.stiffness : 0, support: at.support, azimuth: at.plane / DEG,
+      height: at.height, diameter: at.diameter, gamma: at.slab, delta: Math.min(at.loss / 1000, 0.05 * at.diameter), gravity: GRAVITY,
+      prestress: tendon ? at.prestress : 0, stiffness: tendon ? at.stiffness : 0, yielding: tendon ? at.yielding : 0, support: at.support, azimuth: at.plane / DEG,
       release: released ? { tilt: at.tilt / DEG, azimuth: lean / DEG, rate: at.support === "planar" ? 0 : at.rate } : null,
       record: at.record, intensity: at.intensity, factors: at.factors, duration: released ? given.free : given.duration || (motions[at.record].x.length - 1) * motions[at.record].dt,
     };
@@ -243,15 +243,16 @@
     if (find("outcome").textContent !== words) find("outcome").textContent = words;
     find("outcome").className = kind;
   };
-  const outcome = ({ outcome: end, endTime, upliftTime, peak, alpha, relativePeak, copies }) => {
-    const words = { overturned: `Overturns: on the ground at ${number(endTime, 4)} s`, undecided: `Not decided: followed for ${number(endTime || clock.length, 4)} s only` }[end]
+  const outcome = ({ outcome: end, endTime, upliftTime, peak, alpha, relativePeak, copies, body }) => {
+    const words = { overturned: `Overturns: on the ground at ${number(endTime, 4)} s`, undecided: `Not decided: followed for ${number(endTime || clock.length, 4)} s only`,
+      yielded: `Not known: the tendon yields at a tilt of ${number(body.yieldTilt * DEG)}°` }[end]
       || (Number.isNaN(upliftTime) ? "Stands, and does not uplift" : peak > alpha ? "Stands, after a tilt beyond α" : "Stands");
-    const otherwise = end === "undecided" ? 0 : copies.filter((each) => Number.isFinite(each) !== Number.isFinite(relativePeak)).length;
-    say(words + (otherwise ? `; but ${otherwise} of ${copies.length} runs with a 1 % change end otherwise` : ""), otherwise ? "sensitive" : end);
+    const unknown = end === "undecided" || end === "yielded", otherwise = unknown ? 0 : copies.filter((each) => Number.isFinite(each) !== Number.isFinite(relativePeak)).length;
+    say(words + (otherwise ? `; but ${otherwise} of ${copies.length} runs with a 1 % change end otherwise` : ""), otherwise ? "sensitive" : unknown ? "undecided" : end);
   };
   const results = (body, motion) => {
     const { at, peak, alpha, normal, outward, across } = body, o = body.body, fell = body.outcome === "overturned", moved = !Number.isNaN(body.upliftTime);
-    const end = { overturned: "overturns", undecided: "not decided" }[body.outcome];
+    const end = { overturned: "overturns", undecided: "not decided", yielded: "not known, the tendon yields" }[body.outcome];
     let friction = 0, least = Infinity;
     for (let i = 0; i < normal.length; i++) if (body.tilt[i] > 1e-3 * alpha && !(fell && body.tilt[i] > 1.2 * body.balance)) {
       friction = Math.max(friction, normal[i] > 0 ? Math.hypot(outward[i], across[i]) / normal[i] : Infinity);
@@ -278,7 +279,7 @@
     const n = Math.min(main.tilt.length, beside.tilt.length);
     let i = 0;
     while (i < n && Math.abs(main.tilt[i] - beside.tilt[i]) <= AGREEMENT * main.alpha) i++;
-    const end = { overturned: "overturns", stands: "stands", undecided: "is not decided" }[beside.outcome];
+    const end = { overturned: "overturns", stands: "stands", undecided: "is not decided", yielded: "is not known, its tendon yields" }[beside.outcome];
     place.textContent = `The gray column ${end}${beside.outcome === "stands" ? `, peak ${number(beside.peak / beside.alpha)} α` : ""}; ${i < n ? `the tilts diverge at ${number(main.time[i], 4)} s` : "the tilts do not diverge"}.`;
   };
 
@@ -369,6 +370,7 @@
     if (problem.delta) found["rolling-resistance"] = problem.delta;
     if (problem.prestress) found["tendon-prestress"] = problem.prestress;
     if (problem.stiffness) found["tendon-stiffness"] = problem.stiffness;
+    if (problem.yielding && (problem.prestress || problem.stiffness)) found["tendon-yield"] = problem.yielding;
     if (record) Object.assign(found, record.options, at.intensity === 1 ? {} : { scale: at.intensity });
     else Object.assign(found, { "release-tilt-deg": at.tilt, duration: given.free }, planar ? {} : { "release-azimuth-deg": at.lean, "rolling-rate": at.rate });
     if (GRAVITY !== 9.81) found.gravity = GRAVITY;
@@ -387,7 +389,7 @@
     if (problem.release || given.duration) more.push(`duration=${problem.duration}`);
     if (problem.delta) more.push(`rolling_resistance=${problem.delta}`);
     if (GRAVITY !== 9.81) more.push(`gravity=${GRAVITY}`);
-    if (problem.prestress || problem.stiffness) more.push(`tendon=rw.Tendon(prestress=${problem.prestress}, stiffness=${problem.stiffness})`);
+    if (problem.prestress || problem.stiffness) more.push(`tendon=rw.Tendon(prestress=${problem.prestress}, stiffness=${problem.stiffness}${problem.yielding ? `, yield_force=${problem.yielding}` : ""})`);
     const how = { recess: "", flat: ', support="flat"', planar: `, plane=${problem.azimuth}` }[at.support];
     lines.push(`case = rw.Case(body, ${more.join(", ")})`, `trace = rw.simulate(case${how})`, 'print(trace.outcome, math.degrees(trace.peak_tilt), "deg")', "");
     return lines.join("\n");
