@@ -94,6 +94,15 @@ def test_slide_turns_mirrors_and_scales_with_its_ground(seed: int) -> None:
     np.testing.assert_allclose(slide(finer, 0.01, friction).displacement[:49:2], place, atol=1e-9 * peak)
 
 
+def test_peak_is_that_of_the_motion_between_samples() -> None:
+    for seed in range(8):
+        samples, friction = shaking(seed)
+        case = Case(BODY, GroundMotion(samples, 0.02), friction=friction)
+        dense = reduced.simulate(case, support="flat", sample_step=1e-5)
+        away = np.hypot(*dense.displacement.T).max()
+        assert away * (1.0 - 1e-12) <= dense.peak_displacement <= away * (1.0 + 1e-6), seed
+
+
 def test_slides_agree_with_implicit_steps_of_first_order() -> None:
     # v after a step minimises |v - v*|^2/2 + h n |v|: a step that stops by itself, for all slides at once
     drawn = [shaking(seed) for seed in range(60)]
