@@ -11,10 +11,11 @@ from __future__ import annotations
 import importlib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rockwobble.compare.storage.results import Results
+    from rockwobble.studies.study import Study
 
 # heading in the help of the command line for each module of commands, in the order of the headings
 HEADINGS: Mapping[str, str] = {
@@ -40,6 +41,9 @@ class Entry:
     results : str
         Class of the results below `rockwobble`, such as "studies.ensemble.Ensemble"; empty where the
         command writes none.
+    study : str
+        Class of a `Study` whose fields are its options, in place of a module with its command; then `results`
+        is what it yields, and page and figures are those of its tables where there are none.
     command, kind : str
         Name of the command, and kind of the results. Default: the name.
     """
@@ -47,6 +51,7 @@ class Entry:
     name: str
     group: str = ""
     results: str = ""
+    study: str = ""
     command: str = ""
     kind: str = ""
 
@@ -56,9 +61,18 @@ class Entry:
 
     def results_class(self) -> type[Results]:
         """Return the class of the results."""
-        module, _, name = self.results.rpartition(".")
-        found: type[Results] = getattr(importlib.import_module(f"rockwobble.{module}"), name)
+        found: type[Results] = self.study_class().yields if self.study else _named(self.results)
         return found
+
+    def study_class(self) -> type[Study[Any, Any]]:
+        """Return the class of the study."""
+        found: type[Study[Any, Any]] = _named(self.study)
+        return found
+
+
+def _named(path: str) -> Any:
+    module, _, name = path.rpartition(".")
+    return getattr(importlib.import_module(f"rockwobble.{module}"), name)
 
 
 # in the order of the help
@@ -87,4 +101,4 @@ ENTRIES = (
     Entry(name="validity", group="published", results="studies.validity.study.Validity"),
 )
 COMMANDS: Mapping[str, Entry] = {entry.command: entry for entry in ENTRIES if entry.group}
-KINDS: Mapping[str, Entry] = {entry.kind: entry for entry in ENTRIES if entry.results}
+KINDS: Mapping[str, Entry] = {entry.kind: entry for entry in ENTRIES if entry.results or entry.study}

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import cast
+from typing import ClassVar, cast
 
 import numpy as np
 import pandas as pd
@@ -17,7 +16,14 @@ from rockwobble.compare.metrics.contrast import pairs_in
 from rockwobble.compare.metrics.pair import outcome_of
 from rockwobble.compare.metrics.statistics import adjusted, quantile_interval, value_if_enough
 from rockwobble.compare.runs.choice import default_runs, require_runnable, run_labels
-from rockwobble.compare.runs.execution import Job, jobs_fingerprint, open_trace_cache, simulate_all
+from rockwobble.compare.runs.execution import (
+    Job,
+    brief_among,
+    job_fingerprint,
+    job_time,
+    jobs_fingerprint,
+    run_job,
+)
 from rockwobble.compare.runs.progress import ProgressCallback
 from rockwobble.compare.storage.manifest import Number
 from rockwobble.compare.storage.results import Results
@@ -29,9 +35,10 @@ from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.number_checks import require_each
 from rockwobble.models.plain_json import fields_of, plain
 from rockwobble.models.records.units import sources_of
-from rockwobble.models.trace import NO_PEAK
+from rockwobble.models.trace import NO_PEAK, lost_trace
 
 from .plans import Copies
+from .study import Study
 
 KIND = "ensemble"
 
@@ -174,9 +181,6 @@ def ensemble(
             require_runnable(case, run)
     methods = dict(zip(run_labels((*models, *chosen)), (*models, *chosen), strict=True))
     jobs = [Job(case=case, run=run, label=label) for case in members for label, run in methods.items()]
-    with nullcontext() if resume is None else open_trace_cache(resume, "ensemble", samples=False) as cache:
-        results = simulate_all(jobs, workers=workers, progress=progress, cache=cache)
-    table = _members(jobs, results)
     about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
     about |= {"slab_mass_ratio": _of_all(case.cylinder.slab_mass_ratio for case in members)}
     for name in ("gravity", *TERMS):
@@ -185,7 +189,45 @@ def ensemble(
     about |= {"doubts": doubts_of_cases(members)}
     about |= {"record_sources": sources_of(case.motion for case in members)}
     about |= {"inputs": jobs_fingerprint(jobs)}
-    return ensemble_of(table, about)
+    return EnsembleStudy(jobs, about).run(folder=resume, workers=workers, progress=progress)
+
+
+@dataclass(frozen=True)
+class EnsembleStudy(Study[Job, Ensemble]):
+    """Members by methods, a job each, and what `Ensemble.facts` says of them."""
+
+    kind: ClassVar[str] = KIND
+    what: ClassVar[str] = "runs"
+    cost: ClassVar[Callable[[Job], float] | None] = staticmethod(job_time)
+    jobs: Sequence[Job]
+    about: Mapping[str, object]
+
+    def tasks(self) -> Sequence[Job]:
+        """Jobs."""
+        return self.jobs
+
+    @staticmethod
+    def row(task: Job) -> pd.DataFrame:
+        """Row of a run, without the names of its member and its method."""
+        return _row(run_job(task))
+
+    def key(self, task: Job) -> str:
+        """Hash of what a run depends on."""
+        return job_fingerprint(task)
+
+    def here(self) -> Callable[[Job], bool]:
+        """Whether a run takes less than to start a process."""
+        return brief_among(self.jobs)
+
+    def lost(self, task: Job, why: str) -> pd.DataFrame:
+        """Row of a run whose process died: it failed."""
+        return _row(lost_trace(task.case, task.run, why))
+
+    def results(self, tables: list[pd.DataFrame]) -> Ensemble:
+        """Ensemble of the rows of all runs."""
+        names = [{"member": job.case.name, "method": job.label} for job in self.jobs]
+        members = pd.concat([pd.DataFrame(names), pd.concat(tables, ignore_index=True)], axis=1)
+        return ensemble_of(members, self.about)
 
 
 def _compared_with(run: Run) -> str:
@@ -217,18 +259,14 @@ def _range(members: Sequence[Case], name: str) -> dict[str, float]:
     return {"from": min(values), "to": max(values), "count": len(values)}
 
 
-def _members(jobs: Sequence[Job], results: Sequence[Trace]) -> pd.DataFrame:
-    return pd.DataFrame(
-        {
-            "member": job.case.name,
-            "method": job.label,
-            "peak_tilt": result.peak_tilt / job.case.cylinder.alpha,
-            "outcome": outcome_of(result),
-            "diagnostics": cell_of(fact.code for fact in result.facts),
-            "wall_time": result.wall_time,
-        }
-        for job, result in zip(jobs, results, strict=True)
-    )
+def _row(trace: Trace) -> pd.DataFrame:
+    row = {
+        "peak_tilt": trace.peak_tilt / trace.case.cylinder.alpha,
+        "outcome": outcome_of(trace),
+        "diagnostics": cell_of(fact.code for fact in trace.facts),
+        "wall_time": trace.wall_time,
+    }
+    return pd.DataFrame([row])
 
 
 def method_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFrame:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from numbers import Integral
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import pandas as pd
@@ -15,7 +15,7 @@ import pandas as pd
 from rockwobble.compare.metrics.pair import outcome_of
 from rockwobble.compare.metrics.statistics import value_if_enough
 from rockwobble.compare.runs.choice import require_runnable, run_labels
-from rockwobble.compare.runs.execution import Job, all_makers, jobs_fingerprint, run_job, run_tables
+from rockwobble.compare.runs.execution import Job, all_makers, jobs_fingerprint, run_job
 from rockwobble.compare.runs.progress import ProgressCallback
 from rockwobble.compare.storage.manifest import Number
 from rockwobble.compare.storage.provenance import fingerprint
@@ -31,6 +31,7 @@ from rockwobble.models.records.units import sources_of
 from rockwobble.models.trace_file import case_facts
 
 from .grid import Grid, GridChunk
+from .study import Study
 
 # An engine's run takes seconds, a reduced one milliseconds.
 _REDUCED_CHUNK_SIZE, _ENGINE_CHUNK_SIZE = 200, 1
@@ -191,8 +192,6 @@ class Sweep(Results, kind=KIND):
         return pd.DataFrame(rows)
 
 
-# a chunk whose process died is tried this often: the process may have been ended from outside
-_TRIES = 3
 Chunk = GridChunk | CaseChunk
 
 
@@ -270,42 +269,50 @@ def sweep(
     chunks: list[Chunk] = (
         [*whole.chunks(chunk_size)] if isinstance(whole, Grid) else [*chunks_of(whole, chunk_size)]
     )
-    # in a mixed order the runs that take long are spread evenly, and so the time left can be predicted
-    order = np.random.default_rng(0).permutation(len(chunks)).tolist()
-    with run_tables(
-        run_chunk,
-        [chunks[index] for index in order],
-        kind=KIND,
-        key=lambda chunk: chunk.key(),
-        label=lambda chunk: chunk.name,
+    return SweepStudy(whole, chunks).run(
         folder=out,
-        what="chunks",
-        tries=_TRIES,
-        makers=partial(all_makers, () if isinstance(whole, Grid) else whole.runs),
         workers=workers,
         scheduler=scheduler,
         progress=progress,
-    ) as found:
-        by_place = dict(zip(order, found, strict=True))
-        table: pd.DataFrame = pd.concat([by_place[place] for place in range(len(chunks))], ignore_index=True)
-        doubts = whole.doubts() if isinstance(whole, Grid) else doubts_of_cases(whole.cases)
-        stated = whole.describe() if isinstance(whole, Grid) else describe_suite(whole)
-        motions = whole.motions if isinstance(whole, Grid) else [case.motion for case in whole.cases]
-        inputs = fingerprint([chunk.key() for chunk in chunks])
-        result = Sweep(
-            tables={KIND: table, **_motions(whole)},
-            facts=plain(
-                {**stated, "doubts": doubts, "record_sources": sources_of(motions), "inputs": inputs}
-            ),
+        save=save if out is None or save is not None else lambda found: found.save(out),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class SweepStudy(Study[Chunk, Sweep]):
+    """All runs of a grid or of a suite, in chunks."""
+
+    kind: ClassVar[str] = KIND
+    what: ClassVar[str] = "chunks"
+    tries: ClassVar[int] = 3
+    plan: Grid | Suite
+    chunks: Sequence[Chunk]
+
+    def tasks(self) -> Sequence[Chunk]:
+        """Chunks."""
+        return self.chunks
+
+    def key(self, task: Chunk) -> str:
+        """Hash of what the table of a chunk depends on."""
+        return task.key()
+
+    def makers(self) -> Mapping[str, str]:
+        """Versions and code of the methods."""
+        return all_makers(() if isinstance(self.plan, Grid) else self.plan.runs)
+
+    def results(self, tables: list[pd.DataFrame]) -> Sweep:
+        """Sweep of the tables of all chunks."""
+        plan = self.plan
+        if isinstance(plan, Grid):
+            stated, doubts, motions = plan.describe(), plan.doubts(), list(plan.motions)
+        else:
+            stated, doubts = describe_suite(plan), doubts_of_cases(plan.cases)
+            motions = [case.motion for case in plan.cases if case.motion is not None]
+        inputs = fingerprint([chunk.key() for chunk in self.chunks])
+        facts = {**stated, "doubts": doubts, "record_sources": sources_of(motions), "inputs": inputs}
+        return Sweep(
+            tables={KIND: pd.concat(tables, ignore_index=True), **_motions(plan)}, facts=plain(facts)
         )
-        if out is not None:
-            result.save(out) if save is None else save(result)
-    return result
-
-
-def run_chunk(chunk: Chunk) -> pd.DataFrame:
-    """Return the table of a chunk, one row for each run."""
-    return chunk.run()
 
 
 def _motions(plan: Grid | Suite) -> dict[str, pd.DataFrame]:

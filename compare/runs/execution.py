@@ -5,16 +5,14 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
 
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import TimeStep
-from rockwobble.models.frames import pd
 from rockwobble.models.parquet_file import pack, read
 from rockwobble.models.shown import Brief
 from rockwobble.models.support import RECESS
@@ -24,9 +22,8 @@ from rockwobble.multibody.extrapolated_step import FINEST
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP, froude_scale
 
 from ..storage.provenance import engine_makers, fingerprint, reduced_makers, result_fingerprint
-from .cache import Cache, open_cache, open_table_cache
-from .dask_backend import ClusterError
-from .progress import IncompleteError, Lost, ProgressCallback
+from .cache import Cache, open_cache
+from .progress import Lost, ProgressCallback
 from .scheduler import run_tasks
 
 SAMPLE_STEP = 0.01
@@ -187,22 +184,31 @@ def simulate_all(
     >>> [trace.outcome for trace in simulate_all(jobs, workers=1)]
     ['stands', 'stands']
     """
-    few = sum(job.run.is_model for job in jobs) <= _FEW
     found = run_tasks(
         run_job,
         jobs,
         workers=workers,
-        # a reduced model may have to be compiled
-        cost=lambda job: math.inf if job.run.is_model else engine_time(job.case, job.run),
+        cost=job_time,
         label=lambda job: job.name,
         progress=progress,
         cache=cache,
-        here=lambda job: few and _is_compiled(job),
+        here=brief_among(jobs),
     )
     return [
         lost_trace(job.case, job.run, result.why) if isinstance(result, Lost) else result
         for job, result in zip(jobs, found, strict=True)
     ]
+
+
+def job_time(job: Job) -> float:
+    """Return the rough computing time of a job [s]; infinite for a reduced model, perhaps to be compiled."""
+    return math.inf if job.run.is_model else engine_time(job.case, job.run)
+
+
+def brief_among(jobs: Iterable[Job]) -> Callable[[Job], bool]:
+    """Return what says of a job that it takes less than to start a process: one of few of reduced models."""
+    few = sum(job.run.is_model for job in jobs) <= _FEW
+    return lambda job: few and _is_compiled(job)
 
 
 def _is_compiled(job: Job) -> bool:
@@ -215,24 +221,12 @@ def _is_compiled(job: Job) -> bool:
     return is_compiled(Problem(job.case, **job.run.settings, support=job.run.support).kernel)
 
 
-def open_trace_cache(
-    folder: str | Path, kind: str, *, samples: bool = True
-) -> AbstractContextManager[Cache[Job, Trace]]:
-    """Open the finished runs of a folder of results, see `open_cache`.
-
-    Parameters
-    ----------
-    folder : str or Path
-    kind : str
-        Kind of the results.
-    samples : bool, optional
-        Whether all samples are kept, or only the last of them beside the numbers and passes of a run.
-    """
+def open_trace_cache(folder: str | Path, kind: str) -> AbstractContextManager[Cache[Job, Trace]]:
+    """Open the finished runs of a folder of results of a kind, see `open_cache`."""
 
     def to_bytes(job: Job, trace: Trace) -> bytes:
         about = {"kind": "run", "case": job.case.name, "label": job.label, "trace": trace.to_plain()}
-        table = trace.to_frame()
-        return pack(table if samples else table.iloc[-1:], about)
+        return pack(trace.to_frame(), about)
 
     def from_bytes(job: Job, content: bytes) -> Trace:
         table, about = read(content)
@@ -288,87 +282,3 @@ def case_inputs(case: Case) -> dict[str, object]:
         "gravity": case.gravity,
         "friction": case.friction,
     }
-
-
-T = TypeVar("T")
-
-
-@contextmanager
-def run_tables(
-    function: Callable[[T], pd.DataFrame],
-    tasks: Sequence[T],
-    *,
-    kind: str,
-    key: Callable[[T], str],
-    label: Callable[[T], str],
-    folder: str | Path | None = None,
-    lost: Callable[[T], pd.DataFrame] | None = None,
-    what: str = "tasks",
-    cost: Callable[[T], float] | None = None,
-    tries: int = 1,
-    makers: Callable[[], Mapping[str, str]] = reduced_makers,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    progress: ProgressCallback | None = None,
-) -> Iterator[list[pd.DataFrame]]:
-    """Yield the table of each task, in their order.
-
-    Parameters
-    ----------
-    function : callable
-        Returns the table of a task; importable by name.
-    tasks : sequence
-    kind : str
-        Kind of the results.
-    key : callable
-        Returns what identifies the table of a task, see `result_fingerprint`.
-    folder : str or Path, optional
-        Keeps each finished task: a second call, after whatever ended the first, repeats none. It is this
-        process's until the block ends; if the block ends well, the tasks of other results of this kind go.
-    lost : callable, optional
-        Returns the table of a task whose process died. Default: there is none.
-    what : str, optional
-        The tasks are called so, for people.
-    label, cost, tries, makers, workers, scheduler, progress : optional
-        As in `run_tasks`. Whoever takes a scheduler states the `makers` of all that its tasks run.
-
-    Raises
-    ------
-    IncompleteError
-        If the process of a task died and `lost` has no table of it, or the Dask cluster cannot do the tasks.
-    ValueError
-        If the folder or the scheduler is not usable; and what a task raises, whatever it is.
-    """
-    with nullcontext() if folder is None else open_table_cache(folder, kind, key) as cache:
-        try:
-            found = run_tasks(
-                function,
-                tasks,
-                workers=workers,
-                scheduler=scheduler,
-                cost=cost,
-                label=label,
-                progress=progress,
-                cache=cache,
-                tries=tries,
-                makers=makers,
-            )
-        except ClusterError as error:
-            kept = "nothing is kept" if cache is None else f"{cache.count} {what} are kept in {folder}"
-            raise IncompleteError(f"{error}; {kept}") from None
-        tables: list[pd.DataFrame] = []
-        died: list[str] = []
-        for task, each in zip(tasks, found, strict=True):
-            if not isinstance(each, Lost):
-                tables.append(each)
-            elif lost is not None:
-                tables.append(lost(task))
-            else:
-                died.append(f"{label(task)}: {each.why}")
-        if died:
-            times = f" {tries} times" if tries > 1 else ""
-            raise IncompleteError(
-                f"{len(died)} of {len(tasks)} {what} ended their processes{times}, all others are finished; "
-                f"the last words of {died[0]}"
-            )
-        yield tables

@@ -23,8 +23,10 @@ from .command import StrictCommand
 @cache
 def _command(name: str) -> TyperCommand:
     """Return what typer makes of a command, which is imported here; its docstring ends with an example."""
-    group = COMMANDS[name].group
-    function = getattr(importlib.import_module(f".{group}", __package__), name)
+    entry = COMMANDS[name]
+    group = entry.group
+    module = importlib.import_module(f".{'of_study' if entry.study else group}", __package__)
+    function = module.command_of(entry) if entry.study else getattr(module, name)
     words, _, example = (inspect.getdoc(function) or "").partition("\n\nExample: ")
     alone = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
     alone.command(cls=StrictCommand, help=_help(words, example), rich_help_panel=HEADINGS[group])(function)

@@ -31,7 +31,7 @@ def draw(value: object, part: str | None = None) -> Figure:
     kind = getattr(value, "kind", "")
     name = KINDS[kind].name if kind in KINDS else type(value).__name__.lower()
     if find_spec(f".{name}", __name__) is None:
-        raise ValueError(f"there is nothing to draw of {value!r}")
+        name = "tables"
     pictures = importlib.import_module(f".{name}", __name__).pictures(value)
     names = []
     for picture in pictures:

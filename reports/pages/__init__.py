@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,5 +29,7 @@ def stored_page(kind: str, folder: Path) -> Page:
 def page_of(found: Results) -> Page:
     """Return the page of results, not drawn yet."""
     whole = found if found.manifest else found.made_by()
-    page: Page = importlib.import_module(f"rockwobble.reports.pages.{KINDS[found.kind].name}").page_of(whole)
+    name = KINDS[found.kind].name
+    module = name if find_spec(f".{name}", __name__) else "tables"
+    page: Page = importlib.import_module(f".{module}", __name__).page_of(whole)
     return page

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from numbers import Real
-from pathlib import Path
+from operator import attrgetter
+from typing import ClassVar
 
 import numpy as np
 import pandas as pd
@@ -20,10 +21,8 @@ from rockwobble.compare.runs.execution import (
     case_inputs,
     engine_time,
     makers_of,
-    run_tables,
     simulate_run,
 )
-from rockwobble.compare.runs.progress import ProgressCallback
 from rockwobble.compare.storage.provenance import result_fingerprint
 from rockwobble.models import Case, GroundMotion, RockingBody, Run
 from rockwobble.models.bounds import OVERTURNED_TILT
@@ -34,6 +33,7 @@ from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody.scene import default_step
 
 from ..plans import FragilityPlan
+from ..study import Study
 from .intensity import intensity, measures_of, uplift_scale
 from .tables import CONTACT_LOST, SLIDES, YIELDED
 
@@ -286,11 +286,6 @@ def _row(
     return found | {CONTACT_LOST: contact_lost, SLIDES: slides}
 
 
-def run_task(task: Task) -> pd.DataFrame:
-    """Return the table of a task: peak_tilt [alpha], outcome, contact_lost."""
-    return pd.DataFrame(task.rows())
-
-
 # The reduced runs of a task take about a second together: little is lost with it.
 _CHUNK_TIME = 1.0
 # of the default levels, as peak resultant over g tan(alpha): from a little above uplift to where a slender
@@ -299,8 +294,11 @@ _LOWEST, _HIGHEST, LEVELS = 1.25, 12.0, 20
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class RunPlan:
+class RunPlan(Study[Task, pd.DataFrame]):
     """Every cylinder under every motion at every level by every method.
+
+    `run` yields one row for each: cylinder, motion, step (place of the level), method, peak_tilt [alpha],
+    outcome, contact_lost and slides (1, 0, or NaN where nobody asked). A run whose process died failed.
 
     Parameters
     ----------
@@ -320,6 +318,9 @@ class RunPlan:
         If an axis is empty, repeats a value or holds one that is out of range, or an engine cannot run.
     """
 
+    kind: ClassVar[str] = "fragility"
+    tries: ClassVar[int] = 2
+    cost: ClassVar[Callable[[Task], float] | None] = attrgetter("cost")
     cylinders: Mapping[str, RockingBody]
     motions: Sequence[GroundMotion]
     methods: Sequence[Method]
@@ -398,8 +399,39 @@ class RunPlan:
                     rows.append(place | about | found)
         return pd.DataFrame(rows)
 
-    def tasks(self) -> Iterator[Task]:
-        """Yield the runs: engines singly, reduced models some motions together."""
+    def tasks(self) -> list[Task]:
+        """Runs: engines singly, reduced models some motions together."""
+        return list(self._tasks())
+
+    @staticmethod
+    def row(task: Task) -> pd.DataFrame:
+        """Table of a task: peak_tilt [alpha], outcome, contact_lost, slides."""
+        return pd.DataFrame(task.rows())
+
+    def key(self, task: Task) -> str:
+        """Hash of what the runs of a task depend on."""
+        return task.key()
+
+    def name(self, task: Task) -> str:
+        """Title of a task."""
+        return task.title
+
+    def lost(self, task: Task, why: str) -> pd.DataFrame:
+        """Table of a task whose process died: its runs failed."""
+        return pd.DataFrame([_row(task.shakings[0].case, math.nan, "failed")] * len(task.points))
+
+    def makers(self) -> Mapping[str, str]:
+        """Versions and code of the methods."""
+        return all_makers(method.run for method in self.methods if method.run is not None)
+
+    def results(self, tables: list[pd.DataFrame]) -> pd.DataFrame:
+        """Runs of all tasks, and the worse plane where it is asked for."""
+        named = [_with_labels(task, each) for task, each in zip(self.tasks(), tables, strict=True)]
+        table = pd.concat(named, ignore_index=True)
+        worse = [worse_plane(table)] if any(method.run is None for method in self.methods) else []
+        return pd.concat([table, *worse], ignore_index=True)
+
+    def _tasks(self) -> Iterator[Task]:
         contact = CONTACT_LOST in (self.options.limits or ())
         for name, cylinder in self.cylinders.items():
             shakings = [self._shaking(cylinder, motion) for motion in self.motions]
@@ -506,59 +538,7 @@ def _has_default_step(method: Method) -> bool:
     return method.run is not None and not method.run.is_model and method.run.time_step is None
 
 
-# a task whose process died is tried this often: the process may have been ended from outside
-_TRIES = 2
 KEYS = ["cylinder", "motion", "step"]
-
-
-def run_plan(
-    plan: RunPlan,
-    kind: str,
-    *,
-    folder: str | Path | None = None,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    progress: ProgressCallback | None = None,
-) -> pd.DataFrame:
-    """Run all that a plan holds.
-
-    Parameters
-    ----------
-    plan : RunPlan
-    kind : str
-        Kind of the results, for the folder of finished tasks.
-    folder : str or Path, optional
-        Keeps each finished task: a second call, after whatever ended the first, repeats none.
-    workers, scheduler, progress : optional
-        As in `run_tasks`.
-
-    Returns
-    -------
-    DataFrame
-        One row for each cylinder, method, motion and level: cylinder, motion, step (place of the level),
-        method, peak_tilt [alpha], outcome, contact_lost and slides (1, 0, or NaN where nobody asked). A run
-        whose process died failed.
-    """
-    tasks = list(plan.tasks())
-    with run_tables(
-        run_task,
-        tasks,
-        kind=kind,
-        key=Task.key,
-        label=lambda task: task.title,
-        folder=folder,
-        lost=lambda task: pd.DataFrame([_row(task.shakings[0].case, math.nan, "failed")] * len(task.points)),
-        cost=lambda task: task.cost,
-        tries=_TRIES,
-        makers=partial(all_makers, tuple(method.run for method in plan.methods if method.run is not None)),
-        workers=workers,
-        scheduler=scheduler,
-        progress=progress,
-    ) as found:
-        tables = [_with_labels(task, each) for task, each in zip(tasks, found, strict=True)]
-    table = pd.concat(tables, ignore_index=True)
-    worse = [worse_plane(table)] if any(method.run is None for method in plan.methods) else []
-    return pd.concat([table, *worse], ignore_index=True)
 
 
 def _with_labels(task: Task, table: pd.DataFrame) -> pd.DataFrame:

@@ -39,7 +39,6 @@ from .runs import (
     models_with_tendon,
     motions_by_level,
     own_model,
-    run_plan,
 )
 from .tables import (
     DEFAULT_LIMITS,
@@ -504,7 +503,7 @@ def fragility(
     plan = RunPlan(cylinders=bodies, motions=motions, methods=chosen, options=asked, stripes=stripes)
     doubts = doubts_about(motions=motions, cylinders=bodies.values(), gravities=[asked.gravity])
     facts = _facts(plan) | {"source": source, "doubts": doubts, "record_sources": sources_of(motions)}
-    runs = run_plan(plan, KIND, folder=resume, workers=workers, scheduler=scheduler, progress=progress)
+    runs = plan.run(folder=resume, workers=workers, scheduler=scheduler, progress=progress)
     return fragility_of(runs, plan.points, facts)
 
 

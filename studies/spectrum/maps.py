@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import pandas as pd
@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 
 from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.runs.choice import require_runnable
-from rockwobble.compare.runs.execution import run_tables
 from rockwobble.compare.runs.progress import ProgressCallback
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, WobblingFrame
 from rockwobble.models.number_checks import require_increasing
 from rockwobble.models.plain_json import Facts
 
 from ..plans import SpectrumPlan
+from ..study import Study
 from .parts import (
     AZIMUTH,
     SERIES,
@@ -339,7 +339,6 @@ def tilt_maps(
     workers: int | None = None,
     progress: ProgressCallback | None = None,
     resume: str | Path | None = None,
-    kind: str = KIND,
 ) -> TiltMaps:
     """Run every size at every intensity, in three dimensions and in the planes of both components.
 
@@ -356,8 +355,6 @@ def tilt_maps(
         Called with a `Progress` at the start and the end of each part: some sizes in one series.
     resume : str or Path, optional
         Folder that keeps each finished part: a second call, after whatever ended the first, repeats none.
-    kind : str, optional
-        Kind of the results that keep them.
 
     Returns
     -------
@@ -392,57 +389,77 @@ def tilt_maps(
         column = Cylinder(semidiagonal=1.0, tan_alpha=tan_alpha)
         held = asked.tendon.uplift_factor(WobblingFrame(column, asked.slab_mass_ratio))
     start = {name: held * uplift_of_series(name, motion, tan_alpha, gravity) / unit for name in SERIES}
-    parts = [
-        SpectrumPart(
-            series=name,
-            places=places,
-            semidiagonals=sizes[places.start : places.stop],
-            levels=levels,
-            unit=unit,
-            start=start[name],
-            tan_alpha=tan_alpha,
-            motion=motion,
-            plan=asked,
-        )
-        for name in SERIES
-        for places in blocks_of_sizes(len(sizes))
-    ]
-    # the mean time of the parts so far is that of the rest, if they are not in the order of their sizes
-    order = np.random.default_rng(0).permutation(len(parts)).tolist()
-    with run_tables(
-        partial(run_part, workers=workers),
-        [parts[index] for index in order],
-        kind=kind,
-        key=SpectrumPart.key,
-        label=lambda part: part.name,
-        folder=resume,
-        workers=1,  # each runs in threads
-        progress=progress,
-    ) as tables:
-        by_place = dict(zip(order, tables, strict=True))
-    whole = {
-        name: pd.concat([by_place[i] for i, part in enumerate(parts) if part.series == name])
-        for name in SERIES
-    }
-    return TiltMaps(
+    return MapStudy(
         tan_alpha=tan_alpha,
         motion=motion,
-        gravity=gravity,
-        support=asked.support,
-        slab_mass_ratio=asked.slab_mass_ratio,
-        rolling_resistance=asked.rolling_resistance,
-        tendon_prestress=asked.tendon_prestress,
-        tendon_stiffness=asked.tendon_stiffness,
-        tendon_yield=asked.tendon_yield,
-        semidiagonals=sizes,
-        intensities=levels,
-        peak_tilt={
-            name: table[[str(place) for place in range(len(levels))]].to_numpy()
-            for name, table in whole.items()
-        },
-        lowest={name: table["lowest"].to_numpy() for name, table in whole.items()},
-        below={name: table["below"].to_numpy() for name, table in whole.items()},
-        searched_from=start,
-        search_step=asked.search_step,
-        probes=asked.probes,
-    )
+        plan=asked,
+        sizes=sizes,
+        levels=levels,
+        unit=unit,
+        start=start,
+        threads=workers,
+    ).run(folder=resume, workers=1, progress=progress)  # each part runs in threads
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MapStudy(Study[SpectrumPart, TiltMaps]):
+    """Sizes at intensities in each series, some sizes of one series a part; see `SpectrumPart`."""
+
+    kind: ClassVar[str] = KIND
+    what: ClassVar[str] = "parts"
+    tan_alpha: float
+    motion: GroundMotion
+    plan: SpectrumPlan
+    sizes: Array
+    levels: Array
+    unit: float
+    start: Mapping[str, float]
+    threads: int | None = None
+
+    def tasks(self) -> list[SpectrumPart]:
+        """Parts, series by series."""
+        return [
+            SpectrumPart(
+                series=name,
+                places=places,
+                semidiagonals=self.sizes[places.start : places.stop],
+                levels=self.levels,
+                unit=self.unit,
+                start=self.start[name],
+                tan_alpha=self.tan_alpha,
+                motion=self.motion,
+                plan=self.plan,
+                threads=self.threads,
+            )
+            for name in SERIES
+            for places in blocks_of_sizes(len(self.sizes))
+        ]
+
+    @staticmethod
+    def row(task: SpectrumPart) -> pd.DataFrame:
+        """Rows of a part, one for each size."""
+        return run_part(task)
+
+    def key(self, task: SpectrumPart) -> str:
+        """Hash of what a part depends on."""
+        return task.key()
+
+    def results(self, tables: list[pd.DataFrame]) -> TiltMaps:
+        """Maps of all parts."""
+        series = [part.series for part in self.tasks()]
+        whole = {
+            name: pd.concat([table for own, table in zip(series, tables, strict=True) if own == name])
+            for name in SERIES
+        }
+        places = [str(place) for place in range(len(self.levels))]
+        return TiltMaps(
+            **{name: getattr(self.plan, name) for name in _FACTS if hasattr(self.plan, name)},
+            tan_alpha=self.tan_alpha,
+            motion=self.motion,
+            semidiagonals=self.sizes,
+            intensities=self.levels,
+            peak_tilt={name: table[places].to_numpy() for name, table in whole.items()},
+            lowest={name: table["lowest"].to_numpy() for name, table in whole.items()},
+            below={name: table["below"].to_numpy() for name, table in whole.items()},
+            searched_from=self.start,
+        )

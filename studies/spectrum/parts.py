@@ -75,6 +75,8 @@ class SpectrumPart:
     tan_alpha : float
     motion : GroundMotion
     plan : SpectrumPlan
+    threads : int, optional
+        Number of threads; it does not influence the result.
     """
 
     series: str
@@ -86,6 +88,7 @@ class SpectrumPart:
     tan_alpha: float
     motion: GroundMotion
     plan: SpectrumPlan
+    threads: int | None = None
 
     @property
     def name(self) -> str:
@@ -107,16 +110,9 @@ class SpectrumPart:
         )
 
 
-def run_part(part: SpectrumPart, *, workers: int | None = None) -> pd.DataFrame:
-    """Return one row for each size: lowest, below and the peak tilt at each level, by its place.
-
-    Parameters
-    ----------
-    part : SpectrumPart
-    workers : int, optional
-        Number of threads.
-    """
-    sizes, levels, plan = part.semidiagonals, part.levels, part.plan
+def run_part(part: SpectrumPart) -> pd.DataFrame:
+    """Return one row for each size: lowest, below and the peak tilt at each level, by its place."""
+    workers, sizes, levels, plan = part.threads, part.semidiagonals, part.levels, part.plan
     elastic = partial(
         reduced.peak_tilts,
         tan_alpha=part.tan_alpha,

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
+from typing import ClassVar
 
 import pandas as pd
 
-from rockwobble.compare.runs.execution import run_tables
 from rockwobble.compare.runs.progress import ProgressCallback
 from rockwobble.compare.storage.manifest import Number
 from rockwobble.compare.storage.provenance import (
@@ -23,6 +23,7 @@ from rockwobble.models.finding import Findings
 from rockwobble.models.support import RECESSES_FIRST
 
 from ..plans import ValidityPlan
+from ..study import Study
 from .findings import findings_of
 from .limits import limits_of, records
 from .measurements import (
@@ -150,29 +151,45 @@ def measure_all(
     tasks: list[Task] = [
         (name, {**inputs, **own}) for name, part in parts.items() for inputs in part.tasks(extent)
     ]
-    with run_tables(
-        measure_task,
-        tasks,
-        kind=KIND,
-        key=task_name,
-        label=lambda task: task[0].replace("_", " "),
-        folder=folder,
-        cost=lambda task: PARTS[task[0]].cost(**task[1]),
-        workers=workers,
-        progress=progress,
-    ) as found:
-        made: dict[str, list[pd.DataFrame]] = {name: [] for name in parts}
-        for (name, _), table in zip(tasks, found, strict=True):
+    return MeasureStudy(parts, tasks).run(folder=folder, workers=workers, progress=progress)
+
+
+@dataclass(frozen=True)
+class MeasureStudy(Study[Task, dict[str, pd.DataFrame]]):
+    """What the parts measure, task by task; its results are the table of each part."""
+
+    kind: ClassVar[str] = KIND
+    cost: ClassVar[Callable[[Task], float] | None] = staticmethod(lambda task: PARTS[task[0]].cost(**task[1]))
+    parts: Mapping[str, Part]
+    measured: Sequence[Task]
+
+    def tasks(self) -> Sequence[Task]:
+        """Tasks of all parts."""
+        return self.measured
+
+    @staticmethod
+    def row(task: Task) -> pd.DataFrame:
+        """Rows of a task."""
+        name, inputs = task
+        part = PARTS[name]
+        point = {key: inputs[key] for key in part.keys}
+        return pd.DataFrame([point | row for row in part.measure(**inputs)])
+
+    def key(self, task: Task) -> str:
+        """Hash of what the table of a task depends on."""
+        part = PARTS[task[0]]
+        return result_fingerprint({"part": part.name, "inputs": task[1]}, _makers(part))
+
+    def name(self, task: Task) -> str:
+        """Name of its part."""
+        return task[0].replace("_", " ")
+
+    def results(self, tables: list[pd.DataFrame]) -> dict[str, pd.DataFrame]:
+        """Table of each part."""
+        made: dict[str, list[pd.DataFrame]] = {name: [] for name in self.parts}
+        for (name, _), table in zip(self.measured, tables, strict=True):
             made[name].append(table)
         return {name: pd.concat(own, ignore_index=True) for name, own in made.items()}
-
-
-def measure_task(task: Task) -> pd.DataFrame:
-    """Return the rows of one task."""
-    name, inputs = task
-    part = PARTS[name]
-    point = {key: inputs[key] for key in part.keys}
-    return pd.DataFrame([point | row for row in part.measure(**inputs)])
 
 
 def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent) -> Validity:
@@ -192,12 +209,6 @@ def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent) -> Validity:
     stated = {name: value for name, value in asdict(extent.structure).items() if value}
     found = {name: table.assign(**stated) for name, table in {**tables, "limits": limits}.items()}
     return Validity(tables=found, facts=facts)
-
-
-def task_name(task: Task) -> str:
-    """Return what identifies the result of a task."""
-    part = PARTS[task[0]]
-    return result_fingerprint({"part": part.name, "inputs": task[1]}, _makers(part))
 
 
 def _makers(part: Part) -> dict[str, str]:

@@ -34,8 +34,8 @@ def counted(monkeypatch) -> list[str]:
     return ran
 
 
-def run(folder, *runs: Run, **options) -> list[Trace]:
-    with open_trace_cache(folder, "comparison", **options) as cache:
+def run(folder, *runs: Run) -> list[Trace]:
+    with open_trace_cache(folder, "comparison") as cache:
         return simulate_all([Job(case=CASE, run=run) for run in runs], workers=1, cache=cache)
 
 
@@ -80,14 +80,3 @@ def test_a_kept_run_is_found_whatever_it_is_called_and_not_for_another_case():
     assert job_fingerprint(job) == job_fingerprint(renamed)
     other = Job(case=dataclasses.replace(CASE, friction=np.nextafter(1.0, 2.0)), run=GUIDED)
     assert job_fingerprint(job) != job_fingerprint(other)
-
-
-def test_members_keep_their_numbers_and_the_last_sample(tmp_path):
-    (whole,) = run(tmp_path, MODEL, samples=False)
-    (kept,) = run(tmp_path, MODEL, samples=False)
-    assert (kept.peak_tilt, kept.outcome, len(kept.passes)) == (
-        whole.peak_tilt,
-        whole.outcome,
-        len(whole.passes),
-    )
-    assert kept.time.tolist() == [whole.time[-1]]

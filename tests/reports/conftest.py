@@ -16,6 +16,7 @@ from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Case, Cylinder, Run, Trace, el_centro_1940
 from rockwobble.models.records import p695
+from rockwobble.studies import study
 from rockwobble.studies.advice import scales
 
 RESOLUTION = 2e-5  # [rad]
@@ -84,4 +85,5 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     def here(*given: Any, **options: Any) -> list[Any]:
         return run_tasks(*given, **options | {"workers": 1})
 
-    monkeypatch.setattr(execution, "run_tasks", here)
+    for module in (execution, study):
+        monkeypatch.setattr(module, "run_tasks", here)

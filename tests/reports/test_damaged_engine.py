@@ -14,6 +14,7 @@ from rockwobble.models import Run
 from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines import registry
 from rockwobble.reports.cli.main import main
+from rockwobble.studies import study
 
 REASON = "libmujoco.so.4: cannot open shared object file"
 LINE = f"'mujoco' is installed and does not load: {REASON}"
@@ -65,7 +66,8 @@ def damaged(fresh: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_it_is_refused_by_name_in_one_line_before_anything_runs(damaged, monkeypatch, capsys, command):
-    monkeypatch.setattr(execution, "run_tasks", lambda *_, **__: pytest.fail("it ran"))
+    for module in (execution, study):
+        monkeypatch.setattr(module, "run_tasks", lambda *_, **__: pytest.fail("it ran"))
     assert call(command, *COMMANDS[command], "--engine", "mujoco") == 2
     error = capsys.readouterr().err
     assert [line for line in error.splitlines() if "mujoco" in line] == [f"rockwobble: engine {LINE}"]

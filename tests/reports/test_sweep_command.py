@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from rockwobble.compare.runs import execution, scheduler
+from rockwobble.compare.runs import scheduler
 from rockwobble.compare.runs.progress import Lost
 from rockwobble.compare.storage.manifest import file_state, read_manifests
 from rockwobble.reports.cli.main import main
-from rockwobble.studies import sweep
+from rockwobble.studies import study
+from rockwobble.studies.sweep import SweepStudy
 
 GRID = ["--semidiagonal", "1:20:4", "--tan-alpha", "0.1,0.2", "--scale", "0.3,2", "--workers", "1"]
 
@@ -67,7 +68,7 @@ def test_a_full_disk_leaves_no_half_of_a_sweep_and_nothing_to_repeat(
         assert call("sweep", *GRID, "--out", str(tmp_path)) == 2
     assert "No space left on device" in capsys.readouterr().err
     assert {path.name for path in tmp_path.iterdir()} == {"finished", ".plan.json"}
-    monkeypatch.setattr(sweep, "run_chunk", lambda _: pytest.fail("a finished chunk ran again"))
+    monkeypatch.setattr(SweepStudy, "row", lambda _: pytest.fail("a finished chunk ran again"))
     assert call("sweep", *GRID, "--out", str(tmp_path)) == 0
     (made,) = read_manifests(tmp_path)
     assert {"sweep.html"} == set(made.pages)
@@ -84,7 +85,7 @@ def test_a_dead_scheduler_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.M
 
 
 def test_a_sweep_that_cannot_be_finished_says_so_in_one_line(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(execution, "run_tasks", lambda _, tasks, **__: [Lost("killed") for _ in tasks])
+    monkeypatch.setattr(study, "run_tasks", lambda _, tasks, **__: [Lost("killed") for _ in tasks])
     assert call("sweep", *GRID, "--chunk", "8", "--out", str(tmp_path)) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("rockwobble: 2 of 2 chunks ended their processes 3 times, all others are")

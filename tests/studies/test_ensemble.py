@@ -3,13 +3,13 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import math
+import sys
 
 import numpy as np
 import pandas as pd
 import pytest
 
 from rockwobble import ensemble, reduced, sweep
-from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import (
     Case,
@@ -26,6 +26,8 @@ from rockwobble.models import (
 )
 from rockwobble.models.records import p695
 from rockwobble.studies.ensemble import Ensemble, ensemble_of
+
+ENSEMBLE = sys.modules[Ensemble.__module__]
 
 ROUNDING = 1e-12
 RECESS = Run(None, "recess")
@@ -84,7 +86,7 @@ def test_synthetic_motions_repeat_with_their_seed_and_have_their_peak():
 
 
 def test_a_ring_is_held_against_the_recess_model(monkeypatch):
-    monkeypatch.setattr(execution, "run_job", lambda job: made_up(job, job.case.initial.tilt))
+    monkeypatch.setattr(ENSEMBLE, "run_job", lambda job: made_up(job, job.case.initial.tilt))
     runs = [Run("mujoco", support) for support in ("recess", "flat", "ring")]
     methods = ensemble(CASE, runs=runs, copies=2, workers=1).methods.set_index("method")
     assert methods["own_model"].to_dict() == {
@@ -107,7 +109,7 @@ def test_failed_runs_are_counted_and_named(monkeypatch):
             return made_up(job, math.nan, "failed")
         return made_up(job, job.case.initial.tilt)
 
-    monkeypatch.setattr(execution, "run_job", simulate)
+    monkeypatch.setattr(ENSEMBLE, "run_job", simulate)
     found = ensemble(CASE, runs=[], copies=7, workers=1)
     methods = found.methods.set_index("method")
     assert methods["failed"].to_dict() == {"recess model": 0, "flat-ground model": 1}
@@ -127,7 +129,7 @@ def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch):
         "recess model": made_up(Job(case=cases[0], run=RECESS), 1.5 * PIER.alpha),
         "flat-ground model": made_up(Job(case=cases[0], run=RECESS), 0.5 * math.pi, "overturned"),
     }
-    monkeypatch.setattr(execution, "run_job", lambda job: runs[job.label])
+    monkeypatch.setattr(ENSEMBLE, "run_job", lambda job: runs[job.label])
     found = ensemble(cases, runs=[], workers=1)
     for method, run in runs.items():
         rows = found.members[found.members["method"] == method]
@@ -138,7 +140,7 @@ def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch):
 
 
 def test_members_are_paired_by_name_and_not_by_row(monkeypatch):
-    monkeypatch.setattr(execution, "run_job", lambda job: made_up(job, job.case.initial.tilt))
+    monkeypatch.setattr(ENSEMBLE, "run_job", lambda job: made_up(job, job.case.initial.tilt))
     found = ensemble(CASE, runs=[], copies=8, workers=1)
     shuffled = found.members.sample(frac=1.0, random_state=1)
     assert ensemble_of(shuffled, found.facts).contrasts.loc[0, "ratio_95_low"] == 1.0
@@ -170,7 +172,7 @@ def test_a_failed_run_is_no_member_that_stands():
 
 
 def test_bounds_hold_whatever_the_runs_that_failed_would_have_done(monkeypatch):
-    monkeypatch.setattr(execution, "run_job", lambda job: made_up(job, job.case.initial.tilt))
+    monkeypatch.setattr(ENSEMBLE, "run_job", lambda job: made_up(job, job.case.initial.tilt))
     found = ensemble(CASE, runs=[], copies=9, perturbation=0.05, workers=1)
     whole = found.methods.set_index("method")
     assert (whole["peak_median_least"] == whole["peak_median"]).all()
@@ -201,7 +203,7 @@ def test_bounds_hold_whatever_the_runs_that_failed_would_have_done(monkeypatch):
 
 def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monkeypatch, tmp_path):
     first = ensemble(CASE, runs=[], copies=3, workers=1, resume=tmp_path)
-    monkeypatch.setattr(execution, "run_job", lambda job: pytest.fail("ran again"))
+    monkeypatch.setattr(ENSEMBLE, "run_job", lambda job: pytest.fail("ran again"))
     again = ensemble(CASE, runs=[], copies=3, workers=1, resume=tmp_path)
     assert first.members.equals(again.members)
     assert first.contrasts.equals(again.contrasts)

@@ -8,13 +8,12 @@ import pytest
 
 from rockwobble import reduced, sweep
 from rockwobble.compare import IncompleteError, Progress
-from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.progress import Lost
 from rockwobble.compare.storage.claim import CACHE, claim_folder
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
-from rockwobble.studies import Grid, Sweep
+from rockwobble.studies import Grid, Sweep, study
 from rockwobble.studies.sweep import KIND
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -98,14 +97,14 @@ def test_chunks_of_another_sweep_go_only_when_a_folder_is_claimed_and_this_one_i
 
 
 def test_a_sweep_whose_chunks_die_says_so_and_keeps_the_others(tmp_path, monkeypatch):
-    run_tasks = execution.run_tasks
+    run_tasks = study.run_tasks
 
     def losing(*args, **options):
         assert options["tries"] == 3
         found = run_tasks(*args, **options)
         return [Lost("killed"), *found[1:]]
 
-    monkeypatch.setattr(execution, "run_tasks", losing)
+    monkeypatch.setattr(study, "run_tasks", losing)
     with pytest.raises(IncompleteError, match=r"1 of 8 chunks ended their processes 3 times.*killed"):
         sweep(grid(), chunk_size=5, out=tmp_path, workers=1)
     assert len(files(tmp_path)) == 8
@@ -114,13 +113,13 @@ def test_a_sweep_whose_chunks_die_says_so_and_keeps_the_others(tmp_path, monkeyp
 
 
 def test_a_cluster_that_is_gone_says_what_is_kept(tmp_path, monkeypatch):
-    run_tasks = execution.run_tasks
+    run_tasks = study.run_tasks
 
     def gone(*args, **options):
         run_tasks(args[0], args[1][:3], **options)
         raise ClusterError("the Dask scheduler does not answer any more")
 
-    monkeypatch.setattr(execution, "run_tasks", gone)
+    monkeypatch.setattr(study, "run_tasks", gone)
     with pytest.raises(IncompleteError, match=f"any more; 3 chunks are kept in {tmp_path}$"):
         sweep(grid(), chunk_size=5, out=tmp_path, workers=1)
 

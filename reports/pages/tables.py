@@ -1,0 +1,38 @@
+"""The page of results that have no page of their own: main numbers, findings, tables."""
+
+from __future__ import annotations
+
+import inspect
+
+from rockwobble.compare.storage.results import Results
+
+from ..figures.tables import pictures
+from ..registry import KINDS
+from .page import Page
+from .wording import statement
+
+_MOST = 50  # rows of a table that are shown; the file has all
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def page_of(found: Results) -> Page:
+    """Return the page."""
+    drawn = pictures(found)
+    values = {
+        "title": (inspect.getdoc(type(found)) or found.kind).partition("\n")[0].rstrip("."),
+        "headline": found.headline(),
+        "findings": [statement(each) for each in found.findings()],
+        "tables": {
+            name: (
+                table.head(_MOST).to_dict("records"),
+                [[str(key), str(key).replace("_", " ")] for key in table],
+            )
+            for name, table in found.tables.items()
+        },
+        "pictures": [each.name for each in drawn],
+        "about": found.manifest,
+    }
+    return Page(name=KINDS[found.kind].name, template="tables", values=values, pictures=drawn)
