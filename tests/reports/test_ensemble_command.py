@@ -189,7 +189,7 @@ def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process,
 
 
 def test_made_up_records_are_the_members(tmp_path, in_this_process, monkeypatch, capsys):
-    monkeypatch.setattr(Page, "files", lambda _: {})  # of a page that is drawn the test above tells
+    monkeypatch.setattr(Page, "files", lambda *_, **__: {})  # of a page that is drawn the test above tells
     options = ["--synthetic", "2", "--peak", "1.5", "--duration", "2", "--engine", "none", "--seed", "7"]
     assert call("ensemble", *options, "--out", str(tmp_path)) == 0
     assert (
