@@ -177,7 +177,8 @@ def _refuse_rows_in_header(file: RecordFile, header: Sequence[str], width: int) 
         row = known == len(cells) == width or (_NUMBERS.fullmatch(text) and (last or touching))
         damaged = last and is_number(cells[0]) and 2 * known >= len(cells)
         if (row or damaged) and not all(map(str.isdecimal, cells)):
-            raise ValueError(f"{file.name}, line {at}: expected words or a whole row, got {text[:60]!r}")
+            below = f"above the whole rows that begin in line {len(header) + 1}"
+            raise ValueError(f"{file.name}, line {at}: expected words {below}, got {text[:60]!r}")
 
 
 def _bare(line: str) -> str:
