@@ -49,6 +49,12 @@ class Reading:
     ------
     ValueError
         If one is out of range.
+
+    Examples
+    --------
+    >>> from rockwobble.models import Reading
+    >>> Reading(units="cm/s^2", rotate=30.0).units
+    'cm/s2'
     """
 
     units: str | None = None

@@ -103,7 +103,7 @@ def _case(view: CaseView, found: Comparison, *, many: bool) -> dict[str, object]
         "headline": headline(findings),
         "findings": [statement(each) for each in findings if each.key not in (*_HEADLINE, *_SUPPORTS)],
         "supports": [statement(each) for each in findings if each.key in _SUPPORTS],
-        "diagnostics": diagnostics(view),
+        "diagnostics": run_diagnostics(view),
         "first": first_rows(rows),
         "rows": main_rows(view, found.causes[name]),
         "external": external_rows(rows),
@@ -122,7 +122,7 @@ def headline(findings: Sequence[Finding]) -> str:
     return " ".join(statement(each) for each in findings if each.key in _HEADLINE)
 
 
-def diagnostics(view: CaseView) -> list[str]:
+def run_diagnostics(view: CaseView) -> list[str]:
     """Diagnostics of the runs, each text once."""
     texts = {run: remarks(view.facts[run]) for run in dict.fromkeys(view.rows["run"])}
     names = {text: [run for run in texts if texts[run] == text] for text in texts.values() if text}

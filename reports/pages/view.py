@@ -7,7 +7,7 @@ from rockwobble.compare.comparison.result import View
 from ..figures.case_view import case_views
 from ..figures.playback import playback, require_motion
 from .cases import case_lines
-from .comparison import diagnostics, headline
+from .comparison import headline, run_diagnostics
 from .page import Page
 from .sentences import fragment
 
@@ -29,7 +29,7 @@ def page_of(found: View) -> Page:
         values={
             "name": view.case.name,
             "headline": headline(found.comparison.findings()),
-            "diagnostics": diagnostics(view),
+            "diagnostics": run_diagnostics(view),
             "lines": case_lines(view.case),
             "about": found.manifest,
         },
