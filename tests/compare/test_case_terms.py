@@ -128,9 +128,9 @@ def test_the_digest_of_a_part_of_a_spectrum_tells_a_new_term(monkeypatch: pytest
     assert key(PaddedPlan(pad_stiffness=0.25)) != key(PaddedPlan())
 
 
-def test_the_places_of_a_term_that_contributing_lists_are_there() -> None:
-    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    section = text.split("### A new term of the equations\n")[1].split("\n### ")[0]
+def test_the_listed_places_of_a_term_exist() -> None:
+    text = (ROOT / "docs" / "development" / "adding.md").read_text(encoding="utf-8")
+    section = text.split("## A new term of the equations\n")[1].split("\n## ")[0]
     places = []
     for cell in re.findall(r"^\| (`[^|]*) \|", section, re.MULTILINE):
         first, *others = map(Path, re.findall(r"`([^`]+)`", cell))

@@ -1,4 +1,4 @@
-"""A study is added where CONTRIBUTING says, to a temporary copy of the package, and is whole there."""
+"""A study is added where docs/development says, to a temporary copy of the package, and is whole there."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pytest
 import rockwobble
 
 PACKAGE = Path(rockwobble.__file__).parent
-CONTRIBUTING = Path(__file__).parents[2] / "CONTRIBUTING.md"
+ADDING = Path(__file__).parents[2] / "docs" / "development" / "adding.md"
 MOST = 3  # places of a new study
 
 # what is new in each place, for the study of a name
@@ -117,8 +117,8 @@ def test_the_command_saves_shows_draws_again_and_refuses(
 
 
 def places() -> list[str]:
-    """The places of a new study that CONTRIBUTING lists."""
-    section = CONTRIBUTING.read_text(encoding="utf-8").split("### A new study\n")[1].split("\n### ")[0]
+    """The places of a new study that are listed."""
+    section = ADDING.read_text(encoding="utf-8").split("## A new study\n")[1].split("\n## ")[0]
     return re.findall(r"^\| `(\S+)` \|", section, re.MULTILINE)
 
 
