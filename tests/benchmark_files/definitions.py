@@ -1,4 +1,4 @@
-"""The twelve cases: bodies, starts, motions, and what is asked of a trajectory.
+"""The thirteen cases: bodies, starts, motions, and what is asked of a trajectory.
 
 The bounds mean the same everywhere: a body 1 % too large fails in every free motion; "good" is a tenth of
 "pass", and "exact" what only a converged solution of the same equations reaches. Under shaking the bound is
@@ -47,6 +47,8 @@ class BenchmarkRun:
         Unit of the times of that reference [s].
     levels : dict
         Tilt over alpha, and shift over the base radius, at which a time is taken.
+    closes : bool
+        Whether it rocks in the plane of x and z, where each closing of the base is an impact.
     """
 
     name: str
@@ -60,6 +62,7 @@ class BenchmarkRun:
     turned: float = 0.0
     time_unit: float = 1.0
     levels: dict[str, float] = field(default_factory=dict)
+    closes: bool = False
 
     @property
     def model(self) -> Literal["recess", "flat"]:
@@ -422,8 +425,41 @@ def tendon() -> Definition:
     )
 
 
+def impact() -> Definition:
+    """One sine in one direction: each closing of the base is an impact that keeps the moment of momentum."""
+    time = 0.005 * np.arange(161)
+    push = np.column_stack([0.65 * G * np.sin(2.0 * math.pi * time / 0.8), np.zeros(161)])
+    motion = GroundMotion(np.round(push, 6), 0.005)  # as published
+    runs = tuple(
+        BenchmarkRun(
+            name=support,
+            cylinder=SQUAT,
+            support=support,
+            duration=2.0,
+            motion=motion,
+            friction=5.0,
+            levels={"lean_level": 0.01},
+            closes=True,
+        )
+        for support in SUPPORTS
+    )
+    return Definition(
+        name="impact",
+        title="Impacts of a base that closes in one plane",
+        runs=runs,
+        step=0.002,
+        criteria=(
+            *(quantity(f"maximum_{k}", "alpha", 0.001, 1e-6) for k in (2, 3, 4)),
+            *(quantity(f"kept_{k}", "relative", 0.01, 1e-5) for k in (2, 3)),
+            *lean_and_tilt(1.9, 1e-5),
+        ),
+        needed=("maximum_2", "kept_2"),
+        needs="any",
+    )
+
+
 def definitions() -> tuple[Definition, ...]:
-    """Return the twelve cases, in the order of the page."""
+    """Return the thirteen cases, in the order of the page."""
     return (
         turns("turn-flat", "flat", "on flat ground"),
         turns("turn-recess", "recess", "in a recess"),
@@ -437,4 +473,5 @@ def definitions() -> tuple[Definition, ...]:
         records(),
         energy(),
         tendon(),
+        impact(),
     )

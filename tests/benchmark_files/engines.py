@@ -18,9 +18,11 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
-from rockwobble import multibody, reduced
+from rockwobble import multibody
+from rockwobble.compare.runs.choice import own_model_of
+from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.storage.provenance import commit
-from rockwobble.models import Case, Trace
+from rockwobble.models import Case, Run, Trace
 from rockwobble.multibody.scene import REFERENCE_SEMIDIAGONAL, REFERENCE_TIME_STEP, default_step
 
 from .submission import cases_of, spacing, submit, tilt_and_azimuth
@@ -106,7 +108,7 @@ def _default_step(case: Case) -> float:
 def _simulate(engine: str, case: Case, support: str, variant: str) -> Trace:
     spaced = min(0.01, spacing(case))
     if engine == REDUCED:
-        return reduced.simulate(case, support=support, sample_step=spaced)
+        return simulate_run(case, own_model_of(case, Run("mujoco", support)), sample_step=spaced)
     given: dict[str, Any] = {"engine": engine, "support": support, "sample_step": spaced}
     if variant == BEST:
         given |= {"time_step": "extrapolated", "finest_step": 0.25 * _default_step(case)}

@@ -22,6 +22,7 @@ from rockwobble.models import Case
 from rockwobble.reduced.exact import free_response, steady_wobble_rate
 
 from .definitions import BenchmarkRun, Definition, G
+from .impact import maximum_after
 from .second import REST, Sampled, sampled
 
 Array = NDArray[np.float64]
@@ -44,7 +45,8 @@ class Reference(NamedTuple):
 def first(run: BenchmarkRun, spacing: float, end: float) -> Sampled:
     """Return samples of the reduced model."""
     case = Case(run.cylinder, run.motion, initial=run.initial, duration=end, gravity=G, tendon=run.tendon)
-    trace = reduced.simulate(case, support=run.model, rtol=RTOL, rest_tilt=REST, sample_step=spacing)
+    plane: dict[str, Any] = {"plane": 0.0, "restitution": "momentum"} if run.closes else {}
+    trace = reduced.simulate(case, support=run.model, rtol=RTOL, rest_tilt=REST, sample_step=spacing, **plane)
     count = round(end / spacing) + 1
     return Sampled(
         *(column[:count] for column in (trace.time, trace.tilt, trace.tilt_rate, trace.rolling_angle))
@@ -69,6 +71,8 @@ def reference(definition: Definition) -> Reference:
                         for by, trace in zip((FIRST, SECOND), traces[run.name], strict=True)
                     }
                 )
+                if run.closes:
+                    known |= _after_impact(name, run, traces[run.name][1])
                 quantities.append(_quantity(name, run.name, {**_closed(name, run), **known}))
     columns, bounds = _columns(definition, traces)
     return Reference(quantities, columns, bounds)
@@ -87,6 +91,8 @@ def measured(name: str, run: BenchmarkRun, trace: Sampled) -> float:
     """Return a quantity by roots of polynomials through the samples."""
     kind, _, digits = name.rpartition("_")
     time, alpha = trace.time, run.cylinder.alpha
+    if kind == "kept":
+        return energy_kept(*(measured(f"maximum_{int(digits) + k}", run, trace) for k in (0, 1)), alpha)
     if kind in ("turn", "period", "maximum"):
         falls = np.flatnonzero((trace.tilt_rate[:-1] > 0.0) & (trace.tilt_rate[1:] <= 0.0))
         falls = falls[falls > 0]  # a release is a maximum itself, to rounding
@@ -107,6 +113,12 @@ def measured(name: str, run: BenchmarkRun, trace: Sampled) -> float:
     azimuth = _value(time, trace.azimuth, at) % (2.0 * math.pi)
     # an azimuth of 0 may round to one turn less a rounding
     return azimuth - 2.0 * math.pi if 2.0 * math.pi - azimuth < 1e-9 else azimuth
+
+
+def energy_kept(before: float, after: float, alpha: float) -> float:
+    """Energy after a closing over that before it, from the largest tilts beside it [alpha]."""
+    first, second = (math.cos(alpha - alpha * tilt) - math.cos(alpha) for tilt in (before, after))
+    return second / first
 
 
 def _around(time: Array, values: Array, i: int) -> Callable[[float], float]:
@@ -138,6 +150,18 @@ def _closed(name: str, run: BenchmarkRun) -> dict[str, float]:
         known["maximum"] = exact.maximum_tilt / run.cylinder.alpha
         return {"quadrature": known[kind]}
     return {}
+
+
+def _after_impact(name: str, run: BenchmarkRun, trace: Sampled) -> dict[str, float]:
+    """Closed form on still ground: energy and moment of momentum, from the largest tilt after the pulse."""
+    kind, _, digits = name.rpartition("_")
+    alpha = run.cylinder.alpha
+    top = alpha * measured("maximum_2", run, trace)
+    if kind == "kept":
+        return {"closed form": energy_kept(top / alpha, maximum_after(top, run, 1) / alpha, alpha)}
+    if name == "maximum_2":
+        return {}
+    return {"closed form": maximum_after(top, run, int(digits) - 2) / alpha}
 
 
 def _sliding(run: BenchmarkRun) -> tuple[float, float]:
@@ -187,7 +211,7 @@ def _quantity(name: str, run: str, by: dict[str, float]) -> dict[str, Any]:
     """Return the entry of reference.json; the first way that is known gives the value."""
     values = list(by.values())
     apart = max(values) - min(values)
-    unit = {"turn": "rad", "maximum": "alpha"}.get(name.rpartition("_")[0], "s")
+    unit = {"turn": "rad", "maximum": "alpha", "kept": "share"}.get(name.rpartition("_")[0], "s")
     unit = {"lean_azimuth": "rad", "peak_tilt": "alpha"}.get(name, unit)
     bound = _rounded_up(10.0 * max(apart, 1e-14 * abs(values[0])))
     return {"name": name, "run": run, "value": values[0], "unit": unit, "bound": bound, "certified": by}

@@ -18,6 +18,7 @@ from rigid_body import crossing, energy, excess, lifted, step, tilt_of
 from rockwobble.reduced.body import body_of
 
 from .definitions import BenchmarkRun, G
+from .impact import rocked
 
 Array = NDArray[np.float64]
 REST = 1e-8  # rest threshold over alpha
@@ -56,13 +57,15 @@ def sampled(
     run: BenchmarkRun, spacing: float, end: float, *, rtol: float = 1e-13, gyroscopic: float = 1.0
 ) -> Sampled:
     """Integrate a run, perhaps without its gyroscopic term, and return samples that are `spacing` apart."""
+    times = spacing * np.arange(round(end / spacing) + 1)
+    if run.closes:
+        return Sampled(times, *rocked(run, times).T)
     body = body_of(run.cylinder, G)
     held = (0.0, 0.0)
     if run.tendon is not None:
         assert run.model == "recess", "on flat ground the base wanders from the anchor"
         held = run.tendon.prestress * G, run.tendon.stiffness * G / body.b
     P = np.array([body.b, body.h, body.I1, body.I2, G, float(run.model == "recess"), *held, gyroscopic])
-    times = spacing * np.arange(round(end / spacing) + 1)
     record, dt = _record(run)
     kinks = dt * np.arange(len(record)) if len(record) else np.array([0.0])
     breaks = np.union1d(np.round(times, 12), np.round(kinks[kinks <= times[-1] + 1e-9], 12))

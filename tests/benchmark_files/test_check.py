@@ -29,7 +29,7 @@ from rockwobble.models import Tendon, Trace
 pytestmark = pytest.mark.checkout
 
 CASES = sorted(path.name for path in (PUBLISHED / "cases").iterdir())
-SLIDING = "onset-of-slip"
+SLIDING, IMPACT = "onset-of-slip", "impact"
 Form = Callable[[Trace], Table]
 
 
@@ -46,7 +46,8 @@ def traces(name: str, *, larger: float = 0.0, gravity: float = G, rtol: float = 
         other = dataclasses.replace(body, semidiagonal=size, **scaled)
         given = dataclasses.replace(case, cylinder=other, gravity=gravity)
         step = min(spacing(case), 0.01)
-        found[run] = reduced.simulate(given, support=support, rtol=rtol, sample_step=step)
+        plane: dict[str, Any] = {"plane": 0.0, "restitution": "momentum"} if name == IMPACT else {}
+        found[run] = reduced.simulate(given, support=support, rtol=rtol, sample_step=step, **plane)
     return found
 
 

@@ -27,6 +27,7 @@ pytestmark = pytest.mark.checkout
 
 CASES = sorted(path.name for path in (PUBLISHED / "cases").iterdir())
 SHORT = ("turn-flat", "turn-recess", "uplift-directions", "near-upright-pass", "onset-of-slip", "tendon")
+SHORT += ("impact",)
 REFERENCE = Path(__file__).resolve().parents[1] / "reference"
 
 
@@ -40,9 +41,9 @@ def table(case: str) -> dict[str, np.ndarray]:
     return dict(zip(path.read_text().split("\n", 1)[0].split(","), values.T, strict=True))
 
 
-def test_there_are_twelve_cases_as_defined() -> None:
+def test_there_are_thirteen_cases_as_defined() -> None:
     assert sorted(one.name for one in definitions()) == CASES
-    assert len(CASES) == 12
+    assert len(CASES) == 13
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -249,7 +250,7 @@ def test_the_scoreboard_tells_what_cannot_be_run_from_what_was_not() -> None:
 
     def cells(code: str) -> dict[str, str]:
         column = next(i for i, title in enumerate(table[0]) if title.startswith(code))
-        return {row[0]: row[column] for row in table[1:12]}
+        return {row[0]: row[column] for row in table[1:13]}
 
     assert cells("exudyn")["Angle of turn and period in a recess"] == "cannot"  # it has flat ground alone
     assert cells("drake")["Energy over 100 passes"] == "not run"  # a step takes twenty times as long

@@ -128,8 +128,16 @@ def through(x: Array, X: Array, Y: NDArray[Any]) -> NDArray[Any]:
 def measured(quantity: str, motion: Motion, run: Run, wanted: float) -> float:
     """Return a quantity of reference.json; NaN where it is not known, inf where it does not happen."""
     name, _, digits = quantity.rpartition("_")
+    if name == "kept":  # of the energy at a closing, between two maxima
+        tops = [measured(f"maximum_{int(digits) + k}", motion, run, wanted) for k in (0, 1)]
+        if math.inf in tops:
+            return math.inf
+        before, after = (math.cos(run["alpha"] * (1.0 - top)) - math.cos(run["alpha"]) for top in tops)
+        return after / before
     if digits.isdigit() and name in ("turn", "period", "maximum"):  # of the first so many tilt maxima
-        found = [one for _, one in zip(range(int(digits)), maxima(motion), strict=False)]
+        level = run.get("lean_level", 0.0) * run["alpha"]
+        counted = (one for one in maxima(motion) if one[1] > level)
+        found = [one for _, one in zip(range(int(digits)), counted, strict=False)]
         if len(found) < int(digits):
             return math.inf
         time, tilt, azimuth = found[-1]
