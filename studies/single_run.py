@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
+from rockwobble.compare.comparison.peak_error import NO_ERROR, PeakError, peak_error
 from rockwobble.compare.metrics.mode import mode_findings, slide_finding
 from rockwobble.compare.runs.choice import own_model_of
 from rockwobble.compare.runs.execution import Job, job_fingerprint, simulate_all, simulate_run
@@ -14,10 +15,11 @@ from rockwobble.compare.runs.progress import ProgressCallback, stages
 from rockwobble.compare.storage.manifest import Number, Stored
 from rockwobble.compare.storage.results import Results
 from rockwobble.models import Case, Run, Trace
+from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL
 from rockwobble.models.finding import Findings
 from rockwobble.models.mode import REST, SLIDES
 from rockwobble.models.plain_json import plain
-from rockwobble.models.support import SUPPORTS
+from rockwobble.models.support import RECESS, SUPPORTS
 from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, case_facts, to_parquet
 
 from .advice.trust import BAND_STEP, copies_part_at, scatter_of, with_time_to_fall
@@ -58,9 +60,14 @@ class SingleRun(Results, kind="run"):
         moved = trace.peak_displacement, trace.residual_displacement
         return Findings([*first, slide_finding(*moved, self.facts["single_trace"].get("slid", ()))])
 
+    @property
+    def error(self) -> PeakError:
+        """Error of the peak tilt; of earlier versions nothing is known."""
+        return PeakError(*self.facts["single_trace"].get("error", NO_ERROR))
+
     def headline(self) -> Mapping[str, Number]:
         """Return outcome, mode, peak tilt or displacement, uplift and number of passes."""
-        trace = self.trace
+        trace, error = self.trace, self.error
         slid = {
             "peak displacement [m]": trace.peak_displacement,
             "residual displacement [m]": trace.residual_displacement,
@@ -72,6 +79,7 @@ class SingleRun(Results, kind="run"):
             "peak tilt [alpha]": trace.peak_tilt / trace.case.cylinder.alpha,
             "uplift [s]": trace.uplift_time,
             "passes": len(trace.passes),
+            **({} if error.source == "" else {"error [alpha]": error.size, "error source": error.source}),
         }
 
     def sheets(self) -> Mapping[str, bytes]:
@@ -117,6 +125,7 @@ def single_run(
     part, scatter = math.inf, math.nan
     if not len(trace.time):
         return single_run_of(trace, part, answer, plan.perturbation)
+    error = NO_ERROR
     with stage(f"{plan.copies} copies of the {model}"):
         own = trace if model == run else simulate_run(case, model)
         slid: list[list[float]] = []
@@ -128,7 +137,15 @@ def single_run(
             elif own.mode != SLIDES:
                 part = copies_part_at(case, own, copies)
                 scatter = scatter_of(own.peak_tilt, (copy.peak_tilt for copy in copies))
-    return single_run_of(trace, part, answer, plan.perturbation, slid, scatter)
+                other = _other_model(case, own)
+                error = peak_error(case, trace, own, other, copies=copies, simulate=simulate_run)
+    return single_run_of(trace, part, answer, plan.perturbation, slid, scatter, error)
+
+
+def _other_model(case: Case, own: Trace) -> Trace:
+    """The response on the other support, whose difference is the model form; its own in a plane."""
+    other = FLAT_MODEL if own.run.support == RECESS else RECESS_MODEL
+    return own if own.run.is_planar or case.tendon is not None else simulate_run(case, other)
 
 
 def single_run_of(
@@ -138,8 +155,9 @@ def single_run_of(
     perturbation: float = AdvicePlan().perturbation,
     slid: Sequence[Sequence[float]] = (),
     scatter: float = math.nan,
+    error: PeakError = NO_ERROR,
 ) -> SingleRun:
-    """Results of a trace; its copies: when they diverge [s], slides (n, 2) [m], scatter of their peaks."""
+    """Results of a trace; its copies: when they diverge [s], slides (n, 2) [m], scatter; error of the peak."""
     job = Job(case=trace.case, run=trace.run)
     left_out = ("rest_intervals", "extrema", "passes")
     facts = {
@@ -152,6 +170,7 @@ def single_run_of(
             "perturbation": perturbation,
             "scatter": scatter,
             "answer": answer,
+            "error": error,
         }
         | ({"slid": slid} if slid else {}),
         "columns": {"run.csv": COLUMNS, "passes.csv": PASS_COLUMNS},

@@ -26,6 +26,7 @@ from ..runs.progress import ProgressCallback
 from ..storage.manifest import require_writable
 from ..storage.provenance import package_versions
 from .budget import ErrorBudget, case_budgets
+from .peak_error import copies_of_input, peak_error
 from .prediction import Prediction, Simulate, estimated_error, measured_error, predict
 from .result import Comparison, comparison_of
 from .summary import SUMMARY_COLUMNS, external_row, lost_row, summary_row
@@ -254,6 +255,7 @@ def comparison_row(
             tolerance=tolerance,
         )
 
+    copies = [simulate(copy, own.run) for copy in copies_of_input(case)]
     prediction, tolerance = own_prediction(AGREEMENT), tolerance_of(reference, trial)
     return summary_row(
         case,
@@ -267,4 +269,5 @@ def comparison_row(
         budget=budget,
         until=until,
         reference_time=min(times),
+        error=peak_error(case, trial, own, reference, copies=copies, simulate=simulate),
     )

@@ -34,6 +34,7 @@ from ..metrics.pair import (
     turn_difference,
 )
 from .budget import ErrorBudget
+from .peak_error import NO_ERROR, PeakError
 from .prediction import Prediction, close_pass, verdict
 
 # name: (unit, meaning); the order is that of the table
@@ -125,10 +126,21 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
         "why numerics and unexplained are not stated: unresolved_pass, order (below a half) or error (larger "
         "than both)",
     ),
+    "error": ("alpha", "error of the peak tilt: the largest of what error_source may name"),
+    "error_source": (
+        "",
+        "integration (a tolerance ten times as large), step (the engine's estimate, else its difference from "
+        "the model of its support), copies (input 1 % off) or model form (the reference)",
+    ),
     **VERDICT_COLUMNS,
 }
 # of a run without a budget that is no external trajectory
-_UNKNOWN: Row = {**dict.fromkeys(SUMMARY_COLUMNS, math.nan), "not_split": "", **NO_VERDICT}
+_UNKNOWN: Row = {
+    **dict.fromkeys(SUMMARY_COLUMNS, math.nan),
+    "not_split": "",
+    "error_source": "",
+    **NO_VERDICT,
+}
 
 
 def summary_row(
@@ -145,6 +157,7 @@ def summary_row(
     until: float | None = None,
     allowance: float = 0.0,
     reference_time: float | None = None,
+    error: PeakError = NO_ERROR,
 ) -> Row:
     """Return all columns of the summary for one run and one reference.
 
@@ -172,6 +185,8 @@ def summary_row(
         For the noise of a measurement: added to the tilt difference that ends the agreement [alpha].
     reference_time : float, optional
         Computing time of the reference [s]. Default: that of its run.
+    error : PeakError, optional
+        Of the peak tilt.
     """
     cylinder, spent = case.cylinder, reference.wall_time if reference_time is None else reference_time
     alpha, radius = cylinder.alpha, cylinder.base_radius
@@ -219,6 +234,8 @@ def summary_row(
         "predicted_until": within.length + (whole.start if within.reason else 0.0),
         "divergence": _divergence(trial, close, within),
         "estimated_error": estimated_error,
+        "error": error.size,
+        "error_source": error.source,
         **({} if budget is None else budget.columns()),
     }
 

@@ -29,7 +29,7 @@ def page_of(found: SingleRun) -> Page:
         "said": f"{said[0].upper()}{said[1:]}." if said else "",
         "warnings": list(_not_reproducible(found)),
         "answer": found.facts.get("single_trace", {}).get("answer", ""),
-        "rows": list(_rows(trace)),
+        "rows": list(_rows(found)),
         "lines": case_lines(trace.case),
         "about": found.manifest,
     }
@@ -112,13 +112,16 @@ def _not_reproducible(found: SingleRun) -> Iterator[str]:
     )
 
 
-def _rows(trace: Trace) -> Iterator[Row]:
+def _rows(found: SingleRun) -> Iterator[Row]:
     """Yield the numbers of a run, without those that do not belong to it."""
+    trace, error = found.trace, found.error
     case, settings, engine = trace.case, trace.run.settings, not trace.run.is_model
     if math.isfinite(plane := settings.get("plane", math.nan)):
         yield _quantity("plane", f"{math.degrees(plane):.2f} deg")
     if restitution := settings.get("restitution", ""):
         yield _quantity("restitution", str(restitution))
+    if error.source:
+        yield _quantity("error of the peak tilt", f"{number(error.size)} α ({error.source})")
     yield _quantity("end", _end(trace))
     if not case.initial and trace.mode != SLIDES:
         towards = math.degrees(math.remainder(trace.uplift_direction, math.tau))
