@@ -4,6 +4,7 @@ It needs numpy and the simulator alone, so that a simulator may have an environm
 
     python tests/benchmarks/rock_worlds.py physx best
     python tests/benchmarks/rock_worlds.py physx best cost
+    python tests/benchmarks/rock_worlds.py mujoco default impact
 
 A simulator is a function of a step [s] and of whether its settings are the better ones; it returns a `World`.
 """
@@ -31,6 +32,8 @@ INERTIA = np.array([(3 * B**2 + 4 * H**2) / 12, (3 * B**2 + 4 * H**2) / 12, B**2
 DIRECTIONS, RAMP, LENGTH = 7, 0.02, 0.5  # of the uplift sweep; [s]
 NOTHING: Array = np.zeros(3)
 _DOWN = np.array([0.0, 0.0, -G])
+# between two closings of a base that rocks in one plane [s]
+SWINGS = ((0.30, 0.48), (0.48, 1.19), (1.19, 1.58), (1.58, 1.84))
 _BURST, _STEPS = 0.5, 5000  # [s] of the processor, and steps, that time a step
 # [rad] at the end of the sweep: 3.7e-3 at 0.51 g, none at 0.49 g
 STANDS, LEANS = 3e-4, 1e-3
@@ -521,12 +524,28 @@ def uplifts(made: Callable[[], World], step: float) -> list[str]:
     return wrong
 
 
+def impacts(world: World, step: float) -> list[float]:
+    """Largest tilts [alpha] between the closings of a base under one sine of 0.65 g in 0.8 s."""
+    world.put(np.array([0.0, 0.0, H]), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3), np.zeros(3))
+    leans = []
+    times = (np.arange(int(SWINGS[-1][1] / step)) + 0.5) * step
+    for time_ in times:
+        push = 0.65 * G * math.sin(math.tau * time_ / 0.8) if time_ < 0.8 else 0.0
+        world.step(np.array([-push, 0.0, -G]))
+        leans.append(world.lean())
+    tilt = np.arcsin(np.minimum(np.hypot(*np.array(leans).T), 1.0)) / math.atan(B / H)
+    return [round(float(tilt[(times > low) & (times < high)].max()), 4) for low, high in SWINGS]
+
+
 def printed(name: str, variant: str, what: str = "motion") -> None:
     """Print what a simulator does, or what a step of it costs, as JSON in the last line."""
     package, default, better, simulator = WORLDS[name]
     best = variant == "best"
     step = better if best else default
     world = simulator(step, best)
+    if what == "impact":
+        print(json.dumps(impacts(world, step)))
+        return
     if what == "cost":
         print(json.dumps(cost(world)))
         return
