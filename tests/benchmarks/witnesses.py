@@ -79,11 +79,11 @@ def asked(python: str, child: str, kind: str, settings: Mapping[str, Any]) -> di
     except subprocess.TimeoutExpired:
         return {"ends": f"not done within {LONGEST:.0f} s"}
     said = (done.stdout + done.stderr).decode(errors="replace").strip().splitlines() or ["without a word"]
-    if done.returncode:
-        words = next((line for line in said if "Error" in line or line.startswith("ERROR")), said[-1])
-        return {"ends": f"its process ends: {words.strip()}"}
-    answer: dict[str, Any] = json.loads(next(line for line in reversed(said) if line.startswith("{")))
-    return answer
+    answer = next((line for line in reversed(said) if line.startswith('{"time"')), None)
+    if done.returncode or answer is None:
+        words = next((line for line in said if line.startswith("ERROR [")), said[-1])
+        return {"ends": f"its process ends: {' '.join(words.split())}"}
+    return dict(json.loads(answer))
 
 
 def told(kind: str, time: Array, tilt: Array) -> list[float]:
