@@ -157,7 +157,7 @@ def single_run_of(
     scatter: float = math.nan,
     error: PeakError = NO_ERROR,
 ) -> SingleRun:
-    """Results of a trace; its copies: when they diverge [s], slides (n, 2) [m], scatter; error of the peak."""
+    """Results of a trace; its copies: when they diverge [s], slides (n, 2) [m], scatter; its error."""
     job = Job(case=trace.case, run=trace.run)
     left_out = ("rest_intervals", "extrema", "passes")
     facts = {
