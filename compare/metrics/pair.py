@@ -255,7 +255,7 @@ def direction_difference(reference: Trace, trial: Trace) -> float:
 
 
 def turn_difference(pair: Pair, *, until: float, direction_difference: float = 0.0) -> float:
-    """Return the difference of the angles rolled by the contact points until `until`, whole turns counted.
+    """Difference of the angles rolled by the contact points at `until`; `largest_differences`: the largest.
 
     Rolling angles are unwrapped from uplift on, so their difference counts the turns that one
     motion made more than the other since then. Only the whole turn by which the two started apart

@@ -19,7 +19,7 @@ GROUND = -G * np.array(TEXTS, dtype=float).T  # to the east and the north [m/s^2
 # Nothing is steered: points just inside the rim carry the cylinder while it stands, its rim once it leans.
 POINTS = [0.999 * B * np.array([math.cos(q), math.sin(q)]) for q in np.arange(64) * math.pi / 32]
 RIM = "".join(f'<geom type="sphere" size="1e-3" pos="{x} {y} {1e-3 - H}"/>' for x, y in POINTS)
-# The recess is a guide: -k times the twist, about the vertical and about the axis, which does no work.
+# The recess is a guide: -k times the twist, no work on the ideal motion.
 SCENE = f"""<mujoco><option timestep="{STEP}" cone="elliptic" impratio="100" tolerance="1e-12"/>
   <default><geom solref="{2 * STEP} 1" solimp="0.9999 0.9999 0.001" friction="1 0 0"/>
     <general gear="0 0 0 0 0 1" biastype="affine" gainprm="0" biasprm="0 -{GUIDE} 0"/></default>
