@@ -270,7 +270,8 @@ class Trace(Shown):
             return ROCKS_AND_SLIDES if tilt >= AGREEMENT * body.alpha else SLIDES
         largest = self.rolling_angle[int(np.where(np.isnan(self.rolling_angle), -1.0, self.tilt).argmax())]
         across = np.nan_to_num(self.tilt * np.abs(np.sin(self.rolling_angle - largest)))
-        return ROCKS_IN_PLANE if across.max() <= AGREEMENT * self.tilt.max() else ROCKS
+        smallest = 0.0 if model else CLOSED_TILT * body.alpha
+        return ROCKS_IN_PLANE if across.max() <= max(AGREEMENT * tilt, smallest) else ROCKS
 
     @property
     def open_base(self) -> NDArray[np.bool_]:

@@ -18,8 +18,8 @@ from rockwobble.compare.comparison.budget import (
     Refined,
     error_budget,
     extrapolated,
-    findings,
     limits,
+    unexplained_rows,
 )
 from rockwobble.compare.metrics.pair import Agreement
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite
@@ -90,7 +90,7 @@ def test_a_model_half_a_per_cent_off_in_size_is_unexplained(engine, limit):
     columns = budget(engine, limit, wrong).columns()
     assert columns["whole_rms"] > 1e-4
     assert columns["unexplained_share"] > 0.9
-    rows = findings(pd.DataFrame([columns]))
+    rows = unexplained_rows(pd.DataFrame([columns]))
     assert len(rows) == 1
 
 
@@ -181,7 +181,7 @@ def test_what_cannot_be_known_is_not_split(parts, order, unresolved, reason) -> 
     stated = [columns[name] for name in ("numerics_rms", "unexplained_rms", "unexplained_share")]
     assert np.isnan(stated).tolist() == [bool(reason)] * 3
     assert columns["model_form_rms"] == pytest.approx(parts[2], rel=ROUNDING)
-    assert findings(pd.DataFrame([columns])).empty  # nothing is called unexplained that is not known
+    assert unexplained_rows(pd.DataFrame([columns])).empty  # nothing is called unexplained that is not known
 
 
 def test_the_finer_runs_are_no_longer_than_the_traces_agree(engine):
@@ -228,11 +228,11 @@ def test_a_base_that_lands_flat_loses_what_the_model_keeps():
     assert row["unexplained_share"] < 0.05
 
 
-def test_findings_are_the_rows_above_the_bound_the_worst_first():
+def test_unexplained_rows_are_those_above_the_bound_the_worst_first():
     summary = pd.DataFrame(
         {
             "whole_rms": [1e-3, 5e-5, 1e-3, 1e-3, math.nan],
             "unexplained_share": [LARGEST_SHARE + 0.01, 0.9, 0.5, LARGEST_SHARE - 0.01, math.nan],
         }
     )
-    assert findings(summary).index.tolist() == [2, 0]
+    assert unexplained_rows(summary).index.tolist() == [2, 0]

@@ -68,7 +68,7 @@ def test_the_comparison_has_teeth(run, factor):
     off = dataclasses.replace(case.cylinder, semidiagonal=factor * case.cylinder.semidiagonal)
     wrong = reduced.simulate(Case(off, case.motion, duration=WINDOW))
     rms = tilt_rms_relative(make_pair(case.cylinder, wrong, trajectory, until=WINDOW))
-    assert is_stated(rms, ROW, r"0\.5 % off: (\S+)")
+    assert rms > 100.0 * AGREEMENT
 
 
 @pytest.mark.slow

@@ -62,12 +62,12 @@ def test_the_table_has_a_row_and_a_column_for_each(matrix) -> None:
     assert [heading for _, heading, _ in table["columns"]] == ["recess", "mujoco", "dart", "model"]
     first = table["rows"][0]
     assert first["mujoco recess"] is None
-    assert str(first["dart recess"]).startswith("0.50 s, ")
-    assert str(first["recess model"]).startswith("1.00+ s, ")
+    assert first["dart recess"] == "0.50 s"
+    assert first["recess model"] == "1.00+ s"
 
 
 def test_many_cases_are_counted(matrix) -> None:
     import pandas as pd
 
     (table,) = matrix_tables(pd.concat([matrix, matrix.assign(case="b", diverged=False)]))
-    assert str(table["rows"][0]["dart recess"]).startswith("1 of 2, ")
+    assert table["rows"][0]["dart recess"] == "1 of 2"

@@ -45,12 +45,9 @@ def test_slides_part_by_a_share_of_the_peak_displacement() -> None:
 
 
 def test_engine_closes_as_the_planar_model_by_momentum() -> None:
-    case = rw.Case(CASK, ALONG, friction=2.0, duration=1.5)
+    case = rw.Case(CASK, ALONG.scaled(1.5), friction=2.0, duration=1.5)
     found = rw.comparison(case, runs=[rw.Run("mujoco", "flat", 2e-4)], workers=1)
     (row,) = found.summary.itertuples()
-    assert (row.reference_support, row.reference, row.mode) == (
-        "planar",
-        "planar model by momentum",
-        "rocks in one plane",
-    )
-    assert row.peak_tilt_difference == pytest.approx(0.0, abs=0.005)
+    assert (row.reference, row.mode) == ("planar model by momentum", "rocks in one plane")
+    assert not row.diverged
+    assert row.peak_tilt_difference == pytest.approx(0.0, abs=0.005)  # of 0.13 alpha

@@ -44,6 +44,9 @@ def in_memory(entry):
 
 def on_disk(entry):
     return True
+
+def announce(entry, model, load):
+    pass
 """
 
 

@@ -28,6 +28,7 @@ def test_advice_on_a_slide_says_how_far_and_uses_up_a_gap() -> None:
     assert not len(found.groups)
 
 
+@pytest.mark.slow
 def test_walls_stop_a_slide_with_what_friction_does_not_take() -> None:
     found = rw.advise(CASE, copies=20, support="recess")
     first, walls = found.mode_findings
@@ -37,6 +38,7 @@ def test_walls_stop_a_slide_with_what_friction_does_not_take() -> None:
         rw.advise(CASE, copies=20, support="recess", gap=0.1)
 
 
+@pytest.mark.slow
 def test_friction_near_the_border_and_friction_unknown_are_said() -> None:
     near = rw.Case(CASK, CASE.motion, duration=8.0, friction=0.46)
     assert [each.key for each in rw.advise(near, copies=20).mode_findings][1] == "mode.border"
