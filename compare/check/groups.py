@@ -144,9 +144,6 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
         Check(measure=restraint.rocking, supports=("planar",), terms=("tendon",)),
         Check(measure=restraint.stored_energy, supports=(RECESS,), knows=("energy",), terms=("tendon",)),
         Check(
-            measure=restraint.second_gap, supports=(RECESS,), knows=("energy",), terms=("tendon",), slab=True
-        ),
-        Check(
             measure=restraint.load_at_rest, supports=(RECESS,), knows=("contact_force",), terms=("tendon",)
         ),
         Check(
@@ -157,8 +154,6 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
             from_rest=True,
         ),
         Check(measure=restraint.balance, supports=(RECESS,), knows=("outcome",), terms=("tendon",)),
-        Check(measure=restraint.size, supports=(RECESS,), terms=("tendon",)),
-        Check(measure=restraint.without_force, supports=(RECESS, "planar"), terms=("tendon",)),
     ),
     "order": (Check(measure=agreement.order, options=("stepper",), reference=True),),
     "trace": (

@@ -1,4 +1,4 @@
-"""What a tendon must do: its energy, its couple by exact solutions, uplift, load, balance and scale.
+"""What a tendon must do: its energy, its couple by exact solutions, uplift, load and balance.
 
 All follow from the energies of `lagrange`, in which the tendon is stretched by places: from O to the centre
 of the base, and under a slab by as much once more. In a recess both depend on the tilt alone, so that B, L
@@ -13,22 +13,19 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Tendon, Trace
+from rockwobble.models import Case, GroundMotion, InitialState
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.cylinder import PIER
 
 from .lagrange import TENDON, Shape, energy, potential, shape_of, slope
-from .laws import height_energy, period_and_turn, planar_quarter
+from .laws import period_and_turn, planar_quarter
 from .measurement import (
     FRAME_RELEASE,
     RELEASE,
-    SHOCK,
-    SHOCK_TIMES,
     Bound,
     Result,
     at_most,
     largest,
-    polyline,
     steady,
 )
 from .subject import Subject
@@ -36,7 +33,6 @@ from .subject import Subject
 _QUADRATURE = "quadrature of the energies, good to 1e-9"
 _HELD = dataclasses.replace(RELEASE, tendon=TENDON)
 _HELD_FRAME = dataclasses.replace(FRAME_RELEASE, tendon=TENDON)
-_SHAKEN = Case(PIER, polyline(SHOCK_TIMES, 2.0 * SHOCK, 0.5), duration=4.0)
 # tilt over alpha of releases on both sides of the balance: so near, and so far
 _NEAR, _TILT = 0.005, 0.5
 
@@ -91,21 +87,6 @@ def stored_energy(subject: Subject, support: str) -> Iterator[Result]:
         yield at_most(f"stated energy of a release with a tendon, {of}", off, bound)
 
 
-def second_gap(subject: Subject, support: str) -> Iterator[Result]:
-    """One gap more, at a slab, doubles the elongation: what a prestress alone stores at one tilt."""
-    stored = []
-    for body in (PIER, FRAME_RELEASE.cylinder):
-        start = InitialState(_TILT * PIER.alpha)
-        tilted = Case(body, initial=start, duration=0.05, tendon=Tendon(prestress=1.0))
-        whole = subject.simulate(tilted, support).energy[0]
-        weight = height_energy(shape_of(body), np.array([start.tilt]))[0]
-        stored.append((whole - weight) * (1.0 + 2.0 * body.slab_mass_ratio))
-    bound = subject.tolerance_bound(10.0, "in a frame it crosses a gap at either end of the column")
-    yield at_most(
-        "elongation under a slab over twice that without", abs(stored[1] / stored[0] / 2.0 - 1.0), bound
-    )
-
-
 def load_at_rest(subject: Subject, support: str) -> Iterator[Result]:
     """A column that stands presses on the ground with its weight and the prestress.
 
@@ -154,40 +135,3 @@ def balance(subject: Subject, support: str) -> Iterator[Result]:
         wrong = float((found.outcome == "overturned") is not expected)
         bound = Bound(0.0, "where the couple of weight and tendon changes its sign")
         yield at_most(f"end of a release 0.5 % {word} the balance", wrong, bound, note=found.outcome)
-
-
-def size(subject: Subject, support: str) -> Iterator[Result]:
-    """A hundredth of the size with the same tendon, in weights, moves ten times as fast (Froude)."""
-    start = RELEASE.initial
-    assert start is not None
-    faster = dataclasses.replace(start, rolling_rate=10.0 * start.rolling_rate)
-    small = Cylinder(semidiagonal=PIER.semidiagonal / 100.0, tan_alpha=PIER.tan_alpha)
-    little = Case(small, initial=faster, duration=0.1 * RELEASE.length, tendon=TENDON)
-    found = subject.simulate(little, support, sample_step=0.001)
-    plain = subject.simulate(_HELD, support, sample_step=0.01)
-    same = len(found.time) == len(plain.time)
-    off = largest(found.tilt - plain.tilt) / PIER.alpha if same else math.nan
-    bound = Bound(subject.repeatability, "rounding, magnified by the passes", "alpha")
-    yield at_most("a hundredth of the size with a tendon", off, bound)
-
-
-def without_force(subject: Subject, support: str) -> Iterator[Result]:
-    """A tendon without prestress and stiffness is none, to the bit."""
-    if support == "planar":
-        start = InitialState(_TILT * PIER.alpha)
-        case = Case(PIER, initial=start, duration=3.0)
-    else:
-        case = RELEASE if subject.cases is None and "stepper" in subject.options else _SHAKEN
-    none, free = (
-        subject.simulate(dataclasses.replace(case, tendon=tendon, duration=case.length), support)
-        for tendon in (None, Tendon())
-    )
-    bound = Bound(
-        subject.repeatability if "stepper" in subject.options else 0.0, "no force, no motion", "alpha"
-    )
-    yield at_most("a tendon that does not pull", _difference(none, free), bound)
-
-
-def _difference(one: Trace, other: Trace) -> float:
-    same = len(one.time) == len(other.time)
-    return largest(one.tilt - other.tilt) / PIER.alpha if same else math.nan
