@@ -28,7 +28,6 @@ from .mistakes import (
     in_time_scale,
     of_path,
     readings,
-    spinning,
     with_changes,
 )
 from .motion import SAME_TIME, Complex, Difference, Motion, Reference, explains, on_samples_of
@@ -90,7 +89,6 @@ def explanations(values: Values, read: Read, reference: Reference) -> Iterator[E
             of_axes = _path_explained(reference, turned, frame)
             if frame != Frame() and frame not in (change.frame for change in of_axes):
                 of_axes = (frame.change("azimuth"), *of_axes)
-            of_axes += _spin_explained(reference, with_changes(turned, of_axes))
             left = reference.difference(with_changes(turned, of_axes))
             yield Explanation(changes=(*changes, *more, *of_axes), left=left)
 
@@ -104,19 +102,13 @@ class _Search:
     reference: Reference
 
     def tilt_explained(self, motion: Motion) -> Iterator[tuple[tuple[Change, ...], Motion]]:
-        """Yield changes with which the tilt follows the reference, fewest first; last none at all."""
+        """Yield a change with which the tilt follows the reference, the closest first; last none at all."""
         before = self.reference.difference(motion)
         if before.tilt.differs:
             otherwise = [(one, self.read(one.values(self.values))) for one in readings(self.values)]
             alone = [((change,), other) for change, other in otherwise if other is not None]
             clocks = [((clock,), clock.motion(motion)) for clock in _clocks(self.reference, motion)]
             yield from self._following(before, [*alone, *clocks])
-            both = [
-                ((*changes, clock), clock.motion(other))
-                for changes, other in alone
-                for clock in _clocks(self.reference, other)
-            ]
-            yield from self._following(before, both)
         yield (), motion
 
     def _following(
@@ -181,47 +173,22 @@ def _path_explained(reference: Reference, motion: Motion, axes: Frame) -> tuple[
     expected = (Frame(), axes)
     fits = fitted_frames(reference, _with_lean_of_path(motion), start=before.start, end=before.covered)
     own = [
-        of_path(one)
+        (of_path(one),)
         for one in readings(dict.fromkeys(POSITION, motion.time))
         if one.mistake.concerns != "time"
     ]
-    pairs = [pair for pair in itertools.combinations(own, 2) if len({one.mistake.code for one in pair}) == 2]
-    read_otherwise = [(), *((one,) for one in own), *pairs]
-
-    def count(trial: tuple[Frame, tuple[Change, ...], bool]) -> float:
-        frame, changes, moved = trial
-        # a constant offset has three numbers to fit: it comes after what has none
-        return (frame not in expected) + len(changes) + 1.5 * moved
-
-    frames = dict.fromkeys((*expected, *fits))
-    tried = sorted(itertools.product(frames, read_otherwise, (False, True)), key=count)
-    for _, alike in itertools.groupby(tried, key=count):
-        passing: list[tuple[float, tuple[Change, ...]]] = []
-        for frame, changes, moved in alike:
-            turn = [frame.change("axes" if frame == axes else "path")] if frame != Frame() else []
-            # y up is no horizontal axis
-            changes = tuple(sorted((*turn, *changes), key=lambda one: one.mistake.code != "y_up"))
-            changes += (_origin(reference, with_changes(motion, changes), before.covered),) if moved else ()
-            left = reference.difference(with_changes(motion, changes)).path
-            if left is not None and not left.differs and (explains(part, left) or not part.differs):
-                passing.append((left.size, changes))
-        if passing:
-            return min(passing, key=lambda one: one[0])[1]
-    return ()
-
-
-def _spin_explained(reference: Reference, motion: Motion) -> tuple[Change, ...]:
-    """Return the steady spin about the axis that explains its turn, if one does."""
-    before = reference.difference(motion)
-    if before.twist is None or not before.twist.differs:
-        return ()
-    model, trial = on_samples_of(reference.motion, motion)
-    assert model.twist is not None
-    assert trial.twist is not None
-    within = model.time <= before.covered + SAME_TIME
-    time, apart = (model.time - model.time[0])[within], (trial.twist - model.twist)[within]
-    change = spinning(float(time @ apart / (time @ time)))
-    return (change,) if explains(before.twist, reference.difference(change.motion(motion)).twist) else ()
+    passing: list[tuple[float, float, tuple[Change, ...]]] = []
+    for frame, read, moved in itertools.product((*expected, *fits), ((), *own), (False, True)):
+        turn = [frame.change("axes" if frame == axes else "path")] if frame != Frame() else []
+        # y up is no horizontal axis
+        changes = tuple(sorted((*turn, *read), key=lambda one: one.mistake.code != "y_up"))
+        changes += (_origin(reference, with_changes(motion, changes), before.covered),) if moved else ()
+        left = reference.difference(with_changes(motion, changes)).path
+        if left is not None and not left.differs and (explains(part, left) or not part.differs):
+            # a constant offset has three numbers to fit: it comes after what has none
+            count = (frame not in expected) + len(read) + 1.5 * moved
+            passing.append((count, left.size, changes))
+    return min(passing, key=lambda one: one[:2])[2] if passing else ()
 
 
 def _origin(reference: Reference, motion: Motion, end: float) -> Change:
