@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
 import io
 import math
 import shlex
@@ -28,22 +27,6 @@ if TYPE_CHECKING:
     from rockwobble.compare.storage.results import Results
 
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
-# what is printed where the encoding has no such character
-_PLAIN = {
-    **{
-        "α": "alpha",
-        "π": "pi",
-        "√": "sqrt",
-        "±": "+-",
-        "×": "x",
-        "°": " deg",
-        "−": "-",
-        "–": "-",
-        "…": "...",
-    },
-    **{"▲": "^", "✓": "ok", "\u00a0": " ", "é": "e"},
-    **dict(zip("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789", strict=True)),
-}
 
 
 def command_line() -> str:
@@ -97,17 +80,9 @@ def interruptible(kept: Path | None = None) -> Iterator[None]:
 
 def forgive_output() -> None:
     """Let no poor encoding of the output stop a command."""
-    codecs.register_error("rockwobble", _plain)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="rockwobble", line_buffering=True)
-
-
-def _plain(error: UnicodeError) -> tuple[str, int]:
-    if not isinstance(error, UnicodeEncodeError):
-        raise error
-    wanting = error.object[error.start : error.end]
-    return "".join(_PLAIN.get(character, "?") for character in wanting), error.end
+            stream.reconfigure(errors="namereplace", line_buffering=True)
 
 
 # up to so many tasks have a line each where there is no terminal

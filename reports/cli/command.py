@@ -85,15 +85,8 @@ def _annotation(kind: Any, stated: Option) -> Any:
     return Annotated[kind, typer.Option(*names, **more)]
 
 
-_Parameter = Any  # click's, which typer brings in some versions and imports in others
-
-
-class StrictCommand(TyperCommand):
-    """A command whose options take no empty text and come once, and whose refusals say what was given.
-
-    An empty folder would be the one the command is run in; of an option that comes twice the last would
-    count in silence. Options that may be repeated stay so.
-    """
+class ShownCommand(TyperCommand):
+    """A command whose refusals say what was given."""
 
     def parse_args(self, ctx: object, args: list[str]) -> list[str]:
         """Return the arguments that are left when the options are taken.
@@ -101,13 +94,10 @@ class StrictCommand(TyperCommand):
         Raises
         ------
         UsageError
-            If a text is empty, an option comes twice, or a value is none of its kind.
+            If a value is none of its kind.
         """
         context: Any = ctx
-        given, _, order = self.make_parser(context).parse_args(args=list(args))
-        if not context.resilient_parsing:  # not while a shell asks how a line could go on
-            _refuse_empty(context, given, order)
-            _refuse_twice(context, order)
+        given, _, _ = self.make_parser(context).parse_args(args=list(args))
         try:
             return super().parse_args(context, args)
         except typer.BadParameter as error:
@@ -116,22 +106,3 @@ class StrictCommand(TyperCommand):
                 # "Input should be a valid number, unable to parse string as a number"
                 error.message = f"{error.message.partition(', unable')[0]}, got {text!r}"
             raise
-
-
-def _refuse_empty(ctx: typer.Context, given: Mapping[str, object], order: Sequence[_Parameter]) -> None:
-    for option in order:
-        texts = given.get(str(option.name))
-        for text in texts if isinstance(texts, list | tuple) else [texts]:
-            if isinstance(text, str) and not text.strip():
-                ctx.fail(f"{_name(option)} must not be empty, got {text!r}")
-
-
-def _refuse_twice(ctx: typer.Context, order: Sequence[_Parameter]) -> None:
-    for place, option in enumerate(order):
-        if option in order[:place] and not (option.multiple or option.is_eager):
-            ctx.fail(f"{_name(option)} is given twice")
-
-
-def _name(option: _Parameter) -> str:
-    """Name of an option or argument, as help says it."""
-    return str(option.opts[-1]) if option.param_type_name == "option" else str(option.name).upper()

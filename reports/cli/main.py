@@ -17,7 +17,7 @@ from typer.main import get_command
 
 from ..console import BAD_INPUT, FAILED, INTERRUPTED, complain, forgive_output
 from ..registry import COMMANDS, HEADINGS
-from .command import StrictCommand
+from .command import ShownCommand
 
 
 @cache
@@ -29,7 +29,7 @@ def _command(name: str) -> TyperCommand:
     function = module.command_of(entry) if entry.study else getattr(module, name)
     words, _, example = (inspect.getdoc(function) or "").partition("\n\nExample: ")
     alone = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
-    alone.command(cls=StrictCommand, help=_help(words, example), rich_help_panel=HEADINGS[group])(function)
+    alone.command(cls=ShownCommand, help=_help(words, example), rich_help_panel=HEADINGS[group])(function)
     made = get_command(alone)
     assert isinstance(made, TyperCommand)
     return made

@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import math
 import re
+import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
@@ -133,22 +134,10 @@ _LATEX = {
     "∣": "$|$",
     "²": "$^2$",
     "³": "$^3$",
-    **{
-        letter: rf"$\{name}$"
-        for letter, name in {
-            "α": "alpha",
-            "γ": "gamma",
-            "δ": "delta",
-            "θ": "theta",
-            "κ": "kappa",
-            "μ": "mu",
-            "µ": "mu",
-            "τ": "tau",
-            "φ": "varphi",
-            "ψ": "psi",
-        }.items()
-    },
+    "µ": r"$\mu$",
+    "φ": r"$\varphi$",
 }
+_GREEK = "GREEK SMALL LETTER "
 
 
 def latex_text(text: str) -> str:
@@ -159,7 +148,13 @@ def latex_text(text: str) -> str:
     >>> print(latex_text("peak_tilt [α], 5 %"))
     peak\_tilt [$\alpha$], 5 \%
     """
-    return "".join(_LATEX.get(letter, letter) for letter in text)
+
+    def shown(letter: str) -> str:
+        name = unicodedata.name(letter, "")
+        greek = rf"$\{name.removeprefix(_GREEK).lower()}$" if name.startswith(_GREEK) else letter
+        return _LATEX.get(letter, greek)
+
+    return "".join(map(shown, text))
 
 
 @dataclass(frozen=True, slots=True)

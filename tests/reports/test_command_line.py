@@ -386,7 +386,7 @@ def test_results_are_whole_where_the_output_cannot_be_printed(tmp_path, in_this_
         poor.flush()
     shown = poor.buffer.getvalue()
     assert b"Peak tilt" in shown
-    assert b"alpha" in shown
+    assert b"ALPHA" in shown
     reader, writer = os.pipe()
     os.close(reader)
     closed = subprocess.run(

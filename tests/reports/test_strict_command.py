@@ -5,12 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-import typer
 
-from rockwobble.reports.cli.main import app, main
-
-COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
-WITH_OUT = sorted(name for name, each in COMMANDS.items() if "out" in {option.name for option in each.params})
+from rockwobble.reports.cli.main import main
 
 
 def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
@@ -28,19 +24,6 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
 def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What is not refused, though it must be, writes here and not where the tests are run."""
     monkeypatch.chdir(tmp_path)
-
-
-@pytest.mark.parametrize("command", WITH_OUT)
-def test_an_empty_folder_name_is_not_the_current_folder(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str
-) -> None:
-    needed = ["somewhere"] if command == "report" else []
-    assert "--out must not be empty, got ''" in refused(capsys, command, *needed, "--out", "")
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_an_empty_argument_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    assert "STORE must not be empty, got ''" in refused(capsys, "show", "")
 
 
 @pytest.mark.parametrize(
@@ -61,21 +44,6 @@ def test_what_is_no_number_is_said(
     said = refused(capsys, *arguments)
     assert f"'{arguments[-2]}'" in said
     assert said.endswith(f", got {text!r}\n")
-
-
-@pytest.mark.parametrize(
-    ("arguments", "name"),
-    [
-        (["simulate", "--engine", "mujoco", "--engine", "dart"], "--engine"),
-        (["compare", "--scale", "1", "--scale=2"], "--scale"),
-        (["certify", "--out", "a", "--out", "b"], "--out"),
-        (["validity", "--quick", "--quick"], "--quick"),
-    ],
-)
-def test_an_option_that_comes_twice_is_refused(
-    capsys: pytest.CaptureFixture[str], arguments: list[str], name: str
-) -> None:
-    assert refused(capsys, *arguments) == f"rockwobble: {name} is given twice\n"
 
 
 def test_what_may_be_repeated_stays_so(capsys: pytest.CaptureFixture[str]) -> None:
