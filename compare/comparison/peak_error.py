@@ -32,7 +32,7 @@ class PeakError(NamedTuple):
     size : float
         [alpha]; NaN where there is no peak.
     source : {"", "integration", "step", "copies", "model form"}
-        What it is the error of.
+        What it is the error of; "" where all are 0, as of what never uplifts, or unknown.
     """
 
     size: float
@@ -76,9 +76,9 @@ def peak_error(
         parts["step"] = max(known) if known else apart(own if reference.run.is_model else reference, of=trial)
     if reference.run.is_model:
         parts["model form"] = apart(reference)
-    finite = {name: size for name, size in parts.items() if math.isfinite(size)}
-    source = max(finite, key=finite.__getitem__, default="")
-    return PeakError(finite.get(source, math.nan) / alpha, source)
+    finite = {"": 0.0} | {name: size for name, size in parts.items() if math.isfinite(size)}
+    source = max(finite, key=finite.__getitem__)
+    return PeakError(finite[source] / alpha, source)
 
 
 def copies_of_input(case: Case) -> list[Case]:

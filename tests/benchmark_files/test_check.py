@@ -337,3 +337,13 @@ def test_a_third_of_every_peak_does_not_fit_the_distribution(judge: Judge) -> No
     judged = judge("records-distribution", weak)
     assert judged.verdict == "fail"
     assert not judged.mistakes
+
+
+def test_a_maximum_that_a_whole_file_never_reaches_fails(judge: Judge) -> None:
+    body = tables(IMPACT, tilt_and_azimuth)
+    late = {run: {**one, "tilt": np.where(one["time"] < 1.5, one["tilt"], 0.0)} for run, one in body.items()}
+    assert judge(IMPACT, late).verdict == "fail"
+    early = {
+        run: {key: column[one["time"] < 1.5] for key, column in one.items()} for run, one in body.items()
+    }
+    assert judge(IMPACT, early).verdict == "rejected"

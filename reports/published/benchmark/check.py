@@ -329,7 +329,10 @@ def judged(case: Case, path: Path) -> Judgement:
         )
     found = Judgement(outcomes, (), ignored)
     mistakes = case.mistakes(tables, motions) if found.verdict != "exact" else ()
-    short = [one.name for one in outcomes if one.unit in ("alpha", "b") and one.error == math.inf]
+    # a maximum that a whole file does not reach is an answer, and a wrong one
+    whole = all(motion.time[-1] > 0.99 * case.runs[name]["duration"] for name, motion in motions.items())
+    asked = [one for one in outcomes if one.unit in ("alpha", "b") and one.error == math.inf]
+    short = [one.name for one in asked if not (whole and one.name.startswith("maximum"))]
     if short and not mistakes and all(motion.tilt.max() < FALLEN for motion in motions.values()):
         raise ValueError(f"the samples do not cover the window of {', '.join(short)}")
     return replace(found, mistakes=mistakes)
