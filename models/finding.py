@@ -32,6 +32,8 @@ QUANTITIES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "bound": ("", "limit that a size is compared with"),
         "factor": ("", "factor on the shaking as given"),
         "ratio": ("", "ratio of two sizes"),
+        "p": ("p", "probability of a difference as large by chance"),
+        "intensity": ("", "intensity of shaking in the measure of the study"),
         "share": ("share", "share of a whole, 0 to 1"),
         "time": ("s", "time from the start of the motion"),
         "until": ("s", "end of a span that begins with the motion"),

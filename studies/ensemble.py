@@ -32,11 +32,13 @@ from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import REDUCED_MODELS, TERMS
 from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.doubts import doubts_of_cases
+from rockwobble.models.finding import Findings
 from rockwobble.models.number_checks import require_each
 from rockwobble.models.plain_json import fields_of, plain
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.trace import NO_PEAK, lost_trace
 
+from .ensemble_findings import ensemble_findings
 from .plans import Copies
 from .study import Study
 
@@ -86,6 +88,10 @@ class Ensemble(Results, kind=KIND):
             )
             for row in self.contrasts.to_dict("records")
         }
+
+    def findings(self) -> Findings:
+        """Return which methods are equivalent, what differs significantly, and what failed."""
+        return Findings(ensemble_findings(self.members["member"].nunique(), self.methods, self.contrasts))
 
     def sheets(self) -> dict[str, bytes]:
         """Return the tables as CSV."""

@@ -13,6 +13,7 @@ from rockwobble.compare.metrics.contrast import pairs_in
 from rockwobble.compare.metrics.statistics import MARGIN
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.studies import Ensemble
+from rockwobble.studies.ensemble_findings import main_pairs
 from rockwobble.studies.fragility.study import Row
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles
@@ -25,18 +26,9 @@ _MEDIAN = Style(colour=DARK, dash="none", symbol="diamond")
 _LINE = 0.5  # inch for a pair of methods
 
 
-def main_pairs(found: Ensemble) -> list[Row]:
-    """Return the rows of the contrasts that are asked for first: engines by their own model, then models."""
-    rows = found.contrasts.to_dict("records")
-    own = dict(zip(found.methods["method"], found.methods["own_model"], strict=True))
-    engines = [row for row in rows if own[row["method"]] and own[row["method"]] == row["against"]]
-    models = [row for row in rows if not own[row["method"]] and not own[row["against"]]]
-    return [{str(name): value for name, value in row.items()} for row in engines + models or rows]
-
-
 def pictures(found: Ensemble) -> list[Picture]:
     """Return the distribution of each method, and the ratios of the members of the main pairs."""
-    rows = [row for row in main_pairs(found) if row["compared"]]
+    rows = [row for row in main_pairs(found.methods, found.contrasts) if row["compared"]]
     models = found.methods.loc[found.methods["own_model"] == "", "method"]
     panels = [distributions(found.members, list(models)), *([_ratios(found, rows)] if rows else [])]
     picture = Picture(

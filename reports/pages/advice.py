@@ -21,7 +21,7 @@ from rockwobble.studies.advice.members import ACCELERATION, COPIES, HORIZONTAL, 
 from rockwobble.studies.advice.scales import planar_shares
 from rockwobble.studies.advice.trust import Verification, scatter_of
 from rockwobble.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
-from rockwobble.studies.spectrum.study import CHECK_RTOL, NUDGE
+from rockwobble.studies.spectrum.verification import CHECK_RTOL, NUDGE
 
 from ..figures.advice import pictures
 from .advised_case import (

@@ -33,6 +33,9 @@ _BY_UNIT: Mapping[str, Callable[[float], str]] = {
     "weights": lambda value: f"{number(value)} weights",
     "m": lambda value: f"{number(value)} m",
     "1/a": lambda value: f"{number(value)} a year",
+    "p": lambda value: (
+        "p < 0.001" if value < 1e-3 else f"p = {number(value, '.3f' if value < 0.1 else '.2f')}"
+    ),
     "a": lambda value: f"{value:,.0f} years",
 }
 
@@ -62,9 +65,9 @@ def sentence(finding: Finding, *, short: bool = False) -> str:
     return written(finding.key, finding.values, units, short=short)
 
 
-def statement(finding: Finding) -> str:
+def statement(finding: Finding, *, short: bool = False) -> str:
     """A finding in words, with capital and full stop."""
-    said = sentence(finding)
+    said = sentence(finding, short=short)
     return f"{said[0].upper()}{said[1:]}."
 
 

@@ -19,7 +19,7 @@ from ..plans import STEP
 from ..spectrum.maps import intensity_unit, uplift_of_series
 from ..spectrum.parts import RTOL, SERIES, SPATIAL, series_options
 from ..spectrum.search import Array, lowest_on_grid, run_searches, search_lowest
-from ..spectrum.study import CHECK_RTOL, CONFIRMING
+from ..spectrum.verification import CHECK_RTOL, CONFIRMING
 from .members import held_by
 
 # twelve scales for each factor of two, from a quarter to sixteen times the record as it is given

@@ -19,14 +19,15 @@ from rockwobble.compare.storage.results import Results
 from rockwobble.models import GroundMotion, HazardCurve, RockingBody, Run
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
-from rockwobble.models.finding import Finding, Findings
+from rockwobble.models.finding import Findings
 from rockwobble.models.number_checks import require_each, require_one_of, require_positive
 from rockwobble.models.plain_json import Facts, fields_of, plain
 from rockwobble.models.records.units import sources_of
-from rockwobble.models.support import FLAT, RECESS
+from rockwobble.models.support import RECESS
 from rockwobble.models.trace import NO_PEAK
 
 from ..plans import FragilityPlan
+from .findings import FEWEST_LEVELS, fragility_findings
 from .fit import TOO_FEW
 from .intensity import velocity_unit
 from .risk import RARE, TARGET, exposures_of, measure_factor, risk_findings, risk_tables
@@ -57,7 +58,6 @@ from .tables import (
 )
 
 KIND = "fragility"
-FEWEST_LEVELS = 2  # of one level a curve has no slope
 _COUNTED = ("cylinder", "method", "limit", "runs", "exceeded", "failed")
 
 
@@ -226,25 +226,13 @@ class Fragility(Results, kind=KIND):
         return risk_tables(blocks, exposures, curves, hazard, weights=weights, years=years, target=target)
 
     def findings(self) -> Findings:
-        """Which motion it is where friction decides, and what the tables of the risk say."""
-        given, flat = float(self.facts["friction"]), str(FLAT)
-        free = any(method["support"] == flat for method in self.facts["methods"].values())
-        modes = [
-            Finding(
-                key="mode.slides",
-                values={"reason": flat, "given": given, "bound": body["tan_alpha"]},
-                runs=name,
-            )
-            for name, body in self.facts["cylinders"].items()
-            if free and given < body["tan_alpha"]
-        ]
-        if "risk" not in self.tables:
-            return Findings(modes)
-        rows = [
-            {str(name): value for name, value in row.items()}
-            for row in self.tables["risk"].to_dict("records")
-        ]
-        return Findings([*modes, *risk_findings(rows, self.facts["hazard"])])
+        """Return medians or what bounds them, ratios of methods, remarks, and what the risk says."""
+        fits, risk = (
+            [{str(name): value for name, value in row.items()} for row in table.to_dict("records")]
+            for table in (self.fits, self.tables.get("risk", pd.DataFrame()))
+        )
+        own = fragility_findings(self.facts, fits, main_contrasts(self), self.median_or_bound)
+        return Findings([*own, *(risk_findings(risk, self.facts["hazard"]) if risk else ())])
 
     def sheets(self) -> dict[str, bytes]:
         """Return the counts as CSV and as JSON, for tools that fit curves of their own."""

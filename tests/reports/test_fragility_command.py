@@ -167,7 +167,7 @@ def test_a_cloud_of_motions_of_one_peak_has_a_count_for_each_scale() -> None:
     motions = synthetic_motions(4, peak=1.0, seed=1)
     cloud = fragility(PIER, motions, methods=["recess"], scales=[2.0, 6.0], resamples=2, workers=1)
     assert cloud.counts.loc[cloud.counts["limit"] == "overturned", "n"].tolist() == [4, 4]
-    assert "as they are, times 2, 6;" in page_of(cloud).markdown()
+    assert "as they are, times 2 and 6;" in page_of(cloud).markdown()
 
 
 def test_without_overturning_the_page_has_the_other_limits_alone() -> None:

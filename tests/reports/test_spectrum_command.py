@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-import io
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
-from rich.console import Console
 
 from rockwobble import reduced
 from rockwobble.models import GroundMotion, el_centro_1940
@@ -18,12 +17,13 @@ from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.heat import Heat
 from rockwobble.reports.figures.spectrum import picture_of
 from rockwobble.reports.figures.svg import svg
-from rockwobble.reports.pages import page_of, stored_page
+from rockwobble.reports.pages import stored_page
 from rockwobble.reports.pages.page import Page
 from rockwobble.studies.plans import SpectrumPlan
 from rockwobble.studies.spectrum.maps import TiltMaps, record_frame, safe_gaps, tilt_maps
 from rockwobble.studies.spectrum.parts import PLANAR_X, SERIES, SPATIAL
-from rockwobble.studies.spectrum.study import KIND, OverturningSpectrum, planar_contrast
+from rockwobble.studies.spectrum.study import KIND, OverturningSpectrum
+from rockwobble.studies.spectrum.verification import planar_contrast
 
 # the factors on the record differ by a rounding, grown by a few passes
 SAME_RUN = 1e-6
@@ -49,10 +49,10 @@ def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, caps
     assert "b = " not in printed  # of which of the sizes?
     assert "planar analysis is unconservative in" in printed
     assert "in steps down to 0.4 g tan α" in printed
-    written = {"spectrum.html", "manifest.json"} | {f"{name}.parquet" for name in TABLES}
+    written = {"spectrum.html", "spectrum.json", "manifest.json"} | {f"{name}.parquet" for name in TABLES}
     assert {path.name for path in tmp_path.iterdir()} == written | {"kept.txt", "finished"}
     assert f"Written to {tmp_path}: " in printed
-    assert "spectrum.html, manifest.json" in printed
+    assert "spectrum.html" in printed
 
     found = OverturningSpectrum.load(tmp_path).maps
     sizes, levels = np.linspace(0.5, 20.0, 4), np.linspace(1.0, 9.0, 8)
@@ -129,56 +129,54 @@ def spectrum() -> TiltMaps:
     )
 
 
-def said(found: TiltMaps, checked: pd.DataFrame | None = None, **columns: object) -> str:
-    """Return the words of the page of a spectrum; `columns` stand in the table of the lowest."""
+Numbers = dict[str, dict[str, Any]]
+
+
+def numbers(found: TiltMaps, checked: pd.DataFrame | None = None, **columns: object) -> Numbers:
+    """Return the numbers of the findings by key; `columns` stand in the table of the lowest."""
     lowest = found.lowest_frame().assign(**({"confirmed": True} | columns))
     tables = {"lowest": lowest, "gaps": safe_gaps(found), "contrast": planar_contrast(found)}
     tables["checked"] = pd.DataFrame({"agrees": [True], "sensitive": [False]}) if checked is None else checked
     tables |= {"spectrum": found.to_frame(), "record": record_frame(found.motion)}
-    console = Console(file=io.StringIO(), width=100_000)
-    page_of(OverturningSpectrum(tables=tables, facts=found.facts())).show(console)
-    return " ".join(console.file.getvalue().split())  # type: ignore[attr-defined]
+    spectrum = OverturningSpectrum(tables=tables, facts=found.facts())
+    return {
+        each.key.removeprefix("spectrum."): {name: value for name, value, _ in each.quantities()}
+        for each in spectrum.findings()
+    }
 
 
 @pytest.mark.slow
-def test_the_headline_counts_what_is_missed(spectrum):
+def test_the_answer_counts_what_is_missed_and_leaves_failed_cells_out(spectrum):
     falls = {name: spectrum.overturned(name) for name in SERIES}
     planar = falls["planar_x"] | falls["planar_y"]
-    unconservative = 100.0 * (falls[SPATIAL] & ~planar).mean()
-    conservative = 100.0 * (planar & ~falls[SPATIAL]).mean()
-    assert 1.0 < unconservative < 10.0
-    assert 1.0 < conservative < 10.0
-    words = said(spectrum)
-    assert f"overturns in {100.0 * falls[SPATIAL].mean():.0f} % of 144 cells" in words
-    assert f"unconservative in {unconservative:.1f} %, conservative in {conservative:.1f} %" in words
+    shares = (falls[SPATIAL] & ~planar).mean(), (planar & ~falls[SPATIAL]).mean()
+    assert all(0.01 < share < 0.1 for share in shares)
+    found = numbers(spectrum)["overturned"]
+    assert (found["share_unconservative"], found["share_conservative"]) == shares
+    assert (found["share"], found["count"]) == (falls[SPATIAL].mean(), 144)
+    tilt = spectrum.peak_tilt[PLANAR_X].copy()
+    tilt[3, 4] = tilt[5, 6] = np.nan
+    without = numbers(dataclasses.replace(spectrum, peak_tilt={**spectrum.peak_tilt, PLANAR_X: tilt}))
+    assert (without["overturned"]["count"], without["failed"]["count"]) == (142, 2)
+    every = {**spectrum.peak_tilt, PLANAR_X: np.full_like(tilt, np.nan)}
+    assert [*numbers(dataclasses.replace(spectrum, peak_tilt=every))] == ["unsolved"]
 
 
 def test_bands_of_sizes_in_which_planar_analysis_is_unconservative_are_listed(spectrum):
     bands = planar_contrast(spectrum).iloc[:-1]
     wrong = bands[bands["unconservative"] > bands["conservative"]]
-    listed = ", ".join(f"{band.smallest:.3g} to {band.largest:.3g} m" for band in wrong.itertuples())
     assert 0 < len(wrong) < len(bands)
-    assert f"More cells unconservative than conservative: R = {listed}." in said(spectrum)
-
-
-@pytest.mark.slow
-def test_failed_cells_are_counted_and_left_out(spectrum):
-    tilt = spectrum.peak_tilt[PLANAR_X].copy()
-    tilt[3, 4] = tilt[5, 6] = np.nan
-    words = said(dataclasses.replace(spectrum, peak_tilt={**spectrum.peak_tilt, PLANAR_X: tilt}))
-    assert "of 142 cells" in words
-    assert "Cells without an answer (failed, or past yield): 2." in words
-    every = {**spectrum.peak_tilt, PLANAR_X: np.full_like(tilt, np.nan)}
-    assert "No cell could be solved." in said(dataclasses.replace(spectrum, peak_tilt=every))
+    listed = tuple(f"{band.smallest:.3g} to {band.largest:.3g} m" for band in wrong.itertuples())
+    assert numbers(spectrum)["unconservative"]["names"] == listed
 
 
 def test_a_spectrum_without_overturning_says_how_it_was_searched(spectrum):
     still = {name: np.zeros_like(tilt) for name, tilt in spectrum.peak_tilt.items()}
     none = {name: np.full_like(lowest, np.nan) for name, lowest in spectrum.lowest.items()}
-    words = said(dataclasses.replace(spectrum, peak_tilt=still, lowest=none))
-    assert "overturns in 0 % of 144 cells" in words
-    assert "from uplift (1 g tan α in 3D) in steps down to 0.2 g tan α" in words
-    assert "Safe gaps" not in words
+    found = numbers(dataclasses.replace(spectrum, peak_tilt=still, lowest=none))
+    assert found["overturned"]["share"] == 0.0
+    assert found["search"] == {"intensity": 1.0, "intensity_step": 0.2}
+    assert not {"gaps", "boundary"} & {*found}
 
 
 def with_safe(found: TiltMaps, cells: list[tuple[int, int]]) -> TiltMaps:
@@ -196,41 +194,34 @@ def with_safe(found: TiltMaps, cells: list[tuple[int, int]]) -> TiltMaps:
 
 
 @pytest.mark.parametrize(
-    ("cells", "words"),
-    [
-        ([(2, 5)], "1 at 1 of 12 sizes, the widest from 6.00 to 6.00 g tan α at"),
-        ([(2, 5), (2, 6)], "1 at 1 of 12 sizes, the widest from 6.00 to 7.00 g tan α at"),
-        ([(2, 5), (2, 6), (4, 8)], "2 at 2 of 12 sizes, the widest from 6.00 to 7.00"),
-    ],
+    ("cells", "gaps", "sizes", "end"),
+    [([(2, 5)], 1, 1, 6.0), ([(2, 5), (2, 6)], 1, 1, 7.0), ([(2, 5), (2, 6), (4, 8)], 2, 2, 7.0)],
 )
-def test_gaps_are_counted_and_spanned_as_one_says_it(spectrum, cells, words):
-    assert words in said(with_safe(spectrum, cells))
+def test_gaps_are_counted_and_the_widest_is_spanned(spectrum, cells, gaps, sizes, end):
+    found = numbers(with_safe(spectrum, cells))["gaps"]
+    stated = ("count", "count_sizes", "count_all", "intensity", "intensity_end")
+    assert [found[name] for name in stated] == [gaps, sizes, 12, 6.0, end]
 
 
 @pytest.mark.slow
 def test_the_search_says_what_it_missed_and_what_is_chance(spectrum):
     none = dataclasses.replace(spectrum, below={name: np.zeros(12) for name in SERIES})
-    found = int(np.isfinite(spectrum.lowest[SPATIAL]).sum())
-    words = said(none, on_grid=none.lowest_frame()["intensity"] + 0.5)  # less than a step of the grid, 1
+    count = int(np.isfinite(spectrum.lowest[SPATIAL]).sum())
+    found = numbers(none, on_grid=none.lowest_frame()["intensity"] + 0.5)  # less than a step of the grid, 1
     # 0 of 5 draws: below 1 - 0.05^(1/5)
-    assert (
-        "5 random intensities below each boundary stand: at most 45 % of all intensities below it "
-        "overturn (95 %)" in words
-    )
-    assert f"0 of {found} sizes overturn more than one step of the grid below" in words
-    assert "left to chance: at" not in words.split("Cells run again")[0]
+    assert found["probes"]["share"] == pytest.approx(1.0 - 0.05**0.2)
+    assert found["unseen"] == {"count": 0, "count_all": count}
+    assert "chance" not in found
     confirmed = np.ones(36, dtype=bool)
     confirmed[[0, 3]] = False
-    sizes = spectrum.semidiagonals[[0, 3]]
-    words = said(none, confirmed=confirmed)
-    assert f"Boundary left to chance: at 2 sizes, with R from {sizes[0]:.3g} to {sizes[1]:.3g} m" in words
+    chance = numbers(none, confirmed=confirmed)["chance"]
+    assert (chance["count"], chance["length"], chance["length_end"]) == (2, *spectrum.semidiagonals[[0, 3]])
 
 
 def test_the_check_tells_chance_from_error(spectrum):
-    cells = {"agrees": [True, False, False], "sensitive": [False, True, False]}
-    words = said(spectrum, pd.DataFrame(cells))
-    assert "3, of which 1 agree to 2 % of the peak tilt, 1 are left to chance" in words
-    assert "and 1 do not" in words
+    cells = pd.DataFrame({"agrees": [True, False, False], "sensitive": [False, True, False]})
+    found = numbers(spectrum, cells)["checked"]
+    assert [found[f"count{name}"] for name in ("", "_agree", "_chance", "_other")] == [3, 1, 1, 1]
 
 
 @pytest.mark.slow
@@ -258,4 +249,4 @@ def test_a_record_of_one_component_has_a_picture_and_a_page(still):
     picture = picture_of(found)
     assert still or svg(picture)  # the planes differ in their place alone
     # the planar run is the 3D run
-    assert "unconservative in 0 %," in said(found)
+    assert numbers(found)["overturned"]["share_unconservative"] == 0.0

@@ -291,7 +291,7 @@ def test_where_no_motion_overturns_a_bound_is_given() -> None:
     assert row["overturning_motions"] == 0
     assert row["annual_frequency"] == row["annual_frequency_low"] == 0.0
     assert 0.0 < row["annual_frequency_most"] <= row["annual_frequency_high"]
-    assert none.with_risk(SITE).findings()[0].key == "risk.none"
+    assert none.with_risk(SITE).findings().of("risk")[0].key == "risk.none"
 
 
 def test_the_verdict_is_where_the_interval_lies_of_the_target(found: rw.studies.Fragility) -> None:
@@ -303,7 +303,7 @@ def test_the_verdict_is_where_the_interval_lies_of_the_target(found: rw.studies.
     ):
         said = found.with_risk(SITE, target=target)
         assert said.tables["risk"]["verdict"].iloc[0] == verdict
-        assert said.findings()[0].to_json()["values"]["reason"]["value"] == verdict
+        assert said.findings().of("risk")[0].to_json()["values"]["reason"]["value"] == verdict
     with pytest.raises(ValueError, match="target must be positive"):
         found.risk(SITE, target=0.0)
 

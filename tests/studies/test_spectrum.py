@@ -13,7 +13,7 @@ from rockwobble.studies.spectrum import maps
 from rockwobble.studies.spectrum import study as verification
 from rockwobble.studies.spectrum.maps import TiltMaps, tilt_maps
 from rockwobble.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, run_part
-from rockwobble.studies.spectrum.study import CELLS, check_cells, confirm_lowest
+from rockwobble.studies.spectrum.verification import CELLS, check_cells, confirm_lowest
 
 WHOLE = el_centro_1940()
 # the seconds that hold its peak: a spectrum of the whole record takes six times as long and shows no more

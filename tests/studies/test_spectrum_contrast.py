@@ -8,15 +8,15 @@ import pytest
 from showing import loads_as_it_was, shows_itself
 
 from rockwobble.models import GroundMotion
-from rockwobble.studies.spectrum import study as bands
+from rockwobble.studies.spectrum import verification as bands
 from rockwobble.studies.spectrum.maps import TiltMaps, safe_gaps
 from rockwobble.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.studies.spectrum.search import lowest_on_grid
-from rockwobble.studies.spectrum.study import (
+from rockwobble.studies.spectrum.study import spectrum_of
+from rockwobble.studies.spectrum.verification import (
     edge_difference,
     planar_contrast,
     size_bands,
-    spectrum_of,
     unconservative_from,
 )
 

@@ -79,7 +79,7 @@ def page_of(paper: Paper) -> Page:
         name="paper",
         template=Path(__file__).with_name("page.md.j2"),
         values={
-            **spectrum_values(spectrum.maps, tables),
+            **spectrum_values(spectrum),
             "statements": found,
             "judgements": {name: _judgement(each) for name, each in found.items()},
             "linear_range": _linear_range(found["housner"].numbers),

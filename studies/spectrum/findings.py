@@ -1,0 +1,78 @@
+"""What a spectrum says: each a finding of the numbers of its tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+import pandas as pd
+
+from rockwobble.models.finding import Finding, Value
+
+from .maps import TiltMaps
+from .parts import SPATIAL
+from .search import gap_bound
+from .verification import CHECK_RTOL, NUDGE, SAME_PEAK, unconservative_from
+
+
+def spectrum_findings(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> Iterator[Finding]:
+    """Findings: what overturns, where planar analysis is another answer, how far both can be relied on."""
+    every = tables["contrast"].iloc[-1]
+    if not every["cells"]:
+        yield Finding(key="spectrum.unsolved", level="not tested")
+        return
+    shares = {f"share_{name}": float(every[name]) for name in ("unconservative", "conservative")}
+    values: dict[str, Value] = {"share": float(every["overturned"]), "count": int(every["cells"]), **shares}
+    yield Finding(key="spectrum.overturned", values=values)
+    if any(np.isfinite(lowest).any() for lowest in spectrum.lowest.values()):
+        yield from _boundary(spectrum, tables)
+    if failed := int(spectrum.failed().sum()):
+        yield Finding(key="spectrum.failed", level="caution", values={"count": failed})
+    yield from _search(spectrum, tables["lowest"])
+    checked = tables["checked"]
+    agree, chance = int(checked["agrees"].sum()), int((~checked["agrees"] & checked["sensitive"]).sum())
+    values = {"bound": CHECK_RTOL, "count": len(checked), "count_agree": agree, "share": SAME_PEAK}
+    others = {"count_chance": chance or None, "count_other": len(checked) - agree - chance or None}
+    yield Finding(key="spectrum.checked", values=values | others)
+
+
+def _boundary(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> Iterator[Finding]:
+    """Findings on how the overturning boundary in 3D lies to those of both planes, and what is above it."""
+    bands, every = tables["contrast"].iloc[:-1], tables["contrast"].iloc[-1]
+    shares = {f"share_{name}": float(every[f"{name}_edge"]) for name in ("lower", "higher")}
+    yield Finding(key="spectrum.boundary", values={**shares, "length": unconservative_from(spectrum)})
+    wrong = bands[bands["unconservative"] > bands["conservative"]]
+    if len(wrong):
+        names = tuple(f"{band.smallest:.3g} to {band.largest:.3g} m" for band in wrong.itertuples())
+        yield Finding(key="spectrum.unconservative", level="caution", values={"names": names})
+    closed = tables["gaps"][tables["gaps"]["closed"] & (tables["gaps"]["series"] == SPATIAL)]
+    if len(closed):
+        widest = closed.iloc[int((closed["upper"] - closed["lower"]).argmax())]
+        counts = {"count": len(closed), "count_sizes": closed["semidiagonal"].nunique()}
+        ends = {"intensity": float(widest["lower"]), "intensity_end": float(widest["upper"])}
+        size = {"length": float(widest["semidiagonal"])}
+        yield Finding(
+            key="spectrum.gaps", values={**counts, "count_all": len(spectrum.semidiagonals), **ends, **size}
+        )
+
+
+def _search(spectrum: TiltMaps, lowest: pd.DataFrame) -> Iterator[Finding]:
+    """Findings on how the boundary was searched, what may be missed, and what is left to chance."""
+    space, sizes = lowest[lowest["series"] == SPATIAL], len(spectrum.semidiagonals)
+    found = space[np.isfinite(space["intensity"])]
+    steps = {"intensity": spectrum.searched_from[SPATIAL], "intensity_step": spectrum.search_step}
+    yield Finding(key="spectrum.search", values=steps)
+    if spectrum.probes:
+        values: dict[str, Value] = {"count": spectrum.probes, "share": gap_bound(spectrum.probes)}
+        values |= {"count_lowered": int((space["overturned_below"] > 0).sum()), "count_all": sizes}
+        yield Finding(key="spectrum.probes", values=values)
+    if len(found):
+        spacing = float(np.diff(spectrum.intensities).max(initial=0.0))
+        unseen = int((found["intensity"] < found["on_grid"].fillna(math.inf) - spacing).sum())
+        yield Finding(key="spectrum.unseen", values={"count": unseen, "count_all": len(found)})
+    chance = found.loc[~found["confirmed"].astype(bool), "semidiagonal"]
+    if len(chance):
+        ends = {"length": float(chance.min()), "length_end": float(chance.max())}
+        bounds = {"bound": CHECK_RTOL, "bound_nudge": NUDGE}
+        yield Finding(key="spectrum.chance", level="caution", values={"count": len(chance), **ends, **bounds})
