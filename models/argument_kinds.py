@@ -88,7 +88,7 @@ def _instance_of(kind: Any) -> Any:
 
 
 def _check(parameter: inspect.Parameter, function: Callable[..., Any]) -> Callable[[object], object]:
-    """Return what gives an argument back, an iterable as a tuple, or raises ValueError."""
+    """Checker that returns an argument, an iterable as a tuple, or raises ValueError."""
     name, stated = parameter.name, parameter.annotation
     if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD) or not isinstance(stated, str):
         return lambda value: value

@@ -283,7 +283,7 @@ PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 
 def cylinder_of(values: Facts, make: Callable[..., Cylinder] = Cylinder) -> RockingBody:
-    """Return what `make` gives for the values of a cylinder, in a frame where they hold those of a slab."""
+    """Body of stored values: `make` builds the cylinder, in a frame where there are values of a slab."""
     slab = {name: values[name] for name in ("slab_mass_ratio", "columns") if name in values}
     cylinder = make(**{name: value for name, value in values.items() if name not in slab})
     return WobblingFrame(cylinder, **slab) if slab else cylinder

@@ -101,7 +101,7 @@ class GroundMotion:
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What makes a record improbable as it was read, see `RecordSource.doubts`; none without a source."""
+        """Doubts about a record as it was read, see `RecordSource.doubts`; none without a source."""
         return self.source.doubts if self.source else ()
 
     @property

@@ -144,7 +144,7 @@ def read_hazard(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Given:
-    """What a caller states of a file."""
+    """Statements of the caller about a file."""
 
     place: Path
     measure: str
@@ -246,7 +246,7 @@ def _rates(given: _Given, p: Array, years: float) -> Array:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Title:
-    """What the title of a column says: the words above, a unit, a period [s], and years of a probability."""
+    """Parsed title of a column: the words above, a unit, a period [s], and years of a probability."""
 
     title: str
     says: frozenset[str]

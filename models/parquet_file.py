@@ -52,7 +52,7 @@ def read(content: bytes) -> tuple[pd.DataFrame, JsonObject]:
 
 
 def read_about(source: bytes | Path) -> JsonObject:
-    """Return what a Parquet file says of itself; nothing where rockwobble did not write it."""
+    """Metadata of a Parquet file; empty where rockwobble did not write it."""
     import pyarrow.parquet as pq
 
     metadata = pq.read_schema(io.BytesIO(source) if isinstance(source, bytes) else source).metadata or {}

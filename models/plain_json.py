@@ -30,7 +30,7 @@ def dumps(value: object, *, indent: int | None = None) -> str:
 
 
 def loads(text: str | bytes) -> JsonValue:
-    """Return what `dumps` was given, but for mappings and lists in place of dataclasses and tuples."""
+    """Inverse of `dumps`, with mappings and lists in place of dataclasses and tuples."""
     return json.loads(text, object_hook=_float)
 
 

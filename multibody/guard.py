@@ -174,7 +174,7 @@ class EnergyWatch:
         return np.asarray(state.energy - self._start - until)
 
     def loss(self, power: Array) -> Array:
-        """Return what a power (n,) that is lost has taken until each pose, shape (n,) [m^2/s^2]."""
+        """Energy lost until each pose by a power (n,), shape (n,) [m^2/s^2]."""
         work = power * self._step
         until: Array = self._lost + np.cumsum(work) - 0.5 * work
         self._lost += float(work.sum())

@@ -183,7 +183,7 @@ class Stepper(Protocol):
         ...
 
     def warnings(self) -> str:
-        """Return what the engine has warned of so far, empty if nothing; a warning ends the run."""
+        """Warnings of the engine so far, empty if none; a warning ends the run."""
         ...
 
 

@@ -143,7 +143,7 @@ def scaled_tendon(
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Restraint(Brief):
-    """What holds the body of a scene down besides its weight, per unit mass of the column.
+    """Restraint that holds the body of a scene down besides its weight, per unit mass of the column.
 
     Where an answer takes poses, they are n places of the mass centre (n, 3) [m], axes (n, 3), and the height
     of the mass centre above the base [m].
@@ -203,7 +203,7 @@ WEIGHT_ALONE = Restraint()
 
 
 def scaled_restraint(case: Case, base_radius: float, gravity: float, rounding: float = 0.0) -> Restraint:
-    """Return what holds the body of a case down, at the size of a scene; arguments as of `scaled_tendon`."""
+    """Restraint of the body of a case, at the size of a scene; arguments as of `scaled_tendon`."""
     tendon = case.tendon
     return Restraint(
         tendon=None

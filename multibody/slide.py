@@ -23,7 +23,7 @@ TOLERANCE = 0.05  # of the peak displacement
 
 
 def mode_facts(trace: Trace) -> Iterator[Diagnostic]:
-    """Yield what an engine's run does against the mechanics: another mode, or a slide of another length."""
+    """Deviations of an engine's run from mechanics: another mode, or a slide of another length."""
     case = trace.case
     expected = expected_mode(case, trace.run.support)
     allowed = {REST: (REST,), SLIDES: (REST, SLIDES)}.get(expected)

@@ -100,13 +100,13 @@ class CertificateItem(pytest.Item):
     def repr_failure(
         self, excinfo: pytest.ExceptionInfo[BaseException], style: TracebackStyle | None = None
     ) -> str | TerminalRepr:
-        """Return what changed; anything else as pytest has it."""
+        """Words on a change; anything else as pytest has it."""
         if isinstance(excinfo.value, ChangedError | ValueError):
             return str(excinfo.value)
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int, str]:
-        """Return what the head of a failure shows."""
+        """Path, line and name in the head of a failure."""
         return self.certificate, 0, f"certificate {self.name}"
 
 
@@ -182,7 +182,7 @@ class SuiteItem(pytest.Item):
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int, str]:
-        """Return what the head of a failure shows."""
+        """Path, line and name in the head of a failure."""
         # not the end of the item's name, in which pytest would replace the dots of numbers
         return self.path, 0, f"{self.path.name}: {self.name}"
 

@@ -60,7 +60,7 @@ class GridChunk:
         return f"{self.label}, {self.model}, {where} {self.scales[0]:g}"
 
     def key(self) -> str:
-        """Return what identifies the results."""
+        """Hash that identifies the results."""
         return result_fingerprint(
             {
                 "motion": (self.motion_key, self.label),

@@ -59,7 +59,7 @@ class CaseChunk:
         return f"{self.jobs[0].name}{more}"
 
     def key(self) -> str:
-        """Return what identifies the results."""
+        """Hash that identifies the results."""
         return jobs_fingerprint(self.jobs)
 
     def run(self) -> pd.DataFrame:

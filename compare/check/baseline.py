@@ -124,7 +124,7 @@ def same_as_baseline(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def baseline_changes(old: Baseline, new: tuple[Entry, ...], subject: Subject) -> list[str]:
-    """Return what a new fingerprint changes: of the version, of each case that differs, of new ones."""
+    """Changes by a new fingerprint: versions, cases that differ, and new cases."""
     before, after = ({one["name"]: one for one in each} for each in (old.fingerprint, new))
     verdicts = [compare_entries(before[name], after[name]) for name in before if name in after]
     lines = [verdict.words() for verdict in verdicts if verdict.word != SAME]

@@ -277,5 +277,5 @@ def trace_of(result: object, case: Case, support: str) -> Trace:
 
 
 def why(trace: Trace) -> str:
-    """Return what ended a run, for a note."""
+    """Reason of the end of a run, for a note."""
     return "; ".join(f"{fact.meaning} {fact.detail}".strip() for fact in trace.facts)

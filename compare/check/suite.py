@@ -266,7 +266,7 @@ def _copies(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, by_step: Arra
 
 
 def likely_cause(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, *, until: float) -> tuple[str, str]:
-    """Return what is likely wrong where engine and model differ, and why; a second engine decides.
+    """Likely cause of a difference of engine and model, with its reason; a second engine decides.
 
     If that agrees with the model the first engine is wrong; if it agrees with the first engine the model is.
     Where it agrees with neither, nothing is named.

@@ -224,7 +224,7 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class View(Results, kind="view"):
-    """What is played: tables and facts are those of the comparison of one case.
+    """Motion to be played, with tables and facts of the comparison of one case.
 
     Examples
     --------

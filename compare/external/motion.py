@@ -281,7 +281,7 @@ class Difference:
 
     @property
     def differs_in(self) -> tuple[str, ...]:
-        """What differs, of "tilt", "azimuth", "path" and "twist"."""
+        """Quantities that differ, of "tilt", "azimuth", "path" and "twist"."""
         parts = {name: getattr(self, name) for name in ("tilt", "azimuth", "path", "twist")}
         return tuple(name for name, part in parts.items() if part is not None and part.differs)
 

@@ -231,7 +231,7 @@ def _checked_time(table: Table, time: Array, offset: float, case: Case) -> Array
 
 
 def _checked_angles(table: Table) -> list[str]:
-    """Return what there is to know of tilts and azimuths."""
+    """Remarks on a table of tilts and azimuths."""
     tilt = table.complete("tilt")
     table.require(
         np.abs(tilt) <= math.pi,
@@ -242,7 +242,7 @@ def _checked_angles(table: Table) -> list[str]:
 
 
 def _checked_quaternions(table: Table, axis: Array, twist: Array) -> list[str]:
-    """Return what there is to know of quaternions with this axis (n, 3) and twist (n,) [rad]."""
+    """Remarks on a table of quaternions with this axis (n, 3) and twist (n,) [rad]."""
     length = np.sqrt(sum(table.values[name] ** 2 for name in QUATERNION))
     table.require(
         np.abs(length - 1.0) <= _UNIT_LENGTH,

@@ -65,7 +65,7 @@ NO_VERDICT: Row = {name: () if name in LISTS else math.nan for name in VERDICT_C
 
 
 def reference_of(trace: Trace, case: Case) -> Reference:
-    """Return what an external trajectory of a case is compared with."""
+    """Reference of an external trajectory of a case."""
     cylinder = case.cylinder
     motion = motion_at(trace.time, trace.tilt, trace.rolling_angle, trace.centre_of_mass)
     return Reference(

@@ -206,7 +206,7 @@ def job_time(job: Job) -> float:
 
 
 def brief_among(jobs: Iterable[Job]) -> Callable[[Job], bool]:
-    """Return what says of a job that it takes less than to start a process: one of few of reduced models."""
+    """Predicate: a job takes less than starting a process, as one of few of reduced models."""
     few = sum(job.run.is_model for job in jobs) <= _FEW
     return lambda job: few and _is_compiled(job)
 
@@ -260,13 +260,13 @@ def all_makers(runs: Iterable[Run]) -> dict[str, str]:
 
 
 def job_fingerprint(job: Job) -> str:
-    """Return what identifies the result of a job."""
+    """Hash that identifies the result of a job."""
     own = {"method": job.run, "sample step": SAMPLE_STEP}
     return result_fingerprint(case_inputs(job.case) | own, makers_of(job.run))
 
 
 def jobs_fingerprint(jobs: Iterable[Job]) -> str:
-    """Return what identifies the results of jobs in a table, which holds their names."""
+    """Hash that identifies the results of jobs in a table, which holds their names."""
     return fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])
 
 

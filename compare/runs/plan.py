@@ -47,7 +47,7 @@ class Option:
 
 @dataclass(frozen=True, slots=True)
 class OptionsIn:
-    """What makes the fields of a plan that are options, in one group of the help text."""
+    """Factory of the fields of a plan that are options under one heading of the help text."""
 
     group: str
 

@@ -93,7 +93,7 @@ def claim_folder(folder: str | Path, *, plan: str, command: str, overwrite: bool
 
 
 def _of_others(path: Path, plan: str, command: str) -> list[str]:
-    """Return what a folder holds of other plans, in words."""
+    """Contents of a folder that are of other plans, in words."""
     claim, tasks = _read(path), sum(1 for _ in path.glob(f"{CACHE}/*/*.parquet"))
     if claim is not None and tasks:
         return [] if claim.plan == plan else [f"{tasks} finished tasks of `{claim.command}`"]

@@ -203,7 +203,7 @@ class Stored:
         return pd.read_parquet(io.BytesIO(self.content(f"{name}.parquet")))
 
     def content(self, name: str) -> bytes:
-        """Return what is in a file of data.
+        """Bytes of a file of data.
 
         Raises
         ------

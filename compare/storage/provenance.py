@@ -113,7 +113,7 @@ def other_versions(then: Mapping[str, str], engine: str | None = None) -> dict[s
 
 
 def version_words(others: Mapping[str, tuple[str, str]]) -> str:
-    """Return what `other_versions` found in words."""
+    """Differing versions, as `other_versions` returns them, in words."""
     apart = ", ".join(f"{name} {then} -> {now}" for name, (then, now) in others.items())
     return f"versions: {apart}" if apart else "versions: the same"
 
@@ -164,7 +164,7 @@ def code_digests() -> dict[str, str]:
 
 
 def result_fingerprint(inputs: object, made_with: Mapping[str, str]) -> str:
-    """Return what identifies a result: the hash of its inputs, and of the versions and code that made it.
+    """Hash of the inputs of a result, and of the versions and code that made it.
 
     Parameters
     ----------

@@ -62,7 +62,7 @@ class Results(Shown):
         return {name: brief(value) for name, value in self.headline().items()}
 
     def findings(self) -> Findings:
-        """Return what the results say, in order of weight: see `rockwobble.models.finding`."""
+        """Findings of the results, in order of weight: see `rockwobble.models.finding`."""
         return Findings()
 
     def sheets(self) -> Mapping[str, bytes]:

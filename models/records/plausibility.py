@@ -57,7 +57,7 @@ def likely_unit(peak: float, used: str | None = None) -> tuple[str, float]:
 def doubts_as_read(
     acceleration: NDArray[np.float64], time_step: float, components: Sequence[Component], units: Sequence[str]
 ) -> tuple[Diagnostic, ...]:
-    """Return what makes a record improbable.
+    """Reasons why a record is improbable.
 
     Parameters
     ----------

@@ -121,7 +121,7 @@ def _candidates(line: str) -> list[str]:
 
 
 def doubts(motion: GroundMotion) -> tuple[Diagnostic, ...]:
-    """Return what makes a ground motion improbable.
+    """Reasons why a ground motion is improbable.
 
     Of one that was read from files, what makes it improbable as it was read, see `RecordSource.doubts`, and a
     peak beyond 5 g after scaling. Of one made of an array its peaks.
@@ -150,7 +150,7 @@ def doubts(motion: GroundMotion) -> tuple[Diagnostic, ...]:
 
 
 def sources_of(motions: Iterable[GroundMotion | None]) -> list[str]:
-    """Return what each ground motion is read from, in a line; each once, those of no file left out."""
+    """Source of each ground motion in a line; each once, without motions of no file."""
     lines = (
         f"{motion.name or 'record'}: {motion.source.line}"
         for motion in motions

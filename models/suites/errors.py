@@ -56,7 +56,7 @@ def join(path: str, key: str) -> str:
 
 
 def nearest(key: str, allowed: Iterable[str]) -> str:
-    """Return what to say of a key that is not allowed."""
+    """Words on a key that is not allowed: the nearest one, or all."""
     names = list(allowed)
     close = difflib.get_close_matches(key, names, n=1, cutoff=0.65)
     if key in ("slab_mass_ratio", "columns") and "cylinder" in names:

@@ -284,7 +284,7 @@ class _DrakeStepper(Leapfrog):
         return self._steps_to(rows[:, 4:7], _spin(rows[:, :4], rows[:, -1]), rows[:, -2])
 
     def warnings(self) -> str:
-        """Return what Drake raised where it could not go on."""
+        """Message that Drake raised where it could not go on."""
         return self._warning
 
     def counts(self) -> SceneCounts:

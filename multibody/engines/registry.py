@@ -142,7 +142,7 @@ def available_engines() -> tuple[str, ...]:
 
 
 def engine_lack(name: str) -> str:
-    """Return what an engine lacks here and how to get it, to follow its name; empty if nothing."""
+    """Missing packages of an engine and how to get them, to follow its name; empty if none."""
     entry = _ENGINES.get(name)
     if entry is None:  # what another package declares is installed
         return ""

@@ -117,7 +117,7 @@ def _value(text: str) -> int | float | str:
 
 
 def panel(title: str) -> Callable[..., object]:
-    """Return what makes an option in a panel of the help text; without names it has that of its parameter."""
+    """Factory of options in a panel of the help text; without names an option has that of its parameter."""
 
     def option(help_text: str, *names: str, **more: Any) -> object:
         return typer.Option(*names, help=help_text, rich_help_panel=title, **more)

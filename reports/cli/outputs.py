@@ -101,7 +101,7 @@ def require_own_file(option: str, path: Path, plan: str, plan_in: Callable[[byte
 
 
 def plan_in_json(keys: Collection[str]) -> Callable[[bytes], str | None]:
-    """Return what finds the hash of a plan in JSON that has these keys, see `require_own_file`."""
+    """Reader of the hash of a plan from JSON that has these keys, see `require_own_file`."""
 
     def plan_in(content: bytes) -> str | None:
         found = json.loads(content)

@@ -44,7 +44,7 @@ class ManyMotions(ReadingOptions):
 
     @property
     def source(self) -> str:
-        """What the motions of --records are."""
+        """Kind of the motions of --records."""
         return "" if self.records is None else f"records of {self.records.name}"
 
     def by_level(self) -> dict[float, list[rw.GroundMotion]]:

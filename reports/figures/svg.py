@@ -308,7 +308,7 @@ def _colour_bar(drawn: Figure, places: NDArray[np.object_], shades: Shades) -> N
 
 
 def _handles(panels: Sequence[Axes]) -> tuple[list[Artist], list[str]]:
-    """Return what stands in a legend, each name once, at most so many as can be told apart."""
+    """Artists and names of a legend, each name once, at most as many as can be distinguished."""
     found: dict[str, Artist] = {}
     for axes in panels:
         for handle, name in zip(*axes.get_legend_handles_labels(), strict=True):

@@ -184,7 +184,7 @@ def _thin(pictures: Sequence[Picture]) -> list[Picture]:
 
 
 def _blocks(views: Sequence[CaseView], *, many: bool) -> dict[str, str]:
-    """Return what only a page shows: the chooser of many cases, the player of each of few."""
+    """Parts of a page alone: the chooser of many cases, the player of each of few."""
     if many:
         groups: dict[str, list[tuple[int, str]]] = {}
         for place, view in enumerate(views):

@@ -51,7 +51,7 @@ _FILTERS = {
 
 
 def environment(autoescape: bool | Callable[[str | None], bool] = False) -> jinja2.Environment:
-    """Return what reads the templates."""
+    """Environment of the templates."""
     import jinja2
 
     found = jinja2.Environment(

@@ -145,7 +145,7 @@ def _summary(table: pd.DataFrame) -> list[dict[str, object]]:
 
 
 def _needs(table: pd.DataFrame) -> dict[str, object]:
-    """What must be supplied: a row for each slenderness, a column for each intensity."""
+    """Requirements: a row for each slenderness, a column for each intensity."""
     intensities = [f"{intensity:g}" for intensity in sorted(table["intensity"].unique())]
     rows = [
         {

@@ -226,7 +226,7 @@ def _is_whole(folder: Path, made: Manifest) -> bool:
 
 
 def faults(place: Path = HERE) -> list[str]:
-    """Return what is damaged below `place`, and what its pages say that their tables do not bear out."""
+    """Damaged files below `place`, and statements of its pages that their tables do not bear out."""
     rows = []
     for folder, made in manifests(place):
         name = f"{folder.relative_to(place).as_posix()} ({made.kind})"
@@ -263,7 +263,7 @@ def _today(folder: Path, made: Manifest) -> tuple[str, str] | None:
 
 
 def _page_faults(folder: Path, made: Manifest) -> list[str]:
-    """What a page says that its tables do not: by the script of the study, where it has one."""
+    """Statements of a page that its tables do not bear out, by the script of the study where it has one."""
     if made.kind not in KINDS:
         if not (folder / "make.py").exists():
             return ["no command and no make.py draws such results"]
@@ -279,7 +279,7 @@ def _page_faults(folder: Path, made: Manifest) -> list[str]:
 
 
 def ages(place: Path = HERE) -> list[str]:
-    """Return what is older than the code: no fault, `remake.py NAME` makes it again."""
+    """Results older than the code: no fault, `remake.py NAME` makes them again."""
     current, rows = code_digests(), []
     for folder, made in manifests(place):
         name = f"{folder.relative_to(place).as_posix()} ({made.kind})"

@@ -60,7 +60,7 @@ def engine_rows(cases: Sequence[Case], run: Run) -> pd.DataFrame:
 
 
 def engine_finding(rows: pd.DataFrame | None, engine: str, peak: float) -> Finding:
-    """What an engine that can slide answers, beside the model's largest tilt without slip [alpha]."""
+    """Finding of an engine that can slide, beside the model's largest tilt without slip [alpha]."""
     if rows is None:
         return Finding(key="mode.no_engine", level="not tested")
     values: dict[str, Value] = {

@@ -256,7 +256,7 @@ _LEVELS: Mapping[str, Level] = {"below": "satisfied", "inconclusive": "caution",
 
 
 def risk_findings(rows: Sequence[Mapping[str, Any]], site: Mapping[str, Any]) -> Iterator[Finding]:
-    """Yield what a table of risk says: the frequencies of its first method, and what all rest on.
+    """Findings of a table of risk: the frequencies of its first method, and what all rest on.
 
     Parameters
     ----------

@@ -71,7 +71,7 @@ class Method:
 
     @property
     def support(self) -> str:
-        """What holds the cylinder: "recess", "flat", "ring" or "planar"."""
+        """Support of the cylinder: "recess", "flat", "ring" or "planar"."""
         if self.run is None or self.run.is_planar:
             return "planar"
         return self.run.support
@@ -196,7 +196,7 @@ class Task:
         return sum(time(shaking.case) * len(shaking.scales) for shaking in self.shakings)
 
     def key(self) -> str:
-        """Return what identifies the results."""
+        """Hash that identifies the results."""
         own = {"contact": self.contact, "rtol": _RTOL} if self.run.is_model else {}
         own |= {} if self.gap is None else {"gap": self.gap}
         shakings = [case_inputs(shaking.case) | {"scales": shaking.scales} for shaking in self.shakings]

@@ -97,7 +97,7 @@ class SpectrumPart:
         return f"{TITLES[self.series]}, R = {first:.3g} m" + (f" to {last:.3g} m" if last > first else "")
 
     def key(self) -> str:
-        """Return what identifies its result."""
+        """Hash that identifies its result."""
         plan, motion = self.plan, self.motion
         terms = (name for name in TERMS if hasattr(plan, name))
         named = ("gravity", "slab_mass_ratio", *terms, "support", "search_step", "probes")

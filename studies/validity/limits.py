@@ -194,7 +194,7 @@ def cells(tables: Tables) -> pd.DataFrame:
 
 
 def _nine_in_ten(values: Array) -> float:
-    """Return what nine in ten of the known values do not exceed; NaN of too few."""
+    """90th percentile of the known values; NaN of too few."""
     enough = np.count_nonzero(~np.isnan(values)) >= FEWEST
     return quantile_reached(values, _SHARE) if enough else math.nan
 
@@ -235,7 +235,7 @@ def vertical(tables: Tables) -> Numbers:
 
 
 def needs(tables: Tables) -> pd.DataFrame:
-    """Return what ground and recess must supply, by slenderness and intensity.
+    """Demands on ground and recess, by slenderness and intensity.
 
     What nine in ten of the records that rock a cylinder without overturning it need at most, of the size that
     needs most: sizes differ by a few percent, slenderness and intensity by factors.

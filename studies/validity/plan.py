@@ -49,7 +49,7 @@ def grid(**axes: Iterable[object]) -> list[Inputs]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Structure:
-    """What a column carries, and what holds it down.
+    """Slab and tendon of a column.
 
     Attributes
     ----------

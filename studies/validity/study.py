@@ -82,11 +82,11 @@ class Validity(Results, kind=KIND):
 
     @property
     def structure(self) -> Structure:
-        """What every column carries, and what holds it down."""
+        """Slab and tendon of every column."""
         return Structure(**{each.name: self.facts.get(each.name, 0.0) for each in fields(Structure)})
 
     def findings(self) -> Findings:
-        """Return what the limits say of the model."""
+        """Findings of the limits."""
         return findings_of(limits_of(self.tables), self.structure)
 
     def headline(self) -> dict[str, Number]:
@@ -156,7 +156,7 @@ def measure_all(
 
 @dataclass(frozen=True)
 class MeasureStudy(Study[Task, dict[str, pd.DataFrame]]):
-    """What the parts measure, task by task; its results are the table of each part."""
+    """Measurements of the parts, task by task; its results are the table of each part."""
 
     kind: ClassVar[str] = KIND
     cost: ClassVar[Callable[[Task], float] | None] = staticmethod(lambda task: PARTS[task[0]].cost(**task[1]))

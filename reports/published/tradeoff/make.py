@@ -53,7 +53,7 @@ def page_of(found: Tradeoff) -> Page:
 
 
 def _answer(least: float, largest: float) -> str:
-    """What an engine costs, on two lines of the document; NaN where none is as exact as was asked."""
+    """Cost of an engine, on two lines of the document; NaN where none is as exact as was asked."""
     if not least > 0.0:
         return "No engine reaches any of the target errors."
     return (
@@ -64,7 +64,7 @@ def _answer(least: float, largest: float) -> str:
 
 
 def _of_scipy(least: float, largest: float) -> str:
-    """What the cheapest solver of scipy costs; empty where none is as exact as was asked."""
+    """Cost of the cheapest solver of scipy; empty where none is as exact as was asked."""
     if not least > 0.0:
         return ""
     return (

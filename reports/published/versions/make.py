@@ -181,7 +181,7 @@ def _answer(moved: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _earlier(origins: Mapping[str, Mapping[str, str]]) -> str:
-    """What made the rows of earlier runs; empty without such rows."""
+    """Versions that made the rows of earlier runs; empty without such rows."""
     each = [
         f"{TITLES[name]} ({made['date']}, commit {made['commit'][:12]})" for name, made in origins.items()
     ]
