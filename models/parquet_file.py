@@ -56,5 +56,5 @@ def read_about(source: bytes | Path) -> JsonObject:
     import pyarrow.parquet as pq
 
     metadata = pq.read_schema(io.BytesIO(source) if isinstance(source, bytes) else source).metadata or {}
-    found: JsonObject = plain_json.loads(metadata.get(METADATA, b"{}"))
-    return found
+    values: JsonObject = plain_json.loads(metadata.get(METADATA, b"{}"))
+    return values

@@ -132,7 +132,7 @@ def find_step(
         steps.append(0.5 * steps[-1])
     parts = shares(steps)
     best, coarser = None, None  # the run to keep, and the last one
-    found: list[Closeness] = []  # of the run to keep and all before it
+    entries: list[Closeness] = []  # of the run to keep and all before it
     verdict, spent = "still_changes", 0.0
     for index, step in enumerate(steps):
         run = attempt(step, part_of(progress, parts[index], parts[index + 1]))
@@ -144,10 +144,10 @@ def find_step(
             break
         else:
             assert coarser is not None
-            trial = [*found, closeness(coarser, run, alpha)]
+            trial = [*entries, closeness(coarser, run, alpha)]
             end, gain = _judge(trial, tolerance * alpha)
             if gain:
-                best, found = run, trial
+                best, entries = run, trial
             if end is not None:
                 verdict = end
                 break
@@ -155,7 +155,7 @@ def find_step(
     if progress is not None:
         progress(1.0)
     assert best is not None
-    return replace(_report(best, found, verdict, alpha), wall_time=spent)
+    return replace(_report(best, entries, verdict, alpha), wall_time=spent)
 
 
 def _judge(found: list[Closeness], tolerance: float) -> tuple[str | None, bool]:

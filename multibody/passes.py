@@ -39,17 +39,17 @@ def turning_points(time: Array, tilt: Array, rolling_angle: Array) -> list[Turni
     which the squared tilt is exactly a parabola however few steps the pass takes.
     """
     rising = np.diff(tilt) > 0.0
-    found = []
+    entries = []
     for index in np.flatnonzero(rising[1:] != rising[:-1]) + 1:
         around = slice(index - 1, index + 2)
         offset, square = _vertex(tilt[around] ** 2)
         step = time[index] - time[index - 1]
         at = time[index] + offset * step
         angle = np.interp(at, time[around], rolling_angle[around])
-        found.append(
+        entries.append(
             TurningPoint(float(at), float(np.sqrt(max(square, 0.0))), float(angle), not rising[index])
         )
-    return found
+    return entries
 
 
 def true_swings(points: list[TurningPoint], threshold: float) -> list[TurningPoint]:

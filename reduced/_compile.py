@@ -123,17 +123,17 @@ def _keep_by_content(kept: Any, digest: str) -> None:
 @cache  # entry points of one file have the same
 def _digest(source: Path) -> str:
     """Return a digest of a source and of all that it imports from this folder."""
-    found: dict[Path, bytes] = {}
+    entries: dict[Path, bytes] = {}
     waiting = [source]
     while waiting:
         path = waiting.pop()
-        if path in found or not path.is_file():
+        if path in entries or not path.is_file():
             continue
-        found[path] = path.read_bytes()
-        for dots, name in _RELATIVE_IMPORT.findall(found[path].decode()):
+        entries[path] = path.read_bytes()
+        for dots, name in _RELATIVE_IMPORT.findall(entries[path].decode()):
             folder = path.parents[len(dots) - 1]
             waiting += [folder / f"{name.replace('.', '/')}.py"] if name else folder.glob("*.py")
-    parts = (hashlib.sha256(found[path]).digest() for path in sorted(found))
+    parts = (hashlib.sha256(entries[path]).digest() for path in sorted(entries))
     return hashlib.sha256(b"".join(parts)).hexdigest()
 
 

@@ -252,16 +252,16 @@ def review(
     )
 
 
-def _pull(found: Demands) -> Array:
-    return -found.normal
+def _pull(demands: Demands) -> Array:
+    return -demands.normal
 
 
-def _need(found: Demands) -> Array:
-    return found.friction
+def _need(demands: Demands) -> Array:
+    return demands.friction
 
 
-def _contact_loss(found: Demands) -> NDArray[np.bool_]:
-    return found.open_base & (found.normal <= 0.0)
+def _contact_loss(demands: Demands) -> NDArray[np.bool_]:
+    return demands.open_base & (demands.normal <= 0.0)
 
 
 def _breach(
@@ -269,11 +269,11 @@ def _breach(
     broken_at: Callable[[Demands], NDArray[np.bool_]],
     demands_at: Callable[[Array], Demands],
     times: Array,
-    found: Demands,
+    demands: Demands,
     size: float,
     bound: float,
 ) -> Diagnostic:
-    broken = broken_at(found)
+    broken = broken_at(demands)
     # where a breach begins or ends, ever closer: a step of a fall takes tenths of a second
     for _ in range(_ROUNDS - 1):
         changes = np.flatnonzero(broken[1:] != broken[:-1])
@@ -292,12 +292,12 @@ def _largest(
     quantity: Callable[[Demands], Array],
     demands_at: Callable[[Array], Demands],
     times: Array,
-    found: Demands,
+    demands: Demands,
 ) -> tuple[float, float]:
     """Return the largest value of an open base, sought ever closer about that at `times`, and its time."""
     best, when = -math.inf, math.nan
     for _ in range(_ROUNDS):
-        values = np.where(found.open_base, quantity(found), -math.inf)
+        values = np.where(demands.open_base, quantity(demands), -math.inf)
         at = int(values.argmax())
         if not values[at] <= best:
             best, when = float(values[at]), float(times[at])
@@ -305,7 +305,7 @@ def _largest(
             break
         about = times[max(at - 1, 0) : at + 2]
         times = np.unique(_subdivision(about, _PARTS))
-        found = demands_at(times)
+        demands = demands_at(times)
     return best, when
 
 

@@ -61,13 +61,13 @@ class Entry:
 
     def results_class(self) -> type[Results]:
         """Return the class of the results."""
-        found: type[Results] = self.study_class().yields if self.study else _named(self.results)
-        return found
+        cls: type[Results] = self.study_class().yields if self.study else _named(self.results)
+        return cls
 
     def study_class(self) -> type[Study[Any, Any]]:
         """Return the class of the study."""
-        found: type[Study[Any, Any]] = _named(self.study)
-        return found
+        cls: type[Study[Any, Any]] = _named(self.study)
+        return cls
 
 
 def _named(path: str) -> Any:

@@ -166,8 +166,8 @@ class Sweep(Results, kind=KIND):
     @property
     def outcomes(self) -> list[str]:
         """The outcomes that there are."""
-        found = set(self.table["outcome"])
-        return [name for name in _OUTCOMES if name in found]
+        entries = set(self.table["outcome"])
+        return [name for name in _OUTCOMES if name in entries]
 
     def summary(self) -> pd.DataFrame:
         """Return one row for each part: how many runs ended how, and their peak tilts.

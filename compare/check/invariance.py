@@ -141,9 +141,9 @@ def _same(
 ) -> Result:
     """Compare a case with the same motion stated in another way, `slower` and leaning as `expected`."""
     plain = subject.simulate(case, support, sample_step=_SAMPLE)
-    found = subject.simulate(other, support, sample_step=slower * _SAMPLE)
+    trace = subject.simulate(other, support, sample_step=slower * _SAMPLE)
     moved = float(np.ptp(plain.tilt)) > 0.05 * PIER.alpha
-    own = _on(plain.time, found.time / slower, lean(found))
+    own = _on(plain.time, trace.time / slower, lean(trace))
     off = largest(np.abs(own - expected(lean(plain)))) if moved else math.nan
     bound = Bound(subject.repeatability, "rounding, magnified by the passes", "alpha")
     return at_most(f"{words}, {case.name}", off, bound)
@@ -223,13 +223,13 @@ def stepping(subject: Subject, support: str) -> Iterator[Result]:
 def time_grid(subject: Subject, support: str) -> Iterator[Result]:
     """Samples at multiples of the sample step and the exact end; all fields finite; the start as stated."""
     case = Case(PIER, initial=_STATE, duration=0.1037)
-    found = subject.simulate(case, support, sample_step=0.02)
-    right = np.array_equal(found.time, np.append(0.02 * np.arange(6), 0.1037)) and found.outcome != "failed"
-    yield _holds("samples", right, f"{found.outcome}, at {found.time}")
-    yield _holds("finite fields", all(bool(np.isfinite(getattr(found, name)).all()) for name in _FIELDS), "")
+    trace = subject.simulate(case, support, sample_step=0.02)
+    right = np.array_equal(trace.time, np.append(0.02 * np.arange(6), 0.1037)) and trace.outcome != "failed"
+    yield _holds("samples", right, f"{trace.outcome}, at {trace.time}")
+    yield _holds("finite fields", all(bool(np.isfinite(getattr(trace, name)).all()) for name in _FIELDS), "")
     stated = ("tilt", "tilt_rate", "rolling_angle", "rolling_rate")
-    off = max(abs(getattr(found, name)[0] / getattr(_STATE, name) - 1.0) for name in stated)
-    yield at_most("stated start", max(off, abs(found.twist[0])), _START)
+    off = max(abs(getattr(trace, name)[0] / getattr(_STATE, name) - 1.0) for name in stated)
+    yield at_most("stated start", max(off, abs(trace.twist[0])), _START)
 
 
 def repetition(subject: Subject, support: str) -> Iterator[Result]:

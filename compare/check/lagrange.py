@@ -302,20 +302,20 @@ def _residuals(
     step, inner = _SAMPLE / p, slice(REACH, -REACH)
     errors = []
     for initial, motion in _starts(p, step):
-        found = subject.simulate(
+        trace = subject.simulate(
             Case(cylinder, motion, initial=initial, **terms),
             support,
             sample_step=step,
             rtol=1e-13,
             rest_tilt=0.0,
         )
-        if found.outcome == "failed":
-            raise RuntimeError(f"a short motion failed: {why(found)}")
+        if trace.outcome == "failed":
+            raise RuntimeError(f"a short motion failed: {why(trace)}")
         # one that fell down ends between two samples, and may go on falling when the motion is over
-        even = len(found.time) - (found.outcome == "overturned")
+        even = len(trace.time) - (trace.outcome == "overturned")
         for piece in range(min((even - 1) // _PIECE, _PIECES)):
             cut = slice(piece * _PIECE, (piece + 1) * _PIECE + 1)
-            angles = found.tilt[cut], found.rolling_angle[cut]
+            angles = trace.tilt[cut], trace.rolling_angle[cut]
             rates, curves = (
                 tuple(derivative(values, step) for values in angles) for derivative in (rate, curve)
             )
@@ -326,9 +326,9 @@ def _residuals(
             by_tilt, by_turn = residuals(shape, place, (rates[0], rates[1]), (curves[0], curves[1]), ground)
             # a slab goes twice as far, and the base carries both
             carried = (1.0 + 2.0 * shape.slab) / (1.0 + shape.slab)
-            force = carried * curve(found.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
+            force = carried * curve(trace.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
             # of the column on its share of the slab
-            on_slab = 2.0 * curve(found.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
+            on_slab = 2.0 * curve(trace.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
             if "tendon" in terms:
                 away = base_centre(shape, *place)
                 opening = np.sqrt((away * away).sum(axis=-1))[:, None]
@@ -340,9 +340,9 @@ def _residuals(
                 [
                     largest(by_tilt) / scale,
                     largest(by_turn) / scale,
-                    largest(rates[0] - found.tilt_rate[cut][inner]) / p,
-                    largest(force / GRAVITY - found.contact_force[cut][inner]),
-                    largest(on_slab / GRAVITY - found.top_contact_force[cut][inner]) if shape.slab else 0.0,
+                    largest(rates[0] - trace.tilt_rate[cut][inner]) / p,
+                    largest(force / GRAVITY - trace.contact_force[cut][inner]),
+                    largest(on_slab / GRAVITY - trace.top_contact_force[cut][inner]) if shape.slab else 0.0,
                 ]
             )
     return [largest(each) for each in np.array(errors).T]
@@ -385,15 +385,15 @@ def free_motion(subject: Subject, support: str) -> Iterator[Result]:
         cases |= {f", spin {spin:g} rad/s": release_case(0.5, spin, 5.0) for spin in _SPINS}
     bound = subject.tolerance_bound(10.0, "no loss; near passes magnify the error of a step")
     for words, case in cases.items():
-        found = subject.simulate(case, support, rest_tilt=0.0)
-        yield at_most(f"energy of a release{words}", np.ptp(found.energy) / found.energy[0], bound)
+        trace = subject.simulate(case, support, rest_tilt=0.0)
+        yield at_most(f"energy of a release{words}", np.ptp(trace.energy) / trace.energy[0], bound)
         if not (SUPPORTS[support].guided and {"tilt_rate", "rolling_rate"} <= subject.knows):
             continue
         shape = shape_of(PIER)
-        state = found.tilt, found.rolling_angle, found.tilt_rate, found.rolling_rate
-        stated = largest(found.energy - energy(shape, *state)) / found.energy[0]
+        state = trace.tilt, trace.rolling_angle, trace.tilt_rate, trace.rolling_rate
+        stated = largest(trace.energy - energy(shape, *state)) / trace.energy[0]
         yield at_most(f"stated energy of a release{words}", stated, bound)
-        momentum = momenta(shape, *state)[1][found.tilt > _LEAST_TILT]
+        momentum = momenta(shape, *state)[1][trace.tilt > _LEAST_TILT]
         yield at_most(f"L = B phi' of a release{words}", np.ptp(momentum) / abs(momentum[0]), bound)
 
 
@@ -404,14 +404,14 @@ def rolling_loss(subject: Subject, support: str) -> Iterator[Result]:
     a recess; N is the contact force of the trace. The friction is plenty: an engine may take from the
     couple what the rim needs for grip.
     """
-    found = subject.simulate(ROLLING, support, sample_step=_ROLLING_SAMPLE)
-    w = np.hypot(found.tilt_rate, np.sin(found.tilt) * found.rolling_rate)
-    power = ROLLING.rolling_resistance * GRAVITY * found.contact_force[:, 2] * w
-    lost, start = cumulative_simpson(power, x=found.time, initial=0.0), found.energy[0]
+    trace = subject.simulate(ROLLING, support, sample_step=_ROLLING_SAMPLE)
+    w = np.hypot(trace.tilt_rate, np.sin(trace.tilt) * trace.rolling_rate)
+    power = ROLLING.rolling_resistance * GRAVITY * trace.contact_force[:, 2] * w
+    lost, start = cumulative_simpson(power, x=trace.time, initial=0.0), trace.energy[0]
     bound = subject.tolerance_bound(10.0, "power from samples; near passes magnify the error of a step")
-    left = largest(start - found.energy - lost) / start
+    left = largest(start - trace.energy - lost) / start
     yield at_most("energy of a release against the power of rolling resistance", left, bound)
-    stated = largest(found.energy_lost - lost) / start
+    stated = largest(trace.energy_lost - lost) / start
     yield at_most("stated energy lost of a release", stated, bound)
 
 
@@ -423,11 +423,11 @@ def work_of_the_ground(subject: Subject, support: str) -> Iterator[Result]:
     """
     motion = PUSHED.motion
     assert motion is not None
-    found = subject.simulate(PUSHED, support, sample_step=0.05)
+    trace = subject.simulate(PUSHED, support, sample_step=0.05)
     within = np.arange(round(PUSHED.length / 0.05) + 1)  # a swing or a fall that goes on is not asked for
     last = np.minimum(within, round(motion.duration / 0.05))
-    work = -(found.centre_of_mass[last] - found.centre_of_mass[0]) @ motion.acceleration[0]
-    energy = found.energy[within]
+    work = -(trace.centre_of_mass[last] - trace.centre_of_mass[0]) @ motion.acceleration[0]
+    energy = trace.energy[within]
     left = largest(energy - energy[0] - work) / energy.max()
     bound = subject.tolerance_bound(10.0, "work of a constant force, from positions")
     yield at_most("energy against the work of ground that accelerates, and stops", left, bound)
@@ -435,7 +435,7 @@ def work_of_the_ground(subject: Subject, support: str) -> Iterator[Result]:
 
 def work_of_a_record(subject: Subject, support: str) -> Iterator[Result]:
     """Under El Centro the energy changes by the work of the ground, sample by sample of the record."""
-    found = subject.simulate(EL_CENTRO, support)
-    loss = abs(energy_loss(found, EL_CENTRO.motion)) if found.peak_tilt > 0.0 else math.nan
+    trace = subject.simulate(EL_CENTRO, support)
+    loss = abs(energy_loss(trace, EL_CENTRO.motion)) if trace.peak_tilt > 0.0 else math.nan
     bound = subject.tolerance_bound(2e5, "work from samples 0.01 s apart, corrected for their slope")
     yield at_most("energy against the work of El Centro doubled", loss, bound)

@@ -65,8 +65,8 @@ def free_response(subject: Subject, support: str) -> Iterator[Result]:
         if cylinder.slab_mass_ratio > 0.0 and not subject.carries_slab:
             continue
         time, turn = period_and_turn(shape_of(cylinder), start.tilt, start.rolling_rate)
-        found = subject.simulate(case, support)
-        maxima = found.extrema[(found.extrema[:, 3] > 0.0) & (found.extrema[:, 0] > 0.5 * time)]
+        trace = subject.simulate(case, support)
+        maxima = trace.extrema[(trace.extrema[:, 3] > 0.0) & (trace.extrema[:, 0] > 0.5 * time)]
         first = maxima[0] if len(maxima) else np.full(4, math.nan)
         bound = subject.tolerance_bound(3.0, _QUADRATURE)
         yield at_most(f"period of a release, {of}", abs(first[0] / time - 1.0), bound)
@@ -80,17 +80,17 @@ def steady_wobble(subject: Subject, support: str) -> Iterator[Result]:
     """At the rate at which (18) balances, phi'^2 = 2 V'/B', the tilt stays, on any support."""
     tilt = 0.3 * PIER.alpha  # with less energy than that of the balance
     case = release_case(0.3, steady_rate(shape_of(PIER), tilt), 1.0)
-    found = subject.simulate(case, support)
+    trace = subject.simulate(case, support)
     bound = subject.tolerance_bound(10.0, "an error of the balance makes the tilt oscillate by as much")
-    yield at_most("tilt of a steady wobble", largest(found.tilt - tilt) / tilt, bound)
+    yield at_most("tilt of a steady wobble", largest(trace.tilt - tilt) / tilt, bound)
 
 
 def vanishing_spin(subject: Subject, support: str) -> Iterator[Result]:
     """Angle of turn in the limit of vanishing spin: pi sqrt(A/J) (Srinivasan and Ruina)."""
     shape = shape_of(PIER)
     limit = math.pi * math.sqrt(tilt_inertia(shape) / cone_inertia(shape))
-    found = subject.simulate(release_case(0.5, VANISHING_SPIN, 4.0), support, rest_tilt=0.0)
-    first = np.asarray(found.passes["angle_of_turn"])[:1]
+    trace = subject.simulate(release_case(0.5, VANISHING_SPIN, 4.0), support, rest_tilt=0.0)
+    first = np.asarray(trace.passes["angle_of_turn"])[:1]
     bound = subject.tolerance_bound(
         1e4, "the spin that is left is 1e-8 of p, and the turn off by some 10 times that"
     )
@@ -101,8 +101,8 @@ def planar_rocking(subject: Subject, support: str) -> Iterator[Result]:
     """Time from rest to upright in one plane: a quadrature, Housner's quarter period."""
     quarter = planar_quarter(shape_of(PIER), 0.5 * PIER.alpha)
     case = Case(PIER, initial=InitialState(0.5 * PIER.alpha), duration=1.5 * quarter)
-    found = subject.simulate(case, support)
-    minima = found.extrema[found.extrema[:, 3] < 0.0]
+    trace = subject.simulate(case, support)
+    minima = trace.extrema[trace.extrema[:, 3] < 0.0]
     off = largest(minima[:1, 0] / quarter - 1.0)
     yield at_most("planar rocking, time to upright", off, subject.tolerance_bound(30.0, _QUADRATURE))
 
@@ -190,9 +190,9 @@ _ASIDE = 0.04  # [-] no symmetry of a collision detector, in steps of the sweep
 def stands(subject: Subject, support: str) -> Iterator[Result]:
     """Below |a| = (g + az) tan(alpha), equation (25), the cylinder stands."""
     level = 0.99 * THRESHOLD * np.array([0.6, 0.8])
-    found = subject.simulate(Case(PIER, GroundMotion(np.outer([0.0, 1.0, 0.0], level), 0.5)), support)
+    trace = subject.simulate(Case(PIER, GroundMotion(np.outer([0.0, 1.0, 0.0], level), 0.5)), support)
     bound = subject.tolerance_bound(1.0, "it stands")
-    yield at_most("tilt below the threshold of uplift", largest(found.tilt) / PIER.alpha, bound)
+    yield at_most("tilt below the threshold of uplift", largest(trace.tilt) / PIER.alpha, bound)
 
 
 def uplift(subject: Subject, support: str) -> Iterator[Result]:
@@ -206,22 +206,22 @@ def uplift(subject: Subject, support: str) -> Iterator[Result]:
         ("inside a sample", LIFTING, time, a),
         ("at the first sample", steady(push, 0.3), 0.0, push),
     ):
-        found = subject.simulate(Case(PIER, motion), support, sample_step=0.05)
+        trace = subject.simulate(Case(PIER, motion), support, sample_step=0.05)
         bound = subject.tolerance_bound(50.0, "closed form, to some steps", "s, rad")
-        yield at_most(f"time of uplift {words}", abs(found.uplift_time - begin), bound)
-        away = math.remainder(found.uplift_direction - math.atan2(-load[1], -load[0]), 2.0 * math.pi)
+        yield at_most(f"time of uplift {words}", abs(trace.uplift_time - begin), bound)
+        away = math.remainder(trace.uplift_direction - math.atan2(-load[1], -load[0]), 2.0 * math.pi)
         yield at_most(f"direction of uplift {words}", abs(away), bound)
 
 
 def force_at_rest(subject: Subject, support: str) -> Iterator[Result]:
     """Contact force of a cylinder that stands: Newton's law with the acceleration of the ground."""
     ground = np.array([0.5, 0.2, -0.3 * GRAVITY])
-    found = subject.simulate(Case(PIER, steady(ground, 0.4)), support, sample_step=0.1)
-    off = found.contact_force[1:4] - (ground + np.array([0.0, 0.0, GRAVITY])) / GRAVITY
+    trace = subject.simulate(Case(PIER, steady(ground, 0.4)), support, sample_step=0.1)
+    off = trace.contact_force[1:4] - (ground + np.array([0.0, 0.0, GRAVITY])) / GRAVITY
     bound = subject.tolerance_bound(1.0, "Newton's law", "weights")
-    if math.isfinite(found.time_step):
+    if math.isfinite(trace.time_step):
         # of a contact point that is known to rounding and put right in a step, in the mean of a sample
-        most = subject.rounding * PIER.base_radius * _MEAN / (GRAVITY * found.time_step**2)
+        most = subject.rounding * PIER.base_radius * _MEAN / (GRAVITY * trace.time_step**2)
         bound = dataclasses.replace(bound, most=bound.most + most)
     yield at_most("contact force at rest", largest(off), bound)
 
@@ -229,11 +229,11 @@ def force_at_rest(subject: Subject, support: str) -> Iterator[Result]:
 def falls(subject: Subject, support: str) -> Iterator[Result]:
     """A release beyond the balance ends with the side on the ground, as an outcome."""
     start = InitialState(1.5 * PIER.alpha, rolling_rate=0.1)
-    found = subject.simulate(Case(PIER, initial=start, duration=4.0, friction=5.0), support)
-    ends = found.outcome == "overturned" and found.tilt[-1] == found.peak_tilt == OVERTURNED_TILT
-    right = ends and bool((np.diff(found.time) > 0.0).all())
+    trace = subject.simulate(Case(PIER, initial=start, duration=4.0, friction=5.0), support)
+    ends = trace.outcome == "overturned" and trace.tilt[-1] == trace.peak_tilt == OVERTURNED_TILT
+    right = ends and bool((np.diff(trace.time) > 0.0).all())
     yield at_most(
-        "end of a fall", float(not right), subject.tolerance_bound(0.0, "at pi/2"), note=found.outcome
+        "end of a fall", float(not right), subject.tolerance_bound(0.0, "at pi/2"), note=trace.outcome
     )
 
 
@@ -246,13 +246,13 @@ def static_loads(subject: Subject, support: str) -> Iterator[Result]:
             for share in (0.98, 1.02):
                 push = share * GRAVITY * tan_alpha * np.array([math.cos(azimuth), math.sin(azimuth)])
                 motion = GroundMotion([0.0 * push, *[push] * 6], 0.02)
-                found = subject.simulate(Case(cylinder, motion, friction=2.0), support)
+                trace = subject.simulate(Case(cylinder, motion, friction=2.0), support)
                 # after 0.1 s of a load 2 % over the threshold it is 1.2e-4 alpha
-                lifted = found.tilt[-1] > 1e-4 * cylinder.alpha and math.isfinite(found.uplift_time)
-                if lifted != (share > 1.0) or (share < 1.0 and math.isfinite(found.uplift_time)):
+                lifted = trace.tilt[-1] > 1e-4 * cylinder.alpha and math.isfinite(trace.uplift_time)
+                if lifted != (share > 1.0) or (share < 1.0 and math.isfinite(trace.uplift_time)):
                     wrong.append(f"{share:g} g tan(alpha) = {tan_alpha:g}, {math.degrees(azimuth):.1f} deg")
                 elif lifted:
-                    angles = found.uplift_direction, found.rolling_angle[-1]
+                    angles = trace.uplift_direction, trace.rolling_angle[-1]
                     off = max(off, *(abs(math.remainder(a - azimuth - math.pi, math.tau)) for a in angles))
     bound = dataclasses.replace(subject.tolerance_bound(0.0, "equation (25)"), unit="loads")
     yield at_most("static loads that do not lift it, or do", len(wrong), bound, note="; ".join(wrong[:3]))
@@ -284,49 +284,49 @@ def place(subject: Subject, support: str) -> Iterator[Result]:
 
     The base centre is off its place by b (1 - cos theta), (10), and the mass centre h further along the axis.
     """
-    found = subject.simulate(RELEASE, support)
+    trace = subject.simulate(RELEASE, support)
     b, h = PIER.base_radius, PIER.mass_centre_height
     yield at_most(
-        "twist phi + psi", largest(found.twist), subject.tolerance_bound(10.0, "none in a recess", "rad")
+        "twist phi + psi", largest(trace.twist), subject.tolerance_bound(10.0, "none in a recess", "rad")
     )
-    moving = np.isfinite(found.rolling_angle) & (found.tilt > 0.0)
-    off = np.hypot(*found.contact_point[moving].T) / b - 1.0
+    moving = np.isfinite(trace.rolling_angle) & (trace.tilt > 0.0)
+    off = np.hypot(*trace.contact_point[moving].T) / b - 1.0
     bound = subject.tolerance_bound(10.0, "it stays in its place", "b")
     yield at_most("contact point on the original circle", largest(off), bound)
-    s, c = np.sin(found.tilt)[:, None], np.cos(found.tilt)
-    ahead = np.column_stack([np.cos(found.rolling_angle), np.sin(found.rolling_angle)])
-    base = np.hypot(*(found.centre_of_mass[:, :2] - h * s * ahead).T)
+    s, c = np.sin(trace.tilt)[:, None], np.cos(trace.tilt)
+    ahead = np.column_stack([np.cos(trace.rolling_angle), np.sin(trace.rolling_angle)])
+    base = np.hypot(*(trace.centre_of_mass[:, :2] - h * s * ahead).T)
     yield at_most("base centre in its place", largest(base - b * (1.0 - c)) / b, bound)
 
 
 def slip(subject: Subject, support: str) -> Iterator[Result]:
     """The rim rolls without slip, in a recess and on flat ground; a rim that is held by contact creeps."""
-    found = subject.simulate(RELEASE, support)
+    trace = subject.simulate(RELEASE, support)
     bound = subject.tolerance_bound(100.0, "creep of a rim that rolls for 3 s", "b")
-    yield at_most("slip", largest(found.slip) / PIER.base_radius, bound)
+    yield at_most("slip", largest(trace.slip) / PIER.base_radius, bound)
 
 
 def turning(subject: Subject, support: str) -> Iterator[Result]:
     """Turning points, passes and peak are those of the sampled tilt: vertices of polynomials through it."""
     case = RELEASE if "stepper" in subject.options else _SHAKEN
-    found = subject.simulate(case, support, sample_step=_SAMPLE, rest_tilt=0.0)
-    moving = np.flatnonzero(np.isfinite(found.rolling_angle))
-    turns = turning_points(*(values[moving] for values in (found.time, found.tilt, found.rolling_angle)))
-    rows, bound = found.extrema, subject.tolerance_bound(100.0, "vertex of samples 0.002 s apart", "s, rad")
+    trace = subject.simulate(case, support, sample_step=_SAMPLE, rest_tilt=0.0)
+    moving = np.flatnonzero(np.isfinite(trace.rolling_angle))
+    turns = turning_points(*(values[moving] for values in (trace.time, trace.tilt, trace.rolling_angle)))
+    rows, bound = trace.extrema, subject.tolerance_bound(100.0, "vertex of samples 0.002 s apart", "s, rad")
     if case.initial is not None and len(rows) == len(turns) + 1:
         rows = rows[1:]  # a release from rest begins with a turning point
     yield at_most("turning points", _difference(rows, turns), bound)
-    tops = [*turns[turns[:, 3] > 0.0, 1], found.tilt[0], found.tilt[-1]]
+    tops = [*turns[turns[:, 3] > 0.0, 1], trace.tilt[0], trace.tilt[-1]]
     peak = subject.tolerance_bound(1.0, "the highest turning point of the samples", "rad")
-    yield at_most("peak of the continuous motion", abs(found.peak_tilt - max(tops)), peak)
-    starts = np.vstack([[found.time[0], found.tilt[0], found.rolling_angle[0], 1.0], turns])
+    yield at_most("peak of the continuous motion", abs(trace.peak_tilt - max(tops)), peak)
+    starts = np.vstack([[trace.time[0], trace.tilt[0], trace.rolling_angle[0], 1.0], turns])
     listed = starts if case.initial is not None else turns
     passes = [
         [low[0], low[1], after[2] - before[2]]
         for before, low, after in zip(listed, listed[1:], listed[2:], strict=False)
         if low[3] < 0.0
     ]
-    stated = found.passes[["time", "minimum_tilt", "angle_of_turn"]].to_numpy(dtype=float)
+    stated = trace.passes[["time", "minimum_tilt", "angle_of_turn"]].to_numpy(dtype=float)
     yield at_most(
         "passes", _difference(stated, np.array(passes).reshape(-1, 3)), bound, note=f"{len(passes)}"
     )

@@ -236,8 +236,8 @@ def trace_of(result: object, case: Case, support: str) -> Trace:
 
     def take(*names: str) -> Array | None:
         get = result.get if isinstance(result, Mapping) else partial(getattr, result)
-        found = next((value for name in names if (value := get(name, None)) is not None), None)
-        return None if found is None else np.asarray(found, dtype=np.float64)
+        first = next((value for name in names if (value := get(name, None)) is not None), None)
+        return None if first is None else np.asarray(first, dtype=np.float64)
 
     time, tilt, angle, energy = (
         take(*names) for names in (("time",), ("tilt",), ("azimuth", "rolling_angle"), ("energy",))

@@ -136,8 +136,8 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
         case: Case, support: str, *, sample_step: float, rtol: float = rtol, **options: object
     ) -> Trace:
         way = {"plane": 0.0} if support == "planar" else {"support": support}
-        found: Trace = module.simulate(case, sample_step=sample_step, rtol=rtol, **way, **options)
-        return found
+        trace: Trace = module.simulate(case, sample_step=sample_step, rtol=rtol, **way, **options)
+        return trace
 
     return Subject(
         label="reduced model",

@@ -170,18 +170,18 @@ def compare_entries(old: Entry, new: Sample) -> FingerprintVerdict:
 
 def late_peaks(entry: Sample, end: float) -> np.ndarray:
     """Return the largest sampled tilt of each copy from a time on; its last tilt if it ended before."""
-    found = []
+    entries = []
     for copy in entry.get("copies", ()):
         known = [tilt for tilt in copy if tilt is not None]
         late = [tilt for time, tilt in zip(entry["time"], known, strict=False) if time >= end]
         if known:
-            found.append(max(late, default=known[-1]))
-    return np.array(found)
+            entries.append(max(late, default=known[-1]))
+    return np.array(entries)
 
 
 def _first_difference(old: Entry, new: Sample) -> tuple[str, float, float, float] | None:
     """Return signal, time, difference and what is allowed where the first sample differs."""
-    found = []
+    entries = []
     for name, wanted in old["signals"].items():
         got = new["signals"][name]
         count = min(len(wanted), len(got))
@@ -191,11 +191,11 @@ def _first_difference(old: Entry, new: Sample) -> tuple[str, float, float, float
             allowed = old["allowed"][name][min(k, len(wanted) - 1)]
             moved = k < count and abs(old["time"][k] - new["time"][k]) > 10.0 * old["repeats"]
             if apart > allowed or moved:
-                found.append((old["time"][min(k, len(wanted) - 1)], name, apart, allowed))
+                entries.append((old["time"][min(k, len(wanted) - 1)], name, apart, allowed))
                 break
-    if not found:
+    if not entries:
         return None
-    time, name, apart, allowed = min(found)
+    time, name, apart, allowed = min(entries)
     return name, time, apart, allowed
 
 
@@ -235,7 +235,7 @@ def read(path: Path) -> Certificate:
     return found
 
 
-def require_whole(found: Certificate, path: Path) -> None:
+def require_whole(certificate: Certificate, path: Path) -> None:
     """Refuse a certificate of this format whose fingerprint lacks something.
 
     Raises
@@ -243,7 +243,7 @@ def require_whole(found: Certificate, path: Path) -> None:
     ValueError
         With what is missing.
     """
-    entries = found.get("fingerprint")
+    entries = certificate.get("fingerprint")
     if not isinstance(entries, list) or not all(isinstance(one, dict) for one in entries):
         raise ValueError(f"{path} is no whole certificate: its fingerprint must be a list of cases")
     for place, one in enumerate(entries, start=1):

@@ -96,21 +96,21 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
     @cached_property
     def budgets(self) -> Mapping[BudgetKey, ErrorBudget]:
         """Error budget for each (case, run, reference), where it was asked for."""
-        found = {}
+        entries = {}
         for key, facts in self.facts["budgets"].items():
             case, run, reference = key.split(_SEPARATOR)
             samples = self.tables["budget"]
             chosen = (samples["case"] == case) & (samples["run"] == run) & (samples["reference"] == reference)
             columns = {name: column.to_numpy() for name, column in samples[chosen].items()}
             start = start_of(self.traces[case, reference])
-            found[case, run, reference] = ErrorBudget(
+            entries[case, run, reference] = ErrorBudget(
                 **{name: columns[name] for name in ErrorBudget.__dataclass_fields__ if name in columns},
                 covered=facts["covered"],
                 steps=tuple(facts["steps"]),
                 order=facts["order"],
                 unresolved=first_unresolved_pass(self.traces[case, run], start=start),
             )
-        return found
+        return entries
 
     @cached_property
     def matrix(self) -> pd.DataFrame:
@@ -363,5 +363,5 @@ def _stack(tables: Mapping[Any, pd.DataFrame], *names: str) -> pd.DataFrame:
     """One table below the other, each with its key in the first columns."""
     if not tables:
         return pd.DataFrame(columns=list(names))
-    found: pd.DataFrame = pd.concat(tables, names=list(names)).reset_index(list(names)).reset_index(drop=True)
-    return found
+    table: pd.DataFrame = pd.concat(tables, names=list(names)).reset_index(list(names)).reset_index(drop=True)
+    return table

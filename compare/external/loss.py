@@ -92,19 +92,19 @@ def loss_of(motion: Motion, reference: Reference) -> float:
 
 def maxima(tilt: Array, least: float) -> Array:
     """Return the maxima of a tilt from which it falls by more than `least` [rad], the first included."""
-    found: list[float] = []
+    entries: list[float] = []
     highest, lowest = float(tilt[0]), math.inf
     for value in tilt.tolist():
         if lowest == math.inf:  # rising, or just behind a maximum
             highest = max(highest, value)
             if value < highest - least:
-                found.append(highest)
+                entries.append(highest)
                 lowest = value
         else:
             lowest = min(lowest, value)
             if value > lowest + least:
                 highest, lowest = value, math.inf
-    return np.array(found)
+    return np.array(entries)
 
 
 def _resistance(motion: Motion, reference: Reference, trace: Trace, case: Case) -> tuple[float, Reference]:

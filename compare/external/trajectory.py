@@ -239,14 +239,14 @@ def read_trajectories(
     """
     if external and len(cases) > 1:
         raise ValueError(f"a trajectory belongs to one case, got {len(cases)} cases")
-    found: dict[tuple[str, str], Trace] = {}
+    entries: dict[tuple[str, str], Trace] = {}
     for item in external:
         trajectory = read_trajectory(item, cases[0])
         label = str(trajectory.run.engine)
-        if label in taken or (cases[0].name, label) in found:
+        if label in taken or (cases[0].name, label) in entries:
             raise ValueError(f"each run must have its own label, got {label!r} twice")
-        found[cases[0].name, label] = trajectory
-    return found
+        entries[cases[0].name, label] = trajectory
+    return entries
 
 
 def _from_start_to_end(poses: Poses, start: int, length: float) -> Poses:

@@ -173,9 +173,9 @@ class UnfinishedResults(TypedDict):
 
 def unfinished_results(folder: str | Path) -> list[UnfinishedResults]:
     """Return kind, done and total tasks of the results in a folder that have not come to their end."""
-    found: list[UnfinishedResults] = []
+    entries: list[UnfinishedResults] = []
     for path in sorted(Path(folder).glob(f"{CACHE}/*/{_PLAN}")):
         plan = plain_json.loads(path.read_bytes())
         done = len(list(path.parent.glob("*.parquet")))
-        found.append({"kind": plan["kind"], "done": min(done, plan["total"]), "total": plan["total"]})
-    return found
+        entries.append({"kind": plan["kind"], "done": min(done, plan["total"]), "total": plan["total"]})
+    return entries

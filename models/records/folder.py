@@ -249,11 +249,11 @@ def _listed_stations(table: Path) -> list[tuple[str, list[Path]]]:
             f"{table} must have the columns 'Horizontal-1 Acc. Filename' and 'Horizontal-2 Acc. Filename'"
         )
     here = {path.name.lower(): path for path in table.parent.iterdir()}
-    found: list[tuple[str, list[Path]]] = []
+    entries: list[tuple[str, list[Path]]] = []
     for row in rows[heads[0] + 1 :]:
         cells = [cell.strip() for cell in row]
         if len(cells) <= max(place for place in places if place is not None):
-            if found:
+            if entries:
                 break  # another table follows
             continue
         names = [cells[place].replace("\\", "/").rpartition("/")[2] for place in places if place is not None]
@@ -262,8 +262,8 @@ def _listed_stations(table: Path) -> list[tuple[str, list[Path]]]:
         ]
         words = [f"RSN{cells[number]}" if number is not None else ""]
         words += [cells[place].strip('"') for place in (event, station) if place is not None]
-        found.append((", ".join(word for word in words if word), files))
-    return found
+        entries.append((", ".join(word for word in words if word), files))
+    return entries
 
 
 def _peer_motions(folder: Path, reading: Reading) -> list[GroundMotion]:

@@ -78,17 +78,17 @@ def stated_unit(path: Path, header: list[str]) -> str | None:
         If the file holds velocities or displacements, or states a unit that is not allowed, or two.
     """
     _require_acceleration(path, header)
-    found: dict[str, str] = {}
+    entries: dict[str, str] = {}
     for line in header:
         for word in _candidates(line):
             unit = unit_of(word)
             if unit is not None:
-                found[unit] = word
+                entries[unit] = word
             elif _RATE.fullmatch(word) or re.fullmatch(_POWER, word, re.IGNORECASE):
                 raise ValueError(f"{path.name} is in {word[:20]}, allowed are {ALLOWED_UNITS}")
-    if len(found) > 1:
-        raise ValueError(f"{path.name} states two units: {' and '.join(found.values())}")
-    return next(iter(found), None)
+    if len(entries) > 1:
+        raise ValueError(f"{path.name} states two units: {' and '.join(entries.values())}")
+    return next(iter(entries), None)
 
 
 def factor(path: Path, stated: str | None, given: str | None) -> float:

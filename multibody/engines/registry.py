@@ -294,12 +294,12 @@ def _declarations() -> dict[str, list[EntryPoint]]:
     """Entry points of other packages by name, in alphabetical order; our names are taken."""
     from importlib.metadata import entry_points
 
-    found: dict[str, list[EntryPoint]] = {}
+    entries: dict[str, list[EntryPoint]] = {}
     for point in sorted(entry_points(group=GROUP), key=lambda point: (point.name, point.value)):
         # an installation may be found by two ways
-        if point.name not in _ENGINES and point not in found.get(point.name, []):
-            found.setdefault(point.name, []).append(point)
-    return found
+        if point.name not in _ENGINES and point not in entries.get(point.name, []):
+            entries.setdefault(point.name, []).append(point)
+    return entries
 
 
 def _load(name: str, points: list[EntryPoint]) -> Engine:

@@ -114,7 +114,7 @@ def fragility(
                 ]
             )
         with user_input(), shown_progress() as progress:
-            found = rw.fragility(
+            results = rw.fragility(
                 bodies,
                 stripes or motions,
                 methods=chosen,
@@ -126,14 +126,14 @@ def fragility(
                 **dataclasses.asdict(plan),
             )
             if site is not None:
-                found = found.with_risk(
+                results = results.with_risk(
                     site,
                     hazard.risk_years,
                     total_dispersion=hazard.total_dispersion,
                     limit=hazard.risk_limit,
                     target=hazard.target,
                 )
-        show_and_save(found, out)
+        show_and_save(results, out)
 
 
 @takes_options
@@ -194,7 +194,7 @@ def spectrum(
         # the ground: the threshold of uplift is that of all sizes
         echo(case_lines(slender)[1:-1])
         with user_input(), shown_progress("parts") as progress:
-            found = rw.spectrum(
+            results = rw.spectrum(
                 tan_alpha,
                 motion,
                 workers=workers,
@@ -202,7 +202,7 @@ def spectrum(
                 resume=out,
                 **dataclasses.asdict(plan),
             )
-        show_and_save(found, out)
+        show_and_save(results, out)
 
 
 def _slenderness(tan_alpha: float | None, diameter: float | None, height: float | None) -> float:
@@ -278,10 +278,10 @@ def ensemble(
             )
             echo([*lines, *record_lines(each.motion for each in members), *case_warnings(members)])
         with user_input(), shown_progress() as progress:
-            found = rw.ensemble(
+            results = rw.ensemble(
                 stated, runs=runs, progress=progress, resume=out, source=source, **dataclasses.asdict(copies)
             )
-        show_and_save(found, out)
+        show_and_save(results, out)
 
 
 def _members(

@@ -96,15 +96,15 @@ def settings(given: Sequence[str] | None) -> dict[str, int | float | str]:
     >>> settings(["ring_facets=64", "ring_clearance=1e-2", "cone=pyramidal"])
     {'ring_facets': 64, 'ring_clearance': 0.01, 'cone': 'pyramidal'}
     """
-    found: dict[str, int | float | str] = {}
+    entries: dict[str, int | float | str] = {}
     for text in given or ():
         name, sign, value = (part.strip() for part in text.partition("="))
         if not (name and sign and value):
             raise ValueError(f"--set must be NAME=VALUE, got {text!r}")
-        if name in found:
+        if name in entries:
             raise ValueError(f"--set {name} is given twice")
-        found[name] = _value(value)
-    return found
+        entries[name] = _value(value)
+    return entries
 
 
 def _value(text: str) -> int | float | str:

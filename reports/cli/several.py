@@ -86,7 +86,7 @@ def cylinders_of(given: Sequence[str] | None, body: Body) -> dict[str, RockingBo
     if not given:
         one = body.cylinder()
         return {f"R = {one.semidiagonal:g} m, tan α = {one.tan_alpha:g}": one}
-    found: dict[str, RockingBody] = {}
+    entries: dict[str, RockingBody] = {}
     for text in given:
         name, sign, numbers = (part.strip() for part in text.partition("="))
         sizes = numbers.split(",")
@@ -96,11 +96,11 @@ def cylinders_of(given: Sequence[str] | None, body: Body) -> dict[str, RockingBo
             name = ""
         if not (name and sign):
             raise ValueError(f"--cylinder must be NAME=R,TAN_ALPHA such as pier=6,0.2, got {text!r}")
-        if name in found:
+        if name in entries:
             raise ValueError(f"--cylinder {name} is given twice")
         cylinder = rw.Cylinder(semidiagonal=size, tan_alpha=slenderness)
-        found[name] = under_slab(cylinder, body.slab_mass_ratio, body.columns)
-    return found
+        entries[name] = under_slab(cylinder, body.slab_mass_ratio, body.columns)
+    return entries
 
 
 @dataclass(frozen=True, kw_only=True)

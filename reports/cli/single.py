@@ -161,7 +161,7 @@ def compare(
         elif not engine and suite is None:
             say_what_is_left_out(support or [])
         with user_input(), shown_progress() as progress:
-            found = rw.comparison(
+            results = rw.comparison(
                 rw.Suite(cases, runs),
                 runs=runs,
                 progress=progress,
@@ -169,8 +169,8 @@ def compare(
                 resume=None if suite is None else out,
                 budget=budget,
             )
-        show_and_save(found, out)
-    if (found.summary["outcome"] == "failed").any():
+        show_and_save(results, out)
+    if (results.summary["outcome"] == "failed").any():
         raise typer.Exit(FAILED)
 
 
@@ -324,7 +324,7 @@ def advise(
             claim_folder(context)
         echo([*record_lines([case.motion]), *case_warnings([case], plan.mass)])
         with shown_progress("stages") as progress:
-            found = rw.advise(
+            results = rw.advise(
                 case,
                 run,
                 friction_given="friction" in given,
@@ -332,9 +332,9 @@ def advise(
                 **dataclasses.asdict(plan),
             )
         options_given = stated_options(context, also=[field.name for field in dataclasses.fields(plan)])
-        found = replace(found, facts={**found.facts, "options": options_given})
-        show_and_save(found, out, details=details)
-    if found.response["outcome"] == "failed":
+        results = replace(results, facts={**results.facts, "options": options_given})
+        show_and_save(results, out, details=details)
+    if results.response["outcome"] == "failed":
         raise typer.Exit(FAILED)
 
 

@@ -144,7 +144,7 @@ class OutputOptions(Plan):
         if self.markdown is not None:  # to which a page is added
             require_file("--markdown", self.markdown)
 
-    def write(self, found: Checks, plan: str) -> None:
+    def write(self, results: Checks, plan: str) -> None:
         """Write the folder and the files.
 
         Raises
@@ -158,15 +158,15 @@ class OutputOptions(Plan):
         from ..pages.check import as_json, as_junit
 
         if self.out is not None:
-            save_with_page(found, self.out)
+            save_with_page(results, self.out)
             print(f"Written to {self.out}: check.html, manifest.json, results.parquet")
         for path, text_of in ((self.json, as_json), (self.junit, as_junit)):
             if path is not None:
-                replace_files(path.parent, {path.name: text_of(found, plan).encode()})
+                replace_files(path.parent, {path.name: text_of(results, plan).encode()})
         if self.markdown is not None:
             try:  # the summary of a CI job may hold pages of other steps
                 with self.markdown.open("a", encoding="utf-8") as file:
-                    file.write(page_of(found.made_by(command_line())).markdown())
+                    file.write(page_of(results.made_by(command_line())).markdown())
             except OSError as error:
                 raise ValueError(f"{self.markdown} cannot be written: {error.strerror or error}") from None
 

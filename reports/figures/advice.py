@@ -25,18 +25,18 @@ _STANDS, _SIDE = 1.2, 1.3  # [balance tilt] where tilts are cut, and where overt
 _SCALES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 
 
-def pictures(found: Advice) -> list[Picture]:
+def pictures(results: Advice) -> list[Picture]:
     """Return the picture of an advice; none where nothing was run that could be drawn."""
     panels = []
-    if found.moves:
-        panels += [_peaks(found), _tilt(found)]
-    if len(found.scales):
-        panels.append(_scales(found))
-    if found.moves:
-        panels.append(_friction(found))
+    if results.moves:
+        panels += [_peaks(results), _tilt(results)]
+    if len(results.scales):
+        panels.append(_scales(results))
+    if results.moves:
+        panels.append(_friction(results))
     picture = Picture(
         name="advice",
-        title=f"{found.facts['case']}: largest tilts, the trace, other scales and friction demand",
+        title=f"{results.facts['case']}: largest tilts, the trace, other scales and friction demand",
         caption="Largest tilts: share of the runs that tilt no more; curves end below 1 where runs overturn "
         "(triangle), the diamond is the case as given. Tilt: as given over the band of 90 % of the copies.",
         panels=panels,
@@ -46,8 +46,8 @@ def pictures(found: Advice) -> list[Picture]:
     return [picture] if panels else []
 
 
-def _peaks(found: Advice) -> Panel:
-    members = found.members
+def _peaks(results: Advice) -> Panel:
+    members = results.members
     groups = [name for name in SHORT if (members["group"] == name).any()]
     styles = run_styles(groups)
     standing = members[~members["outcome"].isin(["overturned", *NO_PEAK])]
@@ -55,12 +55,12 @@ def _peaks(found: Advice) -> Panel:
     layers: list[Line] = []
     for name in groups:
         layers += peak_shares(members[members["group"] == name], SHORT[name], styles[name], end)
-    if not found.overturned:
-        here = Style(colour=model_style(found.facts["model"]).colour, dash="none", symbol="diamond")
+    if not results.overturned:
+        here = Style(colour=model_style(results.facts["model"]).colour, dash="none", symbol="diamond")
         copies = members[(members["group"] == "copies") & (members["outcome"] != "failed")]
-        rank = float((copies["peak_tilt"] < found.peak).mean()) if found.copies_differ else math.nan
+        rank = float((copies["peak_tilt"] < results.peak).mean()) if results.copies_differ else math.nan
         layers.append(
-            Line(x=np.array([found.peak]), y=np.array([rank]), name="as given", style=here, size=7.0)
+            Line(x=np.array([results.peak]), y=np.array([rank]), name="as given", style=here, size=7.0)
         )
     return Panel(
         x=Axis(label="largest tilt / α", unit="-", low=0.0, high=end),
@@ -70,23 +70,23 @@ def _peaks(found: Advice) -> Panel:
     )
 
 
-def _tilt(found: Advice) -> Panel:
-    band, trace, engine = found.band, found.trace, found.engine
+def _tilt(results: Advice) -> Panel:
+    band, trace, engine = results.band, results.trace, results.engine
     layers: list[Band | Line | Rule] = [
         Band(
             x=band["time"].to_numpy(float),
-            low=_cut(found, band["low"]),
-            high=_cut(found, band["high"]),
+            low=_cut(results, band["low"]),
+            high=_cut(results, band["high"]),
             name="90 % of the copies",
         )
     ]
-    if found.verification is not None and len(engine):
-        label = found.verification.label
+    if results.verification is not None and len(engine):
+        label = results.verification.label
         style = run_styles([label])[label]
         layers.append(
             Line(
                 x=engine["time"].to_numpy(float),
-                y=_cut(found, engine["tilt"]),
+                y=_cut(results, engine["tilt"]),
                 name=label,
                 style=style,
                 width=1.8,
@@ -95,21 +95,21 @@ def _tilt(found: Advice) -> Panel:
     layers.append(
         Line(
             x=trace["time"].to_numpy(float),
-            y=_cut(found, trace["tilt"]),
-            name=found.facts["model"],
-            style=model_style(found.facts["model"]),
+            y=_cut(results, trace["tilt"]),
+            name=results.facts["model"],
+            style=model_style(results.facts["model"]),
             width=1.1,
         )
     )
-    trust = found.trust
+    trust = results.trust
     if trust.kind != "trace":
-        side: Literal["left", "right"] = "right" if trust.until < 0.6 * found.facts["length"] else "left"
+        side: Literal["left", "right"] = "right" if trust.until < 0.6 * results.facts["length"] else "left"
         layers.append(Rule(at=trust.until, axis="x", text="trusted until here", side=side))
     return Panel(x=TIME, y=Axis(label="tilt / α", unit="-", low=0.0), layers=layers, title="Tilt")
 
 
-def _scales(found: Advice) -> Panel:
-    scales, styles, balance = found.scales, series_styles(found.facts["model"]), _balance(found)
+def _scales(results: Advice) -> Panel:
+    scales, styles, balance = results.scales, series_styles(results.facts["model"]), _balance(results)
     side = _SIDE * balance
     layers: list[Line | Rule] = [Rule(at=1.0, axis="x", text="as given")]
     for name in SERIES:
@@ -117,7 +117,9 @@ def _scales(found: Advice) -> Panel:
         if not len(rows):
             continue
         peaks = rows["peak_tilt"].to_numpy(float)
-        tilt = np.where(overturned(peaks), side, np.minimum(peaks / found.cylinder.alpha, _STANDS * balance))
+        tilt = np.where(
+            overturned(peaks), side, np.minimum(peaks / results.cylinder.alpha, _STANDS * balance)
+        )
         marked = replace(styles[name], symbol="circle")
         layers.append(
             Line(
@@ -148,20 +150,20 @@ def _scales(found: Advice) -> Panel:
     )
 
 
-def _friction(found: Advice) -> Panel:
-    available, trace = found.facts["friction"], found.trace
-    usual = float(found.groups["friction_95"].max())
+def _friction(results: Advice) -> Panel:
+    available, trace = results.facts["friction"], results.trace
+    usual = float(results.groups["friction_95"].max())
     most = [value for value in (available, usual) if value is not None and math.isfinite(value)]
     # what no friction supplies is drawn at the top
-    top = 1.5 * max([*most, found.cylinder.tan_alpha])
+    top = 1.5 * max([*most, results.cylinder.tan_alpha])
     needed = np.where(trace["tilt"] > 0.0, np.minimum(trace["friction_needed"], top), 0.0)
     layers: list[Line | Rule] = [
-        Line(x=trace["time"].to_numpy(float), y=needed, style=model_style(found.facts["model"]), width=0.9)
+        Line(x=trace["time"].to_numpy(float), y=needed, style=model_style(results.facts["model"]), width=0.9)
     ]
     if available is not None:
         layers.append(Rule(at=available, axis="y", text="available"))
     else:
-        layers.append(Rule(at=found.cylinder.tan_alpha, axis="y", text="b/h", colour=GREY))
+        layers.append(Rule(at=results.cylinder.tan_alpha, axis="y", text="b/h", colour=GREY))
     return Panel(
         x=TIME,
         y=Axis(label="friction demand", unit="-", low=0.0, high=top),
@@ -170,11 +172,11 @@ def _friction(found: Advice) -> Panel:
     )
 
 
-def _balance(found: Advice) -> float:
+def _balance(results: Advice) -> float:
     """Balance tilt, at most pi/2 [alpha]."""
-    tendon = found.facts.get("tendon")
-    return min(tendon["balance_tilt"], OVERTURNED_TILT / found.cylinder.alpha) if tendon else 1.0
+    tendon = results.facts.get("tendon")
+    return min(tendon["balance_tilt"], OVERTURNED_TILT / results.cylinder.alpha) if tendon else 1.0
 
 
-def _cut(found: Advice, tilts: pd.Series[float]) -> Array:
-    return np.minimum(tilts.to_numpy(float), _STANDS * _balance(found))
+def _cut(results: Advice, tilts: pd.Series[float]) -> Array:
+    return np.minimum(tilts.to_numpy(float), _STANDS * _balance(results))

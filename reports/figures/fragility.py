@@ -29,25 +29,25 @@ _EDGE = 1.02  # a mark keeps so far within the ends of a logarithmic axis
 _MEDIAN = Style(colour=ORDER[0], dash="none", symbol="diamond")
 
 
-def pictures(found: Fragility) -> list[Picture]:
+def pictures(results: Fragility) -> list[Picture]:
     """Return the ratios of the medians, and the curves of each cylinder."""
-    ratios = _ratios(found)
+    ratios = _ratios(results)
     curves = [
-        _curves(found, str(name), place)
-        for place, name in enumerate(found.facts["cylinders"], start=1)
-        if ((found.counts["cylinder"] == name) & (found.counts["limit"] == OVERTURNED)).any()
+        _curves(results, str(name), place)
+        for place, name in enumerate(results.facts["cylinders"], start=1)
+        if ((results.counts["cylinder"] == name) & (results.counts["limit"] == OVERTURNED)).any()
     ]
     return ([ratios] if ratios else []) + curves
 
 
-def _ratios(found: Fragility) -> Picture | None:
-    answers = main_contrasts(found)
-    cylinders = [*found.facts["cylinders"], ALL] if len(found.facts["cylinders"]) > 1 else [None]
+def _ratios(results: Fragility) -> Picture | None:
+    answers = main_contrasts(results)
+    cylinders = [*results.facts["cylinders"], ALL] if len(results.facts["cylinders"]) > 1 else [None]
     rows = [row for part in answers.values() for row in part if math.isfinite(row["ratio"])]
     if not rows:
         return None
     pairs = list(dict.fromkeys((row["method"], row["against"]) for row in rows))
-    margin = float(found.facts["margin"])
+    margin = float(results.facts["margin"])
     ends = [row[f"ratio_{end}"] for row in rows for end in ("low", "high")]
     known = [abs(math.log(end)) for end in ends if 0.0 < end < math.inf]
     reach = min(1.15 * max([*known, 2.0 * math.log1p(margin)]), math.log(4.0))
@@ -89,8 +89,8 @@ def _ratios(found: Fragility) -> Picture | None:
     )
 
 
-def _curves(found: Fragility, cylinder: str, place: int) -> Picture:
-    methods: Mapping[str, Row] = found.facts["methods"]
+def _curves(results: Fragility, cylinder: str, place: int) -> Picture:
+    methods: Mapping[str, Row] = results.facts["methods"]
     guided = [name for name, own in methods.items() if own["support"] in _GUIDED and not own["engine"]]
     panels = []
     for support, title in _PANELS.items():
@@ -98,9 +98,9 @@ def _curves(found: Fragility, cylinder: str, place: int) -> Picture:
         shown = labels if support in _GUIDED else [*guided, *labels]
         # a curve alone is compared with nothing, unless it is the only one
         if labels and (len(shown) > 1 or len(methods) == 1):
-            panels.append(_panel(found, cylinder, shown, title))
-    measure = MEASURES[str(found.facts["measure"])]
-    drawn = (found.curves["cylinder"] == cylinder) & (found.curves["limit"] == OVERTURNED)
+            panels.append(_panel(results, cylinder, shown, title))
+    measure = MEASURES[str(results.facts["measure"])]
+    drawn = (results.curves["cylinder"] == cylinder) & (results.curves["limit"] == OVERTURNED)
     lines = (
         "Lines: lognormal curves by maximum likelihood, with 95 % bands by resampling the motions; marks: "
         "shares of the runs."
@@ -117,12 +117,12 @@ def _curves(found: Fragility, cylinder: str, place: int) -> Picture:
     )
 
 
-def _panel(found: Fragility, cylinder: str, labels: Sequence[str], title: str) -> Panel:
+def _panel(results: Fragility, cylinder: str, labels: Sequence[str], title: str) -> Panel:
     counts, curves = (
         table[(table["cylinder"] == cylinder) & (table["limit"] == OVERTURNED)]
-        for table in (found.counts, found.curves)
+        for table in (results.counts, results.curves)
     )
-    measure = MEASURES[str(found.facts["measure"])]
+    measure = MEASURES[str(results.facts["measure"])]
     backs: list[Band | Line] = []
     fronts: list[Band | Line] = []
     for index, (label, style) in enumerate(mark_styles(labels).items()):

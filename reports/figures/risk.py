@@ -16,16 +16,18 @@ _COLOURS = (DARK, *ORDER)
 _LEAST = 0.01  # of the largest contribution: what is less is not looked for
 
 
-def risk_pictures(found: Fragility) -> list[Picture]:
+def risk_pictures(results: Fragility) -> list[Picture]:
     """Return a picture for each cylinder; none without a hazard."""
-    if "risk" not in found.tables:
+    if "risk" not in results.tables:
         return []
-    return [_picture(found, str(name), place) for place, name in enumerate(found.facts["cylinders"], start=1)]
+    return [
+        _picture(results, str(name), place) for place, name in enumerate(results.facts["cylinders"], start=1)
+    ]
 
 
-def _picture(found: Fragility, cylinder: str, place: int) -> Picture:
-    hazard = found.facts["hazard"]
-    table = found.contributions[found.contributions["cylinder"] == cylinder]
+def _picture(results: Fragility, cylinder: str, place: int) -> Picture:
+    hazard = results.facts["hazard"]
+    table = results.contributions[results.contributions["cylinder"] == cylinder]
     labels = list(dict.fromkeys(table["method"]))[:_MOST]
     first = table[table["method"] == labels[0]]
     x = first["intensity"].to_numpy(float)

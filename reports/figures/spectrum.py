@@ -18,9 +18,9 @@ _HEIGHT = 3.4
 _ASIDE = {SPATIAL: 0.0, PLANAR_X: -0.3, PLANAR_Y: 0.3}  # of the spacing of sizes: gaps side by side
 
 
-def pictures(found: OverturningSpectrum) -> list[Picture]:
+def pictures(results: OverturningSpectrum) -> list[Picture]:
     """Return a map of each series, and the lowest intensities with the safe gaps above them."""
-    return [picture_of(found.maps)]
+    return [picture_of(results.maps)]
 
 
 def picture_of(spectrum: TiltMaps) -> Picture:
@@ -84,13 +84,13 @@ def _curves(spectrum: TiltMaps) -> list[Line]:
     gaps = safe_gaps(spectrum)
     spacing = float(np.diff(spectrum.semidiagonals).min(initial=np.inf))
     half = 0.5 * float(np.diff(spectrum.intensities).min(initial=np.inf))
-    found: list[Line] = []
+    entries: list[Line] = []
     for series in SERIES:
         closed = gaps[gaps["closed"] & (gaps["series"] == series)]
         place = closed["semidiagonal"].to_numpy(float) + _ASIDE[series] * spacing
         ends = closed["lower"].to_numpy(float) - half, closed["upper"].to_numpy(float) + half
         thin = Style(colour=styles[series].colour)
-        found += [
+        entries += [
             Line(x=bar_ends(place, place), y=bar_ends(*ends), style=thin, width=0.7, opacity=0.45),
             Line(
                 x=spectrum.semidiagonals,
@@ -100,4 +100,4 @@ def _curves(spectrum: TiltMaps) -> list[Line]:
                 width=1.6,
             ),
         ]
-    return found
+    return entries

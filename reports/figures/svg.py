@@ -309,13 +309,13 @@ def _colour_bar(drawn: Figure, places: NDArray[np.object_], shades: Shades) -> N
 
 def _handles(panels: Sequence[Axes]) -> tuple[list[Artist], list[str]]:
     """Artists and names of a legend, each name once, at most as many as can be distinguished."""
-    found: dict[str, Artist] = {}
+    entries: dict[str, Artist] = {}
     for axes in panels:
         for handle, name in zip(*axes.get_legend_handles_labels(), strict=True):
-            found.setdefault(name, handle)
-    rest = len(found) - MOST_ENTRIES
-    shown = list(found)[: MOST_ENTRIES - (rest > 0)]
-    handles, words = [found[name] for name in shown], [textwrap.fill(name, 60) for name in shown]
+            entries.setdefault(name, handle)
+    rest = len(entries) - MOST_ENTRIES
+    shown = list(entries)[: MOST_ENTRIES - (rest > 0)]
+    handles, words = [entries[name] for name in shown], [textwrap.fill(name, 60) for name in shown]
     if rest > 0:
         handles.append(Line2D([], [], linestyle="none"))
         words.append(f"and {rest + 1} more")

@@ -20,14 +20,14 @@ _MOST_MAPS, _MOST_CELLS = 6, 20_000
 _NAMED = 12  # so many values have a tick each
 
 
-def pictures(found: Sweep) -> list[Picture]:
+def pictures(results: Sweep) -> list[Picture]:
     """Return a map of each part of a grid, or of cases the distribution of their peaks by each run."""
-    return [_maps(found) if "model" in found.table else _distributions(found.table)]
+    return [_maps(results) if "model" in results.table else _distributions(results.table)]
 
 
-def _maps(found: Sweep) -> Picture:
-    parts = found.table.groupby(found.keys, sort=False)
-    sizes, scales = (found.table[name].nunique() for name in ("semidiagonal", "scale"))
+def _maps(results: Sweep) -> Picture:
+    parts = results.table.groupby(results.keys, sort=False)
+    sizes, scales = (results.table[name].nunique() for name in ("semidiagonal", "scale"))
     steps = _step(sizes, scales), _step(scales, sizes)
     panels = [_map(own, *steps) for _, own in islice(parts, _MOST_MAPS)]
     thinned = zip(("sizes", "scales"), steps, strict=True)

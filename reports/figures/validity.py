@@ -220,19 +220,19 @@ _LEAST = 1e-9  # what a logarithmic axis shows of nothing
 _ONE = Rule(at=1.0, axis="y", colour=GREY, dash="solid")
 
 
-def pictures(found: Validity) -> list[Picture]:
+def pictures(results: Validity) -> list[Picture]:
     """Return all figures of the report, in its order."""
-    tables, uplift = found.tables, found.structure.uplift
+    tables, uplift = results.tables, results.structure.uplift
     return [
         _records(contrasts(tables)),
         *map_pictures(tables),
         _agreement(tables["following"]),
         # with a tendon there is no second model to tell apart
-        *([] if found.structure.tendon else [_verification(tables["verification"])]),
+        *([] if results.structure.tendon else [_verification(tables["verification"])]),
         # with a slab there is no ring, and what slips first is not the base
         *(
             []
-            if found.structure.slab_mass_ratio
+            if results.structure.slab_mass_ratio
             else [_slip(tables["slip"]), _rings(tables["rings"], uplift)]
         ),
         _contact(tables["contact"], uplift),

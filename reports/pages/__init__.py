@@ -26,10 +26,10 @@ def stored_page(kind: str, folder: Path) -> Page:
     return page_of(KINDS[kind].results_class().load(folder))
 
 
-def page_of(found: Results) -> Page:
+def page_of(results: Results) -> Page:
     """Return the page of results, not drawn yet."""
-    whole = found if found.manifest else found.made_by()
-    name = KINDS[found.kind].name
+    whole = results if results.manifest else results.made_by()
+    name = KINDS[results.kind].name
     module = name if find_spec(f".{name}", __name__) else "tables"
     page: Page = importlib.import_module(f".{module}", __name__).page_of(whole)
     return page

@@ -47,26 +47,26 @@ _MOST_POINTS, _FEWEST_POINTS = 1500, 90
 _ALONE = ("figure", "budget")
 
 
-def page_of(found: Comparison) -> Page:
+def page_of(results: Comparison) -> Page:
     """Return the report of a comparison."""
-    views = case_views(found)
-    many, findings = len(views) > SINGLY, found.findings()
-    summary, lengths = found.summary, {view.case.name: view.case.length for view in views}
+    views = case_views(results)
+    many, findings = len(views) > SINGLY, results.findings()
+    summary, lengths = results.summary, {view.case.name: view.case.length for view in views}
     pictures = {place: list(_pictures(view, place, many)) for place, view in enumerate(views)}
     whole = _thin([picture for of_case in pictures.values() for picture in of_case])
-    bars = all_budgets_picture(found) if found.budgets else None
+    bars = all_budgets_picture(results) if results.budgets else None
     if bars is not None:
         whole.append(bars)
     blocks = _blocks(views, many=many)
     values: dict[str, object] = {
         "many": many,
-        "about": found.manifest,
+        "about": results.manifest,
         "title": views[0].case.name if len(views) == 1 else f"{len(views)} problems",
         "overview_pictures": [] if bars is None else [bars.name],
         "cases": [
             {
-                **_case(view, found, many=many),
-                "matrices": matrix_tables(found.matrix[found.matrix["case"] == view.case.name]),
+                **_case(view, results, many=many),
+                "matrices": matrix_tables(results.matrix[results.matrix["case"] == view.case.name]),
                 "pictures": [picture.name for picture in pictures[place]],
                 "player": name if (name := f"player-{place}") in blocks else "",
             }
@@ -79,7 +79,7 @@ def page_of(found: Comparison) -> Page:
             "answer": statement(answer),
             "group_rows": group_rows(summary, lengths),
             "worst": worst_rows(summary, lengths),
-            "matrices": matrix_tables(found.matrix),
+            "matrices": matrix_tables(results.matrix),
             "findings": [*map(statement, others), *counted_diagnostics(summary)],
         }
     return Page(
@@ -92,11 +92,11 @@ def page_of(found: Comparison) -> Page:
     )
 
 
-def _case(view: CaseView, found: Comparison, *, many: bool) -> dict[str, object]:
+def _case(view: CaseView, results: Comparison, *, many: bool) -> dict[str, object]:
     rows, name = view.rows, view.case.name
     # of many cases a page would hold too many
     numbers, columns = ([], []) if many else all_columns(rows)
-    findings = found.case_findings(name)
+    findings = results.case_findings(name)
     return {
         "name": name,
         "lines": case_lines(view.case),
@@ -105,7 +105,7 @@ def _case(view: CaseView, found: Comparison, *, many: bool) -> dict[str, object]
         "supports": [statement(each) for each in findings if each.key in _SUPPORTS],
         "diagnostics": run_diagnostics(view),
         "first": first_rows(rows),
-        "rows": main_rows(view, found.causes[name]),
+        "rows": main_rows(view, results.causes[name]),
         "external": external_rows(rows),
         "numbers": numbers,
         "columns": columns,
@@ -137,11 +137,12 @@ def counted_diagnostics(summary: pd.DataFrame) -> list[str]:
     return [said] if counts else []
 
 
-def budget_lines(found: Comparison, run: Run, reference: Run) -> list[str]:
+def budget_lines(results: Comparison, run: Run, reference: Run) -> list[str]:
     """Lines of a console on what the difference of one run from one reference is made of."""
-    labels = {trace.run: label for (_, label), trace in found.traces.items()}
+    labels = {trace.run: label for (_, label), trace in results.traces.items()}
     budget = next(
-        (each for key, each in found.budgets.items() if key[1:] == (labels[run], labels.get(reference))), None
+        (each for key, each in results.budgets.items() if key[1:] == (labels[run], labels.get(reference))),
+        None,
     )
     if budget is None:  # a reference that is not its own has none
         return ["There is no budget of the difference: traces diverge at once, or there is no finer step."]
@@ -151,7 +152,7 @@ def budget_lines(found: Comparison, run: Run, reference: Run) -> list[str]:
         f"Difference from the {labels[reference]}, RMS in alpha until {budget.covered:.3g} s "
         f"({100.0 * COVERED:.0f} % of the agreement), steps of {steps} s:",
         *(f"  {part.replace('_', ' '):<12} {budget.rms(part):8.1e}" for part in parts),
-        *(sentence(each) for each in found.findings() if each.key == "comparison.not_split"),
+        *(sentence(each) for each in results.findings() if each.key == "comparison.not_split"),
     ]
 
 

@@ -156,8 +156,8 @@ def explore_page(
 
 def plan_in_page(content: bytes) -> str | None:
     """Return the hash of the command that wrote a page; None for another file."""
-    found = re.search(rb'<meta name="rockwobble-explore" content="(\w*)">', content)
-    return found[1].decode() if found else None
+    match = re.search(rb'<meta name="rockwobble-explore" content="(\w*)">', content)
+    return match[1].decode() if match else None
 
 
 def _shaking_values(shaking: Shaking) -> dict[str, object]:

@@ -119,15 +119,15 @@ class Page:
 
         A table has the name of the page and of the heading above it.
         """
-        found: dict[str, bytes] = {}
+        entries: dict[str, bytes] = {}
         for form in dict.fromkeys(forms):
             if form == "tex":
-                found |= {f"{name}.tex": table.latex().encode() for name, table in self._named_tables()}
+                entries |= {f"{name}.tex": table.latex().encode() for name, table in self._named_tables()}
             else:
                 from ..figures.svg import image
 
-                found |= {f"{each.name}.{form}": image(each, form) for each in self.pictures}
-        return found
+                entries |= {f"{each.name}.{form}": image(each, form) for each in self.pictures}
+        return entries
 
     def _named_tables(self) -> Iterator[tuple[str, Table]]:
         heading, seen = "", Counter[str]()

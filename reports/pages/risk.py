@@ -14,23 +14,23 @@ _MAIN = ("risk.frequency", "risk.none")
 _UNIT = 1e4  # frequencies in 1e-4 a year
 
 
-def risk_values(found: Fragility) -> dict[str, object] | None:
+def risk_values(results: Fragility) -> dict[str, object] | None:
     """Return the values of the template of the risk; None without a hazard."""
-    if "risk" not in found.tables:
+    if "risk" not in results.tables:
         return None
     rows = [
-        {str(name): value for name, value in row.items()} for row in found.tables["risk"].to_dict("records")
+        {str(name): value for name, value in row.items()} for row in results.tables["risk"].to_dict("records")
     ]
     scaled = [name for name in rows[0] if name.startswith("annual_frequency")]
-    reference, said = str(rows[0]["method"]), found.findings()
+    reference, said = str(rows[0]["method"]), results.findings()
     return {
-        "hazard": {"limit": OVERTURNED, "target": TARGET, "source": ""} | found.facts["hazard"],
+        "hazard": {"limit": OVERTURNED, "target": TARGET, "source": ""} | results.facts["hazard"],
         "rows": [{**row, **{name: _UNIT * row[name] for name in scaled}} for row in rows],
         "main": [sentence(each) for each in said if each.key in _MAIN],
         "reference": reference,
         "remarks": [f"{each.runs}: {sentence(each)}" for each in said if each.key not in _MAIN],
-        "dispersion": _dispersion(found.facts["hazard"]["total_dispersion"]),
-        "pictures": [picture.name for picture in risk_pictures(found)],
+        "dispersion": _dispersion(results.facts["hazard"]["total_dispersion"]),
+        "pictures": [picture.name for picture in risk_pictures(results)],
     }
 
 

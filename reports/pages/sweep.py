@@ -17,24 +17,24 @@ _OF_GRID = (("motion", "ground motion", "words"), ("model", "model", "words"), (
 _OF_CASES = (("run", "run", "words"),)
 
 
-def page_of(found: Sweep) -> Page:
+def page_of(results: Sweep) -> Page:
     """Return the page of a sweep."""
-    plan, grid = found.facts, "model" in found.table
+    plan, grid = results.facts, "model" in results.table
     values = {
         "plan": plan,
         **(_of_grid(plan) if grid else _of_cases(plan)),
-        "parts": found.summary().to_dict("records"),
+        "parts": results.summary().to_dict("records"),
         "columns": [
             *(_OF_GRID if grid else _OF_CASES),
             ("runs", "runs", "d"),
-            *((outcome, outcome, "d") for outcome in found.outcomes),
+            *((outcome, outcome, "d") for outcome in results.outcomes),
             ("no_uplift", "did not uplift", "d"),
             ("median", "median [α]", ".3f"),
             ("largest", "largest [α]", ".3f"),
         ],
-        "about": found.manifest,
+        "about": results.manifest,
     }
-    return Page(name="sweep", template="runs/sweep", values=values, pictures=pictures(found))
+    return Page(name="sweep", template="runs/sweep", values=values, pictures=pictures(results))
 
 
 def _of_grid(plan: Mapping[str, Any]) -> dict[str, object]:

@@ -57,16 +57,16 @@ _WITH_TENDON: Mapping[str, object] = {
 }
 
 
-def page_of(found: Validity) -> Page:
+def page_of(results: Validity) -> Page:
     """Return the report."""
-    tables, structure, limits = found.tables, found.structure, limits_of(found.tables)
-    findings = found.findings()
+    tables, structure, limits = results.tables, results.structure, limits_of(results.tables)
+    findings = results.findings()
 
     def said(group: str) -> list[str]:
         lines = (sentence(each) for each in findings.of(f"limit_{group}"))
         return [f"{line[:1].upper()}{line[1:]}." for line in lines]
 
-    drawn = pictures(found)
+    drawn = pictures(results)
     names = [picture.name for picture in drawn]
     tendon, slab = structure.tendon is not None, bool(structure.slab_mass_ratio)
     values: dict[str, object] = {
@@ -101,9 +101,9 @@ def page_of(found: Validity) -> Page:
             )
         },
         "largest_peak": LARGEST_PEAK,
-        "records": found.facts["records"],
+        "records": results.facts["records"],
         "has_clearance": not slab,
-        "about": found.manifest,
+        "about": results.manifest,
     }
     if not slab:
         values |= {

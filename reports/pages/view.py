@@ -12,7 +12,7 @@ from .page import Page
 from .sentences import fragment
 
 
-def page_of(found: View) -> Page:
+def page_of(results: View) -> Page:
     """Return the page of a view.
 
     Raises
@@ -20,18 +20,18 @@ def page_of(found: View) -> Page:
     ValueError
         If nothing moves.
     """
-    (view,) = case_views(found.comparison)
-    require_motion(view.case.name, found.comparison.traces.values())
+    (view,) = case_views(results.comparison)
+    require_motion(view.case.name, results.comparison.traces.values())
     spec = playback(view)
     return Page(
         name="view",
         template="comparison/view",
         values={
             "name": view.case.name,
-            "headline": headline(found.comparison.findings()),
+            "headline": headline(results.comparison.findings()),
             "diagnostics": run_diagnostics(view),
             "lines": case_lines(view.case),
-            "about": found.manifest,
+            "about": results.manifest,
         },
         blocks={"player": fragment("comparison/player.html.j2", name="player", spec=spec)},
         outputs=["html"],  # without the player there is nothing to see

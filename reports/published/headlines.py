@@ -26,9 +26,9 @@ def table(name: str) -> pd.DataFrame:
 
 def headline(name: str) -> str:
     """The first paragraph in bold of a page."""
-    found = re.search(r"^\*\*(.*?)\*\*", (PUBLISHED / name).read_text(encoding="utf-8"), re.M | re.S)
-    assert found
-    return found.group(1)
+    match = re.search(r"^\*\*(.*?)\*\*", (PUBLISHED / name).read_text(encoding="utf-8"), re.M | re.S)
+    assert match
+    return match.group(1)
 
 
 def numbers(text: str) -> list[float]:
@@ -64,18 +64,18 @@ def quantile(ordered: np.ndarray[Any, Any], share: float) -> float:
 def check_validity() -> None:
     """Median ratios, and what one record in twenty exceeds."""
     runs = table("validity/records")
-    found: dict[str, list[list[float]]] = {}
+    entries: dict[str, list[list[float]]] = {}
     for _, point in runs.groupby(["tan_alpha", "semidiagonal", "intensity"]):
         wide = peaks(point, "motion", "peak")
         for method in ("recess", "ring", "flat", "perturbed copy"):
             own = ratios(wide, method, "recess model")
-            found.setdefault(method, []).append([quantile(own, share) for share in (0.5, 0.95)])
+            entries.setdefault(method, []).append([quantile(own, share) for share in (0.5, 0.95)])
     said = numbers(headline("validity/validity.md"))
-    medians = np.array(found["recess"])[:, 0]
+    medians = np.array(entries["recess"])[:, 0]
     assert said[0] == runs["motion"].nunique()
     assert said[1:3] == [round(medians.min(), 3), round(medians.max(), 3)]
     # by point, what one record in twenty exceeds: the least and the largest of each method
-    upper = [np.array(points)[:, 1] for points in found.values()]
+    upper = [np.array(points)[:, 1] for points in entries.values()]
     spans = re.findall(r"(\d\.\d\d|∞) to (\d\.\d\d|∞)", headline("validity/validity.md"))
     assert [math.inf if each == "∞" else float(each) for span in spans for each in span] == [
         round(float(end), 2) for each in upper for end in (each.min(), each.max())

@@ -201,12 +201,12 @@ def _tenths(count: int) -> bytes:
 
 def changes_since() -> dict[str, dict[str, int]]:
     """Return for each folder of results how many commits have changed each package since it was made."""
-    found = {}
+    entries = {}
     for folder in STUDIES:
         for made in read_manifests(HERE / folder):
             changed = {name: _commits_since(made.commit, name) for name in made.code}
-            found[folder] = {name: count for name, count in changed.items() if count}
-    return found
+            entries[folder] = {name: count for name, count in changed.items() if count}
+    return entries
 
 
 def _commits_since(commit: str, folder: str) -> int:

@@ -84,11 +84,11 @@ def run(
 
 
 def _checked(
-    folder: Path, found: Found, page_of: Callable[[Found], Page], claims: Callable[[Found], Sequence[str]]
+    folder: Path, results: Found, page_of: Callable[[Found], Page], claims: Callable[[Found], Sequence[str]]
 ) -> list[str]:
-    page = page_of(found)
+    page = page_of(results)
     stored, today = (folder / f"{page.name}.md").read_text(encoding="utf-8"), page.markdown()
-    rows = [f"FAULT {folder.name}: {each}" for each in claims(found)]
+    rows = [f"FAULT {folder.name}: {each}" for each in claims(results)]
     if extra := not_borne_out(stored, today):
         rows.append(f"FAULT {folder.name}: its page says {', '.join(extra)}, its tables do not")
     if stored != today and not extra:

@@ -97,7 +97,7 @@ def demands_of(trace: Trace) -> dict[str, float]:
     ends = [(_BASE, trace.contact_force, trace.friction_needed)]
     if cylinder.slab_mass_ratio > 0.0:
         ends.append((_TOP, trace.top_contact_force, trace.top_friction_needed))
-    found: dict[str, float] = {}
+    entries: dict[str, float] = {}
     largest = trace.peak_tilt / cylinder.alpha
     if trace.outcome == "overturned":
         largest = float(trace.tilt[moving].max()) / cylinder.alpha if moving.any() else 0.0
@@ -110,9 +110,9 @@ def demands_of(trace: Trace) -> dict[str, float]:
         pull = {_TENDON: tendon.tension(cylinder, min(largest * cylinder.alpha, OVERTURNED_TILT))}
     if not moving.any():
         for names, *_ in ends:
-            found |= dict(zip(names, (0.0, 0.0, 1.0), strict=True))
+            entries |= dict(zip(names, (0.0, 0.0, 1.0), strict=True))
         together = {f"{name}_with_{part}": float(part == "force") for name, part in _pairs()}
-        return found | {
+        return entries | {
             **{"moment": 0.0, "shear_and_wall": 0.0, "tilt": largest},
             **{"shear_peak": 0.0, "force_peak": 1.0},
             **{**pull, **together, **_none_missing()},
@@ -129,16 +129,16 @@ def demands_of(trace: Trace) -> dict[str, float]:
     series["moment"] = (1.0 + np.cos(trace.tilt[moving])) * kappa
     series["shear_and_wall"] = series["shear"] + series["moment"]
     places = {name: _usual(values) for name, values in series.items()}
-    found = {name: float(series[name][place]) for name, place in places.items()}
-    found |= {peak: float(series[name].max()) for name, peak in PEAKS.items()}
-    usual = np.logical_and.reduce([series[name] <= found[name] for name in (*_BASE, *_SUMS)])
+    entries = {name: float(series[name][place]) for name, place in places.items()}
+    entries |= {peak: float(series[name].max()) for name, peak in PEAKS.items()}
+    usual = np.logical_and.reduce([series[name] <= entries[name] for name in (*_BASE, *_SUMS)])
     usual &= series["force"] > 0.0
     for name, part in _pairs():
         place = int(np.where(usual, series[name], -math.inf).argmax())
-        found[f"{name}_with_{part}"] = float(series[part][place]) if usual.any() else math.nan
+        entries[f"{name}_with_{part}"] = float(series[part][place]) if usual.any() else math.nan
     time = max(float(lengths.sum()), 1e-300)
     shares = {"slip": lengths[slips & ~lost].sum() / time, "lost": lengths[lost].sum() / time}
-    return found | {"tilt": largest, **pull, **shares}
+    return entries | {"tilt": largest, **pull, **shares}
 
 
 def weaker_factors(threshold: float) -> list[float]:

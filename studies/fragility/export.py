@@ -73,7 +73,7 @@ class Limit:
         return math.isfinite(self.median)
 
 
-def limits_by_function(found: Fragility) -> Iterator[tuple[str, list[Limit]]]:
+def limits_by_function(results: Fragility) -> Iterator[tuple[str, list[Limit]]]:
     """Yield name and limit states of each body and method.
 
     Raises
@@ -81,14 +81,14 @@ def limits_by_function(found: Fragility) -> Iterator[tuple[str, list[Limit]]]:
     ValueError
         If motions are not scaled to levels, where nothing is fitted either.
     """
-    facts, measure = found.facts, str(found.facts["measure"])
+    facts, measure = results.facts, str(results.facts["measure"])
     names = [name for name in _NESTED if name in facts["limits"]]
-    for (cylinder, method), of_limit in found.fits.groupby(["cylinder", "method"], sort=False):
+    for (cylinder, method), of_limit in results.fits.groupby(["cylinder", "method"], sort=False):
         body = facts["cylinders"][cylinder]
         unit = {"peak_acceleration": body["tan_alpha"], "peak_velocity": body["velocity_unit"]}.get(
             measure, 1.0
         )
-        points = found.points[found.points["cylinder"] == cylinder]
+        points = results.points[results.points["cylinder"] == cylinder]
         uplift = unit * float((points[measure] / points["scale"] * points["uplift_scale"]).min())
         limits = []
         for fit in of_limit[of_limit["limit"].isin(names)].to_dict("records"):
@@ -97,10 +97,10 @@ def limits_by_function(found: Fragility) -> Iterator[tuple[str, list[Limit]]]:
                 raise ValueError(
                     f"{fit['limit']} of {method} has no curve, and no levels whose shares could stand for it"
                 )
-            counts = found.counts[
-                (found.counts["cylinder"] == cylinder)
-                & (found.counts["method"] == method)
-                & (found.counts["limit"] == fit["limit"])
+            counts = results.counts[
+                (results.counts["cylinder"] == cylinder)
+                & (results.counts["method"] == method)
+                & (results.counts["limit"] == fit["limit"])
             ].sort_values("intensity")
             x = unit * counts["intensity"].to_numpy(float)
             share = np.maximum.accumulate((counts["k"] / counts["n"]).to_numpy(float))
@@ -124,7 +124,7 @@ EXPORTS = {"nrml": "fragility.nrml.xml", "pelicun": "fragility.pelicun.csv"}
 """File of each format."""
 
 
-def exported(found: Fragility, form: str) -> tuple[str, bytes]:
+def exported(results: Fragility, form: str) -> tuple[str, bytes]:
     """Return the name and the content of the file of a format of `EXPORTS`.
 
     Raises
@@ -132,25 +132,25 @@ def exported(found: Fragility, form: str) -> tuple[str, bytes]:
     ValueError
         If a limit state has neither a curve nor shares of levels.
     """
-    return EXPORTS[form], {"nrml": nrml, "pelicun": pelicun}[form](found)
+    return EXPORTS[form], {"nrml": nrml, "pelicun": pelicun}[form](results)
 
 
-def _period(found: Fragility) -> float:
-    return float(found.facts["period"])
+def _period(results: Fragility) -> float:
+    return float(results.facts["period"])
 
 
-def nrml(found: Fragility) -> bytes:
+def nrml(results: Fragility) -> bytes:
     """Return the fragility model of OpenQuake, NRML 0.5: continuous where all limit states are fitted."""
-    imt, words = _TYPES[str(found.facts["measure"])]
+    imt, words = _TYPES[str(results.facts["measure"])]
     factor, unit = (100.0, "cm/s") if imt == "PGV" else (1.0, "g")
     root = Tree.Element("nrml", xmlns="http://openquake.org/xmlns/nrml/0.5")
     model = Tree.SubElement(
         root, "fragilityModel", id="rockwobble", assetCategory="structure", lossCategory="structural"
     )
-    Tree.SubElement(model, "description").text = f"{imt} in {unit}, {words}. {found.facts['source']}"
-    functions = list(limits_by_function(found))
+    Tree.SubElement(model, "description").text = f"{imt} in {unit}, {words}. {results.facts['source']}"
+    functions = list(limits_by_function(results))
     Tree.SubElement(model, "limitStates").text = " ".join(each.name for each in functions[0][1])
-    name = f"SA({_period(found):g})" if imt == "SA" else imt
+    name = f"SA({_period(results):g})" if imt == "SA" else imt
     for label, limits in functions:
         continuous = all(each.fitted for each in limits)
         x = factor * limits[0].intensity
@@ -174,15 +174,15 @@ def nrml(found: Fragility) -> bytes:
     return bytes(Tree.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"
 
 
-def pelicun(found: Fragility) -> bytes:
+def pelicun(results: Fragility) -> bytes:
     """Return damage functions as pelicun reads them.
 
     Empty is a limit state without a curve that not all motions reach: pelicun takes no distribution of which
     the end is not known.
     """
-    imt, _ = _TYPES[str(found.facts["measure"])]
-    demand = _PELICUN[imt].format(_period(found))
-    functions = list(limits_by_function(found))
+    imt, _ = _TYPES[str(results.facts["measure"])]
+    demand = _PELICUN[imt].format(_period(results))
+    functions = list(limits_by_function(results))
     head = ["ID", "Incomplete", "Demand-Type", "Demand-Unit", "Demand-Offset", "Demand-Directional"]
     for place in range(1, len(functions[0][1]) + 1):
         head += [f"LS{place}-{name}" for name in ("Family", "Theta_0", "Theta_1")]

@@ -322,7 +322,7 @@ def contrast_table(
     pairs = itertools.combinations(blocks.methods, 2)
     for limit, (against, method) in itertools.product(blocks.limits, pairs):
         about = {"limit": limit, "method": method, "against": against}
-        found: list[tuple[Array, Array]] = []
+        entries: list[tuple[Array, Array]] = []
         ends: list[tuple[float, float]] = []
         for cylinder in blocks.cylinders:
             pair = [blocks.sample(cylinder, name, limit) for name in (method, against)]
@@ -335,12 +335,12 @@ def contrast_table(
             if unknown.any():
                 pair = [Sample(x=each.x, y=np.where(unknown, np.nan, each.y)) for each in pair]
                 own, many = [each.curves() for each in pair], [each.curves(weights) for each in pair]
-            found.append((_differences(own), _differences(many)))
-            row = curve_contrast(*found[-1], blocks.fewest, margin)
+            entries.append((_differences(own), _differences(many)))
+            row = curve_contrast(*entries[-1], blocks.fewest, margin)
             rows.append({"cylinder": cylinder, **about, **row, **_ends(ends[-1:])})
-        if len(found) == len(blocks.cylinders) > 1:
+        if len(entries) == len(blocks.cylinders) > 1:
             with np.errstate(invalid="ignore"):  # of one beyond all levels and one below there is none
-                mean, means = (np.mean(each, axis=0) for each in zip(*found, strict=True))
+                mean, means = (np.mean(each, axis=0) for each in zip(*entries, strict=True))
             row = curve_contrast(mean, means, blocks.fewest, margin)
             rows.append({"cylinder": ALL, **about, **row, **_ends(ends)})
     return pd.DataFrame(rows)

@@ -34,9 +34,9 @@ _REFERENCES = {
 }
 
 
-def page_of(found: Extremes) -> Page:
+def page_of(results: Extremes) -> Page:
     """Return the report."""
-    runs = found.extremes[found.extremes["verdict"] != "n/a"]
+    runs = results.extremes[results.extremes["verdict"] != "n/a"]
     counts = {name: int((runs["verdict"] == name).sum()) for name in WORDS}
     values: dict[str, object] = {
         "fine": FINE,
@@ -54,7 +54,7 @@ def page_of(found: Extremes) -> Page:
             }
             for row in runs.to_dict("records")
         ],
-        "about": found.manifest,
+        "about": results.manifest,
     }
     return Page(name="extremes", template=Path(__file__).with_name("page.md.j2"), values=values)
 
@@ -104,11 +104,11 @@ def _codes(cell: str) -> list[str]:
     return cell.split(", ") if cell else []
 
 
-def claims(found: Extremes) -> list[str]:
+def claims(results: Extremes) -> list[str]:
     """Return the runs that are wrong in silence, or refused for a reason that no request of the scan has."""
     return [
         f"{row['extreme']} {row['value']}, {row['method']}: {row['verdict']} {row['refusal']}"
-        for row in found.extremes.to_dict("records")
+        for row in results.extremes.to_dict("records")
         if row["verdict"] == "silent"
         or (row["verdict"] == "refused" and not any(each in row["refusal"] for each in _REFUSALS))
     ]

@@ -113,10 +113,10 @@ def parts(trace: Trace, end: float) -> tuple[Part, Part]:
     half = half_turn_times(trace)
     energy = np.interp(time, trace.time, trace.energy)
     change = np.abs(np.diff(energy)) / np.maximum(energy[1:], energy[:-1])
-    found = []
+    entries = []
     for inside in (time < end, time >= end):
         pairs = inside[1:] & inside[:-1]
-        found.append(
+        entries.append(
             Part(
                 passes=int(inside.sum()),
                 half_turn=_median(half[inside]),
@@ -126,7 +126,7 @@ def parts(trace: Trace, end: float) -> tuple[Part, Part]:
                 reversals=int((turn[1:] * turn[:-1] < 0.0)[pairs].sum()),
             )
         )
-    return found[0], found[1]
+    return entries[0], entries[1]
 
 
 def abrupt_time() -> float:

@@ -102,9 +102,9 @@ def page_of(paper: Paper) -> Page:
 # of what follows, a sentence of several lines has the lines of the document
 
 
-def _judgement(found: Statement) -> str:
+def _judgement(statement: Statement) -> str:
     """Whether a statement of the paper is borne out, and on which axes."""
-    return f"{'On equal shaking it' if found.name.endswith('equal') else 'It'} {found.verdict}."
+    return f"{'On equal shaking it' if statement.name.endswith('equal') else 'It'} {statement.verdict}."
 
 
 def _linear_range(numbers: Mapping[str, float]) -> str:

@@ -54,18 +54,18 @@ def statements(spectrum: OverturningSpectrum) -> list[Statement]:
         f"upper_{name}": float(upper[name])
         for name in ("smallest", "largest", "unconservative", "conservative")
     }
-    found = []
+    entries = []
     for axes, own in (("own", True), ("equal", False)):
         lowest = lowest_on_axes(spectrum, own=own)
         top, whole = _lower(lowest, large), _lower(lowest, np.full(len(large), True))
         beside = {} if own else cells
         of_large = verdict_of(top["share"] > 0.5, top["share"] > _EVERY)
         parts = [whole["share"] > 0.5, *([] if own else [bool(every.unconservative > every.conservative)])]
-        found += [
+        entries += [
             (f"large_{axes}", {**top, "large": LARGE, **beside}, of_large),
             (f"general_{axes}", {**whole, **beside}, verdict_of(*parts)),
         ]
-    return [Statement(figure=6, name=name, numbers=n, verdict=verdict) for name, n, verdict in found]
+    return [Statement(figure=6, name=name, numbers=n, verdict=verdict) for name, n, verdict in entries]
 
 
 def unconservative_from(spectrum: OverturningSpectrum) -> float:

@@ -42,12 +42,12 @@ def to_frame(statements: Sequence[Statement]) -> pd.DataFrame:
 
 def from_frame(table: pd.DataFrame) -> list[Statement]:
     """Return the statements of the table of `to_frame`."""
-    found = []
+    entries = []
     for name, rows in table.groupby("statement", sort=False):
         first, numbers = rows.iloc[0], dict(zip(rows["number"], rows["value"].astype(float), strict=True))
-        found.append(
+        entries.append(
             Statement(
                 figure=int(first["figure"]), name=str(name), numbers=numbers, verdict=str(first["verdict"])
             )
         )
-    return found
+    return entries

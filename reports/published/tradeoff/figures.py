@@ -36,13 +36,13 @@ _BASE = "recess model"
 _OF_MODEL, _OF_ENGINES = ("scipy", "rest threshold"), ("integrator", "contact")  # panels of variants
 
 
-def pictures(found: Tradeoff) -> list[Picture]:
+def pictures(results: Tradeoff) -> list[Picture]:
     """Return a picture for each problem; its panels share their axes, and no line has a family of its own."""
-    return [_picture(found, name) for name in TITLES if (found.points["problem"] == name).any()]
+    return [_picture(results, name) for name in TITLES if (results.points["problem"] == name).any()]
 
 
-def _picture(found: Tradeoff, problem: str) -> Picture:
-    points = found.points[(found.points["problem"] == problem) & (found.points["error"] > 0.0)]
+def _picture(results: Tradeoff, problem: str) -> Picture:
+    points = results.points[(results.points["problem"] == problem) & (results.points["error"] > 0.0)]
     time = _axis("computing time / recess model's", "-", points["ratio"])
     error = _axis(*ERRORS[problem], points["error"])
     panels = []
@@ -53,8 +53,8 @@ def _picture(found: Tradeoff, problem: str) -> Picture:
         plain = [_BASE] if name in _OF_MODEL else []  # what the variants are variants of
         plain += [f"{engine} {support}" for engine in chosen["family"].unique() if name in _OF_ENGINES]
         chosen = pd.concat([points[points["line"].isin(plain)], chosen])
-        described = found.problems[
-            (found.problems["problem"] == problem) & (found.problems["support"] == support)
+        described = results.problems[
+            (results.problems["problem"] == problem) & (results.problems["support"] == support)
         ].iloc[0]
         layers: list[Line | Rule] = list(_lines(chosen))
         if np.isfinite(described["chance"]):

@@ -26,9 +26,9 @@ _NOT_ENGINES = ("reduced", "scipy")
 _TEMPLATE = Path(__file__).with_name("page.md.j2")
 
 
-def page_of(found: Tradeoff) -> Page:
+def page_of(results: Tradeoff) -> Page:
     """Return the report."""
-    points, cheapest = found.points, costs(found.points)
+    points, cheapest = results.points, costs(results.points)
     scipy = cheapest.loc[cheapest["family"] == "scipy", "ratio"]
     price = rest_tilt_price(points)
     tightest = price.loc[price.groupby(["problem", "line"], sort=False)["value"].idxmin()]
@@ -39,15 +39,15 @@ def page_of(found: Tradeoff) -> Page:
         "costs": _rows(_ways(cheapest)),
         "plateaus": _rows(plateaus(points)),
         "rest": _rows(tightest),
-        "scenes": found.scenes.sort_values(["engine", "ratio"]).to_dict("records"),
-        "problems": _rows(found.problems),
-        "chance": _within_chance(found),
+        "scenes": results.scenes.sort_values(["engine", "ratio"]).to_dict("records"),
+        "problems": _rows(results.problems),
+        "chance": _within_chance(results),
         "failed": _rows(points[points["error"].isna()]),
         "rounds": ROUNDS,
-        "load": _of_load(*found.facts["load"]),
-        "about": found.manifest,
+        "load": _of_load(*results.facts["load"]),
+        "about": results.manifest,
     }
-    drawn = pictures(found)
+    drawn = pictures(results)
     values["drawn"] = [picture.name for picture in drawn]
     return Page(name="tradeoff", template=_TEMPLATE, values=values, pictures=drawn)
 
@@ -101,11 +101,13 @@ def _ways(cheapest: pd.DataFrame) -> pd.DataFrame:
     return order.merge(wide.fillna(NONE).reset_index(), on=keys)
 
 
-def _within_chance(found: Tradeoff) -> list[dict[str, object]]:
+def _within_chance(results: Tradeoff) -> list[dict[str, object]]:
     """Count the points of engines that are nearer to their reference than another ensemble, by support."""
-    points = found.points[(found.points["problem"] == "peaks") & ~found.points["family"].isin(_NOT_ENGINES)]
+    points = results.points[
+        (results.points["problem"] == "peaks") & ~results.points["family"].isin(_NOT_ENGINES)
+    ]
     rows: list[dict[str, object]] = []
-    for row in found.problems[found.problems["chance"].notna()].to_dict("records"):
+    for row in results.problems[results.problems["chance"].notna()].to_dict("records"):
         own = points[points["support"] == row["support"]]
         good = own[own["error"] <= row["chance"]]
         least = good.nsmallest(1, "ratio").to_dict("records")

@@ -156,17 +156,17 @@ def table_of(rows: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=list(COLUMNS)).astype({**numbers, "uplift": str, "remark": str})
 
 
-def page_of(found: EngineVersions) -> Page:
+def page_of(results: EngineVersions) -> Page:
     """Return the page of the table."""
     rows: list[dict[str, Any]] = [
         {**{str(name): value for name, value in row.items()}, "title": TITLES[row["engine"]]}
-        for row in found.versions.to_dict("records")
+        for row in results.versions.to_dict("records")
     ]
     values = {
         "rows": rows,
-        "about": found.manifest,
-        "answer": _answer(_changes(found.versions)),
-        "earlier": _earlier(found.facts.get("earlier", {})),
+        "about": results.manifest,
+        "answer": _answer(_changes(results.versions)),
+        "earlier": _earlier(results.facts.get("earlier", {})),
     }
     return Page(name="versions", template=Path(__file__).with_name("page.md.j2"), values=values)
 
@@ -190,15 +190,15 @@ def _earlier(origins: Mapping[str, Mapping[str, str]]) -> str:
 
 def _changes(table: pd.DataFrame) -> list[dict[str, Any]]:
     """Say between which releases the error of El Centro has changed by more than a tenth."""
-    found: list[dict[str, Any]] = []
+    entries: list[dict[str, Any]] = []
     for engine, own in table.groupby("engine", sort=False):
         known = own[own["el_centro"].notna()]
         pairs = zip(known.to_dict("records"), known.to_dict("records")[1:], strict=False)
         for before, after in pairs:
             ratio = after["el_centro"] / before["el_centro"]
             if not 0.9 < ratio < 1.1:
-                found.append({"engine": TITLES[str(engine)], "since": after["version"], "ratio": ratio})
-    return found
+                entries.append({"engine": TITLES[str(engine)], "since": after["version"], "ratio": ratio})
+    return entries
 
 
 if __name__ == "__main__":
