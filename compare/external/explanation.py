@@ -28,6 +28,7 @@ from .mistakes import (
     in_time_scale,
     of_path,
     readings,
+    spinning,
     with_changes,
 )
 from .motion import SAME_TIME, Complex, Difference, Motion, Reference, explains, on_samples_of
@@ -89,6 +90,7 @@ def explanations(values: Values, read: Read, reference: Reference) -> Iterator[E
             of_axes = _path_explained(reference, turned, frame)
             if frame != Frame() and frame not in (change.frame for change in of_axes):
                 of_axes = (frame.change("azimuth"), *of_axes)
+            of_axes += _spin_explained(reference, with_changes(turned, of_axes))
             left = reference.difference(with_changes(turned, of_axes))
             yield Explanation(changes=(*changes, *more, *of_axes), left=left)
 
@@ -189,6 +191,20 @@ def _path_explained(reference: Reference, motion: Motion, axes: Frame) -> tuple[
             count = (frame not in expected) + len(read) + 1.5 * moved
             passing.append((count, left.size, changes))
     return min(passing, key=lambda one: one[:2])[2] if passing else ()
+
+
+def _spin_explained(reference: Reference, motion: Motion) -> tuple[Change, ...]:
+    """Return the steady spin about the axis that explains its turn, if one does."""
+    before = reference.difference(motion)
+    if before.twist is None or not before.twist.differs:
+        return ()
+    model, trial = on_samples_of(reference.motion, motion)
+    assert model.twist is not None
+    assert trial.twist is not None
+    within = model.time <= before.covered + SAME_TIME
+    time, apart = (model.time - model.time[0])[within], (trial.twist - model.twist)[within]
+    change = spinning(float(time @ apart / (time @ time)))
+    return (change,) if explains(before.twist, reference.difference(change.motion(motion)).twist) else ()
 
 
 def _origin(reference: Reference, motion: Motion, end: float) -> Change:

@@ -60,14 +60,15 @@ class Mistake:
     ----------
     code : str
         "time_offset" (value: to be added to the times [s]), "time_scale" (value: the motion is slower by
-        this factor), "clock" (value: times are too large by this factor), "time_unit",
-        "angle_unit", "length_unit" (value: too large by this factor), "turned"
+        this factor), "clock" (value: times are too large by this factor), "spin" (value: [deg/s]),
+        "time_unit", "angle_unit", "length_unit" (value: too large by this factor), "turned"
         (by value [deg], counter-clockwise), "turned_back" (by half a turn), "x_reversed", "y_reversed",
         "axes_exchanged", "axes_exchanged_reversed", "mirrored" (value: azimuth of the line [deg]),
         "z_reversed", "y_up", "quaternion_scalar_last", "quaternion_inverse", "origin" (value: its distance
         from the right one [m]).
     concerns : str
-        "time", "tilt", "azimuth", "tilt and azimuth", "quaternion", "path", or "axes": azimuth and path.
+        "time", "tilt", "azimuth", "tilt and azimuth", "quaternion", "path", "twist", or "axes": azimuth
+        and path.
     value : float
         NaN where there is none.
     """
@@ -79,7 +80,7 @@ class Mistake:
     @property
     def changes_tilt(self) -> bool:
         """Whether it changes tilts; mistakes in horizontal axes, azimuth or path (beside a tilt) do not."""
-        return self.code == "y_up" or self.concerns not in ("azimuth", "path", "axes")
+        return self.code == "y_up" or self.concerns not in ("azimuth", "path", "axes", "twist")
 
     @property
     def words(self) -> str:
@@ -98,6 +99,8 @@ class Mistake:
                 factor, way = max(value, 1.0 / value), "long" if value > 1.0 else "short"
                 motion = "slow" if value > 1.0 else "fast"
                 return f"it runs in {motion} motion: times are {factor:g} times too {way}"
+            case "spin":
+                return f"it spins about its axis by {value:.3g} deg/s, so that its base must slip"
             case "time_unit":
                 return f"times are in {'ms, read as s' if value > 1.0 else 's, read as ms'}"
             case "angle_unit":
@@ -179,6 +182,16 @@ def readings(values: Values) -> Iterator[Change]:
         yield in_unit("time_unit", "time", ("time",), factor)
     for factor in CLOCK_FACTORS:
         yield in_unit("clock", "time", ("time",), factor)
+
+
+def spinning(rate: float) -> Change:
+    """Return what takes back a steady spin about the axis [rad/s]."""
+
+    def taken_back(motion: Motion) -> Motion:
+        assert motion.twist is not None
+        return replace(motion, twist=motion.twist - rate * (motion.time - motion.time[0]))
+
+    return Change(mistake=Mistake(code="spin", concerns="twist", value=math.degrees(rate)), motion=taken_back)
 
 
 def of_path(reading: Change) -> Change:

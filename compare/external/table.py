@@ -88,6 +88,30 @@ IN_ORDER = {
         ("time", *QUATERNION, *POSITION),
     )
 }
+# what programs write that is not read: in the first lines; what to do
+PROGRAMS = {
+    "an export of OptiTrack Motive": (
+        r"^Format Version",
+        "export quaternions with z up, and give --trajectory-columns by number, time first: 2,6,3,4,5",
+    ),
+    "an export of Vicon Nexus": (
+        r"^(Trajectories|Segments|Joints|Model Outputs)\b",
+        "turn RX, RY and RZ into a quaternion, in columns time, qw, qx, qy, qz",
+    ),
+    "an export of Qualisys": (
+        r"^NO_OF_FRAMES",
+        "turn the rotation matrix into a quaternion, in columns time, qw, qx, qy, qz",
+    ),
+    "an export of OpenSim": (
+        r"^endheader",
+        "drop the lines up to endheader, and turn the angles into a quaternion: time, qw, qx, qy, qz",
+    ),
+    "an export of rostopic": (r"^%time", "export a topic of type geometry_msgs/PoseStamped"),
+    "a TUM trajectory": (
+        r"\A(?:#.*\n)*[-+.\deE]+(?: +[-+.\deE]+){7}$",
+        "write time,x,y,z,qx,qy,qz,qw above it, and commas for the blanks",
+    ),
+}
 LISTED, LONGEST_NAME = 80, 40  # characters of a list of names in a message, and of one of them
 FEWEST_SAMPLES = 3
 
@@ -203,6 +227,17 @@ def _table(
     return Table(name, [line for line, _ in kept], values, ignored, len(samples) - len(kept))
 
 
+def _advice(lines: Sequence[str]) -> str:
+    """Return the program that wrote a file, by its first lines, and what to do; empty if none is known."""
+    start = "\n".join(lines[:20])
+    programs = (
+        f"is {name}: {advice}"
+        for name, (pattern, advice) in PROGRAMS.items()
+        if re.search(pattern, start, re.MULTILINE)
+    )
+    return next(programs, "")
+
+
 def _chosen(file: str, rows: Rows, columns: Sequence[str]) -> tuple[list[str], Stated, Rows]:
     """Return the header, place and unit of the columns that an option names, and the rows below it.
 
@@ -299,7 +334,9 @@ def _named(path: Path, lines: Sequence[str]) -> tuple[list[str], Stated, Rows]:
         raise ValueError(f"{file} must have tilt where it has azimuth, got no tilt")
     if "time" not in known or not {"tilt", "qw", "x"} & set(known):
         raise ValueError(
-            f"{file} must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x, y and z, "
+            f"{file} {advice}"
+            if (advice := _advice(lines))
+            else f"{file} must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x, y and z, "
             f"got {name_list([each for each in header if each]) or 'none'}; --trajectory-columns names them"
         )
 

@@ -171,13 +171,13 @@ def test_columns_that_an_option_names_are_read_whatever_stands_above(save, asked
     assert trajectory.tilt.max() == pytest.approx(math.radians(3.0))
 
 
-def test_columns_that_are_not_there_are_refused_with_the_option_that_names_them(save):
+def test_columns_that_are_not_there_and_a_known_program_are_named(save):
     for asked, words in (
         {"n,az": "no line with the columns n, az", "n": "must be time, tilt; time, "}
     ).items():
         with pytest.raises(ValueError, match=words):
             read_trajectory(External(path=save(MOTIVE), columns=asked.split(",")), RELEASE)
-    with pytest.raises(ValueError, match="--trajectory-columns names them"):
+    with pytest.raises(ValueError, match="is an export of OptiTrack Motive: export quaternions"):
         read_trajectory(save(MOTIVE), RELEASE)
 
 

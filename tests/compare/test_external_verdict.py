@@ -248,7 +248,7 @@ def test_quaternions_of_the_inverse_turn_are_named(save):
 
 
 @pytest.mark.parametrize("model", ["recess", "flat"])
-def test_a_spin_about_its_axis_on_the_spot_differs_in_twist_alone(save, model):
+def test_a_spin_about_its_axis_on_the_spot_is_named(save, model):
     trace = response("pier wobbles", model)
     half = 0.5 * (trace.twist + 0.4 * trace.time)
     q = quaternions(trace)
@@ -260,7 +260,8 @@ def test_a_spin_about_its_axis_on_the_spot_differs_in_twist_alone(save, model):
     }
     found = verdict("pier wobbles", save(pd.DataFrame({"time": trace.time} | turns)), model)
     assert found.differs_in == ("twist",)
-    assert found.mistakes == ()
+    assert named(found) == [("twist", "spin")]
+    assert found.mistakes[0].value == pytest.approx(math.degrees(0.4), rel=1e-3)
     assert found.twist_rms == pytest.approx(math.degrees(0.4 * 6.0 / math.sqrt(3.0)), rel=0.01)
 
 
