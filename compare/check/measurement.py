@@ -23,7 +23,6 @@ from rockwobble.models import (
 )
 from rockwobble.models.cylinder import PIER
 from rockwobble.models.shown import Brief
-from rockwobble.models.support import SUPPORTS
 from rockwobble.models.trace_source import Known
 
 Outcome = Literal["passed", "FAILED", "no baseline", "not run"]
@@ -120,7 +119,6 @@ def not_run(name: str, note: str) -> Result:
 
 
 GRAVITY = 9.81  # [m/s^2], the default of a case
-WALLED = tuple(each for each in SUPPORTS.values() if each.walls)
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
 FRAME = WobblingFrame(PIER, 1.0, columns=1)
 THRESHOLD = GRAVITY * PIER.tan_alpha  # ground acceleration of its uplift [m/s^2]

@@ -6,13 +6,12 @@ package has no wheel. Another package declares its own as an entry point of the 
 
 from __future__ import annotations
 
-import ctypes
 import importlib
 import importlib.util
 import platform
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from functools import cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
@@ -47,13 +46,9 @@ class _Entry:
     module: str = ""  # where it is not called as the package
     part: str = ""  # of the module, which loads only where all of it is there
     standard: bool = True  # comes with every installation of this package, where it has a wheel
-    # of the system, which a wheel for Linux does not bring, by the package that has them
-    libraries: Mapping[str, str] = field(default_factory=dict)
 
 
 _UNITS = {"rolling_resistance": " m"}  # of terms of a case, where a refusal says them
-# what draws, and is linked even where nothing is drawn; a container without a screen has none of it
-_GRAPHICS = {"libgl1": "libGL.so.1", "libx11-6": "libX11.so.6"}
 # of PyBullet; elsewhere DART takes its place in a default run
 _WHEEL = sys.version_info < (3, 12) and sys.platform == "linux" and platform.machine() == "x86_64"
 _ENGINES: Mapping[str, _Entry] = MappingProxyType(
@@ -66,13 +61,7 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
             "pip install pybullet, which has wheels for Python 3.11 and older on Linux x86-64 only",
             standard=_WHEEL,
         ),
-        "dart": _Entry(
-            "DartEngine",
-            "dartpy",
-            "pip install 'dartpy>=6.20,<7'",
-            standard=not _WHEEL,
-            libraries=_GRAPHICS,
-        ),
+        "dart": _Entry("DartEngine", "dartpy", "pip install 'dartpy>=6.20,<7'", standard=not _WHEEL),
         "drake": _Entry(
             "DrakeEngine",
             "drake",
@@ -80,15 +69,8 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
             module="pydrake",
             part="multibody.plant",
             standard=False,
-            libraries={"libglib2.0-0": "libglib-2.0.so.0"},
         ),
-        "exudyn": _Entry(
-            "ExudynEngine",
-            "exudyn",
-            "pip install 'exudyn>=1.13.6,<2'",
-            standard=False,
-            libraries=_GRAPHICS,
-        ),
+        "exudyn": _Entry("ExudynEngine", "exudyn", "pip install 'exudyn>=1.13.6,<2'", standard=False),
         "rapier": _Entry("RapierEngine", "rapier3d", "pip install 'rapier3d>=0.36'", standard=False),
     }
 )
@@ -148,10 +130,7 @@ def engine_lack(name: str) -> str:
         return ""
     if importlib.util.find_spec(entry.module or entry.package) is None:
         return f"is not installed here: {entry.remedy}"
-    missing = [library for library in entry.libraries.values() if not _has_library(library)]
-    if not missing:
-        return ""
-    return f"needs {' and '.join(missing)} of the system: apt install {' '.join(entry.libraries)}"
+    return ""
 
 
 def engine_fault(name: str) -> str:
@@ -273,15 +252,6 @@ def engine_facts(name: str) -> EngineFacts:
 def engine_packages() -> dict[str, str]:
     """Return the package of each of our engines, by the name of the engine."""
     return {name: entry.package for name, entry in _ENGINES.items()}
-
-
-@cache
-def _has_library(name: str) -> bool:
-    """Whether a library of the system can be loaded; elsewhere than on Linux, wheels bring what they need."""
-    try:
-        return sys.platform != "linux" or bool(ctypes.CDLL(name))
-    except OSError:
-        return False
 
 
 def _require_installed(name: str) -> None:
