@@ -22,6 +22,8 @@ nu     -        w/(1 + gamma), force at the base for an acceleration of S over
 g      m/s^2    gravity                                                         (17)
 p      1/s      sqrt(g R/A), frequency parameter; p2 is its square              (23)
 delta  m        length of rolling resistance; 0 in the paper
+        rad      `balance`, tilt beyond which the body falls if nothing moves it: alpha
+        1/s      `fastest` rate of the couple near upright: p
 ====== ======== =============================================================== ========
 """
 
@@ -53,6 +55,8 @@ class Body(NamedTuple):
     mu: float
     nu: float
     delta: float
+    balance: float
+    fastest: float
 
 
 def body_of(cylinder: RockingBody, gravity: float, rolling_resistance: float = 0.0) -> Body:
@@ -72,6 +76,7 @@ def body_of(cylinder: RockingBody, gravity: float, rolling_resistance: float = 0
     A = I1 + mu * h * h + mu * b * b
     R = cylinder.semidiagonal
     p2 = gravity * R / A
+    alpha = math.atan(cylinder.tan_alpha)
     return Body(
         b=b,
         h=h,
@@ -85,11 +90,13 @@ def body_of(cylinder: RockingBody, gravity: float, rolling_resistance: float = 0
         p2=p2,
         sin_alpha=b / R,
         cos_alpha=h / R,
-        alpha=math.atan(cylinder.tan_alpha),
+        alpha=alpha,
         p=p2**0.5,
         mu=mu,
         nu=w / (1.0 + gamma),
         delta=rolling_resistance,
+        balance=alpha,
+        fastest=p2**0.5,
     )
 
 

@@ -21,7 +21,7 @@ from .body import Body, restitution_from_momentum
 from .columns import is_spatial, three_columns
 from .integration.balance import decide
 from .integration.result import Driver, IntegrationResult, Options, Task
-from .restoring import TERMS, balance, constants_of
+from .restoring import TERMS, constants_of
 from .rolling import impact_ratio
 
 SUPPORTS: tuple[str, ...] = MODELLED
@@ -288,7 +288,7 @@ def balance_tilt_of_case(case: Case) -> float:
     >>> round(balance_tilt_of_case(case) / pier.alpha, 3)
     1.492
     """
-    return float(balance(Problem(case).body))
+    return float(Problem(case).body.balance)
 
 
 def _require_in_plane(initial: InitialState, plane: float) -> None:

@@ -24,7 +24,7 @@ At the base the tendon pulls from the base centre B to O, which is 2 b sin(theta
 theta/2 from the vertical: down with T cos(theta/2)/n and inward with T sin(theta/2)/n. At the top it does the
 mirror image of that to the slab; inside the column its forces cancel. It never goes slack.
 
-Each function is there twice, for a body without a tendon and for one with it (`_compile.by_body`).
+What the tendon adds is there twice, for a body without one and for one with it (`_compile.by_body`).
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class TiedBody(NamedTuple):
     """Constants of a body that a tendon holds, with those of `Body` first.
 
     Its prestress n P0 and its stiffness n^2 kt b over w m [m/s^2], the number n of its gaps, the balance tilt
-    [rad] in the place of alpha, and the fastest rate of the couple near upright [1/s] in the place of p.
+    [rad], and the fastest rate of the couple near upright [1/s].
     """
 
     b: float
@@ -69,77 +69,70 @@ class TiedBody(NamedTuple):
     mu: float
     nu: float
     delta: float
+    balance: float
+    fastest: float
     prestress: float
     stiffness: float
     gaps: float
-    balance: float
-    fastest: float
 
 
 @inlined
-def _weight(body: Body, s: float, c: float, gravity: float) -> float:
+def _no_couple(body: Body, arm: float, s: float, u: float) -> float:
+    """Return what the tendon adds to a couple or force, `arm` (q u + k s), from sine of the tilt and u.
+
+    Without a tendon it is -0.0, which a compiler leaves out of a sum: +0.0 it would have to add.
+    """
+    return -0.0
+
+
+@inlined
+def _couple(body: TiedBody, arm: float, s: float, u: float) -> float:
+    return arm * (body.prestress * u + body.stiffness * s)
+
+
+tendon_couple = by_body(_no_couple, _couple)
+
+
+@inlined
+def restoring(body: Body, s: float, c: float, gravity: float) -> float:
     """Return r [m/s^2] under `gravity` = g + az [m/s^2], from sine and cosine of the tilt."""
-    return gravity * (body.sin_alpha * c - body.cos_alpha * s)
-
-
-@inlined
-def _tendon(body: TiedBody, s: float, u: float) -> float:
-    return body.sin_alpha * (body.prestress * u + body.stiffness * s)
-
-
-@inlined
-def _weight_and_tendon(body: TiedBody, s: float, c: float, gravity: float) -> float:
     weight = gravity * (body.sin_alpha * c - body.cos_alpha * s)
-    return weight + _tendon(body, s, sqrt(0.5 * (1.0 + c)))
-
-
-restoring = by_body(_weight, _weight_and_tendon)
+    return weight + tendon_couple(body, body.sin_alpha, s, sqrt(0.5 * (1.0 + c)))
 
 
 @inlined
-def _moment_of_weight(body: Body, s: float, c: float, gravity: float) -> float:
+def restoring_moment(body: Body, s: float, c: float, gravity: float) -> float:
     """Return V' [m^2/s^2] under `gravity`, as a moment about the rim."""
-    return gravity * (body.b * c - body.h * s)
+    return gravity * (body.b * c - body.h * s) + tendon_couple(body, body.b, s, sqrt(0.5 * (1.0 + c)))
 
 
 @inlined
-def _moment_of_both(body: TiedBody, s: float, c: float, gravity: float) -> float:
-    tendon = body.b * (body.prestress * sqrt(0.5 * (1.0 + c)) + body.stiffness * s)
-    return gravity * (body.b * c - body.h * s) + tendon
-
-
-restoring_moment = by_body(_moment_of_weight, _moment_of_both)
-
-
-@inlined
-def _back_by_weight(body: Body, theta: float) -> float:
+def acceleration_back(body: Body, theta: float) -> float:
     """Return the acceleration back to upright over still ground, without spin [rad/s^2]."""
-    return body.p * body.p * sin(body.alpha - theta)
+    p2 = body.p * body.p
+    tendon = tendon_couple(body, p2 * body.sin_alpha / body.g, sin(theta), cos(0.5 * theta))
+    return p2 * sin(body.alpha - theta) + tendon
 
 
 @inlined
-def _back_by_both(body: TiedBody, theta: float) -> float:
-    tendon = _tendon(body, sin(theta), cos(0.5 * theta))
-    return body.p * body.p * (sin(body.alpha - theta) + tendon / body.g)
-
-
-acceleration_back = by_body(_back_by_weight, _back_by_both)
+def _no_energy(body: Body, c: float) -> float:
+    """Return the energy in the tendon beyond that upright [m^2/s^2], from the cosine of the tilt."""
+    return -0.0
 
 
 @inlined
-def _energy_of_weight(body: Body, s: float, c: float, t: float) -> float:
-    """Return V [m^2/s^2], zero upright; t is tan(theta/2)."""
-    return body.g * s * (body.b - body.h * t)
-
-
-@inlined
-def _energy_of_both(body: TiedBody, s: float, c: float, t: float) -> float:
+def _energy(body: TiedBody, c: float) -> float:
     half = 0.5 * (1.0 - c)
-    tendon = 2.0 * body.b * (body.prestress * sqrt(max(0.0, half)) + body.stiffness * half)
-    return body.g * s * (body.b - body.h * t) + tendon
+    return 2.0 * body.b * (body.prestress * sqrt(max(0.0, half)) + body.stiffness * half)
 
 
-stored_energy = by_body(_energy_of_weight, _energy_of_both)
+tendon_energy = by_body(_no_energy, _energy)
+
+
+@inlined
+def stored_energy(body: Body, s: float, c: float, t: float) -> float:
+    """Return V [m^2/s^2], zero upright; t is tan(theta/2)."""
+    return body.g * s * (body.b - body.h * t) + tendon_energy(body, c)
 
 
 @inlined
@@ -159,117 +152,27 @@ tendon_pull = by_body(_no_pull, _pull)
 
 
 @inlined
-def _weight_alone(body: Body, az: float) -> float:
+def standing_force(body: Body, az: float) -> float:
     """Return the normal force on a body that stands, at base and top together [m/s^2]."""
-    return body.g + az
+    return body.g + az + tendon_couple(body, 1.0, 0.0, 1.0)
 
 
 @inlined
-def _weight_and_prestress(body: TiedBody, az: float) -> float:
-    return body.g + az + body.prestress
-
-
-standing_force = by_body(_weight_alone, _weight_and_prestress)
-
-
-@inlined
-def _load_alone(body: Body, load: float, s: float, c: float) -> float:
-    """Return the normal force on both ends of a tilted column [m/s^2], from that without a tendon."""
-    return load
-
-
-@inlined
-def _load_tied(body: TiedBody, load: float, s: float, c: float) -> float:
-    return load + (body.prestress * sqrt(0.5 * (1.0 + c)) + body.stiffness * s)
-
-
-with_tendon_load = by_body(_load_alone, _load_tied)
-
-
-@inlined
-def _moment_alone(body: Body, moment: float, s: float, c: float) -> float:
-    """Return the restoring moment about the rim [m^2/s^2], from that without a tendon."""
-    return moment
-
-
-@inlined
-def _moment_tied(body: TiedBody, moment: float, s: float, c: float) -> float:
-    return moment + body.b * (body.prestress * sqrt(0.5 * (1.0 + c)) + body.stiffness * s)
-
-
-with_tendon_moment = by_body(_moment_alone, _moment_tied)
-
-
-@inlined
-def _growth_by_weight(body: Body, az: float, widened: float) -> float:
+def growth_at_uplift(body: Body, az: float, widened: float) -> float:
     """Return the growth of theta'' with the tilt at uplift [1/s^2].
 
     Without rolling resistance `widened` is 1; it widens the base, and adds to the inertia.
     """
-    return body.p2 * (1.0 + az / body.g) / body.cos_alpha * widened
-
-
-@inlined
-def _growth_by_both(body: TiedBody, az: float, widened: float) -> float:
-    Q = body.p2 * (1.0 + az / body.g) / body.cos_alpha * widened
     # |a| = (g + az + q)(b + delta)/h, and r of the tendon grows by k sin(alpha); delta adds to b and to A
     of_both = (1.0 + body.delta / body.b) / (1.0 + body.delta * body.mu * body.b / body.A)
-    return Q + body.p2 / body.g * body.sin_alpha * of_both * (
-        body.prestress * body.sin_alpha / body.cos_alpha - body.stiffness
+    of_tendon = tendon_couple(
+        body, body.p2 / body.g * body.sin_alpha * of_both, -1.0, body.sin_alpha / body.cos_alpha
     )
-
-
-growth_at_uplift = by_body(_growth_by_weight, _growth_by_both)
-
-
-@inlined
-def _share_alone(body: Body, share: float, held: float) -> float:
-    """Return the couple left by the ground at rest over that without it, from weight and ground.
-
-    `held` is what a unit of g counts in `share`, with rolling resistance.
-    """
-    return share
-
-
-@inlined
-def _share_tied(body: TiedBody, share: float, held: float) -> float:
-    prestress = body.prestress / body.g
-    return (share + held * prestress) / (1.0 + prestress)
-
-
-with_prestress_share = by_body(_share_alone, _share_tied)
-
-
-@inlined
-def _at_alpha(body: Body) -> float:
-    """Return the balance tilt [rad]: beyond it the body falls, if nothing moves it."""
-    return body.alpha
-
-
-@inlined
-def _at_balance(body: TiedBody) -> float:
-    return body.balance
-
-
-balance = by_body(_at_alpha, _at_balance)
-
-
-@inlined
-def _p(body: Body) -> float:
-    """Return the fastest rate of the couple near upright [1/s]."""
-    return body.p
-
-
-@inlined
-def _fastest(body: TiedBody) -> float:
-    return body.fastest
-
-
-fastest_rate = by_body(_p, _fastest)
+    return body.p2 * (1.0 + az / body.g) / body.cos_alpha * widened + of_tendon
 
 
 @jit
-def _overturns(body: Body, theta: float, strongest: float, lightest: float) -> bool:
+def surely_overturns(body: Body, theta: float, strongest: float, lightest: float) -> bool:
     """Return whether a tilt beyond the balance that does not decrease is bound to reach pi/2, without twist.
 
     `strongest` is the largest |a| and `lightest` the least g + az to come: beyond the equilibrium tilt
@@ -279,32 +182,20 @@ def _overturns(body: Body, theta: float, strongest: float, lightest: float) -> b
     sin(alpha)) + sin(theta) g' sin(alpha)], g' = `lightest`, and stays negative once this is; rolling
     resistance takes delta/b of what holds the body down besides.
     """
-    beyond = theta - body.alpha
-    held = body.delta * body.sin_alpha / body.b
-    return lightest > 0.0 and lightest * (sin(beyond) - held) > strongest * cos(beyond)
+    beyond, s, c = theta - body.alpha, sin(theta), cos(theta)
+    resisted = body.delta / body.b
+    falling = lightest * cos(beyond) - tendon_couple(body, (1.0 + resisted) * body.sin_alpha * c, 1.0, 0.0)
+    tendon = tendon_couple(body, (1.0 + resisted) * body.sin_alpha, s, sqrt(0.5 * (1.0 + c)))
+    outward = lightest * (sin(beyond) - resisted * body.sin_alpha) - tendon
+    return lightest > 0.0 and falling >= 0.0 and outward > strongest * cos(beyond)
 
 
-@jit
-def _tied_overturns(body: TiedBody, theta: float, strongest: float, lightest: float) -> bool:
-    if lightest <= 0.0:
-        return False
-    s, c, resisted = sin(theta), cos(theta), body.delta / body.b
-    falling = c * (lightest * body.cos_alpha - (1.0 + resisted) * body.stiffness * body.sin_alpha)
-    falling += s * lightest * body.sin_alpha
-    left = _weight_and_tendon(body, s, c, lightest)
-    left += resisted * (lightest * body.sin_alpha + _tendon(body, s, sqrt(0.5 * (1.0 + c))))
-    return falling >= 0.0 and -left > strongest * cos(theta - body.alpha)
-
-
-surely_overturns = by_body(_overturns, _tied_overturns)
-
-
-# series of u = cos(theta/2) in the time integration by Taylor series: u u = 1 - v/2
+# of the time integration by Taylor series, with u u = 1 - v/2
 
 
 @inlined
 def _one(body: Body, v: float) -> float:
-    """Return u, for which nobody asks without a tendon."""
+    """Return u, for which nobody asks without a tendon: a root would change how the rest is rounded."""
     return 1.0
 
 
@@ -314,20 +205,6 @@ def _half_cosine(body: TiedBody, v: float) -> float:
 
 
 half_cosine = by_body(_one, _half_cosine)
-
-
-@inlined
-def _term_alone(body: Body, weight: float, s: float, u: float) -> float:
-    """Return r [m/s^2], from that of the weight, sin(theta) and u."""
-    return weight
-
-
-@inlined
-def _term_tied(body: TiedBody, weight: float, s: float, u: float) -> float:
-    return weight + _tendon(body, s, u)
-
-
-with_tendon_term = by_body(_term_alone, _term_tied)
 
 
 @inlined
@@ -357,7 +234,7 @@ def _coefficient_tied(
         product += c[place + j] * c[place + order - j]
     u = -(0.5 * v + product) / (2.0 * u0)
     c[place + order] = u
-    return weight + _tendon(body, s, u)
+    return weight + _couple(body, body.sin_alpha, s, u)
 
 
 with_tendon_coefficient = by_body(_coefficient_alone, _coefficient_tied)
@@ -473,7 +350,6 @@ def _tied_body(body: Body, cylinder: RockingBody, tendon: Tendon) -> TiedBody:
         prestress=gaps * tendon.prestress * body.g / w,
         stiffness=stiffness,
         gaps=float(gaps),
-        balance=inf,
-        fastest=sqrt(body.p2 * (1.0 + stiffness * body.sin_alpha / body.g)),
     )
-    return whole._replace(balance=balance_tilt(whole))
+    fastest = sqrt(body.p2 * (1.0 + stiffness * body.sin_alpha / body.g))
+    return whole._replace(balance=balance_tilt(whole), fastest=fastest)

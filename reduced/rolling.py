@@ -39,7 +39,7 @@ from math import cos, sin, sqrt
 from ._compile import inlined
 from .body import Body
 from .equations import base_inertia
-from .restoring import with_tendon_load
+from .restoring import tendon_couple
 
 CREEP = 1e-6  # eps over p: errors of 1e-6 alpha, and explicit steps that a creeping body still allows
 # of alpha: below this tilt eps falls with it, so that an uplift, whose first rates are below eps, meets the
@@ -77,7 +77,8 @@ def couple(
         Components on theta and along the lean (on psi it is s times that) [m^2/s^2], power [m^2/s^3].
     """
     across, least = s * spin, creep_rate(body, s)
-    load = with_tendon_load(body, body.g + az, s, c) - (body.b * s + body.h * c) * omega * (body.mu * omega)
+    load = body.g + az + tendon_couple(body, 1.0, s, sqrt(0.5 * (1.0 + c)))
+    load -= (body.b * s + body.h * c) * omega * (body.mu * omega)
     lift = body.b * c - body.h * s
     # delta N/w of theta'' = free - delta N theta'/(A w), by one division; none where contact is lost
     pressed = body.delta * body.A * max(0.0, load + lift * (body.mu * free))

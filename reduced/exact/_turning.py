@@ -25,7 +25,7 @@ from typing import NamedTuple
 from rockwobble.models.bounds import OVERTURNED_TILT
 
 from ..body import Body
-from ..restoring import balance, couple, couple_slope, sigma
+from ..restoring import couple, couple_slope, sigma
 from ._shape import T, base_inertia, beta, inertia_growth
 
 _SMALLEST = 2.0**-1022  # absolute tolerance of the root finder: none, so that small tilts keep their digits
@@ -117,7 +117,7 @@ def highest_without_spin(body: Body, R: float, tilt: float, tilt_rate: float) ->
 
 def _edge(body: Body) -> float:
     """Return the tilt beyond which nothing comes back [rad]: the balance, or where the side is down."""
-    return min(balance(body), OVERTURNED_TILT)
+    return min(body.balance, OVERTURNED_TILT)
 
 
 def _barrier(body: Body, R: float, t0: float, rolling_rate: float) -> float | None:

@@ -20,7 +20,7 @@ from rockwobble.models import InitialState, RockingBody, Tendon
 from rockwobble.models.shown import Brief
 
 from ..body import Body
-from ..restoring import TiedBody, balance, constants_of, potential
+from ..restoring import TiedBody, constants_of, potential
 from ._shape import base_inertia
 from ._turning import highest_without_spin, turning_tilts
 from .periods import quarter_period
@@ -216,7 +216,7 @@ def limiting_angle_of_turn(cylinder: RockingBody) -> float:
 
 def _planar_maximum(body: Body, R: float, initial: InitialState) -> tuple[float, float] | None:
     """Return the largest tilt of a release without spin and its distance from alpha [rad]."""
-    if initial.tilt >= balance(body):
+    if initial.tilt >= body.balance:
         return None
     if initial.tilt_rate == 0.0:
         return initial.tilt, body.alpha - initial.tilt

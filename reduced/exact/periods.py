@@ -29,7 +29,7 @@ from rockwobble.models import RockingBody, Tendon
 from rockwobble.models.bounds import OVERTURNED_TILT
 
 from ..body import Body
-from ..restoring import TiedBody, balance, constants_of, couple
+from ..restoring import TiedBody, constants_of, couple
 from ._shape import inertia_growth
 from ._turning import momentum_growth
 from .quadrature import half_period
@@ -64,7 +64,7 @@ def _of_tilts(function: Callable[..., Array]) -> _OfTilts:
     ) -> float | Array:
         theta, largest, name = np.asarray(tilt, dtype=float), cylinder.alpha, "alpha"
         if tendon is not None:
-            largest = min(balance(constants_of(cylinder, gravity, tendon=tendon)), OVERTURNED_TILT)
+            largest = min(constants_of(cylinder, gravity, tendon=tendon).balance, OVERTURNED_TILT)
             name = "the balance tilt" if largest < OVERTURNED_TILT else "pi/2"
         outside = ~((theta > 0.0) & (theta < largest))  # also where it is not a number
         if np.any(outside):

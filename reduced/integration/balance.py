@@ -14,7 +14,7 @@ from math import cos, inf, log, sin
 from .._compile import inlined, jit
 from ..body import Body
 from ..equations import energy
-from ..restoring import acceleration_back, balance
+from ..restoring import acceleration_back
 from .result import COMPLETED, MAXIMUM, OVERTURNED_TILT, UNDECIDED, IntegrationResult, Log, State
 
 LONGEST = 34.0  # of 1/p, between the balance and the tilt alpha on either side of it: log(2e14) and a little
@@ -29,7 +29,7 @@ def decide(body: Body, result: IntegrationResult) -> IntegrationResult:
 
     Here and not in the kernel, whose last bits hang on how much there is to compile.
     """
-    on_balance = abs(result.peak - balance(body)) <= _ROUNDING * body.alpha
+    on_balance = abs(result.peak - body.balance) <= _ROUNDING * body.alpha
     if on_balance and result.status == COMPLETED:
         return result._replace(status=UNDECIDED)
     return result
@@ -47,7 +47,7 @@ def may_rise_above(
 ) -> bool:
     """Return whether over still ground the energy of a state lets the tilt rise above `peak` later."""
     L, S = momenta(y)
-    return energy(body, y[0], y[1], L, S) > energy(body, min(peak, balance(body)), 0.0, 0.0, 0.0)
+    return energy(body, y[0], y[1], L, S) > energy(body, min(peak, body.balance), 0.0, 0.0, 0.0)
 
 
 @jit

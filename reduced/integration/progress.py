@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from .._compile import inlined, jit
 from ..body import Body
 from ..equations import base_inertia, energy
-from ..restoring import balance, surely_overturns, with_prestress_share
+from ..restoring import standing_force, surely_overturns
 from ..rolling import rolling_momentum
 from ..trigonometry import sin_cos
 from .balance import may_rise_above
@@ -58,7 +58,8 @@ def may_sit_down(
     standing = energy(body, limit, 0.0, 0.0, 0.0)
     held = (1.0 + a[2] / body.g) * (1.0 + body.delta / body.b)
     share = held - hypot(a[0], a[1]) * body.cos_alpha / (body.g * body.sin_alpha)
-    share = with_prestress_share(body, share, 1.0 + body.delta / body.b)
+    prestress = standing_force(body, 0.0) / body.g - 1.0
+    share = (share + (1.0 + body.delta / body.b) * prestress) / (1.0 + prestress)
     if share <= 0.0 or excess(body, a) >= 0.0:
         return False
     if body.delta > 0.0 and S != 0.0:
@@ -245,7 +246,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     @inlined
     def falls(body: Body, y: State, later: NDArray[np.float64], index: int) -> bool:
         """Return whether no ground motion to come can keep the side from the ground."""
-        outward = index < len(later) and y[0] > balance(body) and y[1] >= 0.0
+        outward = index < len(later) and y[0] > body.balance and y[1] >= 0.0
         return outward and surely_overturns(body, y[0], later[index, 0], body.g + later[index, 1])
 
     @inlined

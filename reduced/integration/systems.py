@@ -22,7 +22,6 @@ import numpy as np
 from .._compile import inlined, jit
 from ..body import Body
 from ..equations import flat_rhs, planar_rhs, recess_rhs
-from ..restoring import balance
 from ..trigonometry import sin_cos
 from .record import Vector
 from .result import State
@@ -80,7 +79,7 @@ def scales(
     takes the place of theta. An error below the rounding of the tilt cannot be told from none.
     """
     tilt = abs(tilt)
-    from_balance = abs(balance(body) - tilt)
+    from_balance = abs(body.balance - tilt)
     speed = abs(rate) + spin_rate
     velocity = speed + body.p * min(sqrt(body.sin_alpha * tilt), from_balance)
     distance = min(tilt + velocity / body.p if flat else tilt, from_balance + speed / body.p)

@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 from .._compile import inlined, jit
 from ..body import Body
 from ..equations import in_plane_below
-from ..restoring import half_cosine, with_tendon_coefficient, with_tendon_term
+from ..restoring import half_cosine, tendon_couple, with_tendon_coefficient
 from ..trigonometry import sin_cos
 from .record import Vector
 from .result import State
@@ -228,7 +228,7 @@ def expand(
     )
 
     tilt_1, angle_1 = h * omega, h * w0
-    rate_1 = h * (Q0 * ww0 - factor * with_tendon_term(body, gravity * Y0 + X0 * r0, s0, u0))
+    rate_1 = h * (Q0 * ww0 - factor * (gravity * Y0 + X0 * r0 + tendon_couple(body, body.sin_alpha, s0, u0)))
     momentum_1 = -h * D0 * t0
     s_1, v_1 = tilt_1 * (1.0 - v0), tilt_1 * s0
     cos_1, sin_1 = -angle_1 * sin0, angle_1 * cos0

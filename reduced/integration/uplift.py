@@ -18,7 +18,7 @@ import numpy as np
 from .._compile import jit
 from ..body import Body
 from ..equations import in_plane_below
-from ..restoring import fastest_rate, growth_at_uplift, standing_force
+from ..restoring import growth_at_uplift, standing_force
 from .record import Vector, ground
 
 # The series is left at the share x of the shortest time scale there: 1/p, and the time in which the
@@ -172,7 +172,7 @@ def shortest_time(body: Body, a: Vector, slope: Vector, at: float) -> float:
     """Return the time [s] in which motion or ground acceleration change by their own size at an uplift."""
     ax, ay, _ = ground(a, slope, at)
     change = hypot(slope[0], slope[1]) / max(hypot(ax, ay), WEAK * body.g)
-    return 1.0 / max(fastest_rate(body), change)
+    return 1.0 / max(body.fastest, change)
 
 
 @jit

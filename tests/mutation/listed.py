@@ -154,20 +154,23 @@ def _tendons() -> list[Mutation]:
         "a gap missing": before_assignment("_tied_body", "stiffness", "gaps = 1"),
     }
     bodies = {
-        "half angle: couple": ("_tendon(body, s, u)", "return without_fault(body, s, 2.0 * u * u - 1.0)"),
+        "half angle: couple": (
+            "_couple(body, arm, s, u)",
+            "return without_fault(body, arm, s, 2.0 * u * u - 1.0)",
+        ),
         "half angle: series": (
-            "_half_cosine(body, v)",
-            "return 1.0 - v",
+            "_coefficient_tied(body, weight, s, v, u0, order, c, place)",
+            "return without_fault(body, weight, s, 2.0 * v, u0, order, c, place)",
         ),
         "half angle: energy": (
-            "_energy_of_both(body, s, c, t)",
-            "return without_fault(body, s, 2 * c * c - 1, t)",
+            "_energy(body, c)",
+            "return without_fault(body, 2 * c * c - 1)",
         ),
         "half angle: pull": ("_pull(body, c)", "return without_fault(body, 2.0 * c * c - 1.0)"),
-        "uplift: no prestress": ("_weight_and_prestress(body, az)", "return body.g + az"),
+        "uplift: no prestress": ("standing_force(body, az)", "return body.g + az"),
         "uplift: prestress 1 % off": (
-            "_weight_and_prestress(body, az)",
-            "return without_fault(body, az) + 0.01 * body.prestress",
+            "standing_force(body, az)",
+            "return 1.01 * without_fault(body, az) - 0.01 * (body.g + az)",
         ),
     }
     faults = {name: Fault(file="restoring.py", change=change) for name, change in changes.items()}
