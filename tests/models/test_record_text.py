@@ -197,7 +197,7 @@ REFUSED: Mapping[str, tuple[str | bytes, str]] = {
     "slist.txt": ("TIMESERIES XX_A__HNE_R, 60 samples, 100 sps, 2001, SLIST, FLOAT, G\n", "SAC or miniSEED"),
     "pairs.json": (json.dumps([[t, a] for t, a in zip(TIME, EAST, strict=True)]), "JSON"),
     "sheet.xlsx": (b"PK\x03\x04" + bytes(300), "Excel"),
-    "packed.AT2.gz": (b"\x1f\x8b\x08" + bytes(300), "gzip"),
+    "packed.AT2.gz": (b"\x1f\x8b\x08" + bytes(300), "packed or binary"),
 }
 
 

@@ -11,7 +11,12 @@ from ..reading import Reading
 NAME = "format that is not read"
 _COLUMNS = "write its accelerations as columns 'time [s], E, N, Z' (CSV) and give their unit"
 _VALUES = "write its accelerations alone, one in a line, and give their step (--record-step) and unit"
-_UNPACK = "unpack it and give the files in it"
+# archives, MATLAB, HDF5, Parquet, Arrow, pickles and arrays of Python, TDMS, SEG-2
+_BINARY = (
+    *(b"PK\x03\x04", b"PK\x05\x06", b"\x1f\x8b", b"BZh", b"\xfd7zXZ\0", b"7z\xbc\xaf\x27\x1c", b"Rar!"),
+    *(b"MATLAB ", b"\x89HDF\r\n\x1a\n", b"PAR1", b"ARROW1", b"\x93NUMPY", b"TDSm", b"\x55\x3a", b"\x3a\x55"),
+    *(bytes((128, protocol)) for protocol in range(2, 6)),
+)
 
 
 def _begins(*marks: bytes) -> Callable[[RecordFile], bool]:
@@ -28,10 +33,6 @@ def _ends(*endings: str) -> Callable[[RecordFile], bool]:
     return lambda file: file.name.lower().endswith(endings)
 
 
-def _is_tar(file: RecordFile) -> bool:
-    return file.content[257:262] == b"ustar"
-
-
 # name as its users know it, what tells it, what to do
 _FORMATS: tuple[tuple[str, Callable[[RecordFile], bool], str], ...] = (
     (
@@ -39,32 +40,17 @@ _FORMATS: tuple[tuple[str, Callable[[RecordFile], bool], str], ...] = (
         lambda file: _ends(".xlsx", ".xlsm")(file) and _begins(b"PK")(file),
         "save it as CSV",
     ),
-    ("a ZIP archive", _begins(b"PK\x03\x04", b"PK\x05\x06"), _UNPACK),
-    ("a gzip archive", _begins(b"\x1f\x8b"), _UNPACK),
-    ("a bzip2 archive", _begins(b"BZh"), _UNPACK),
-    ("an xz archive", _begins(b"\xfd7zXZ\0"), _UNPACK),
-    ("a 7z archive", _begins(b"7z\xbc\xaf\x27\x1c"), _UNPACK),
-    ("a RAR archive", _begins(b"Rar!"), _UNPACK),
-    ("a tar archive", _is_tar, _UNPACK),
     (
-        "a file of MATLAB",
-        _begins(b"MATLAB "),
-        "save the accelerations as text: writematrix([t x y z], 'record.csv')",
+        "packed or binary",
+        lambda file: _begins(*_BINARY)(file) or file.content[257:262] == b"ustar",
+        f"unpack it, or {_COLUMNS}",
     ),
-    (
-        "HDF5 (ASDF, MATLAB 7.3)",
-        _begins(b"\x89HDF\r\n\x1a\n"),
-        "export the accelerations as columns 'time [s], E, N, Z' (CSV)",
-    ),
-    ("Parquet", lambda file: file.content[:4] == b"PAR1" == file.content[-4:], _COLUMNS),
-    ("Arrow (Feather)", _begins(b"ARROW1"), _COLUMNS),
-    ("a pickle of Python", _begins(*(bytes((128, protocol)) for protocol in range(2, 6))), _COLUMNS),
-    ("TDMS of LabVIEW", _begins(b"TDSm"), _COLUMNS),
-    ("SEG-2", _begins(b"\x55\x3a", b"\x3a\x55"), "convert it to SAC or miniSEED of accelerations (obspy)"),
-    ("a NumPy array", _begins(b"\x93NUMPY"), "write it as text: numpy.savetxt"),
     ("a spreadsheet of Excel", _begins(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"), "save it as CSV"),
-    ("a PDF", _begins(b"%PDF-"), "give the file of the record itself"),
-    ("a picture", _begins(b"\x89PNG", b"\xff\xd8\xff", b"GIF8"), "give the file of the record itself"),
+    (
+        "a PDF or a picture",
+        _begins(b"%PDF-", b"\x89PNG", b"\xff\xd8\xff", b"GIF8"),
+        "give the file of the record itself",
+    ),
     ("K-NET/KiK-net WIN32", _begins(b"\x0a\x02\x00\x00"), "give the ASCII files (.EW, .NS, .UD) of NIED"),
     (
         "Kinemetrics EVT",
