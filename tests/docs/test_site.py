@@ -124,7 +124,7 @@ def test_the_font_of_the_formulas_has_every_character_of_them() -> None:
 
 
 def test_no_term_is_used_before_it_is_a_link_to_the_glossary(pages: dict[str, Page]) -> None:
-    terms = set(pages["glossary.html"].terms)
+    terms = set(pages["glossary.html"].terms) - {"pass", "guide", "record"}  # words of other senses, too
     assert len(terms) > 25
     loose = []
     for name, page in pages.items():
