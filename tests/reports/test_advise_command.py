@@ -387,25 +387,3 @@ def test_the_page_of_a_release_is_the_golden_one():
     text = page_of(advise(case, copies=20).made_by()).markdown()
     text = text[: text.index("\n---\n")]  # what made it is of this machine
     assert text == GOLDEN.read_text()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--friction", "-1"], "friction must not be negative"),
-        (["--copies", "5"], "copies must be a whole number from 20 to 10000, got 5"),
-        (["--seed", "-1"], "seed must be a whole number, at least 0, got -1"),
-        (["--engine", "none", "--time-step", "1e-4"], "--time-step belongs to an engine"),
-        (["--engine", "none", "--support", "glued"], "support must be one of recess, flat, ring"),
-        (["--engine", "abacus"], "abacus"),
-        (["--support", "glued"], "glued"),
-        (["--tan-alpha", "0"], "tan_alpha must be positive"),
-    ],
-)
-def test_bad_input_is_one_line_and_writes_nothing(arguments, words, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert call(*arguments) == 2
-    captured = capsys.readouterr()
-    assert words in captured.err
-    assert captured.err.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []

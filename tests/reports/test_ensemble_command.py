@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import io
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -225,33 +224,3 @@ def test_a_suite_keeps_its_runs_beside_options(tmp_path, monkeypatch):
     path.write_text(SUITE)
     assert call("ensemble", str(path), "--time-step", "2e-4", "--out", str(tmp_path / "out")) == 2
     assert given == [Run("mujoco", "recess", 2e-4, iterations=50)]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--synthetic", "2", "--p695"], "got more than one"),
-        (["quick", "--copies", "4"], "--copies does not go with a suite"),
-        (["quick", "--p695"], "--p695 does not go with a suite"),
-        (["quick", "--semidiagonal", "4"], "--semidiagonal does not go with a suite"),
-        (["--synthetic", "2", "--peak", "0"], "--peak must be positive [g tan alpha], got 0"),
-        (["--peak", "2"], "--peak scales many motions"),
-        (["--synthetic", "2", "--record-x", "a.csv"], "--record-x does not go with --synthetic"),
-        (["--synthetic", "2", "--perturbation", "0.1"], "--perturbation does not go with --synthetic"),
-        (["--p695", "--copies", "40"], "--copies does not go with --p695"),
-        (["--support", "ring"], "--support belongs to engines, got it with --engine none"),
-        (["quick", "--time-step", "1e-4"], "--time-step belongs to engines, got it with --engine none"),
-        (["--engine", "mujoco"], "'--engine': none stands alone, got mujoco and none"),
-        (["--engine", "all"], "all is for compare; name each engine here, or none"),
-        (["--seed", "-1"], "seed must be a whole number, at least 0, got -1"),
-        (["--copies", "1"], "copies must be a whole number, at least 2, got 1"),
-        (["--perturbation", "1"], "perturbation must be above 0 and at most 0.1"),
-    ],
-)
-def test_bad_input_gets_one_clear_line(tmp_path: Path, capsys, arguments, words):
-    assert call("ensemble", *arguments, "--engine", "none", "--out", str(tmp_path / "out")) == 2
-    printed = capsys.readouterr()
-    assert printed.out == ""  # nothing of members that there will not be
-    assert printed.err.count("\n") == 1
-    assert words in printed.err
-    assert not (tmp_path / "out").exists()

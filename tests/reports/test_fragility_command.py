@@ -191,47 +191,15 @@ def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsy
 
 
 @pytest.mark.parametrize(
-    ("arguments", "words"),
+    ("line", "words"),
     [
-        (["--p695", "--synthetic", "9"], "got more than one"),
-        (["--units", "g"], "--units belongs to --records"),
-        (["--records", "nowhere"], "the table of records nowhere cannot be read"),
-        (["--cylinder", "pier=6"], "--cylinder must be NAME=R,TAN_ALPHA such as pier=6,0.2, got 'pier=6'"),
-        (["--cylinder", "a=6,0.2", "--cylinder", "a=3,0.2"], "--cylinder a is given twice"),
-        (["--cylinder", "a=6,0.2", "--diameter", "3"], "--diameter does not go with --cylinder"),
-        (["--support", "ring"], "for engines, give --engine as well"),
-        (["--engine", "mujoco", "--support", "bowl"], "mujoco has no support bowl"),
-        (["--engine", "none", "--engine", "mujoco"], "'--engine': none stands alone, got none and mujoco"),
-        (["--engine", "none", "--model", "none"], "a fragility needs at least one method, got none"),
-        (["--levels", "0:2"], "'--levels': must be a number, a list"),
-        (["--synthetic", "1"], "--synthetic must be a whole number, at least 2, got 1"),
-        (["--workers", "0"], "'--workers': must be at least 1, got 0"),
-        (["--restitution", "soft"], 'must be a number or "momentum"'),
+        ("--measure foo", "measure must be one of peak_acceleration"),
+        ("--levels 1,2 --scale 1", "got both"),
     ],
 )
-def test_bad_input_gets_one_clear_line(tmp_path: Path, capsys, arguments, words):
-    assert call("fragility", *arguments, "--out", str(tmp_path / "out")) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1
-    assert words in error
-    assert not (tmp_path / "out").exists()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--measure", "foo"], "measure must be one of peak_acceleration"),
-        (["--model", "foo"], "a reduced model must be one of recess"),
-        (["--model", "recess", "--restitution", "0.9"], "restitution is of planar models"),
-        (["--levels", "1,2", "--scale", "1"], "got both"),
-        (["--resamples", "1"], "resamples must be a whole number, at least 2, got 1"),
-    ],
-)
-def test_what_no_motion_is_needed_for_is_refused_before_any_is_made(
-    tmp_path: Path, monkeypatch, capsys, arguments, words
-):
+def test_a_bad_plan_is_refused_before_any_motion_is_read(tmp_path: Path, monkeypatch, capsys, line, words):
     monkeypatch.setattr(command.ManyMotions, "read", lambda *_: pytest.fail("motions were made"))
-    assert call("fragility", *arguments, "--out", str(tmp_path / "out")) == 2
+    assert call("fragility", *line.split(), "--out", str(tmp_path / "out")) == 2
     printed = capsys.readouterr()
     assert printed.out == ""
     assert words in printed.err

@@ -86,34 +86,6 @@ def test_any_record_will_do(tmp_path: Path, monkeypatch, capsys):
     assert not cells["peak_tilt"].isna().any()
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--semidiagonal", "1:2:9999"], "--semidiagonal must be at most 2000 numbers, got 9999"),
-        (["--intensity", "3,2"], "--intensity must be positive, finite and increasing, got [3.0, 2.0]"),
-        (["--support", "ring"], "support must be one of recess, flat, got 'ring'"),
-        (["--search-step", "inf"], "--search-step must be at least 1e-05, got inf"),
-        (["--slab-mass-ratio", "-1"], "--slab-mass-ratio must be at least 0, got -1"),
-        (["--rolling-resistance", "0.3"], "to 0.1 base radii, 0.00497519 m, got 0.3 m"),
-        (["--tan-alpha", "0"], "tan_alpha must be positive"),
-        (["--diameter", "1.6"], "--diameter and --height go together"),
-        (["--diameter", "1.6", "--height", "9", "--tan-alpha", "0.2"], "stand in place of --tan-alpha"),
-        (["--diameter", "-1.6", "--height", "9"], "base_radius must be positive"),
-        (["--record-x", "x.csv"], "both horizontal components are needed"),
-        (["--out", "taken"], "the output folder must be a folder"),
-    ],
-)
-def test_bad_input_is_one_line_and_writes_nothing(arguments, words, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "taken").write_text("")
-    assert call(*arguments) == 2
-    captured = capsys.readouterr()
-    assert words in captured.err
-    assert captured.err.count("\n") == 1
-    assert captured.out == ""
-    assert [path.name for path in tmp_path.iterdir()] == ["taken"]
-
-
 @pytest.fixture(scope="module")
 def spectrum() -> TiltMaps:
     whole = el_centro_1940()

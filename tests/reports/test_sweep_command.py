@@ -24,33 +24,6 @@ def call(*arguments: str) -> int:
     return ended.value.code
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--semidiagonal", "a"], "'--semidiagonal': must be a number, a list such as 1,2,6 or a range"),
-        (["--scale", "1:2"], "'--scale': must be a number"),
-        (["--tan-alpha", "1:2:1"], "'--tan-alpha': must be a number"),
-        (["--model", "glued"], "a model of a grid must be one of recess, flat, planar, got 'glued'"),
-        (["--record-x", "a.at2"], "each record needs both horizontal components"),
-        (["--units", "g"], "--units belongs to a record"),
-        (["no-such-suite"], "no-such-suite"),
-        (["quick", "--units", "g"], "--units does not go with a suite, got quick"),
-        (["quick", "--semidiagonal", "3"], "--semidiagonal does not go with a suite, got quick"),
-        (["--plane", "1"], "plane belongs to planar motion, got models recess"),
-        (["--workers", "0"], "'--workers': must be at least 1, got 0"),
-        (["--chunk", "0"], "'--chunk': must be at least 1, got 0"),
-        (["--gravity", "-1"], "gravity must be above 0, got -1"),
-        (["--record-z", "up.at2"], "--record-z belongs to a record"),
-    ],
-)
-def test_bad_input_of_a_sweep_gets_one_clear_line(tmp_path, capsys, arguments, words):
-    assert call("sweep", *arguments, "--out", str(tmp_path / "out")) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1
-    assert words in error
-    assert not (tmp_path / "out").exists()
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("full_at", ["sweep.parquet", "sweep.html", "manifest.json"])
 def test_a_full_disk_leaves_no_half_of_a_sweep_and_nothing_to_repeat(

@@ -13,7 +13,7 @@ from tiny_validity import TINY, tiny_validity
 from typer.testing import CliRunner
 
 from rockwobble.models.support import RECESS
-from rockwobble.reports.cli.main import app, main
+from rockwobble.reports.cli.main import app
 from rockwobble.reports.pages import page_of, stored_page
 from rockwobble.reports.pages.page import Page
 from rockwobble.studies.validity import study
@@ -138,26 +138,3 @@ def test_the_command_stores_what_its_pages_are_drawn_from(
         patch.setattr("rockwobble.reports.figures.svg.svg", lambda *_, **__: b"")
         assert CliRunner().invoke(app, ["report", str(tmp_path)]).exit_code == 0
     assert "| Contact | lost in" in (tmp_path / "validity.md").read_text() != before
-
-
-@pytest.mark.parametrize(
-    ("options", "says"),
-    [
-        (["--workers", "0"], "'--workers': must be at least 1, got 0"),
-        (["--out", "{file}"], "the output folder must be a folder"),
-    ],
-)
-def test_bad_input_is_one_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], options: list[str], says: str
-) -> None:
-    file = tmp_path / "file"
-    file.touch()
-    given = [option.format(file=file) for option in options]
-    out = [] if "--out" in given else ["--out", str(tmp_path / "out")]
-    with pytest.raises(SystemExit) as ended:
-        main(["validity", "--quick", *given, *out])
-    assert ended.value.code == 2
-    error = capsys.readouterr().err
-    assert says in error
-    assert error.count("\n") == 1
-    assert not (tmp_path / "out").exists()
