@@ -12,7 +12,7 @@ import pytest
 from rockwobble.models import Diagnostic, Run
 from rockwobble.models.diagnostic import REASONS
 from rockwobble.models.finding import Finding
-from rockwobble.reports.pages.comparison import budget_lines, counted_diagnostics, diagnostics
+from rockwobble.reports.pages.comparison import budget_lines, counted_diagnostics, run_diagnostics
 from rockwobble.reports.pages.diagnostics import failure, remarks, sentence
 
 
@@ -35,7 +35,7 @@ def test_a_diagnostic_of_two_runs_is_said_once_and_failures_apart():
     view: Any = SimpleNamespace(
         rows=pd.DataFrame({"run": ["a", "a", "b", "c"]}), facts={"a": [slipped], "b": [slipped], "c": []}
     )
-    assert diagnostics(view) == [f"a and b: {sentence(slipped)}."]
+    assert run_diagnostics(view) == [f"a and b: {sentence(slipped)}."]
 
 
 def test_diagnostics_of_many_cases_count_each_run_that_did_not_fail():
