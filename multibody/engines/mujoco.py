@@ -43,7 +43,8 @@ _ROLLING, _CLOSING = (
 _STOPPING = 500.0  # [1/s] rate at which friction stops a base that slides, at the reference size
 _SLIDING: Settings = {
     "follow_load": False,
-    "points": 16,
+    "points": 8,
+    "noslip_iterations": 20,
     "points_damping_ratio": 3.0,
     "contact_damping_ratio": 3.0,
 }

@@ -53,9 +53,12 @@ class MujocoSettings(EngineSettings):
         while it rolls, and friction, which has no memory, lets it creep by (1/friction_damping - 1/2) h
         times its acceleration. At 1.8 that is a ninth of what it is at 1 (the engine's default), and still
         first order in h: from tan alpha 0.2 to 3 a release in the recess errs by 5e-6 alpha instead of
-        1.3e-4. A cylinder that slides hops: the engine's cone is convex, and friction that would stop a
-        slip velocity v lifts the contact by mu v times this share, whatever the step. So where the case
-        slides it is what stops a slip within 2 ms at the reference size.
+        1.3e-4. Where the case slides it is what stops a slip within 2 ms at the reference size.
+    noslip_iterations : int
+        Sweeps of a second solver, which finds friction under the loads that the first has found; 0 for
+        friction and load at once. The engine's cone is convex: friction that would remove a slip velocity v
+        lifts the contact by mu v times its share in a step, whatever the step, and a base that hops has lost
+        its friction. Found one after the other, neither lifts the other. So it is used where the case slides.
     guide_stiffness : float
         Guide stiffness of each half of the guide, over the axial inertia [1/s^2]. (0.2/h)^2/4: the twist
         stays below 1e-6
@@ -106,6 +109,7 @@ class MujocoSettings(EngineSettings):
     iterations: Count = 100
     standing_corners: Annotated[int, one_of(*range(0, 49, 4))] = 48
     follow_load: Annotated[bool, one_of(True, False)] = True
+    noslip_iterations: Annotated[int, whole(least=0, most=1000)] = 0
     points: Annotated[int, whole(least=0, most=256)] = 16
     points_damping_ratio: Positive = 10.0
     points_inset: Annotated[float, positive(most=0.5)] = 0.01
@@ -116,6 +120,8 @@ class MujocoSettings(EngineSettings):
         return EngineSettings.defaults(time_step) | {"contact_time_constant": 2.0 * time_step}
 
 
+# friction over load in hardness where friction is found afterwards: too soft to matter at first
+_FRICTION_AFTER = 1e-6
 _PRISMS = 12  # in the scene file; four corners each
 # sagitta of the ellipsoid, over that at which a base rolls under its load by two radians a step
 _CROWN = 0.03
@@ -287,7 +293,9 @@ def _set_contact(
             spec.geom(name).alt.euler = [0.0, 0.0, 90.0 * index / count]
     rim = settings.impedance if standing or not followed else settings.rolling_impedance
     # friction stays as hard as it is on the corners
-    spec.option.impratio = _yield(rim) / _yield(settings.impedance)
+    later = settings.noslip_iterations > 0
+    spec.option.impratio = _FRICTION_AFTER if later else _yield(rim) / _yield(settings.impedance)
+    spec.option.noslip_iterations, spec.option.noslip_tolerance = settings.noslip_iterations, 0.0
     for pair in spec.pairs:
         friction = scene.friction if ring is None or _bears(pair) else ring.ring_friction
         impedance = rim if _bears(pair) else settings.impedance
