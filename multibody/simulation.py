@@ -408,6 +408,8 @@ def diagnostics(
         yield Diagnostic(code="undecided", time=end * unit_time)
     if recorder.unsolved:
         yield Diagnostic(code="solver", size=recorder.unsolved, bound=recorder.looks)
+    if slides:  # it never uplifts, and where contact trembles or lets it, the mode tells
+        return
     if recorder.uplift is not None and recorder.missing_load > EARLY:
         yield Diagnostic(
             code="early_uplift", time=recorder.uplift[0] * unit_time, size=recorder.missing_load, bound=EARLY

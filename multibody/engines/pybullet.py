@@ -20,6 +20,8 @@ from typing import Annotated
 
 import numpy as np
 
+from rockwobble.models.mode import SLIDES
+
 from ..kinematics import about_vertical
 from ..protocol import EngineFacts, SceneCounts, Settings, Stepper, Steps
 from ..scene import Array, Scene
@@ -98,6 +100,8 @@ _RESIDUAL = 1e-10  # of an iteration, squared [m^2/s^2]; what a standing cylinde
 _RISEN = 1e-7  # [rad] lean from which the rim carries the cylinder as well as the point does
 _HAS_DIRECTION = 1e-9  # [rad]
 _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
+# steps between two looks at where a base slides to; [rad] off an axis and [m/s] from which the scene follows
+_SLIDING_BLOCK, _OFF_SLIP, _SLIPS = 20, 0.02, 1e-4
 _POSE = 7  # numbers of a pose: position, and quaternion with the scalar last
 _NO_SPIN = (0.0, 0.0, 0.0)
 _DOWNWARDS = (1.0, 0.0, 0.0, 0.0)  # half a turn about x, with the scalar last
@@ -256,11 +260,14 @@ class _PybulletStepper(Leapfrog):
                 break
             poses += self._stand(now)
             headings.append(self._heading)
-        done = len(headings)
-        if done < len(acceleration):
-            pulls = about_vertical(-acceleration[done:] - [0.0, 0.0, self._scene.gravity], -self._heading)
-            poses += self._loop(pulls)
-        heading = np.array(headings + [self._heading] * (len(acceleration) - done))
+        block = _SLIDING_BLOCK if self._scene.mode == SLIDES else len(acceleration)
+        while (done := len(headings)) < len(acceleration):
+            if self._scene.mode == SLIDES:
+                self._turn_to_slip()
+            now = acceleration[done : done + block]
+            poses += self._loop(about_vertical(-now - [0.0, 0.0, self._scene.gravity], -self._heading))
+            headings += [self._heading] * len(now)
+        heading = np.array(headings)
         rows = np.fromiter(poses, dtype=np.float64, count=len(poses)).reshape(-1, _POSE)
         return self._steps_to(rows[:, :3], np.roll(rows[:, 3:], 1, axis=1), heading, unsolved=self._unsolved)
 
@@ -299,6 +306,18 @@ class _PybulletStepper(Leapfrog):
             self._slab_velocity = np.array(bullet.getBaseVelocity(self._slab, client)[0])
         place, turn = bullet.getBasePositionAndOrientation(self._body, client)
         return (*place, *turn)
+
+    def _turn_to_slip(self) -> None:
+        """Turn the scene until the base slides along one of its axes, along which friction is Coulomb's."""
+        bullet, client = self._bullet, self._client
+        place, (x, y, z, w) = bullet.getBasePositionAndOrientation(self._body, client)
+        velocity, spin = bullet.getBaseVelocity(self._body, client)
+        off = math.atan2(velocity[1], velocity[0])
+        if abs(math.remainder(off, 0.5 * math.pi)) < _OFF_SLIP or math.hypot(*velocity[:2]) < _SLIPS:
+            return
+        vectors = about_vertical(np.array([place, (x, y, z), velocity, spin]), -off)
+        self._heading += off
+        self._set_pose(vectors[0], np.append(vectors[1], w), vectors[2], vectors[3])
 
     def _slides(self, acceleration: Array) -> bool:
         """Whether friction does not hold a cylinder that stands."""

@@ -31,8 +31,9 @@ def test_an_impact_in_one_plane_is_of_momentum_at_every_step(
     assert run.peak_tilt == pytest.approx(exact, rel=0.01)
 
 
-@pytest.mark.parametrize("share", [0.6, 0.96])
-def test_a_slide_below_the_border_neither_tilts_nor_turns(share: float) -> None:
+@pytest.mark.parametrize(("used", "share"), [("mujoco", 0.6), ("mujoco", 0.96), ("pybullet", 0.96)])
+def test_a_slide_below_the_border_neither_tilts_nor_turns(used: str, share: float) -> None:
+    pytest.importorskip(used)
     case = Case(
         Cylinder(semidiagonal=3.0, tan_alpha=0.5),
         el_centro_1940().scaled(2.5),
@@ -43,10 +44,10 @@ def test_a_slide_below_the_border_neither_tilts_nor_turns(share: float) -> None:
     np.testing.assert_allclose(
         path_of_slide(case, exact.time), exact.displacement, atol=2e-3 * exact.peak_displacement
     )
-    run = multibody.simulate(case, support="flat")
+    run = multibody.simulate(case, engine=used, support="flat")
     assert (run.mode, run.facts) == ("slides", ())
     away = run.displacement - exact.displacement[: len(run.time)]
-    assert np.abs(away).max() < 0.05 * exact.peak_displacement
+    assert np.abs(away).max() < 0.03 * exact.peak_displacement
     assert run.peak_tilt < 1e-4 * case.cylinder.alpha
     assert np.abs(run.twist).max() < 1e-3
 
@@ -54,5 +55,6 @@ def test_a_slide_below_the_border_neither_tilts_nor_turns(share: float) -> None:
 def test_an_engine_that_tilts_what_slides_says_so() -> None:
     motion = el_centro_1940().scaled(2.5)
     case = Case(Cylinder(semidiagonal=3.0, tan_alpha=0.5), motion, friction=0.48, duration=3.0)
-    run = multibody.simulate(case, support="flat", follow_load=True, friction_damping=1.8, points=0)
+    hops = {"follow_load": True, "friction_damping": 1.8, "points": 0, "noslip_iterations": 0}
+    run = multibody.simulate(case, support="flat", **hops)
     assert {"mode", "unresolved_slide"} <= {fact.code for fact in run.facts}
