@@ -25,6 +25,7 @@ from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import RECESS_MODEL
 from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.doubts import doubts_of_cases
+from rockwobble.models.finding import Finding, Findings, Value
 from rockwobble.models.number_checks import require_in_range
 from rockwobble.models.plain_json import fields_of, plain
 from rockwobble.models.records.units import sources_of
@@ -157,6 +158,26 @@ class Sweep(Results, kind=KIND):
         """Return the number of runs, and of those that ended in each way."""
         outcome = self.table["outcome"]
         return {"runs": len(outcome), **{name: int((outcome == name).sum()) for name in self.outcomes}}
+
+    def findings(self) -> Findings:
+        """Return what was run, and how many runs ended in each way."""
+        plan = self.facts
+        values: dict[str, Value] = {"runs": len(self.table)}
+        if "model" in self.table:
+            axes = {"length": "semidiagonals", "ratio": "tan_alphas", "factor": "scales"}
+            for name, axis in axes.items():
+                values |= {f"count_{name}": len(plan[axis]), name: min(plan[axis])}
+                values[f"{name}_end"] = max(plan[axis])
+            values |= {"count_motions": len(plan["motions"]), "names": tuple(plan["models"])}
+        else:
+            values |= {"count": len(plan["cases"]), "count_of_each": len(plan["runs of each"])}
+        ended = {f"count_{name}": value for name, value in self.headline().items() if name != "runs"}
+        return Findings(
+            [
+                Finding(key="sweep.grid" if "model" in self.table else "sweep.cases", values=values),
+                Finding(key="sweep.ended", values=ended),
+            ]
+        )
 
     @property
     def keys(self) -> list[str]:

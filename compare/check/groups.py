@@ -20,6 +20,7 @@ from rockwobble import reduced
 from rockwobble.models import Case, Suite, Trace, read_suite
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import TimeStep
+from rockwobble.models.finding import Finding, Findings
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import line
 from rockwobble.models.support import MODELLED, RECESS, RING, SUPPORTS
@@ -34,7 +35,7 @@ from ..storage.results import Results
 from . import agreement, baseline, invariance, lagrange, laws, restraint
 from . import subject as subjects
 from .cause import likely_cause
-from .measurement import RELEASE, Bound, Result, at_most, not_run
+from .measurement import FAILED, PASSED, RELEASE, Bound, Result, at_most, not_run
 from .subject import TOLERANCE, Subject
 from .suite import SuiteRuns, check_suite
 
@@ -314,6 +315,23 @@ class Checks(Results, kind="check"):
         """Return the number of checks by their outcome."""
         counts = Counter(each.outcome for each in self.results)
         return {name: counts[name] for name in ("FAILED", "passed", "no baseline", "not run")}
+
+    def findings(self) -> Findings:
+        """Return how many checks failed, and each that did."""
+        counts = {name: count for name, count in self.headline().items() if count}
+        failed, passed = counts.pop(FAILED, 0), counts.pop(PASSED, 0)
+        values = {
+            "count": failed or passed,
+            "count_all": len(self.results),
+            "duration": self.facts["seconds"],
+        }
+        values["detail"] = ", ".join(f"{count} {name}" for name, count in counts.items())
+        first = Finding(
+            key="check.failed" if failed else "check.passed",
+            level="not satisfied" if failed else "satisfied",
+            values=values,
+        )
+        return Findings([first, *(each.finding() for each in self.failures)])
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{count} {outcome}" for outcome, count in self.headline().items() if count)

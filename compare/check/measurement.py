@@ -22,6 +22,7 @@ from rockwobble.models import (
     WobblingFrame,
 )
 from rockwobble.models.cylinder import PIER
+from rockwobble.models.finding import Finding, Value
 from rockwobble.models.shown import Brief
 from rockwobble.models.trace_source import Known
 
@@ -90,6 +91,18 @@ class Result(Brief):
     def failed(self) -> bool:
         """Whether the check failed."""
         return self.outcome == FAILED
+
+    def finding(self) -> Finding:
+        """What was measured and what is allowed; the level is that of the outcome."""
+        values: dict[str, Value] = {"name": self.name, "demand": self.value, "bound": self.bound}
+        values |= {"detail": self.note, "detail_unit": self.unit}
+        values |= {"detail_reason": self.reason, "detail_cause": self.cause}
+        return Finding(
+            key="check.result",
+            level="not satisfied" if self.failed else "satisfied" if self.outcome == PASSED else "not tested",
+            values=values,
+            runs=self.subject,
+        )
 
 
 def at_most(name: str, value: float, bound: Bound, cause: str = "", note: str = "") -> Result:

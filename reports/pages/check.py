@@ -13,6 +13,7 @@ from rockwobble.compare.check.groups import TITLES
 
 from .page import Page
 from .table import NONE, Row, number
+from .wording import sentence, statement
 
 
 def print_checks(console: Console, found: Checks) -> None:
@@ -117,29 +118,19 @@ def as_junit(found: Checks, plan: str = "") -> str:
                 continue
             detail.text = _printable(in_words(result))
             if kind == "failure":
-                detail.set("message", _printable(_failure(result)))
+                detail.set("message", _printable(sentence(result.finding(), short=True)))
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
 def headline(found: Checks) -> str:
     """Return the result of all checks, in one sentence."""
-    counts = {outcome: count for outcome, count in found.headline().items() if count}
-    failed, passed = counts.pop("FAILED", 0), counts.pop("passed", 0)
-    rest = f" ({', '.join(f'{count} {outcome}' for outcome, count in counts.items())})" if counts else ""
-    first = f"{failed} of {len(found.results)} checks FAILED" if failed else f"{passed} checks passed"
-    return f"{first}{rest}, in {found.facts['seconds']:.0f} s."
+    return statement(found.findings()[0])
 
 
 def in_words(result: Result) -> str:
     """Return a result in one sentence."""
-    note = f"; {result.note}" if result.note else ""
-    return f"{_failure(result, f' ({result.reason})')}{note}"
-
-
-def _failure(result: Result, reason: str = "") -> str:
-    cause = f"; likely cause: {result.cause}" if result.cause else ""
-    return f"{result.name}: {_measurement(result)}, at most {_bound(result)}{reason}{cause}"
+    return sentence(result.finding())
 
 
 def _by_group(results: Sequence[Result]) -> dict[str, list[Result]]:

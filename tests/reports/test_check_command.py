@@ -21,7 +21,7 @@ from rockwobble.compare.check.measurement import Bound, at_most, not_run
 from rockwobble.compare.storage.files import replace_files
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages import page_of
-from rockwobble.reports.pages.check import as_junit, headline, in_words, print_checks
+from rockwobble.reports.pages.check import as_junit, print_checks
 
 FAST = ["--only", "rest", "--only", "equations"]
 MADE = (
@@ -89,10 +89,13 @@ def test_failures_alone_are_printed_and_end_with_1(
     )
 
 
-def test_a_bound_has_its_reason_and_a_failure_its_cause() -> None:
+def test_a_finding_of_a_failure_has_measure_bound_reason_and_cause() -> None:
     failed = dataclasses.replace(BAD, cause="axial inertia +5 %")
-    words = in_words(failed)
-    assert f"at most 0.1 ({failed.reason}); likely cause: axial inertia +5 %" in words
+    summary, finding = checks(GOOD, failed).findings()
+    found = {name: value for name, value, _ in finding.quantities()}
+    assert (finding.level, found["demand"], found["bound"]) == ("not satisfied", failed.value, failed.bound)
+    assert (found["detail_reason"], found["detail_cause"]) == (failed.reason, failed.cause)
+    assert (summary.key, [value for _, value, _ in summary.quantities()][:2]) == ("check.failed", [1, 2])
 
 
 def test_the_version_of_a_baseline_is_said_once_where_nothing_has_changed() -> None:
@@ -225,7 +228,8 @@ def test_checks_that_are_loaded_are_the_same_value(tmp_path: Path) -> None:
 
 def test_outcomes() -> None:
     assert [result.outcome for result in (GOOD, BAD, NONE, LEFT)] == [PASSED, FAILED, FAILED, NOT_RUN]
-    assert headline(checks(GOOD)) == "1 checks passed, in 3 s."
+    (passed,) = checks(GOOD).findings()
+    assert (passed.key, passed.level) == ("check.passed", "satisfied")
 
 
 def test_an_update_needs_a_reason_and_keeps_it(
