@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 from rockwobble.compare.comparison.peak_error import NO_ERROR, PeakError, peak_error
 from rockwobble.compare.metrics.mode import mode_findings, slide_finding
+from rockwobble.compare.metrics.pair import balance_of
 from rockwobble.compare.runs.choice import own_model_of
 from rockwobble.compare.runs.execution import Job, job_fingerprint, simulate_all, simulate_run
 from rockwobble.compare.runs.progress import ProgressCallback, stages
 from rockwobble.compare.storage.manifest import Number, Stored
 from rockwobble.compare.storage.results import Results
 from rockwobble.models import Case, Run, Trace
+from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL
-from rockwobble.models.finding import Findings
+from rockwobble.models.finding import Finding, Findings, Value
 from rockwobble.models.mode import REST, SLIDES
 from rockwobble.models.plain_json import plain
 from rockwobble.models.support import RECESS, SUPPORTS
 from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, case_facts, to_parquet
 
+from .advice.demands import fall_of
 from .advice.trust import BAND_STEP, copies_part_at, scatter_of, with_time_to_fall
 from .plans import AdvicePlan
 
@@ -29,6 +32,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _FILE = "run.parquet"
+_WIDE = 0.1  # scatter of the copies from which on a number is about so large
 _COPIES = 20  # enough to say from when on they diverge
 
 
@@ -50,15 +54,35 @@ class SingleRun(Results, kind="run"):
     trace: Trace
 
     def findings(self) -> Findings:
-        """The mode of motion, and how far it slides."""
+        """The mode of motion, how far it slides or what becomes of it, and from when on it is one of many."""
         trace = self.trace
-        if trace.run.support not in SUPPORTS:
-            return Findings()
-        first = mode_findings(trace.case, trace.run.support)
-        if "slides" not in trace.mode:
-            return Findings(first)
-        moved = trace.peak_displacement, trace.residual_displacement
-        return Findings([*first, slide_finding(*moved, self.facts["single_trace"].get("slid", ()))])
+        said: list[Finding] = []
+        if trace.run.support in SUPPORTS:
+            said += mode_findings(trace.case, trace.run.support)
+            if "slides" in trace.mode:
+                moved = trace.peak_displacement, trace.residual_displacement
+                said.append(slide_finding(*moved, self.facts["single_trace"].get("slid", ())))
+        if trace.mode != SLIDES:
+            said.append(_outcome(trace, self.facts.get("single_trace", {}).get("scatter", math.nan)))
+        return Findings([*said, *self._doubt()])
+
+    def _doubt(self) -> Iterator[Finding]:
+        trace, single = self.trace, self.facts.get("single_trace", {})
+        part, falls = (
+            single.get("copies_part", math.inf),
+            fall_of(trace),
+        )  # of earlier versions nothing is known
+        if not math.isfinite(part):
+            return
+        late = falls if math.isfinite(falls) else trace.peak_time
+        before = "before_it_falls" if math.isfinite(falls) else "before_largest_tilt"
+        values: dict[str, Value] = {
+            "time": part,
+            "reason": before if late > part else None,
+            "reason_model": None if trace.run.is_model else "in_the_model",
+            "share": single["perturbation"],
+        }
+        yield Finding(key="run.not_reproducible", level="caution", values=values)
 
     @property
     def error(self) -> PeakError:
@@ -100,6 +124,28 @@ class SingleRun(Results, kind="run"):
     def plot(self, part: str | None = None) -> Figure:
         """Return a matplotlib figure of the trace."""
         return self.trace.plot(part)
+
+
+def _outcome(trace: Trace, scatter: float) -> Finding:
+    """What becomes of the cylinder; scatter of the peaks of its copies over its own."""
+    falls, peak, alpha = fall_of(trace), trace.peak_tilt, trace.case.cylinder.alpha
+    if math.isfinite(falls):
+        balance = balance_of(trace.case)
+        values: dict[str, Value] = {
+            "time_uplift": math.nan if trace.case.initial else trace.uplift_time,
+            "tilt": balance,
+            "peak": balance / alpha,
+            "time": falls,
+            "time_end": float(trace.time[-1]),
+        }
+        if balance >= OVERTURNED_TILT:
+            return Finding(key="run.falls_from_any_tilt", values=values)
+        return Finding(key="run.falls" if falls else "run.starts_beyond_balance", values=values)
+    if math.isfinite(peak):
+        about = "about" if scatter > _WIDE else None
+        values = {"peak": peak / alpha, "tilt": peak, "share_scatter": scatter, "reason": about}
+        return Finding(key="run.stands" if peak else "run.at_rest", values=values)
+    return Finding(key="run.undecided" if trace.outcome == "undecided" else "run.failed")
 
 
 def single_run(

@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from rockwobble.compare.metrics.pair import balance_of
-from rockwobble.models import Case, Diagnostic, Trace
-from rockwobble.models.bounds import OVERTURNED_TILT
+from rockwobble.models import Diagnostic, Trace
 from rockwobble.models.mode import SLIDES
 from rockwobble.studies.advice.demands import fall_of
 from rockwobble.studies.single_run import SingleRun
@@ -16,8 +14,10 @@ from ..figures.trace import pictures
 from .cases import case_lines
 from .diagnostics import remarks
 from .page import Page
-from .table import Row, number, scattered
+from .table import Row, number
 from .wording import statement
+
+_DOUBT = "run.not_reproducible"
 
 
 def page_of(found: SingleRun) -> Page:
@@ -25,18 +25,15 @@ def page_of(found: SingleRun) -> Page:
     trace, said = found.trace, remarks(_limits(found.trace))
     values = {
         "title": f"{trace.case.name}, {found.facts['run']}: {trace.outcome}",
-        "statements": list(_statements(found)),
+        "statements": [statement(each) for each in found.findings() if each.key != _DOUBT],
         "said": f"{said[0].upper()}{said[1:]}." if said else "",
-        "warnings": list(_not_reproducible(found)),
+        "warnings": [statement(each) for each in found.findings() if each.key == _DOUBT],
         "answer": found.facts.get("single_trace", {}).get("answer", ""),
         "rows": list(_rows(found)),
         "lines": case_lines(trace.case),
         "about": found.manifest,
     }
     return Page(name="run", template="runs/run", values=values, pictures=pictures(trace))
-
-
-_WIDE = 0.1  # scatter of the copies from which on a number is about so large
 
 
 def _limits(trace: Trace) -> list[Diagnostic]:
@@ -48,68 +45,6 @@ def _limits(trace: Trace) -> list[Diagnostic]:
 def _friction_at_rest(trace: Trace) -> float:
     """Friction demand of a base that stays closed, as a reduced model knows it; 0 of what moves."""
     return trace.case.friction_at_rest if trace.run.is_model and not trace.peak_tilt else 0.0
-
-
-def _statements(found: SingleRun) -> Iterator[str]:
-    """Yield which motion it is, and what became of the cylinder."""
-    yield from map(statement, found.findings())
-    if found.trace.mode != SLIDES:
-        yield _outcome(found.trace, found.facts.get("single_trace", {}).get("scatter", math.nan))
-
-
-def _outcome(trace: Trace, scatter: float) -> str:
-    falls, peak, alpha = fall_of(trace), trace.peak_tilt, trace.case.cylinder.alpha
-    if math.isfinite(falls):
-        uplift = "" if trace.case.initial else f" it uplifts at {number(trace.uplift_time, '.4g')} s,"
-        return (
-            f"The cylinder overturns:{uplift} {_passes(trace.case, falls)}, and its side is "
-            f"down at {number(float(trace.time[-1]), '.4g')} s."
-        )
-    if math.isfinite(peak):
-        form, about = scattered(scatter), "about " if scatter > _WIDE else ""
-        tilt = f"{about}{number(peak / alpha, form)} α = {number(math.degrees(peak), form)} deg"
-        return f"Peak tilt {tilt}; the cylinder stands{'' if peak else ', and has not uplifted'}."
-    if trace.outcome == "undecided":
-        return (
-            "Undecided: it stays close to its balance, and rounding decides whether it overturns. The peak "
-            "tilt is unknown."
-        )
-    return "The run failed: its peak tilt is unknown."
-
-
-def _passes(case: Case, falls: float) -> str:
-    """When a cylinder that falls passes its balance for good, and what that is: alpha without a tendon."""
-    alpha, balance = case.cylinder.alpha, balance_of(case)
-    if balance >= OVERTURNED_TILT:
-        return "though at rest it would come back from any tilt"
-    name, tilt = "α", f"α = {math.degrees(alpha):.4f} deg"
-    if balance != alpha:
-        name = "the balance tilt"
-        tilt = f"{name} {math.degrees(balance):.4f} deg = {balance / alpha:.4f} α"
-    return (
-        f"its tilt passes {tilt} for good at {number(falls, '.4g')} s"
-        if falls
-        else f"it starts beyond {name}"
-    )
-
-
-def _not_reproducible(found: SingleRun) -> Iterator[str]:
-    """Yield from when on a single trace says little, on two lines of the document."""
-    trace, single = found.trace, found.facts.get("single_trace", {})
-    part, falls = single.get("copies_part", math.inf), fall_of(trace)  # of earlier versions nothing is known
-    if not math.isfinite(part):
-        return
-    before = ""
-    if math.isfinite(falls):
-        before = ", before it falls," if falls > part else ""
-    elif trace.peak_time > part:
-        before = ", before its largest tilt,"
-    model = "" if trace.run.is_model else "in the reduced model "
-    yield (
-        f"From {number(part, '.4g')} s on{before} a single trace is not reproducible: {model}perturbing the "
-        f"input\nby {number(single['perturbation'], 'percent')} spreads the tilt over more than half of its "
-        "peak."
-    )
 
 
 def _rows(found: SingleRun) -> Iterator[Row]:

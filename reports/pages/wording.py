@@ -3,9 +3,10 @@
 A line names values in braces. How a value looks follows its unit: an angle in degrees, a share in per cent,
 a time in s, a number with its 95 % interval behind it. `{runs:copy/copies}` adds the noun that fits the
 count; `{size:added|dissipated}` is the first word above zero, the second below; `{reason:word}` looks its
-value up in the table [word]; any other format is one of `number`, as `{bound:.1e}`. What stands in square
-brackets is left out where a value in it is not known. A line whose key ends in `:NAME unknown` or
-`:NAME infinite` takes the place of the plain one where that value is.
+value up in the table [word]; `{peak:scattered}` has as many digits as the value share_scatter leaves; any
+other format is one of `number`, as `{bound:.1e}`. What stands in square brackets is left out where a value
+in it is not known. A line whose key ends in `:NAME unknown` or `:NAME infinite` takes the place of the
+plain one where that value is.
 """
 
 from __future__ import annotations
@@ -19,14 +20,18 @@ from importlib.resources import files
 
 from rockwobble.models.finding import Finding, Value
 
-from .table import NONE, enumeration, number
+from .table import NONE, enumeration, number, scattered
 
 _FIELD = re.compile(r"\{(\w+)(?::([^}]*))?\}")
 _OPTIONAL = re.compile(r"\[([^\]]*)\]")
 # unit: how a number looks
 _BY_UNIT: Mapping[str, Callable[[float], str]] = {
-    "s": lambda value: f"{number(value, '.4g')} s",
-    "rad": lambda value: f"{number(math.degrees(value))}°",
+    "s": lambda value: "the end" if math.isinf(value) else f"{number(value, '.4g')} s",
+    "rad": lambda value: "no tilt below 90°" if math.isinf(value) else f"{number(math.degrees(value))}°",
+    **{
+        unit: lambda value, unit=unit: f"{number(value, '.4g')} {unit}"  # type: ignore[misc]
+        for unit in ("rad/s", "t", "MPa")
+    },
     "share": lambda value: number(value, "percent"),
     "count": lambda value: number(value, ".0f"),
     "alpha": lambda value: f"{number(value)} α",
@@ -72,8 +77,12 @@ def statement(finding: Finding, *, short: bool = False) -> str:
 
 
 def text(findings: Iterable[Finding]) -> str:
-    """Findings in words, one a line, each behind its level."""
-    return "\n".join(f"{each.level}: {sentence(each)}" for each in findings)
+    """Findings in words, one a line; a grade behind what it grades."""
+    return "\n".join(f"{_level(each)}{sentence(each)}" for each in findings)
+
+
+def _level(finding: Finding) -> str:
+    return "" if finding.level == "note" else f"{finding.key.partition('.')[0]}: {finding.level}, "
 
 
 def written(key: str, values: Mapping[str, Value], units: Mapping[str, str], *, short: bool = False) -> str:
@@ -84,7 +93,14 @@ def written(key: str, values: Mapping[str, Value], units: Mapping[str, str], *, 
 def filled(line: str, values: Mapping[str, Value], units: Mapping[str, str]) -> str:
     """A line with its values; see the module."""
     line = _OPTIONAL.sub(lambda part: part[1] if _all_known(part[1], values) else "", line)
-    return _FIELD.sub(lambda each: _value(values.get(each[1]), units.get(each[1], ""), each[2] or ""), line)
+    scatter = values.get("share_scatter")
+    digits = scattered(scatter if isinstance(scatter, float) else math.nan)
+
+    def value(each: re.Match[str]) -> str:
+        form = digits if each[2] == "scattered" else each[2] or ""
+        return _value(values.get(each[1]), units.get(each[1], ""), form)
+
+    return _FIELD.sub(value, line)
 
 
 def _variant(key: str, values: Mapping[str, Value]) -> str:
@@ -124,8 +140,10 @@ def _value(value: Value, unit: str, form: str) -> str:
     if "|" in form:
         above, below = form.split("|")
         return above if value > 0.0 else below
+    if form == "mm":
+        return f"{number(1e3 * value)} mm"
     if form.startswith("size "):
         return _value(abs(value), unit, form.removeprefix("size "))
     if form:
-        return number(value, form)
+        return f"{number(math.degrees(value), form)}°" if unit == "rad" else number(value, form)
     return _BY_UNIT.get(unit, number)(value)

@@ -44,12 +44,11 @@ from rockwobble.models.trace_file import motion_facts
 from ..plans import AdvicePlan
 from ..spectrum.parts import SPATIAL
 from .demands import demand_table, demands_of, fall_of, weaker_factors
+from .findings import findings_of
 from .grades import (
     EVENLY_LOADED,
     NEAR,
     POOR,
-    STABILITY,
-    USE,
     grade_chance,
     grade_engine,
     grade_intensity,
@@ -67,6 +66,7 @@ from .members import (
     OTHER,
     VELOCITY,
     VERTICAL,
+    WEAKER_COUNT,
     group_table,
     member_rows,
     other_records,
@@ -101,9 +101,6 @@ from .trust import (
 
 KIND = "advice"
 VERTICAL_COUNT = 20  # pairs of copies with and without the vertical component
-# members of each group that are run at each intensity of weaker shaking: all other records, and as many
-# copies, of which 95 % are all but one
-WEAKER_COUNT = 22
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -418,24 +415,9 @@ class Advice(Results, kind=KIND):
         found = float(values.get("tendon", math.nan))
         return found if math.isfinite(found) else self.response["tension"]
 
-    @property
-    def verdict(self) -> str:
-        """One sentence on the cylinder and on the model."""
-        model = self.facts["model"]
-        if self.response["outcome"] == "failed":
-            return f"no advice, the {model} failed"
-        if self.response["outcome"] in NO_PEAK:
-            return f"no advice, the {model} is undecided: it stays by its balance"
-        if self.slides:
-            return f"it slides up to {self.response['displacement']:.3g} m and cannot uplift"
-        if self.slides_at_rest:
-            return f"the cylinder does not uplift, it slides; {USE['not satisfied'].format(model)}"
-        if not self.moves:
-            return "the cylinder stays at rest"
-        ends = "it overturns as given" if self.overturned else STABILITY[self.grades["overturning"]]
-        if self.yields:
-            ends = "its tendon yields, whether it overturns is not tested"
-        return f"{ends}; {USE[self.model_grade].format(model)}"
+    def findings(self) -> Findings:
+        """Verdict, motion, grades with reasons, groups, demands, next steps and details, in this order."""
+        return findings_of(self)
 
     @property
     def vertical_matters(self) -> bool:

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from types import MappingProxyType
 
 from rockwobble.compare.comparison.prediction import BEATEN, UNTESTED
 from rockwobble.compare.metrics.statistics import FEWEST
-from rockwobble.models.finding import GRADES, Grade
+from rockwobble.models.finding import GRADES, Finding, Grade, Value
 from rockwobble.models.trace import NO_PEAK
+
+from .demands import COVERED
 
 POOR: tuple[Grade, ...] = ("caution", "not satisfied")
 # share of the moving time for which contact or friction may be missing before the motion is another one:
@@ -32,90 +32,23 @@ BETWEEN_SCALES = 1.05
 EVENLY_LOADED = 3
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Criterion:
-    """What has to be so for each grade of a topic, in words."""
-
-    satisfied: str
-    not_tested: str
-    caution: str
-    not_satisfied: str
-
-    def by_grade(self) -> dict[Grade, str]:
-        """Return the words by grade."""
-        words = (self.satisfied, self.not_tested, self.caution, self.not_satisfied)
-        return dict(zip(GRADES, words, strict=True))
+# numbers that the words of a criterion name, by topic and grade
+_NEAR = {"factor": NEAR, "share": UNSAFE}
+_SHARES = {"share": BROKEN, "share_covered": COVERED, "runs": FEWEST}
+_CRITERIA: Mapping[str, Mapping[str, Value]] = {
+    "overturning": _NEAR,
+    "friction": _SHARES,
+    "contact": _SHARES,
+    "tendon": _SHARES,
+    "intensity": {"factor": SENSITIVE, "share_margin": BETWEEN_SCALES - 1.0},
+    "engine": {"factor": BEATEN},
+}
 
 
-_BRIEFLY = f"for at most {100.0 * BROKEN:g} % of the time in motion"
-_FEW = f"fewer than {FEWEST} runs that differ, or the tendon yields in some"
-CRITERIA: Mapping[str, Criterion] = MappingProxyType(
-    {
-        "overturning": Criterion(
-            satisfied=f"no run overturns, nor any scale up to {NEAR:g} times this shaking",
-            not_tested="no run overturns, but no other scales of this shaking were run, or the tendon "
-            f"yields in a run or at a scale up to {NEAR:g}",
-            caution=f"at most {100.0 * UNSAFE:g} % of a group overturn, or a scale below {NEAR:g} does; "
-            "copies with the vertical component are a group",
-            not_satisfied=f"the case as given overturns, or more than {100.0 * UNSAFE:g} % of a group",
-        ),
-        "friction": Criterion(
-            satisfied="the friction given suffices in 95 % of the runs of each group",
-            not_tested=_FEW,
-            caution=f"not given, or too little {_BRIEFLY}",
-            not_satisfied="too little for longer, or below b/h: it slides before it uplifts",
-        ),
-        "contact": Criterion(
-            satisfied="never lost in 95 % of the runs of each group",
-            not_tested=_FEW,
-            caution=f"lost {_BRIEFLY}",
-            not_satisfied="lost for longer: the models do not know flight",
-        ),
-        "tendon": Criterion(
-            satisfied="its tension stays below yield in 95 % of the runs of each group",
-            not_tested=_FEW,
-            caution="no yield force was given",
-            not_satisfied="it yields: what comes after is not modelled",
-        ),
-        "trace": Criterion(
-            satisfied="the largest tilt comes before two methods, or the copies, diverge",
-            not_tested="the copies are all one run",
-            caution="the largest tilt comes after methods or copies diverge: trust statistics",
-            not_satisfied="the run failed, or its tendon yields",
-        ),
-        "intensity": Criterion(
-            satisfied=f"the tilt changes by less than {SENSITIVE:g} times under shaking as strong, with a "
-            f"margin of {100.0 * (BETWEEN_SCALES - 1.0):.0f} % for what lies between the scales run",
-            not_tested="no other scales of this shaking were run, or the tendon yields at one of them",
-            caution=f"it changes by {SENSITIVE:g} times or more, or one of these scales overturns",
-            not_satisfied="never: the percentiles say it",
-        ),
-        "engine": Criterion(
-            satisfied="agrees with the model as long as predicted, and to the same end",
-            not_tested=f"not run, failed, agrees {BEATEN:g} times the prediction, or hardly moves",
-            caution="comes to another end, or stays at rest where the model moves",
-            not_satisfied="diverges earlier than half of what is predicted",
-        ),
-    }
-)
-# verdict on the cylinder, by the grade of overturning where it does not overturn as given
-STABILITY: Mapping[Grade, str] = MappingProxyType(
-    {
-        "satisfied": "it stands",
-        "not tested": "it stands, its margin is not tested",
-        "caution": "it may overturn",
-        "not satisfied": "it is not safe against overturning",
-    }
-)
-# and on the use of a model, by the worst of the other grades
-USE: Mapping[Grade, str] = MappingProxyType(
-    {
-        "satisfied": "the {} may be used",
-        "not tested": "whether the {} may be used is not tested",
-        "caution": "use the {} with caution",
-        "not satisfied": "do not rely on the {}",
-    }
-)
+def criterion(topic: str, grade: Grade) -> Finding:
+    """What has to be so for a grade of a topic."""
+    key = f"criterion.{topic}_{grade.replace(' ', '_')}"
+    return Finding(key=key, level=grade, values=_CRITERIA.get(topic, {}))
 
 
 def grade_share(missing: float, *, asked: bool = True, slides: bool = False, tested: bool = True) -> Grade:

@@ -52,6 +52,9 @@ BESIDE_THE_PROBLEM = (OTHER, HORIZONTAL)
 # [s] of the samples of demands: of a short motion 99 % of the time at 0.02 s are all but its largest spike,
 # which rounding moves by a fifth; at 0.005 s they are within 2 % of those at 0.002 s
 DEMAND_STEP = 0.005
+# members of each group that are run at each intensity of weaker shaking: all other records, and as many
+# copies, of which 95 % are all but one
+WEAKER_COUNT = 22
 _CLOSE = 1e-9  # relative, of an uplift threshold that rounding may pass
 _SEED = 1  # of synthetic ground motions where the records are not installed
 _QUANTILES = {"05": 0.05, "50": 0.5}

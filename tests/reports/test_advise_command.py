@@ -6,8 +6,7 @@ import dataclasses
 import io
 import itertools
 import math
-import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
@@ -25,7 +24,6 @@ from rockwobble.reports.figures.advice import pictures
 from rockwobble.reports.figures.picture import Line
 from rockwobble.reports.pages import stored_page
 from rockwobble.reports.pages.advice import page_of
-from rockwobble.reports.pages.advised_case import assumptions, opening, problem_lines, weight_words
 from rockwobble.studies import Advice
 from rockwobble.studies.advice import scales
 from rockwobble.studies.advice.trust import Trust
@@ -109,7 +107,9 @@ def test_every_kind_of_case_gets_its_page(names, more, expected, records, tmp_pa
     assert len(html) < PAGE_LIMIT
     assert html.count('<details class="fold">') == html.count("</details>") == 1
     # a document is drawn by a report alone
-    assert {path.name for path in tmp_path.iterdir()} == DATA | {"advice.html", "manifest.json"}
+    tables = DATA | ({"slides.parquet"} if found.slides else set())
+    written = {path.name for path in tmp_path.iterdir()}
+    assert written == tables | {"advice.html", "advice.json", "manifest.json"}
     if more == ["--scale", "2"]:  # twice: with a vertical component, and in one plane
         assert again.html() == html  # with all that the pictures show
 
@@ -168,32 +168,30 @@ def test_an_overturned_group_moves_without_bound(found):
     assert {(row["covered"], row["tilt"], row["top"]) for row in rows} == {("", "no limit", "no limit")}
 
 
-def reasons_of(found: Advice) -> dict[str, str]:
-    return {row["topic"]: row["reason"] for row in page_of(found).values["criteria"]}
+def finding_of(found: Advice, group: str) -> tuple[str, Mapping[str, Any]]:
+    """Key and values of the first finding of a group."""
+    finding = found.findings().of(group)[0]
+    return finding.key, finding.values
 
 
-def numbers_in(words: str) -> list[float]:
-    return [float(word) for word in re.findall(r"\d+(?:\.\d+)?", words)]
-
-
-def test_a_reason_states_the_numbers_of_its_grade(found):
-    reasons = reasons_of(found)
+def test_a_grade_gives_the_numbers_it_rests_on(found):
+    """Those of tables and facts, under the key of its reason."""
     needed = found.demands.set_index("demand")["value"]["friction"]
-    assert numbers_in(reasons["friction"]) == [pytest.approx(needed, rel=PRINTED)]
+    assert finding_of(found, "friction") == ("friction.not_given", {"demand": needed})
     low, high = found.range_as_strong
-    assert numbers_in(reasons["intensity"]) == [
-        pytest.approx(low / found.peak, rel=PRINTED),
-        pytest.approx(high / found.peak, rel=PRINTED),
-        len(found.as_strong),
-        11.0,
-        12.0,
-    ]
-    prediction = dataclasses.asdict(Prediction(length=5.0, reason="pass"))
-    engine = changed(found, verification=ENGINE, prediction=prediction)
-    end = found.response["uplift_time"] + 5.0
-    assert numbers_in(reasons_of(engine)["engine"]) == [22.0, pytest.approx(end, rel=PRINTED)]
-    slides = reasons_of(changed(found, friction=0.1))["friction"]
-    assert numbers_in(slides) == [0.1, 0.2]
+    key, values = finding_of(found, "intensity")
+    assert (key, values["count"]) == ("intensity.ratio", len(found.as_strong))
+    assert values["ratio_least"] == pytest.approx(low / found.peak)
+    assert values["ratio_largest"] == pytest.approx(high / found.peak)
+    slides = changed(found, friction=0.1)
+    assert finding_of(slides, "friction")[0] == "friction.below_border"
+    assert finding_of(slides, "friction")[1] == {"given": 0.1, "demand": needed, "bound": pytest.approx(0.2)}
+    groups = found.groups.assign(slip_95=0.02)
+    slips = dataclasses.replace(changed(found, friction=0.3), tables={**found.tables, "groups": groups})
+    assert finding_of(slips, "friction")[0] == "friction.too_little"
+    assert finding_of(slips, "friction")[1] == {"given": 0.3, "demand": needed, "share": 0.02}
+    for each in found.findings().of("overturning"):
+        assert each.level == found.grades["overturning"]
 
 
 ENGINE = {
@@ -222,14 +220,15 @@ def test_every_code_has_words(found):
     engines = [ENGINE | {"divergence": each} for each in (*DIVERGENCES, *UNTESTED)]
     engines += [ENGINE | {"outcome": "overturned"}, ENGINE | {"moves": False}]
     engines += [ENGINE | {"outcome": "failed", "diagnostics": "energy_gain", "divergence": ""}]
-    notes, reasons = set(), set()
+    keys = set()
     for engine in engines:
-        values = page_of(changed(found, verification=engine)).values
-        notes |= {row["note"] for row in values["checks"] if "mujoco" in row["name"]}
-        reasons |= {row["reason"] for row in values["criteria"] if row["topic"] == "engine"}
-    assert len(reasons) == 7  # as predicted in three ways
-    assert len(notes) >= 7  # two verdicts are the same
-    assert all(notes)
+        verified = changed(found, verification=engine)
+        keys.add(finding_of(verified, "engine")[0])
+        words = page_of(verified).markdown()
+        assert "divergence_" not in words
+        assert "mujoco recess 4.0.0" in words
+    assert keys >= {f"engine.{name}" for name in ("earlier", "rests", "overturns", "little", "failed")}
+    assert keys & {"engine.agrees", "engine.as_predicted"}
     for kind, because in (("trace", ""), ("peak", "data"), ("statistics", "methods")):
         assert page_of(changed(found, trust={"kind": kind, "until": 3.0, "because": because})).markdown()
     assert get_args(get_type_hints(Trust)["because"]) == ("", "methods", "data")
@@ -242,13 +241,14 @@ def with_columns(found: Advice, columns: int) -> Advice:
     return changed(found, cylinder=found.facts["cylinder"] | {"columns": columns, "slab_mass_ratio": 0.5})
 
 
-def test_the_first_screen_states_the_columns_and_their_limit(found):
+def test_a_frame_states_its_columns_and_their_limit(found):
     for columns in (1, 3, 4):
-        words = " ".join(printed(with_columns(found, columns)).split())
-        assert f"{columns} columns under a slab" in words or (columns == 1 and "One column under" in words)
-        assert ("share the load unevenly" in words) == (columns > 3)
-    mass = dataclasses.replace(with_columns(found, 4), facts=with_columns(found, 4).facts | {"mass": 45.0})
+        findings = with_columns(found, columns).findings()
+        assert next(each for each in findings if each.key == "case.frame").values["count"] == columns
+        assert [each.key for each in findings.of("caution")] == ["caution.uneven_load"] * (columns > 3)
+    mass = changed(with_columns(found, 4), mass=45.0)
     assert "| one column |" in page_of(mass).markdown()
+    assert finding_of(mass, "weight") == ("weight.column", {"mass": 67.5, "mass_column": 45.0})
 
 
 def test_chatter_of_a_closed_base_is_no_change_of_the_response(found):
@@ -258,9 +258,9 @@ def test_chatter_of_a_closed_base_is_no_change_of_the_response(found):
     tables = {**found.tables, "as_strong": strong}
     still = dataclasses.replace(changed(found, response=response), tables=tables)
     assert still.grades["intensity"] == "satisfied"
-    assert "the base hardly opens, by at most 2.53e-5 α" in reasons_of(still)["intensity"]
+    assert finding_of(still, "intensity")[0] == "intensity.hardly"
     trust = {"kind": "statistics", "until": 3.0, "because": "methods"}
-    assert "the base hardly opens, by 1e-5 α" in reasons_of(changed(still, trust=trust))["trace"]
+    assert finding_of(changed(still, trust=trust), "trace") == ("trace.hardly", {"peak": 1e-5})
     opens = dataclasses.replace(still, tables={**tables, "as_strong": strong.assign(peak_tilt=0.1)})
     assert opens.grades["intensity"] == "caution"
 
@@ -268,10 +268,10 @@ def test_chatter_of_a_closed_base_is_no_change_of_the_response(found):
 def test_what_stays_at_rest_is_told_from_what_others_do_to_it(found):
     still = changed(found, response={**found.facts["response"], "uplift_time": math.inf, "peak_tilt": 0.0})
     assert not still.moves
-    words = page_of(still).markdown()
     moved = (found.members[found.members["group"] == "velocity"]["peak_tilt"] > 0.0).sum()
     (fell,) = found.groups[found.groups["group"] == "velocity"]["overturned"]
-    assert f"scaled to its PGV {moved} uplift it and {fell} overturn it" in " ".join(words.split())
+    key, values = finding_of(still, "compared")
+    assert (key, values["runs_velocity"], values["overturned_velocity"]) == ("compared.at_rest", moved, fell)
 
 
 def test_what_slides_at_rest_is_not_said_to_stay_there(found):
@@ -281,12 +281,12 @@ def test_what_slides_at_rest_is_not_said_to_stay_there(found):
     for friction, slides in ((None, False), (0.0859, False), (0.05, True)):
         given = changed(still, friction=friction)
         assert given.grades == ({"friction": "not satisfied"} if slides else {})
-        assert ("stays at rest" in given.verdict) == (not slides)
-        words = " ".join(page_of(given).markdown().split())
-        assert "At rest the friction demand is 0.0859" in words
-        assert ("0.05 is below the demand at rest, 0.0859: it slides" in words) == slides
+        assert finding_of(given, "verdict")[0] == f"verdict.{'slides_at_rest' if slides else 'at_rest'}"
+        assert finding_of(given, "rest")[1]["demand"] == 0.0859
+        if slides:
+            assert finding_of(given, "friction")[1] == {"given": 0.05, "demand": 0.0859}
     del motion["friction_at_rest"]  # of an earlier version
-    assert changed(still, friction=0.05).verdict == "the cylinder stays at rest"
+    assert finding_of(changed(still, friction=0.05), "verdict")[0] == "verdict.at_rest"
 
 
 def test_a_case_at_rest_begins_with_what_keeps_it_there(found):
@@ -294,72 +294,59 @@ def test_a_case_at_rest_begins_with_what_keeps_it_there(found):
     still = changed(found, response=at_rest, vertical={**found.facts["vertical"], "source": "other"})
     weak = {**found.facts["motion"], "friction_at_rest": 0.0, "uplift_factor": 2.5}
     shipped = {**found.facts["vertical"], "source": "shipped", "uplift_factor": 2.25}
-    times = "It takes 2.5 times this shaking to uplift it"
-    for facts, words in (
-        ({"motion": None}, "Nothing moves it."),
-        ({"motion": {**weak, "uplift_factor": math.inf}}, "This ground motion uplifts it at no scale."),
-        ({"motion": weak}, f"{times}."),
-        (
-            {"motion": weak, "vertical": shipped},
-            f"{times}, 2.25 times with the vertical component of the record.",
-        ),
-        ({"motion": {**weak, "friction_at_rest": 0.1}}, f"At rest the friction demand is 0.1. {times}."),
+    for facts, expected in (
+        ({"motion": None}, ("rest.nothing", None, None)),
+        ({"motion": {**weak, "uplift_factor": math.inf}}, ("rest.no_scale", None, None)),
+        ({"motion": weak}, ("rest.factor", 2.5, None)),
+        ({"motion": weak, "vertical": shipped}, ("rest.factor", 2.5, 2.25)),
     ):
-        assert list(opening(changed(still, **facts))) == [words]
+        key, values = finding_of(changed(still, **facts), "rest")
+        vertical = values.get("factor_vertical", math.nan)
+        assert (key, values.get("factor"), None if math.isnan(vertical) else vertical) == expected
     failed = {**still.facts["response"], "diagnostics": ["step_budget"]}
-    (words,) = opening(changed(still, response=failed))
-    assert words.startswith(CODES["step_budget"][1].capitalize())
-    assert list(opening(found)) == []
+    assert finding_of(changed(still, response=failed), "rest")[1] == {"detail": CODES["step_budget"][1]}
+    assert not found.findings().of("rest")
 
 
-def test_the_case_and_its_assumptions_are_stated_as_they_were_asked(found):
-    asked = changed(
-        with_columns(found, 3), rolling_resistance=0.012, friction=None, support="flat", mass=45.0
-    )
-    lines = list(problem_lines(asked))
-    assert "3 columns under a slab of 0.5 times their mass:" in lines
-    assert "Flat ground, friction not given, rolling resistance 0.012 m." in lines
-    assert weight_words(asked).startswith("weight of one column with its share of the slab, a mass of 67.5 t")
-    assert weight_words(found) == "weight of the cylinder"
-    plain, other = " ".join(assumptions(found)), " ".join(assumptions(asked))
-    for words, there, here in (
-        ("no other damping", True, False),
-        ("3 equal columns", True, False),
-        ("Flat ground: the rim rolls", True, False),
-        ("Ideal recess", False, True),
-        ("Unbonded tendon", False, False),
-        (f"{len(found.as_strong)} scales from 11 % weaker to 12 % stronger", True, True),
+def test_the_case_and_its_assumptions_are_those_asked(found):
+    asked = changed(with_columns(found, 3), rolling_resistance=0.012, friction=None, support="flat")
+    for each, keys, length in (
+        (found, {"assumption.recess"}, math.nan),
+        (asked, {"assumption.slab", "assumption.flat"}, 0.012),
     ):
-        assert (words in other, words in plain) == (there, here), words
+        findings = each.findings()
+        common = {f"assumption.{name}" for name in ("rigid", "ground", "as_strong", "verified")}
+        assert {one.key for one in findings.of("assumption")} == common | keys
+        support = next(one for one in findings if one.key == "case.support").values
+        assert support["name"] == each.facts["support"]
+        assert support["length"] == pytest.approx(length, nan_ok=True)
 
 
 def test_the_part_of_the_range_that_overturns_is_stated_with_its_lowest_scale(found):
     factors = found.as_strong["factor"].to_numpy()
     falls = found.as_strong.assign(peak_tilt=np.where(factors > 1.08, 0.5 * np.pi, 0.1))
-    words = reasons_of(dataclasses.replace(found, tables={**found.tables, "as_strong": falls}))["intensity"]
-    share = 100.0 * np.log(factors[-1] / 1.08) / np.log(factors[-1] / factors[0])
-    lowest = factors[factors > 1.08].min()
-    assert numbers_in(words) == [
-        11.0,
-        12.0,
-        pytest.approx(share, abs=0.6),
-        pytest.approx(lowest, rel=PRINTED),
-    ]
+    fallen = dataclasses.replace(found, tables={**found.tables, "as_strong": falls})
+    key, values = finding_of(fallen, "intensity")
+    share = np.log(factors[-1] / 1.08) / np.log(factors[-1] / factors[0])
+    assert key == "intensity.overturns"
+    assert values["share"] == pytest.approx(share, abs=0.006)
+    assert values["factor"] == factors[factors > 1.08].min()
 
 
 def test_an_engine_that_was_not_run_is_not_said_to_diverge(found):
     trust = {"kind": "statistics", "until": 3.0, "because": "methods"}
-    for verification, word in ((None, "are predicted to diverge"), (ENGINE, "engine diverge")):
-        text = page_of(changed(found, trust=trust, verification=verification)).markdown()
-        (row,) = [line for line in text.splitlines() if line.startswith("| the trace can be trusted")]
-        assert word in row
+    for verification, reason in ((None, "methods_predicted"), (ENGINE, "methods_diverge")):
+        findings = changed(found, trust=trust, verification=verification).findings()
+        trusted = next(each for each in findings if each.key == "evidence.trusted")
+        assert (trusted.values["until"], trusted.values["reason"]) == (3.0, reason)
 
 
 def test_a_failed_run_gets_no_advice(found, tmp_path):
     failed = {**found.facts["response"], "outcome": "failed", "diagnostics": ["step_budget"]}
     again = changed(found, response=failed)
     assert again.grades == {"trace": "not satisfied"}
-    assert "no advice, the recess model failed" in page_of(again).markdown()
+    assert finding_of(again, "verdict")[0] == "verdict.failed"
+    assert page_of(again).markdown()
 
 
 @pytest.mark.parametrize(("balance", "drawn"), [(None, 1.2), (1.63, 1.5), (1.2, 1.2 * 1.2), (math.inf, 1.5)])

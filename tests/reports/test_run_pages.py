@@ -59,7 +59,7 @@ def test_a_run_says_what_its_method_gives_and_no_more():
     title, mode, opening = page.markdown().split("\n\n")[:3]
     assert title.endswith(": stands")
     assert "rocks and wobbles" in mode
-    assert "0.2471 α = 2.795 deg" in opening
+    assert "0.2471 α = 2.795°" in opening
     said = facts(page)
     assert said["uplift"] == "2.0885 s towards 121.56 deg"
     # the swing that is followed past the end makes no demand that is known
@@ -102,7 +102,7 @@ def test_a_run_that_fails_or_falls_says_so():
     steep = rw.Case(PIER, rw.el_centro_1940().scaled(5.0))
     page = page_of_run(steep, rw.Run(None, "recess"))
     words = page.markdown()
-    assert "**The cylinder overturns: it uplifts at 1.409 s, its tilt passes α" in words
+    assert "**The cylinder overturns: it uplifts at 1.409 s, its tilt passes its balance" in words
     # what is asked until it falls, not in the fall
     assert facts(page)["friction demand"].endswith(", until it falls")
     soft = rw.Run("mujoco", "recess", contact_damping_ratio=0.01)
@@ -110,26 +110,22 @@ def test_a_run_that_fails_or_falls_says_so():
 
 
 @pytest.mark.parametrize(
-    ("stiffness", "share", "words", "mark"),
+    ("stiffness", "share", "key", "mark"),
     [
-        (0.0, 0.9, "its tilt passes α = 11.3099 deg for good at", "passes α for good"),
-        (
-            2.0,
-            0.9,
-            "its tilt passes the balance tilt 18.4349 deg = 1.6300 α for good at",
-            "passes its balance for good",
-        ),
-        (2.0, 1.1, "it starts beyond the balance tilt, and", "passes its balance for good"),
-        (6.0, 0.9, "though at rest it would come back from any tilt, and", None),
+        (0.0, 0.9, "run.falls", "passes α for good"),
+        (2.0, 0.9, "run.falls", "passes its balance for good"),
+        (2.0, 1.1, "run.starts_beyond_balance", "passes its balance for good"),
+        (6.0, 0.9, "run.falls_from_any_tilt", None),
     ],
 )
-def test_a_fall_passes_the_balance_which_a_tendon_moves(stiffness, share, words, mark):
+def test_a_fall_passes_the_balance_which_a_tendon_moves(stiffness, share, key, mark):
     tendon = rw.Tendon(stiffness=stiffness) if stiffness else None
     case = rw.Case(PIER, duration=3.0, tendon=tendon)
     release = rw.InitialState(share * balance_of(case), tilt_rate=1.0 if stiffness < 6.0 else 3.0)
     trace = rw.simulate(dataclasses.replace(case, initial=release))
     assert trace.outcome == "overturned"
-    assert f"**The cylinder overturns: {words}" in page_of(single_run_of(trace).made_by()).markdown()
+    (fall,) = single_run_of(trace).findings().of("run")
+    assert (fall.key, fall.values["tilt"]) == (key, balance_of(case))
     panel = trace_figure.pictures(trace)[0].panels[0]
     marks = {layer.text: layer.at for layer in panel.layers if isinstance(layer, Rule)}
     assert list(marks) == ([] if mark is None else [mark])
@@ -151,20 +147,17 @@ def test_an_axis_shows_what_a_tendon_brings_back():
 def test_a_run_that_its_rounding_decides_is_undecided():
     trace = rw.simulate(RELEASE)
     end = dataclasses.replace(trace, outcome="undecided", peak_tilt=math.nan)
-    words = page_of(single_run_of(end).made_by()).markdown()
-    assert "**Undecided: it stays close to its balance, and rounding decides whether it overturns." in words
+    assert [each.key for each in single_run_of(end).findings().of("run")] == ["run.undecided"]
 
 
-@pytest.mark.parametrize(
-    ("part", "before"), [(0.01, ", before its largest tilt,"), (9.0, ""), (math.inf, None)]
-)
+@pytest.mark.parametrize(("part", "before"), [(0.01, "before_largest_tilt"), (9.0, None), (math.inf, "none")])
 def test_a_single_trace_is_doubted_from_when_its_copies_spread(part, before):
     found = single_run_of(rw.simulate(rw.Case(PIER, rw.el_centro_1940(), duration=3.0))).made_by()
     single = {"copies_part": part, "perturbation": 0.01, "answer": "rockwobble ensemble"}
-    words = page_of(dataclasses.replace(found, facts={**found.facts, "single_trace": single})).markdown()
-    doubt = f"**From {part:g} s on{before} a single trace is not reproducible: perturbing the input\nby 1 %"
-    assert (doubt in words) == (before is not None)
-    assert ("Distribution: `rockwobble ensemble`" in words) == (before is not None)
+    spread = dataclasses.replace(found, facts={**found.facts, "single_trace": single})
+    doubts = [each.values for each in spread.findings() if each.key == "run.not_reproducible"]
+    assert [each["reason"] for each in doubts] == ([] if before == "none" else [before])
+    assert ("Distribution: `rockwobble ensemble`" in page_of(spread).markdown()) == bool(doubts)
 
 
 def test_a_sweep_counts_each_part(swept):

@@ -70,7 +70,7 @@ def test_each_diagnostic_has_a_line_that_takes_its_values(code: str):
     ("line", "text"),
     [
         ("{tilt} and {share}", "11.5° and 40 % (26 % to 71 %)"),
-        ("{runs:copy/copies} of {names}[ at {time}][ over {tilt:.1f}]", "1 copy of a, b and c over 0.2"),
+        ("{runs:copy/copies} of {names}[ at {time}][ over {tilt:.1f}]", "1 copy of a, b and c over 11.5°"),
         ("{difference:added|dissipated} {time}", "dissipated –"),
         ("{difference:size percent}", "50 %"),
         ("{reason:word}", "the runs diverge there"),
@@ -97,7 +97,7 @@ def test_a_value_without_a_known_quantity_is_refused():
 def test_findings_are_a_table_a_file_and_a_text():
     finding = Finding(key="diagnostic.slip", level="caution", values={"time": 1.5}, runs="mujoco")
     findings = Findings([finding, Finding(key="diagnostic.side")])
-    assert repr(findings).splitlines()[0] == "caution: contact slipped from 1.5 s on"
+    assert repr(findings).splitlines()[0] == "diagnostic: caution, contact slipped from 1.5 s on"
     assert list(findings.to_frame()["unit"]) == ["s", ""]
     assert b'"unit": "s"' in findings.to_json("trial")
     assert findings.of("diagnostic") == findings
