@@ -196,6 +196,10 @@ class _Columns:
 def _curve(given: _Given, columns: _Columns, name: str) -> HazardCurve:
     order = np.argsort(columns.x, kind="stable")
     x, frequency = columns.x[order], columns.frequency[order]
+    if (frequency < 0.0).any():
+        raise ValueError(
+            f"{given.place.name}: a frequency must not be negative, got {frequency.min():g}: a logarithm?"
+        )
     if not (frequency > 0.0).any():
         raise ValueError(f"{given.place.name} has no hazard at this site: no level is ever exceeded")
     first, last = np.cumprod(np.isinf(frequency)).sum(), np.flatnonzero(frequency > 0.0)[-1]
@@ -280,7 +284,12 @@ def _table(given: _Given, text: str) -> _Columns:
     wrong = next((row for row in rows if not all(map(_is_number, row))), None)
     if wrong is not None:
         raise ValueError(f"{given.place.name}: expected two numbers, got {' '.join(wrong)[:60]!r}")
-    values = np.array([[_number(cell) for cell in row] for row in rows], dtype=np.float64).reshape(-1, 2)
+    if not rows:
+        raise ValueError(f"{given.place.name} has no rows below its header line")
+    cells = [cell for row in rows for cell in row]
+    if any("," in cell for cell in cells) and any("." in cell for cell in cells):
+        raise ValueError(f"{given.place.name} has numbers with commas and with points: write one of them")
+    values = np.array([[_number(cell) for cell in row] for row in rows], dtype=np.float64)
     columns = [_title(given, title) for title in titles]
     quantities = [column.says & {"frequency", "probability", "return"} for column in columns]
     if sorted(map(len, quantities)) != [0, 1]:
@@ -291,9 +300,15 @@ def _table(given: _Given, text: str) -> _Columns:
     at = int(bool(quantities[0]))  # place of the intensity
     intensity, other = columns[at], columns[1 - at]
     _require_kind(given, intensity)
+    if len({*np.sign(np.diff(values[:, at]))} - {0.0}) > 1:
+        raise ValueError(f"{given.place.name}: levels must rise, or fall, throughout: one curve a file")
     frequency, words = _frequency(given, other, values[:, 1 - at])
     unit = given.unit(intensity.unit)
     source = f"columns {intensity.title!r} in {unit} and {other.title!r}, {words}"
+    if comments := [
+        line.lstrip("# ") for line in lines if line.startswith("#") and line.lstrip("# ") != header
+    ]:
+        source += f"; not read: {'; '.join(comments)[:80]!r}"
     return _Columns(x=values[:, at], frequency=frequency, unit=unit, source=source)
 
 
@@ -335,12 +350,15 @@ def _title(given: _Given, title: str) -> _Title:
     unit, says = None, set[str]()
     words = list[str]()
     for word in re.findall(r"[\[(]([^\])]*)[\])]", text):
+        if unit is not None and _unit(word) not in (None, unit):
+            raise ValueError(f"{given.place.name}: {title[:40]!r} has two units, {unit} and {_unit(word)}")
         unit = unit or _unit(word)
         words += [] if _unit(word) or word in ("-", "") else word.split()
     outside = re.sub(r"[\[(][^\])]*[\])]", " ", text).replace(",", " ").split()
     ends = (at for at in range(1, len(outside)) if unit is None)
     for at in ends:
-        if spelled := _unit("".join(outside[at:])) or _unit("/".join(outside[at:])):
+        with_slash = "" if outside[at] == "in" else "/".join(outside[at:])
+        if spelled := _unit("".join(outside[at:])) or _unit(with_slash):
             unit, outside = spelled, outside[:at]
             break
     for word in [*outside, *words]:
@@ -371,6 +389,10 @@ def _frequency(given: _Given, column: _Title, values: Array) -> tuple[Array, str
     """Annual frequencies of a column, and what it holds in words."""
     if "probability" in column.says:
         annual = 1.0 if "annual" in column.says else None
+        if annual and column.years not in (None, annual):
+            raise ValueError(
+                f"{given.place.name}: {column.title!r} says that it is annual and in {column.years:g} years"
+            )
         span = given.span(column.years or annual)
         return _rates(given, values, span), f"probability in {span:g} years"
     if given.years is not None or column.years is not None:
@@ -389,7 +411,8 @@ def _openquake(given: _Given, text: str, site: int | None) -> _Columns:
     name = given.place.name
     comment = "\n".join(line for line in text.splitlines()[:20] if line.startswith("#"))
     stated = dict(re.findall(r"(\w+)='?([^',\"]+)'?", comment))
-    head, *sites = csv.reader(line for line in text.splitlines() if line.strip() and not line.startswith("#"))
+    rows = csv.reader(line for line in text.splitlines() if line.strip() and not line.startswith("#"))
+    head, *sites = [*rows] or [[]]
     places = [index for index, cell in enumerate(head) if cell.startswith("poe-")]
     if not places or not sites:
         raise ValueError(
@@ -398,7 +421,16 @@ def _openquake(given: _Given, text: str, site: int | None) -> _Columns:
         )
     if "imt" in stated:
         _require_measure(given, [stated["imt"]])
-    span = given.span(float(stated["investigation_time"]) if "investigation_time" in stated else None)
+    elif given.units is None:
+        raise ValueError(f"{name} does not say its measure (imt): give its unit (--hazard-units, units=)")
+    try:
+        years = require_positive("investigation_time", float(stated["investigation_time"]), "years")
+    except KeyError:
+        years = None
+    except ValueError:
+        stating = stated["investigation_time"]
+        raise ValueError(f"{name}: investigation_time must be a positive number, got {stating!r}") from None
+    span = given.span(years)
     row = 1 if site is None else site
     if (site is None and len(sites) > 1) or not 1 <= row <= len(sites):
         chosen = "choose one by --hazard-site (site=)" if site is None else f"got site {site}"
@@ -431,20 +463,26 @@ def _usgs(given: _Given, text: str) -> _Columns:
     try:
         response = json.loads(text)["response"]
         curves = response["hazardCurves"] if isinstance(response, dict) else response
-        named = {str(_head(each)["imt"]["value"]): each for each in curves}
-    except (KeyError, TypeError, json.JSONDecodeError):
+        named = [(str(_head(each)["imt"]["value"]), each) for each in curves]
+        labels = " ".join(str(_head(each).get(key, "")) for each in curves for key in ("xlabel", "ylabel"))
+    except (KeyError, TypeError, AttributeError, json.JSONDecodeError):
         raise ValueError(f"{name} is no hazard curve of the USGS: it has no response with curves") from None
-    chosen = _require_measure(given, named)
+    if "probab" in labels.lower() or ("cm/s" in labels.lower() and given.kind != "pgv"):
+        raise ValueError(f"{name} says {labels[:60]!r}: annual frequencies over g, or cm/s of PGV, are read")
+    chosen = _require_measure(given, [each for each, _ in named])
     try:
-        own = named[chosen]
-        total = next(part for part in own["data"] if part.get("component", "Total") == "Total")
+        own, *others = [curve for each, curve in named if each == chosen]
+        total, *more = [part for part in own["data"] if part.get("component", "Total") == "Total"]
         x = total["values"]["xs"] if "values" in total else _head(own)["xvalues"]
         y = total["values"]["ys"] if "values" in total else total["yvalues"]
         pairs = np.array(list(zip(x, y, strict=True)), dtype=np.float64)
-    except (KeyError, TypeError, ValueError, StopIteration):
+        single = pairs.ndim == 2 and not others and not more
+    except (KeyError, TypeError, AttributeError, ValueError):
+        single = False
+    if not single:
         raise ValueError(
-            f"{name} is no hazard curve of the USGS: {chosen} has no levels and values"
-        ) from None
+            f"{name} is not one hazard curve of the USGS: {chosen} must have one total of levels and values"
+        )
     unit = given.units or _convention(given)
     source = f"USGS, {chosen}, annual frequencies; {_said(given, unit)}"
     return _Columns(x=pairs[:, 0], frequency=pairs[:, 1], unit=unit, source=source)
@@ -459,12 +497,13 @@ def _require_measure(given: _Given, names: Iterable[str]) -> str:
     """Name of a curve that is of the measure and the period: PGA, SA(0.2) or SA0P2."""
     known = list(names)
     for name in known:
-        match = re.fullmatch(r"(PGA|PGV|SA)\(?([0-9P.]*)\)?", name.upper())
+        match = re.fullmatch(r"(PGA|PGV|SA)\(?(\d*[P.]?\d*)\)?", name.upper())
         if match is not None and match[1].lower() == given.kind:
             at, period = float(match[2].replace("P", ".")) if match[2] else None, given.period
             if (at is None and period is None) or (at and period and abs(at - period) <= 1e-6 * period):
                 return name
     wanted = given.kind.upper() + (f" at {given.period:g} s" if given.period else "")
     raise ValueError(
-        f"{given.place.name} is of {', '.join(known)}, not of {wanted}: choose measure (and period) of it"
+        f"{given.place.name} is of {', '.join(known) or 'no measure'}, not of {wanted}: choose measure (and "
+        "period) of it"
     )

@@ -181,7 +181,9 @@ def test_a_table_that_could_be_read_wrongly_is_refused(
         ("0.1,0\n0.2,0\n", "no hazard at this site"),
         ("0.1,0.1\n0.2,0\n0.3,0.01\n", "positive and finite"),
         ("0.1,0.1\n", "fewer than two levels"),
-        ("", "no hazard at this site"),
+        ("", "no rows below its header"),
+        ("0.05,0.1\n0.2,0.01\n0.1,0.05\n", "rise, or fall, throughout"),
+        ("0.1,-2\n0.2,-3\n", "a logarithm"),
     ],
 )
 def test_rows_that_are_no_curve_are_refused(rows: str, words: str, tmp_path: Path) -> None:
@@ -193,6 +195,8 @@ def test_a_comma_that_may_part_thousands_is_refused(tmp_path: Path) -> None:
     assert read(tmp_path, "PGA (g);TR\n0,1;475\n0,2;2475\n").intensity[1] == 0.2
     with pytest.raises(ValueError, match="two numbers"):
         read(tmp_path, "PGA (g);TR\n0,1;475\n0,2;2,475\n")
+    with pytest.raises(ValueError, match="commas and with points"):
+        read(tmp_path, "PGA (g);TR\n0,1;1.000\n0,2;2.475\n")
 
 
 def test_levels_that_say_nothing_are_left_out(tmp_path: Path) -> None:
@@ -275,8 +279,12 @@ def test_a_site_of_several_is_chosen(tmp_path: Path) -> None:
         (openquake("PGA", columns="PGA~{}"), {}, "no hazard curve of OpenQuake"),
         (openquake("PGA").replace("1,2.0,0.0,", "1,2.0,0.0,-"), {}, "from 0 to 1"),
         (usgs("PGA", True), {"years": 50.0}, "annual frequencies"),
-        (usgs("PGA", True).replace("Total", "total"), {}, "no levels and values"),
+        (usgs("PGA", True).replace("Total", "total"), {}, "one total of levels and values"),
         ('{"response": {}}', {}, "no hazard curve of the USGS"),
+        ('{"response": "no such site"}', {}, "no hazard curve of the USGS"),
+        (usgs("PGA", True).replace('"xs": [', '"xs": [[1], '), {}, "one total of levels and values"),
+        (openquake("PGA").replace("investigation_time=50", "investigation_time=-50"), {}, "positive number"),
+        (openquake("PGA").replace("imt='PGA'", ""), {}, "does not say its measure"),
         ("{", {}, "no hazard curve of the USGS"),
     ],
 )
