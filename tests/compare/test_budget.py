@@ -214,11 +214,10 @@ def test_the_numerics_of_an_extrapolated_run_are_what_its_extrapolation_leaves()
 
 @pytest.mark.slow
 def test_a_base_that_lands_flat_loses_what_the_model_keeps():
-    # uplift along one direction, past upright itself, and on: the engine takes Housner's loss there
-    time = np.arange(26) * 0.02
-    pulse = np.column_stack([np.sin(2.0 * np.pi * time / 0.5), np.zeros_like(time)])
+    # released without spin it falls on its other edge, where the engine takes Housner's loss: of so little
+    # tilt that the two do not diverge by it
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    case = Case(pier, GroundMotion(2.0 * 9.81 * 0.2 * pulse, 0.02), duration=1.0, name="pulse")
+    case = Case(pier, initial=InitialState(0.04 * pier.alpha), duration=0.5, name="release")
     run = Run("mujoco", "recess", 2e-4)
     found = comparison(Suite([case], [run]), runs=[run], budget=True, workers=1)
     (row,) = found.summary.to_dict("records")
