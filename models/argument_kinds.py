@@ -123,4 +123,4 @@ def _plain(value: Any) -> object:
     """Return arrays, columns of tables and scalars of numpy as lists and numbers of Python."""
     if hasattr(value, "dtype") and hasattr(value, "tolist"):
         return value.tolist()
-    return [_plain(each) for each in value] if isinstance(value, list | tuple) else value
+    return [_plain(each) for each in value] if isinstance(value, list | tuple | range) else value
