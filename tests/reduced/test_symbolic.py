@@ -114,8 +114,15 @@ def sin_cos(angle: Any) -> tuple[Any, Any]:
 def on_symbols(function: Any) -> Callable[..., Any]:
     """Return a function of the code that runs on symbols."""
     original = getattr(function, "py_func", function)
-    names = {**original.__globals__, "sin_cos": sin_cos, "math": types.SimpleNamespace(atan=sp.atan)}
-    for part in {"recess_motion", "base_inertia"}.intersection(original.__code__.co_names):
+    names = {
+        **original.__globals__,
+        "sin_cos": sin_cos,
+        "sqrt": sp.sqrt,
+        "math": types.SimpleNamespace(atan=sp.atan),
+    }
+    for part in {"recess_motion", "base_inertia", "restoring", "stored_energy"}.intersection(
+        original.__code__.co_names
+    ):
         names[part] = on_symbols(getattr(equations, part))
     run = types.FunctionType(original.__code__, names, argdefs=original.__defaults__)
 

@@ -9,8 +9,7 @@ import pytest
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame, el_centro_1940
 from rockwobble.studies.plans import STEP, SpectrumPlan
-from rockwobble.studies.spectrum import maps
-from rockwobble.studies.spectrum import study as verification
+from rockwobble.studies.spectrum import maps, verification
 from rockwobble.studies.spectrum.maps import TiltMaps, tilt_maps
 from rockwobble.studies.spectrum.parts import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, run_part
 from rockwobble.studies.spectrum.verification import CELLS, check_cells, confirm_lowest
