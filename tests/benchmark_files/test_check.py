@@ -256,7 +256,7 @@ MISTAKES: dict[str, tuple[Form, Callable[[Table], Table], dict[str, float | None
         lambda t: (
             t | {"tilt": np.degrees(t["tilt"]), "azimuth": np.degrees(t["azimuth"]), "time": t["time"] + 0.05}
         ),
-        {"angle_unit": np.degrees(1.0), "time_offset": -0.05},
+        {},  # two mistakes of the tilt at once are said as differences
     ),
     "late": (tilt_and_azimuth, lambda t: t | {"time": t["time"] + 0.05}, {"time_offset": -0.05}),
 }
