@@ -30,7 +30,7 @@ class PeakError(NamedTuple):
     Attributes
     ----------
     size : float
-        [alpha]; NaN where there is no peak.
+        [alpha]; infinite where one stands and another overturns; NaN where there is no peak.
     source : {"", "integration", "step", "copies", "model form"}
         What it is the error of; "" where all are 0, as of what never uplifts, or unknown.
     """
@@ -65,6 +65,9 @@ def peak_error(
         return NO_ERROR
 
     def apart(*others: Trace, of: Trace = own) -> float:
+        fell = {each.outcome == "overturned" for each in (of, *others)}
+        if fell != {False}:  # the tilt at which a run that overturns ends is no peak
+            return math.inf if len(fell) > 1 else 0.0
         return math.sqrt(float(np.mean([(other.peak_tilt - of.peak_tilt) ** 2 for other in others])))
 
     alpha = case.cylinder.alpha
@@ -72,13 +75,13 @@ def peak_error(
     if trial.run.is_model:
         parts["integration"] = apart(simulate(case, _coarser(trial.run)), of=trial)
     else:
-        known = [fact.size * alpha for fact in trial.facts if fact.code in _OF_STEPS]
-        parts["step"] = max(known) if known else apart(own if reference.run.is_model else reference, of=trial)
+        sizes = [fact.size * alpha for fact in trial.facts if fact.code in _OF_STEPS]
+        parts["step"] = max(sizes) if sizes else apart(own if reference.run.is_model else reference, of=trial)
     if reference.run.is_model:
         parts["model form"] = apart(reference)
-    finite = {"": 0.0} | {name: size for name, size in parts.items() if math.isfinite(size)}
-    source = max(finite, key=finite.__getitem__)
-    return PeakError(finite[source] / alpha, source)
+    known = {"": 0.0} | {name: size for name, size in parts.items() if not math.isnan(size)}
+    source = max(known, key=known.__getitem__)
+    return PeakError(known[source] / alpha, source)
 
 
 def copies_of_input(case: Case) -> list[Case]:

@@ -56,7 +56,12 @@ def _rows(found: SingleRun) -> Iterator[Row]:
     if restitution := settings.get("restitution", ""):
         yield _quantity("restitution", str(restitution))
     if error.source:
-        yield _quantity("error of the peak tilt", f"{number(error.size)} α ({error.source})")
+        size = (
+            f"{number(error.size)} α"
+            if math.isfinite(error.size)
+            else "no number, as one stands and one overturns"
+        )
+        yield _quantity("error of the peak tilt", f"{size} ({error.source})")
     yield _quantity("end", _end(trace))
     if not case.initial and trace.mode != SLIDES:
         towards = math.degrees(math.remainder(trace.uplift_direction, math.tau))

@@ -16,7 +16,8 @@ CASE = Case(BODY, initial=InitialState(0.5 * BODY.alpha, rolling_rate=0.5), dura
 
 
 def motion(peak: float, run: Run, *facts: Any) -> Any:
-    return SimpleNamespace(peak_tilt=peak * BODY.alpha, run=run, facts=facts)
+    outcome = "overturned" if peak > 1.0 else "stands"
+    return SimpleNamespace(peak_tilt=peak * BODY.alpha, run=run, facts=facts, outcome=outcome)
 
 
 def error(trial: Any, *, model: float = 0.0, copy: float = 0.0, coarser: float = 0.0) -> Any:
@@ -41,6 +42,10 @@ def test_the_largest_part_gives_the_error_and_its_source() -> None:
         (motion(0.6, engine), {"model": 0.2, "copy": 0.05}, (0.2, "model form")),
         (motion(0.6, engine), {"model": 0.02, "copy": 0.05}, (0.1, "step")),
         (motion(0.6, engine, settled), {"model": 0.2}, (0.3, "step")),
+        # of two peaks of which one overturns no number is the difference
+        (motion(0.5, model), {"model": -7.5, "copy": 0.2}, (math.inf, "model form")),
+        (motion(0.5, model), {"copy": 7.5}, (math.inf, "copies")),
+        (motion(8.0, engine), {}, (math.inf, "step")),
     ):
         found = error(trial, **parts)
         assert found.source == expected[1]
