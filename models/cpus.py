@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from pathlib import Path
 from typing import TypeVar
 
 T = TypeVar("T")
+
+_TASKS = 8  # of a grid for each thread, so that all end at about the same time
 
 _QUOTA = Path("/sys/fs/cgroup/cpu.max")  # of a container: microseconds of computing in a period, or "max"
 
@@ -34,3 +38,20 @@ def in_threads(
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
+
+
+def grid_in_threads(
+    fill: Callable[[int, slice], None], shape: tuple[int, ...], workers: int | None = None
+) -> Generator[float, None, None]:
+    """Fill a grid (rows, columns) in threads, each with some rows of a column; yield the share that is done.
+
+    The rows of a task share the preparation of their column, which takes as long as a short run.
+    """
+    rows, columns = shape
+    threads = workers or usable_cpus()
+    parts = min(rows, math.ceil(_TASKS * threads / columns))
+    edges = [rows * part // parts for part in range(parts + 1)]
+    tasks = [(column, slice(*part)) for column in range(columns) for part in itertools.pairwise(edges)]
+    with closing(in_threads(fill, *zip(*tasks, strict=True), workers=threads)) as results:
+        for done, _ in enumerate(results, start=1):
+            yield done / len(tasks)

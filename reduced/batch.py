@@ -2,27 +2,21 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable
-from contextlib import closing
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Tendon, WobblingFrame
 from rockwobble.models.bounds import OVERTURNED_TILT
-from rockwobble.models.cpus import in_threads, usable_cpus
+from rockwobble.models.cpus import grid_in_threads, in_threads
 from rockwobble.models.number_checks import require_axis
 from rockwobble.models.support import RECESS
 
 from .integration.result import OVERTURNED, IntegrationResult
 from .problem import REST_TILT, Problem
 from .simulation import make_ready
-
-# Tasks for each thread, so that all end at about the same time. The sizes of one task share the preparation
-# of the scaled motion, which takes as long as a short run.
-_TASKS = 8
 
 
 def peak_tilts(
@@ -114,18 +108,13 @@ def peak_tilts(
         return peaks
     make_ready(bodies[0].kernel)
 
-    def run_cells(column: int, rows: slice) -> None:
+    def fill(column: int, rows: slice) -> None:
         shaking = bodies[0].shaking(float(factors[column]))
         peaks[rows, column] = [_peak(body.solve_under(shaking)) for body in bodies[rows]]
 
-    threads = workers or usable_cpus()
-    parts = min(len(sizes), math.ceil(_TASKS * threads / len(factors)))
-    edges = [len(sizes) * part // parts for part in range(parts + 1)]
-    tasks = [(column, slice(*rows)) for column in range(len(factors)) for rows in itertools.pairwise(edges)]
-    with closing(in_threads(run_cells, *zip(*tasks, strict=True), workers=threads)) as results:
-        for done, _ in enumerate(results, start=1):
-            if progress is not None:
-                progress(done / len(tasks))
+    for done in grid_in_threads(fill, peaks.shape, workers):
+        if progress is not None:
+            progress(done)
     return peaks
 
 

@@ -11,14 +11,13 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping
-from contextlib import closing
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import Assumptions, Case, Diagnostic, GroundMotion, Run, Trace
-from rockwobble.models.cpus import in_threads, usable_cpus
+from rockwobble.models.cpus import grid_in_threads
 from rockwobble.models.number_checks import require_axis, require_positive
 from rockwobble.models.shown import Brief
 from rockwobble.models.support import FLAT
@@ -26,11 +25,11 @@ from rockwobble.models.trace_source import Array
 
 from ._compile import announce
 from .columns import ground_at, sample_times, three_columns
-from .integration.sliding import Slide, largest_distances, slide
+from .integration.sliding import Slide, slide
 
 _TOLERANCE = 1e-13  # of the speed, in a step: the displacement to 1e-11 of its peak
 _COARSE = 1e-8  # of many at once: to 1e-7 of it, in two thirds of the time
-_TASKS = 8  # for each thread
+_NONE = np.empty(0)  # of the times of samples
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -155,19 +154,16 @@ def peak_displacements(
         return peaks
     _make_ready()
     record = three_columns(motion)
-    parts = min(len(coefficients), math.ceil(_TASKS * (workers or usable_cpus()) / len(factors)))
-    rows = np.array_split(np.arange(len(coefficients)), parts)
-    tasks = [(column, part) for column in range(len(factors)) for part in rows]
 
-    def run_cells(column: int, part: NDArray[np.intp]) -> None:
+    def fill(column: int, rows: slice) -> None:
         shaken = record * factors[column]
-        peaks[part, column] = largest_distances(
-            shaken, motion.time_step, coefficients[part], gravity, motion.duration, _COARSE
-        )
+        peaks[rows, column] = [
+            slide(shaken, motion.time_step, friction, gravity, motion.duration, _NONE, _COARSE).peak
+            for friction in coefficients[rows]
+        ]
 
-    with closing(in_threads(run_cells, *zip(*tasks, strict=True), workers=workers)) as results:
-        for _ in results:
-            pass
+    for _ in grid_in_threads(fill, peaks.shape, workers):
+        pass
     return peaks
 
 
@@ -178,9 +174,4 @@ def _slide_of(case: Case, times: Array) -> Slide:
 
 
 def _make_ready() -> None:
-    def load() -> None:
-        still = np.zeros((2, 3))
-        slide(still, 1.0, 0.1, 9.81, 1.0, np.zeros(1), _TOLERANCE)
-        largest_distances(still, 1.0, np.zeros(1), 9.81, 1.0, _COARSE)
-
-    announce(slide, "sliding", load)
+    announce(slide, "sliding", lambda: slide(np.zeros((2, 3)), 1.0, 0.1, 9.81, 1.0, _NONE, _TOLERANCE))

@@ -21,7 +21,7 @@ C, D   real and imaginary part of w^2, velocity [m/s]
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, inf, nan, sin, sqrt
+from math import atan2, copysign, cos, hypot, inf, nan, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -34,10 +34,10 @@ _WIDTH = _ORDER + 1
 P, Q, S, C, D, T, X, Y, PATH, LOST = range(10)  # rows of the coefficients
 Force = tuple[float, float, float, float]  # f at the beginning of a sample and its rates [m/s^2, m/s^3]
 
-# Speed that counts as none, over what gravity gives in a sample, and likewise the way to a stop.
-_STILL, _STOPS = 1e-11, 1e-10
-# Share of |f| by which f may change in a short time: with K over |f| above the first, and below.
-_SOON, _EARLY = 1e-3, 1e-2
+_STILL = 1e-11  # speed that counts as none, over what gravity gives in a sample
+_STEADY = 0.1  # share of n - |f| by which it may change while a body stops
+# Share of |f| by which f may change in a short time: with K over |f| above it, and below.
+_SOON, _EARLY = 0.25, 1e-2  # the first as a power of the tolerance: 6e-4 of 1e-13
 # Low is a speed at which the direction lags that of f by so many radians at most; K over |f| of such a time,
 # and by how much the direction may be off that lag [rad], to which it is drawn within |v|/|f|.
 _LOW, _LEVEL, _ALIGNED = 1e-3, 0.05, 1e-5
@@ -85,7 +85,7 @@ def _first_excess(f: Force, n0: float, n1: float, start: float, end: float) -> f
 @jit
 def _expand(c: NDArray[np.float64], order: int, reach: float, tolerance: float,
             f: Force, n0: float, n1: float) -> tuple[int, float]:  # fmt: skip
-    """Series of p, q, S, C, D and T from their values at s = 0: order, and the largest s they hold for.
+    """Series of all but path and energy from their values at s = 0: order, and the largest s they hold for.
 
     It ends at the order that is enough for the time `reach` [s].
     """
@@ -97,19 +97,28 @@ def _expand(c: NDArray[np.float64], order: int, reach: float, tolerance: float,
     c[D, 0] = 2.0 * c[P, 0] * c[Q, 0]
     guess, power, last = inf, inf, inf
     for k in range(order):
-        pull, turn = 0.0, 0.0
-        for i in range(1, k + 1):
+        pull, turn, along, across = 0.0, 0.0, c[S, 0] * c[C, k], c[S, 0] * c[D, k]
+        for i in range(1, k + 1):  # sums that do not wait for one another, for speed
             pull += c[T, i] * c[P, k - i]
             turn += c[T, i] * c[Q, k - i]
+            along += c[S, i] * c[C, k - i]
+            across += c[S, i] * c[D, k - i]
         share = 0.5 / (k + 1)
         c[P, k + 1] = share * ((fx - n0) * c[P, k] + fy * c[Q, k] + (gx - n1) * pull + gy * turn)
         c[Q, k + 1] = share * (fy * c[P, k] - (fx + n0) * c[Q, k] + gy * pull - (gx + n1) * turn)
         c[T, k + 1] = c[S, k] / (k + 1)
+        c[X, k + 1], c[Y, k + 1] = along / (k + 1), across / (k + 1)
         pp, qq, pq = 0.0, 0.0, 0.0
-        for i in range(k + 2):
-            pp += c[P, i] * c[P, k + 1 - i]
-            qq += c[Q, i] * c[Q, k + 1 - i]
-            pq += c[P, i] * c[Q, k + 1 - i]
+        for i in range((k + 2) // 2):  # half of them, for they are symmetric
+            j = k + 1 - i
+            pp += c[P, i] * c[P, j]
+            qq += c[Q, i] * c[Q, j]
+            pq += c[P, i] * c[Q, j] + c[P, j] * c[Q, i]
+        pp, qq = 2.0 * pp, 2.0 * qq
+        if k % 2:
+            middle = (k + 1) // 2
+            pp, qq = pp + c[P, middle] ** 2, qq + c[Q, middle] ** 2
+            pq += c[P, middle] * c[Q, middle]
         c[S, k + 1], c[C, k + 1], c[D, k + 1] = pp + qq, pp - qq, 2.0 * pq
         if k == 1:
             # s of the time reached, to second order; none where it stops before
@@ -131,24 +140,18 @@ def _expand(c: NDArray[np.float64], order: int, reach: float, tolerance: float,
 
 
 @jit
-def _integrals(c: NDArray[np.float64], order: int, n0: float, n1: float, whole: bool) -> None:
-    """Series of x and y, and of path and energy lost where they are wanted."""
+def _path(c: NDArray[np.float64], order: int, n0: float, n1: float) -> None:
+    """Series of path and energy lost, dE/ds = n dx/ds."""
     for k in range(order):
-        along, across, path = 0.0, 0.0, 0.0
+        path = 0.0
         for i in range(k + 1):
-            along += c[S, i] * c[C, k - i]
-            across += c[S, i] * c[D, k - i]
-        c[X, k + 1], c[Y, k + 1] = along / (k + 1), across / (k + 1)
-        if whole:
-            for i in range(k + 1):
-                path += c[S, i] * c[S, k - i]
-            c[PATH, k + 1] = path / (k + 1)
-    if whole:  # dE/ds = n dx/ds
-        for k in range(order):
-            lost = n0 * (k + 1) * c[PATH, k + 1]
-            for i in range(1, k + 1):
-                lost += n1 * c[T, i] * (k + 1 - i) * c[PATH, k + 1 - i]
-            c[LOST, k + 1] = lost / (k + 1)
+            path += c[S, i] * c[S, k - i]
+        c[PATH, k + 1] = path / (k + 1)
+    for k in range(order):
+        lost = n0 * (k + 1) * c[PATH, k + 1]
+        for i in range(1, k + 1):
+            lost += n1 * c[T, i] * (k + 1 - i) * c[PATH, k + 1 - i]
+        c[LOST, k + 1] = lost / (k + 1)
 
 
 @jit
@@ -198,8 +201,8 @@ def _turned(c: NDArray[np.float64], order: int, end: float) -> float:
 
 
 @jit
-def _creep(f: Force, n0: float, n1: float, time: float, left: float,
-           v0: float) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+def _creep(f: Force, n0: float, n1: float, time: float, left: float, v0: float,
+           soon: float) -> tuple[float, float, float, float, float, float]:  # fmt: skip
     """A short time from `time` on, with f almost the same: its length, then x, y, speed, direction and path.
 
     It begins at rest, or at a low speed v0 in a direction that follows that of f; a speed of 0 is a stop.
@@ -219,7 +222,7 @@ def _creep(f: Force, n0: float, n1: float, time: float, left: float,
     steepest = max(slope, abs(n1))
     e = left
     if steepest > 0.0:
-        e = min(left, (_SOON if abs(K) > _SOON * force else _EARLY) * force / steepest)
+        e = min(left, (soon if abs(K) > soon * force else _EARLY) * force / steepest)
     c1 = -K * W / (K + force)
     c2 = -(0.5 * q * (W + c1) + f1 * c1 + K * W1) / (force + 2.0 * K)
     c3 = -(0.5 * q * (W1 + 2.0 * c2) + f1 * c2) / (force + 3.0 * K)
@@ -251,7 +254,27 @@ def _creep(f: Force, n0: float, n1: float, time: float, left: float,
 
 
 @jit
-def _slide(
+def _stop(fx: float, fy: float, force: float, n: float, p: float,
+          q: float) -> tuple[float, float, float, float]:  # fmt: skip
+    """Time until a body stops where f and n stay as they are, |f| < n, and its x, y and path until then.
+
+    Along f and across it w decays by the rates (n - |f|)/2 and (n + |f|)/2 in s, and dt, dx and the path are
+    polynomials of w.
+    """
+    along, across = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)
+    half = sqrt(0.5 * (1.0 + abs(along)))  # cosine of half the azimuth of f, or of its opposite
+    c, s = (half, 0.5 * across / half) if along >= 0.0 else (0.5 * abs(across) / half, copysign(half, across))
+    a, b = p * c + q * s, q * c - p * s
+    slow, fast = n - force, n + force
+    straight = 0.5 * a**4 / slow
+    bent = 0.5 * b**4 / fast
+    u, v = straight - bent, 2.0 * a * b * (a * a / (n + slow) + b * b / (n + fast))
+    path = straight + bent + a * a * b * b / n
+    return a * a / slow + b * b / fast, u * along - v * across, u * across + v * along, path
+
+
+@kernel
+def slide(
     record: NDArray[np.float64],
     time_step: float,
     friction: float,
@@ -267,7 +290,11 @@ def _slide(
     count, taken, steps = len(times), 0, 0
     samples = np.zeros((count, VALUES))
     c = np.zeros((10, _WIDTH))
-    still, stops = _STILL * gravity * time_step, _STOPS * gravity * time_step * time_step
+    still, soon = _STILL * gravity * time_step, min(tolerance**_SOON, _EARLY)
+    stops = tolerance * gravity * time_step * time_step
+    loads = np.maximum(gravity + record[:, 2], 0.0)
+    held = (friction * loads) ** 2 - record[:, 0] ** 2 - record[:, 1] ** 2
+    held[loads == 0.0] = -1.0
     x, y, path, lost, p, q = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     peak, began, slides = 0.0, nan, False
     limit = min(duration, (len(record) - 1) * time_step)
@@ -276,6 +303,8 @@ def _slide(
         length = min(time_step, limit - base)
         if length <= 0.0:
             break
+        if count == 0 and not slides and min(held[i], held[i + 1]) >= 0.0:
+            continue  # |f| - n is convex
         gx, gy = (record[i, 0] - record[i + 1, 0]) / time_step, (record[i, 1] - record[i + 1, 1]) / time_step
         load, rise = gravity + record[i, 2], (record[i + 1, 2] - record[i, 2]) / time_step
         if load <= 0.0 or load + rise * length <= 0.0:
@@ -301,19 +330,28 @@ def _slide(
             fx, fy, n = f[0] + gx * now, f[1] + gy * now, n0 + n1 * now
             low = not slides or speed * sqrt(gx * gx + gy * gy) <= _LOW * (fx * fx + fy * fy)
             force = sqrt(fx * fx + fy * fy) if low else inf
-            if slides and force < n and speed * speed < 2.0 * (n - force) * stops:
-                slides = False
-                continue
+            if slides and force < n:
+                spent, dx, dy, moved = _stop(fx, fy, force, n, p, q)
+                change = (sqrt(gx * gx + gy * gy) + abs(n1)) * spent
+                if (
+                    change * spent * spent < stops
+                    and change <= _STEADY * (n - force)
+                    and spent <= reach
+                    and (x * (p * p - q * q) + y * 2.0 * p * q <= 0.0 or x * fx + y * fy >= 0.0)
+                ):
+                    x, y, path, lost = x + dx, y + dy, path + moved, lost + n * moved
+                    peak, now, slides = max(peak, x * x + y * y), now + spent, False
+                    continue
             if not slides or (
                 abs(force - n) < _LEVEL * force
                 and fx * (p * p - q * q) + fy * 2.0 * p * q > 0.0
                 and abs(fx * 2.0 * p * q - fy * (p * p - q * q) + (fx * gy - fy * gx) * (speed / force) ** 2)
                 < _ALIGNED * force * speed
             ):
-                spent, dx, dy, fast, towards, moved = _creep(f, n0, n1, now, reach, speed)
+                spent, dx, dy, fast, towards, moved = _creep(f, n0, n1, now, reach, speed, soon)
                 while taken < count and times[taken] <= base + now + spent:
                     _, ex, ey, fast_, towards_, part = _creep(
-                        f, n0, n1, now, times[taken] - base - now, speed
+                        f, n0, n1, now, times[taken] - base - now, speed, soon
                     )
                     samples[taken, 0], samples[taken, 1] = x + ex, y + ey
                     samples[taken, 2], samples[taken, 3] = fast_ * cos(towards_), fast_ * sin(towards_)
@@ -328,7 +366,8 @@ def _slide(
             c[P, 0], c[Q, 0], c[T, 0], c[X, 0], c[Y, 0] = p, q, 0.0, x, y
             c[PATH, 0], c[LOST, 0] = path, lost
             order, far = _expand(c, _ORDER, reach, tolerance, (fx, fy, gx, gy), n, n1)
-            _integrals(c, order, n, n1, count > 0)
+            if count > 0:
+                _path(c, order, n, n1)
             spent = _at(c, T, order, far)
             if spent >= reach:
                 far, spent = _when(c, order, reach, far), reach
@@ -373,33 +412,3 @@ def _slide(
     far = stop * (speed - 0.5 * slows * stop)
     peak = max(sqrt(peak), hypot(x + far * along, y + far * across))
     return Slide(nan, began, end, slides and friction == 0.0, peak, samples, steps)
-
-
-@kernel
-def slide(
-    record: NDArray[np.float64],
-    time_step: float,
-    friction: float,
-    gravity: float,
-    duration: float,
-    times: NDArray[np.float64],
-    tolerance: float,
-) -> Slide:
-    """Slide of one body; parameters as of `_slide`."""
-    return _slide(record, time_step, friction, gravity, duration, times, tolerance)
-
-
-@kernel
-def largest_distances(
-    record: NDArray[np.float64],
-    time_step: float,
-    frictions: NDArray[np.float64],
-    gravity: float,
-    duration: float,
-    tolerance: float,
-) -> NDArray[np.float64]:
-    """Largest distance from where it stood for each friction (n,) [m]; NaN where contact is lost."""
-    distances, none = np.empty(len(frictions)), np.empty(0)
-    for i in range(len(frictions)):
-        distances[i] = _slide(record, time_step, frictions[i], gravity, duration, none, tolerance).peak
-    return distances
