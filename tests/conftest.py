@@ -6,6 +6,11 @@ from pathlib import Path
 
 import pytest
 
+import rockwobble.reports
+
+# what is published is part of the package in a checkout alone: the tests find it under an installation, too
+rockwobble.reports.__path__.append(str(Path(__file__).parents[1] / "reports"))
+
 
 def pytest_configure() -> None:
     """Give every run of the tests the same terminal, whatever the shell or the CI service sets."""

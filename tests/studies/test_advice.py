@@ -375,7 +375,8 @@ def test_a_demand_is_the_largest_of_all_groups_and_of_weaker_shaking(advice):
     b = PIER.base_radius
     assert found["per_tonne"]["moment"] == pytest.approx(9.81 * b * found["value"]["moment"])  # [kNm]
     # a wall is sized for what stands, and no higher than the point of the rim that stands out farthest
-    assert found["value"][["wall_height", "clearance"]].isna().all()
+    falls = any((group["outcome"] == "overturned").mean() > 0.05 for _, group in sets)
+    assert (found["value"][["wall_height", "clearance"]].isna() == falls).all()
     standing = demand_table(rows[rows["outcome"] == "stands"], PIER, gravity=9.81, support="recess")
     wall = standing.set_index("demand")["value"]
     theta = wall["tilt"] * PIER.alpha
