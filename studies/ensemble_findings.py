@@ -22,7 +22,7 @@ from rockwobble.models.finding import Finding, Level, Value
 Row = dict[str, Any]
 _SHOWN = 4  # pairs of methods that differ and are named
 _NOT_DETECTABLE = 1e9  # ratio that no interval of the members could tell from 1
-_PAIRS: Mapping[str, tuple[str, Level]] = {
+_ANSWERS: Mapping[str, tuple[str, Level]] = {
     "within": ("ensemble.equivalent", "satisfied"),
     "beyond": ("ensemble.different", "not satisfied"),
     "undecided": ("ensemble.undecided", "not tested"),
@@ -48,7 +48,10 @@ def ensemble_findings(members: int, methods: pd.DataFrame, contrasts: pd.DataFra
     main = main_pairs(methods, contrasts)
     if not main:
         yield Finding(key="ensemble.no_pairs", level="not tested")
-    yield from sorted(map(_pair, main), key=lambda each: [key for key, _ in _PAIRS.values()].index(each.key))
+    for verdict, (key, level) in _ANSWERS.items():
+        if names := tuple(_names(row) for row in main if row["verdict"] == verdict):
+            yield Finding(key=key, level=level, values={"share": MARGIN, "names": names})
+    yield from map(_pair, main)
     if main and members < FEWEST:
         yield Finding(key="ensemble.few", values={"count": FEWEST})
     if main:
@@ -66,15 +69,16 @@ def ensemble_findings(members: int, methods: pd.DataFrame, contrasts: pd.DataFra
 
 def _pair(row: Row) -> Finding:
     """Finding on how the members of one pair of methods differ."""
-    key, level = _PAIRS[row["verdict"]]
     values: dict[str, Value] = {"name": row["method"], "name_reference": row["against"], "share": MARGIN}
     values |= {"runs": row["compared"], "count_higher": row["higher"], "count_lower": row["lower"]}
     ratio = value_if_enough(row["ratio"], row["compared"], ratio=True)
     if ratio is not None and math.isfinite(ratio):
         values["ratio"] = ratio, row["ratio_low"], row["ratio_high"]
     values["p"] = row["ratio_p"]
-    if row["compared"] and row["within_reach"] < _NOT_DETECTABLE:
+    if row["within_reach"] < _NOT_DETECTABLE:
         values |= {"ratio_detectable": row["within_reach"], "share_power": POWER}
+    elif row["compared"]:
+        values["reason_detectable"] = "not_detectable"
     least, most = (row.get(f"ratio_{end}", math.nan) for end in ("least", "most"))
     if least < most:
         values |= {"ratio_least": least, "ratio_most": most}
@@ -85,11 +89,15 @@ def _pair(row: Row) -> Finding:
             "count": row["count"],
             "p_overturned": row["overturned_p"],
         }
-    return Finding(key=key, level=level, values=values)
+    return Finding(key="ensemble.pair", level=_ANSWERS[row["verdict"]][1], values=values)
+
+
+def _names(row: Row) -> str:
+    return f"{row['method']} with {row['against']}"
 
 
 def _differences(rows: Sequence[Row]) -> Iterator[Finding]:
-    every = {f"{row['method']} / {row['against']}": row for row in rows}
+    every = {_names(row): row for row in rows}
     apart = [name for name, row in every.items() if row["ratio_p_adjusted"] < SIGNIFICANCE]
     values: dict[str, Value] = {"bound": SIGNIFICANCE, "count": len(every) if len(every) > 1 else None}
     if apart:
@@ -104,7 +112,7 @@ def _overturning(contrasts: pd.DataFrame, any_falls: bool) -> Iterator[Finding]:
         unseen = largest_share_unseen(int(contrasts["count"].min()))
         yield Finding(key="ensemble.none_overturns", values={"share": unseen})
     elif len(differ):
-        names = tuple(f"{row.method} / {row.against}" for row in differ.itertuples())
+        names = tuple(map(_names, rows_of(differ)))
         yield Finding(key="ensemble.overturning_differs", values={"names": names, "bound": SIGNIFICANCE})
     else:
         yield Finding(key="ensemble.overturning_alike", values={"count": least_significant_count()})

@@ -11,9 +11,9 @@ from rockwobble.studies import Ensemble
 from ..figures.ensemble import pictures
 from .page import Page
 from .table import number
-from .wording import lines_of, statement
+from .wording import lines_of, sentence, statement
 
-_VERDICTS = ("equivalent", "different", "undecided", "few", "no_pairs")
+_ANSWERS = tuple(f"ensemble.{name}" for name in ("no_pairs", "equivalent", "different", "undecided", "few"))
 
 
 def page_of(found: Ensemble) -> Page:
@@ -27,7 +27,6 @@ def page_of(found: Ensemble) -> Page:
         for row in found.contrasts.to_dict("records")
     ]
     findings = found.findings()
-    main = [each for each in findings if each.key.removeprefix("ensemble.") in _VERDICTS]
     one_column = any("one_column" in codes_in(cell) for cell in found.members["diagnostics"])
     values = {
         "facts": found.facts,
@@ -37,10 +36,10 @@ def page_of(found: Ensemble) -> Page:
         "methods": found.methods.to_dict("records"),
         "contrasts": rows,
         "notes": [lines_of("diagnostic.one_column")[0]] if one_column else [],
-        "headline": [statement(each, short=True) for each in main],
-        "findings": [
-            statement(each) for each in findings if each not in main or each.values.get("runs") is not None
-        ],
+        "headline": [statement(each) for each in findings if each.key in _ANSWERS],
+        # the pairs begin with the name of a method, which has no capital
+        "pairs": [f"{sentence(each)}." for each in findings if each.key == "ensemble.pair"],
+        "findings": [statement(each) for each in findings if each.key not in (*_ANSWERS, "ensemble.pair")],
         "any_falls": bool(found.methods["overturned"].any()),
         "power": POWER,
         "about": found.manifest,

@@ -22,7 +22,7 @@ def risk_values(results: Fragility) -> dict[str, object] | None:
         {str(name): value for name, value in row.items()} for row in results.tables["risk"].to_dict("records")
     ]
     scaled = [name for name in rows[0] if name.startswith("annual_frequency")]
-    reference, said = str(rows[0]["method"]), results.findings()
+    reference, said = str(rows[0]["method"]), results.findings().of("risk")
     return {
         "hazard": {"limit": OVERTURNED, "target": TARGET, "source": ""} | results.facts["hazard"],
         "rows": [{**row, **{name: _UNIT * row[name] for name in scaled}} for row in rows],

@@ -24,6 +24,7 @@ from .table import NONE, enumeration, number, scattered
 
 _FIELD = re.compile(r"\{(\w+)(?::([^}]*))?\}")
 _OPTIONAL = re.compile(r"\[([^\]]*)\]")
+_SEPARATORS = (", ", "; ")
 # unit: how a number looks
 _BY_UNIT: Mapping[str, Callable[[float], str]] = {
     "s": lambda value: "the end" if math.isinf(value) else f"{number(value, '.4g')} s",
@@ -129,6 +130,8 @@ def _value(value: Value, unit: str, form: str) -> str:
         return value
     if isinstance(value, tuple):
         if value and isinstance(value[0], str):
+            if form in _SEPARATORS:
+                return form.join(map(str, value))
             return enumeration([str(each) for each in value])
         middle, low, high = (_value(each, unit, form) for each in value)
         return f"{middle} ({low} to {high})"

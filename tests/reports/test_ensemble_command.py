@@ -115,22 +115,23 @@ def keys(found: Ensemble) -> set[str]:
 
 
 def test_findings_state_the_verdict_and_the_numbers_of_each_main_pair():
-    pair = numbers(made_up(), "different")
+    pair = numbers(made_up(), "pair")
     assert pair["ratio"] == pytest.approx((1.1, 1.1, 1.1))
     stated = ("runs", "count_higher", "count_lower", "overturned", "overturned_reference", "overturned_both")
     assert [pair[name] for name in stated] == [9, 9, 0, 2, 1, 1]
     assert "ratio_detectable" not in pair
-    assert keys(made_up()) == {"different", "significant", "overturning_alike"}
+    assert numbers(made_up(), "different")["names"] == ("mujoco recess with recess model",)
+    assert keys(made_up()) == {"different", "pair", "significant", "overturning_alike"}
     # what is told apart may be equivalent, and what is not need not be
-    assert keys(made_up(1.001)) == {"equivalent", "significant", "overturning_alike"}
+    assert keys(made_up(1.001)) == {"equivalent", "pair", "significant", "overturning_alike"}
 
 
 def test_few_members_bound_nothing_and_failed_ones_bound_the_median():
     found = made_up()
     few = found.members[found.members["member"].isin([f"record {i}" for i in range(1, 6)])]
     unsure = ensemble_of(few, found.facts)
-    assert keys(unsure) == {"undecided", "few", "not_significant", "none_overturns"}
-    assert "ratio" not in numbers(unsure, "undecided")
+    assert keys(unsure) == {"undecided", "few", "pair", "not_significant", "none_overturns"}
+    assert "ratio" not in numbers(unsure, "pair")
     members = found.members.copy()
     members.loc[11:15, "outcome"] = "failed"  # half of the members: the rest do not settle the median
     bounded = ensemble_of(members, found.facts)
@@ -141,7 +142,7 @@ def test_few_members_bound_nothing_and_failed_ones_bound_the_median():
     for each, known in ((bounded, True), (Ensemble(tables=before, facts=bounded.facts), False)):
         lost = numbers(each, "failed")
         assert (lost["runs_failed"], "peak_most" in lost) == (5, known)
-        assert ("ratio_most" in numbers(each, "undecided")) == known
+        assert ("ratio_most" in numbers(each, "pair")) == known
 
 
 def test_the_picture_marks_who_overturns_by_one_method_alone():
