@@ -16,6 +16,7 @@ study that is a script, `reports/published/NAME/make.py --redraw`.
 from __future__ import annotations
 
 import json
+import os
 import re
 import shlex
 import shutil
@@ -37,6 +38,8 @@ from rockwobble.reports.published.script import not_borne_out
 from rockwobble.reports.registry import KINDS
 
 HERE = Path(__file__).parent
+# scripts are run by the package of this checkout, whatever is installed
+ENVIRONMENT = os.environ | {"PYTHONPATH": str(HERE.parents[1] / "src")}
 
 # of a fragility
 _BODIES = (
@@ -270,7 +273,7 @@ def _page_faults(folder: Path, made: Manifest) -> list[str]:
         if any(file_state(folder, made, each) != "whole" for each in made.files):
             return []  # said above, where it is a fault
         script = [sys.executable, str(folder / "make.py"), "--check"]
-        done = subprocess.run(script, capture_output=True, text=True, check=False)
+        done = subprocess.run(script, env=ENVIRONMENT, capture_output=True, text=True, check=False)
         said = [row.removeprefix("FAULT ") for row in done.stdout.splitlines() if row.startswith("FAULT")]
         return said if done.returncode in (0, 1) and bool(said) == done.returncode else [done.stderr.strip()]
     words = _today(folder, made)
@@ -313,7 +316,7 @@ def redraw() -> None:
             words = (
                 [str(script), "--redraw"] if script.exists() else ["-m", "rockwobble", "report", str(folder)]
             )
-            subprocess.run([sys.executable, *words], cwd=HERE, check=True)
+            subprocess.run([sys.executable, *words], cwd=HERE, env=ENVIRONMENT, check=True)
             trim(folder)
     compact_all()
 
@@ -371,16 +374,18 @@ def main() -> int:
             words[0] = f"{folder}/make.py"
         else:
             words = ["-m", "rockwobble", *words, "--out", folder, "--overwrite"]
-        subprocess.run([sys.executable, *words], cwd=HERE, check=True)
+        subprocess.run([sys.executable, *words], cwd=HERE, env=ENVIRONMENT, check=True)
         if words[0] == "-m":  # a command draws its page, and no document
-            subprocess.run([sys.executable, "-m", "rockwobble", "report", folder], cwd=HERE, check=True)
+            subprocess.run(
+                [sys.executable, "-m", "rockwobble", "report", folder], cwd=HERE, env=ENVIRONMENT, check=True
+            )
         trim(HERE / folder, only=CONTROLS.get(folder))
         compact_all()
         print(f"=== {folder}: {time.monotonic() - begin:.0f} s", flush=True)
     (HERE / "certificates").mkdir(exist_ok=True)
     for name, command in CERTIFICATES.items():
         words = [*command.split(), "--out", f"certificates/{name}.json", "--overwrite"]
-        subprocess.run([sys.executable, "-m", "rockwobble", *words], cwd=HERE, check=True)
+        subprocess.run([sys.executable, "-m", "rockwobble", *words], cwd=HERE, env=ENVIRONMENT, check=True)
     return 0
 
 
