@@ -22,7 +22,7 @@ def one_sine(tan_alpha: float) -> Case:
     ("tan_alpha", "support", "step"),
     [(0.1, "flat", 5e-4), (0.5, "recess", 1e-4), (0.5, "flat", 3e-5), (1.0, "flat", 5e-4)],
 )
-def test_an_impact_in_one_plane_is_of_momentum_at_every_step(
+def test_an_impact_in_one_plane_is_of_momentum_at_coarse_and_fine_steps(
     tan_alpha: float, support: str, step: float
 ) -> None:
     case = one_sine(tan_alpha)
