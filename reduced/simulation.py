@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 import importlib.metadata
 import math
-import signal
-import threading
 import time
 from collections.abc import Iterator
 from functools import cache, partial
-from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -99,11 +95,10 @@ def simulate(
     make_ready(problem.kernel)
     times = sample_times(case.length, sample_step)
     started = time.perf_counter()
-    with _deferred_interrupt():
+    result, azimuth = problem.solve(times)
+    if result.end > case.length:  # it overturns later
+        times = sample_times(result.end, sample_step)
         result, azimuth = problem.solve(times)
-        if result.end > case.length:  # it overturns later
-            times = sample_times(result.end, sample_step)
-            result, azimuth = problem.solve(times)
     return _trace(problem, result, azimuth, times, time.perf_counter() - started)
 
 
@@ -116,23 +111,6 @@ def is_compiled(model: str) -> bool:
 def make_ready(model: str) -> None:
     """Load the compiled code of `model`, or compile it and say so on standard error: that takes seconds."""
     announce(kernels.INTEGRATORS[model], model, lambda: kernels.load(model))
-
-
-@contextlib.contextmanager
-def _deferred_interrupt() -> Iterator[None]:
-    """An interrupt within compiled code ends the process by a fault: it waits for the end of that."""
-    before = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(before):
-        yield
-        return
-    came: list[tuple[int, FrameType | None]] = []
-    signal.signal(signal.SIGINT, lambda number, frame: came.append((number, frame)))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-    if came:
-        before(*came[0])
 
 
 def _trace(

@@ -23,7 +23,7 @@ from rockwobble.models.shown import Brief
 from rockwobble.models.support import FLAT
 from rockwobble.models.trace_source import Array
 
-from ._compile import announce
+from ._compile import announce, interrupted_after
 from .columns import ground_at, sample_times, three_columns
 from .integration.sliding import Slide, slide
 
@@ -170,7 +170,8 @@ def peak_displacements(
 def _slide_of(case: Case, times: Array) -> Slide:
     motion = case.motion
     step = 1.0 if motion is None else motion.time_step
-    return slide(three_columns(motion), step, case.friction, case.gravity, case.length, times, _TOLERANCE)
+    with interrupted_after():
+        return slide(three_columns(motion), step, case.friction, case.gravity, case.length, times, _TOLERANCE)
 
 
 def _make_ready() -> None:
