@@ -319,7 +319,7 @@ def advise(
             case, given = problem.case(), given_options(context)
             if "support" not in given:
                 plan = replace(plan, support=usual_support(case, friction_given="friction" in given))
-            require_judged(case, plan.support)
+            require_judged(case, plan.support, plan.gap)
             run = _run(case, engine, plan.support, time_step)
             claim_folder(context)
         echo([*record_lines([case.motion]), *case_warnings([case], plan.mass)])

@@ -529,11 +529,7 @@ def advise(
         gap=gap,
         mass=mass,
     )
-    if gap is not None and not support_named(plan.support).lets_slide:
-        raise ValueError(
-            f"a gap is for a slide on flat ground, got {gap:g} m with support {str(plan.support)!r}"
-        )
-    require_judged(case, plan.support)
+    require_judged(case, plan.support, plan.gap)
     if run is not None:
         if run.support != plan.support:
             raise ValueError(f"support must be that of the run, {run.support}, got {plan.support}")
@@ -653,14 +649,17 @@ def advise(
     return advice_of(tables, facts)
 
 
-def require_judged(case: Case, support: str) -> None:
+def require_judged(case: Case, support: str, gap: float | None) -> None:
     """Refuse a case that no advice judges.
 
     Raises
     ------
     ValueError
-        If it has an anchor, such as a tendon, on a support whose reduced model has none.
+        If it has an anchor, such as a tendon, on a support whose reduced model has none, or a gap [m] where
+        the support stops a slide.
     """
+    if gap is not None and not support_named(support).lets_slide:
+        raise ValueError(f"a gap is for a slide on flat ground, got {gap:g} m with support {str(support)!r}")
     if case.anchor and not support_named(support).guided:
         raise ValueError(
             f"an advice on a body with {case.anchor} is for support {str(RECESS)!r}, got {support!r}"

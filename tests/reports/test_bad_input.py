@@ -13,6 +13,7 @@ BAD = {
     "advise": {
         "--copies 5": "copies must be a whole number from 20 to 10000, got 5",
         "--engine none --time-step 1e-4": "--time-step belongs to an engine",
+        "--gap 0.1 --support recess": "a gap is for a slide on flat ground, got 0.1 m with support 'recess'",
     },
     "ensemble": {
         "--synthetic 2 --p695": "got more than one",
