@@ -7,16 +7,13 @@ import hashlib
 import inspect
 import os
 import re
-import signal
 import stat
 import sys
 import tempfile
-import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache, update_wrapper
 from pathlib import Path
-from types import FrameType
 from typing import Any, Generic, ParamSpec, TypeVar, cast
 
 import numba
@@ -191,27 +188,6 @@ def _borrow(typing: Any, array: Any) -> Any:
 # A view of an array that counts no references, for as long as the array itself is used later. Counting
 # takes a locked instruction each time the array is handed on: a tenth of a step.
 borrowed = cast("Callable[[A], A]", intrinsic(_borrow))
-
-
-@contextmanager
-def interrupted_after() -> Iterator[None]:
-    """Let Ctrl-C within an entry point that returns a named tuple come after it.
-
-    What makes that tuple runs as Python code, which raises an interrupt that waits, and numba takes the tuple
-    that is then missing for one: the process ends by a fault.
-    """
-    handler = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(handler):
-        yield
-        return
-    waiting: list[tuple[int, FrameType | None]] = []
-    signal.signal(signal.SIGINT, lambda number, frame: waiting.append((number, frame)))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, handler)
-    if waiting:
-        handler(*waiting[0])
 
 
 def in_memory(entry: Callable[..., object]) -> bool:

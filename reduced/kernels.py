@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
 import numpy as np
 
 from rockwobble.models import Cylinder
@@ -86,3 +92,24 @@ def load(model: str) -> None:
     INTEGRATORS[model](body, options, Task(np.zeros((0, 3)), 1.0, start, np.zeros(1), np.zeros((0, 2))))
     if not model.endswith("planar"):
         momentum_of_release(body, 0.1, 0.0)  # or the first release would be timed with its loading
+
+
+@contextmanager
+def interrupted_after() -> Iterator[None]:
+    """Let Ctrl-C within an entry point that returns a named tuple come after it.
+
+    What makes that tuple runs as Python code, which raises an interrupt that waits, and numba takes the tuple
+    that is then missing for one: the process ends by a fault.
+    """
+    handler = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(handler):
+        yield
+        return
+    waiting: list[tuple[int, FrameType | None]] = []
+    signal.signal(signal.SIGINT, lambda number, frame: waiting.append((number, frame)))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    if waiting:
+        handler(*waiting[0])

@@ -17,7 +17,6 @@ from rockwobble.models.number_checks import quoted
 from rockwobble.models.support import MODELLED, RECESS, support_named
 
 from . import kernels
-from ._compile import interrupted_after
 from .body import Body, restitution_from_momentum
 from .columns import is_spatial, three_columns
 from .integration.balance import decide
@@ -151,7 +150,7 @@ class Problem:
         integrate, task, azimuth = self._set_up
         # a column of a table would have the time integration compiled for its stride
         task = task._replace(times=np.ascontiguousarray(times))
-        with interrupted_after():
+        with kernels.interrupted_after():
             result = integrate(self.body, self._options._replace(record_steps=record_steps), task)
         return self._decide(result), azimuth
 
@@ -169,7 +168,7 @@ class Problem:
 
     def solve_under(self, shaking: SetUp) -> IntegrationResult:
         """Return the result for this body under a motion of another size, for the peak only."""
-        with interrupted_after():
+        with kernels.interrupted_after():
             result = shaking.integrate(self.body, self._options, shaking.task)
         return self._decide(result)
 
