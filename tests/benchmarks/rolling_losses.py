@@ -1,29 +1,25 @@
-"""Rolling resistance: error over tolerance, computing time, and the engines beside the models.
+"""Rolling resistance: laws, error over tolerance, and the engines beside the models.
 
-`python tests/benchmarks rolling_losses` prints seven tables: quantities that have a law, by it and by the
-models; error of the models over the tolerance in free response; how random releases end in the models; their
-computing time over that of the models without it (runs in turns, medians of ratios); the rolling friction of
-engines against the models over step and coefficient of friction, and in a frame; how often MuJoCo's contact
-is closed then; when engines uplift.
+`python tests/benchmarks rolling_losses` prints five tables: quantities that have a law, by it and by the
+models; error of the models over the tolerance in free response; the rolling friction of engines against the
+models over step and coefficient of friction, and in a frame; how often MuJoCo's contact is closed then; when
+engines uplift.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import math
-import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, WobblingFrame, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, WobblingFrame
 from rockwobble.multibody.simulation import open_scene
 from rockwobble.reduced.body import body_of
-from rockwobble.reduced.problem import Problem
 from rockwobble.reduced.rolling import impact_ratio
-from rockwobble.reduced.simulation import make_ready
 
 from .console import options_of, show
 
@@ -35,7 +31,6 @@ TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
 ENGINES = {"mujoco": ((1.0, 20.0), (4e-4, 2e-4, 1e-4)), "pybullet": ((1.0, 4.0), (4e-4, 2e-4))}
 GRIP = {"mujoco": 20.0, "pybullet": 4.0}  # friction that leaves the couple whole
 UPLIFTS = (("mujoco", 2e-4), ("mujoco", 1e-4), ("pybullet", 2e-4))
-_ROUNDS = 100  # of timed runs
 _WATCHED = 5000  # steps, half a second
 _PIER = Cylinder(semidiagonal=6.0, tan_alpha=1.0 / 3.0)
 
@@ -134,70 +129,6 @@ def errors() -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["model", "rtol", "tilt_error", "energy_error", "steps"])
 
 
-def times(rounds: int = _ROUNDS) -> pd.DataFrame:
-    """Return computing time with rolling resistance over that without, 20 s of El Centro times 2."""
-    import pandas as pd
-
-    rows = []
-    cylinder, motion = Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940().scaled(2.0)
-    for model, options in reduced.MODELS.items():
-        problems = []
-        for share in (0.0, SHARE):
-            length = share * cylinder.base_radius
-            case = Case(cylinder, motion, duration=20.0, rolling_resistance=length)
-            given = {"support": "recess", "plane": None, "restitution": 1.0, "rest_tilt": 1e-8} | dict(
-                options
-            )
-            problems.append(Problem(case, rtol=1e-8, **given))
-            make_ready(problems[-1].kernel)
-        ratios = []
-        for _ in range(rounds):
-            marks = [time.perf_counter()]
-            for problem in problems:
-                problem.solve(np.empty(0))
-                marks.append(time.perf_counter())
-            ratios.append((marks[2] - marks[1]) / (marks[1] - marks[0]))
-        counts = [problem.solve(np.empty(0))[0].step_count for problem in problems]
-        rows.append((model, *counts, *np.percentile(ratios, [50, 25, 75])))
-    return pd.DataFrame(rows, columns=["model", "steps_without", "steps_with", "ratio", "low", "high"])
-
-
-def releases(count: int, seed: int) -> pd.DataFrame:
-    """Return how random releases end: cylinders of 0.5 to 10 m, tan(alpha) 0.05 to 3, delta/b to 0.1.
-
-    Of the runs that did not fail: the largest share of the first energy by which the account is open, and the
-    largest number of steps, over 20 sqrt(R/g) after the release.
-    """
-    import pandas as pd
-
-    rows = []
-    for model, options in reduced.MODELS.items():
-        random = np.random.default_rng(seed)
-        traces = []
-        for _ in range(count):
-            cylinder = Cylinder(
-                semidiagonal=random.uniform(0.5, 10.0),
-                tan_alpha=math.exp(random.uniform(*np.log([0.05, 3.0]))),
-            )
-            unit = math.sqrt(9.81 / cylinder.semidiagonal)
-            tilt_rate, spin = unit * random.normal(scale=[0.05, 0.5])
-            spin = 0.0 if model == "planar" else spin
-            release = InitialState(
-                random.uniform(0.1, 0.95) * cylinder.alpha, tilt_rate=tilt_rate, rolling_rate=spin
-            )
-            length = random.uniform(0.0, 0.1) * cylinder.base_radius
-            case = Case(cylinder, initial=release, duration=20.0 / unit, rolling_resistance=length)
-            traces.append(reduced.simulate(case, **options))
-        ended = [trace for trace in traces if trace.outcome != "failed"]
-        open_by = max(
-            np.abs((trace.energy + trace.energy_lost) / trace.energy[0] - 1.0).max() for trace in ended
-        )
-        standing = sum(trace.outcome == "stands" for trace in ended)
-        steps = max(trace.step_count for trace in ended)
-        rows.append((model, count, count - len(ended), standing, float(open_by), steps))
-    return pd.DataFrame(rows, columns=["model", "releases", "failed", "stands", "account", "most_steps"])
-
-
 def engines() -> pd.DataFrame:
     """Return what engines and models have of the same releases, of a cylinder and of a frame.
 
@@ -288,25 +219,11 @@ def uplifts() -> pd.DataFrame:
 
 def main(arguments: Sequence[str]) -> int:
     """Print the tables."""
-    parser = options_of("rolling_losses", "Error, computing time and engines with rolling resistance.")
-    parser.add_argument("--releases", type=int, default=300, help="number of random releases (default 300)")
-    parser.add_argument("--seed", type=int, default=1, help="of the random releases (default 1)")
-    given = parser.parse_args(arguments)
+    options_of("rolling_losses", "Error and engines with rolling resistance.").parse_args(arguments)
     forms = {"quantity": "", "law": ".5g", "model": ".5g"}
     show(quantities(), "Quantities by law and model", forms)
     forms = {"model": "", "rtol": ".0e", "tilt_error": ".1e", "energy_error": ".1e", "steps": "d"}
     show(errors(), "Free response, errors of tilt (in alpha) and of the energy account", forms)
-    forms = {"model": "", "releases": "d", "failed": "d", "stands": "d", "account": ".1e", "most_steps": "d"}
-    show(releases(given.releases, given.seed), f"Random releases, seed {given.seed}", forms)
-    forms = {
-        "model": "",
-        "steps_without": "d",
-        "steps_with": "d",
-        "ratio": ".2f",
-        "low": ".2f",
-        "high": ".2f",
-    }
-    show(times(), "Computing time with over without, with quartiles", forms)
     forms = {"support": "", "body": "", "delta_b": ".3f", "engine": "", "friction": ".0f", "step": ".0e"}
     forms |= {"tilt_error": ".1e", "effect": ".1e", "lost": ".4f", "engine_lost": ".4f", "account": ".1e"}
     show(engines(), "Rolling friction of engines against the models, tilt in alpha", forms)

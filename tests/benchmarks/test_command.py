@@ -22,10 +22,10 @@ def test_help_answers(name: str, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_the_command_runs_from_anywhere(tmp_path: Path) -> None:
-    command = [sys.executable, str(FOLDER), "convergence", "--table", "none"]
+    command = [sys.executable, str(FOLDER), "convergence", "--none"]
     answer = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert answer.returncode == 2
-    assert "--table: invalid choice: 'none' (choose from" in answer.stderr
+    assert "unrecognized arguments: --none" in answer.stderr
 
 
 def test_every_script_is_a_command_and_in_the_readme() -> None:

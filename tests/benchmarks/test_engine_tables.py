@@ -31,14 +31,6 @@ def test_a_convergence_row() -> None:
     assert table["order"].to_numpy() == pytest.approx(np.ones(2), abs=SLOPE)
 
 
-def test_a_release_that_flies_is_said() -> None:
-    spinning = Case(
-        PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=30.0), duration=0.2, name="fast"
-    )
-    assert "loses contact" in convergence.loses_contact(spinning)
-    assert convergence.loses_contact(Case(PIER, initial=RELEASE, duration=0.2, name="slow")) == ""
-
-
 def test_variants_differ_from_the_default_in_one_setting() -> None:
     found = engine_settings.variants(["mujoco"])
     assert found[0].run("flat", 1e-4, 1.0).settings == {}
