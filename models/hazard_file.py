@@ -61,6 +61,7 @@ _NUMBER = r"\d+(?:\.\d+)?"
 _PERIOD = re.compile(rf"\b(?:p?sa)[ (\[]*(?:t1? *= *)?({_NUMBER}|\d+p\d+) *(?:s|sec)?[)\]]?(?![^ (\[,])")
 _SPAN = re.compile(rf"(?<![/\d.])({_NUMBER}) *-? *(?:years?|yrs?|y|a)\b")
 _CHANCE = re.compile(rf"\b(p|pe|poe|prob|probability) ?({_NUMBER})(?![^ )\],])")
+_MEASURE = re.compile(r"(PGA|PGV|SA)\(?(\d*[P.]?\d*)\)?")
 _THOUSANDS = re.compile(r"[1-9]\d*,\d{3}")
 
 
@@ -125,7 +126,7 @@ def read_hazard(
     try:
         text = place.read_text(encoding="utf-8-sig")
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "it is no text"
+        reason = getattr(error, "strerror", None) or "it is no text in UTF-8"
         raise ValueError(f"cannot read the hazard curve {place}: {reason}") from None
     given = _Given(place=place, measure=measure, period=period, units=_given_unit(units), years=years)
     if years is not None:
@@ -194,32 +195,41 @@ class _Columns:
 
 
 def _curve(given: _Given, columns: _Columns, name: str) -> HazardCurve:
-    order = np.argsort(columns.x, kind="stable")
+    place, order = given.place.name, np.argsort(columns.x, kind="stable")
     x, frequency = columns.x[order], columns.frequency[order]
     if (frequency < 0.0).any():
-        raise ValueError(
-            f"{given.place.name}: a frequency must not be negative, got {frequency.min():g}: a logarithm?"
-        )
+        raise ValueError(f"{place}: a frequency must not be negative, got {frequency.min():g}: a logarithm?")
     if not (frequency > 0.0).any():
-        raise ValueError(f"{given.place.name} has no hazard at this site: no level is ever exceeded")
+        raise ValueError(f"{place} has no hazard at this site: no level is ever exceeded")
     first, last = np.cumprod(np.isinf(frequency)).sum(), np.flatnonzero(frequency > 0.0)[-1]
     x, frequency = x[first : last + 1], frequency[first : last + 1]
+    highest = np.append(frequency[1:] != frequency[:-1], True)[: len(x)]  # of each plateau
+    x, frequency = x[highest], frequency[highest]
     if len(x) < 2:
-        raise ValueError(f"{given.place.name} has fewer than two levels with a probability between 0 and 1")
-    same = np.append(np.diff(frequency) == 0.0, False)
+        raise ValueError(
+            f"{place} has fewer than two levels of different frequencies, but for probabilities of 0 and 1: "
+            "export more levels"
+        )
+    if x[0] <= 0.0:
+        raise ValueError(f"{place}: a level must be positive, got {x[0]:g}: leave its row out")
+    if len(rising := np.flatnonzero(np.diff(frequency) >= 0.0) + 1):
+        at = rising[0]
+        raise ValueError(
+            f"{place}: frequencies of exceedance must decrease with the level, got {frequency[at - 1]:g} at "
+            f"{x[at - 1]:g} and {frequency[at]:g} at {x[at]:g}: one curve a file"
+        )
+    if len(twice := np.flatnonzero(np.diff(x) == 0.0)):
+        raise ValueError(f"{place} has two frequencies at the level {x[twice[0]]:g}: one curve a file")
     unit = columns.unit
     factor = _VELOCITIES.get(unit) or METRES_PER_SECOND_SQUARED[unit] / METRES_PER_SECOND_SQUARED["g"]
-    try:
-        return HazardCurve(
-            factor * x[~same],
-            frequency[~same],
-            measure=given.measure,
-            period=given.period,
-            name=name,
-            source=columns.source,
-        )
-    except ValueError as error:
-        raise ValueError(f"{given.place.name}: {error}") from None
+    return HazardCurve(
+        factor * x,
+        frequency,
+        measure=given.measure,
+        period=given.period,
+        name=name,
+        source=columns.source,
+    )
 
 
 def _given_unit(units: str | None) -> str | None:
@@ -243,7 +253,7 @@ def _rates(given: _Given, p: Array, years: float) -> Array:
     """Annual frequencies of probabilities in some years, infinite of 1."""
     if ((p < 0.0) | (p > 1.0)).any():
         wrong = p[(p < 0.0) | (p > 1.0)][0]
-        raise ValueError(f"{given.place.name}: a probability must be from 0 to 1, got {wrong:g}")
+        raise ValueError(f"{given.place.name}: a probability must be from 0 to 1 (no percent), got {wrong:g}")
     with np.errstate(divide="ignore"):
         return np.asarray(-np.log1p(-p) / years, dtype=np.float64)
 
@@ -364,8 +374,8 @@ def _title(given: _Given, title: str) -> _Title:
     for word in [*outside, *words]:
         if word not in _SAYS:
             raise ValueError(
-                f"{given.place.name}: {word[:20]!r} in the column {title[:40]!r} is not known: name the "
-                f"columns as in {_HEADER}"
+                f"{given.place.name}: {word[:20]!r} in the column {title[:40]!r} is not known: PGA, "
+                f"PGV and SA(T) are read, under names as in {_HEADER}"
             )
         says |= set(_SAYS[word].split())
     return _Title(title=title, says=frozenset(says), unit=unit, period=period, years=years)
@@ -464,7 +474,8 @@ def _usgs(given: _Given, text: str) -> _Columns:
         response = json.loads(text)["response"]
         curves = response["hazardCurves"] if isinstance(response, dict) else response
         named = [(str(_head(each)["imt"]["value"]), each) for each in curves]
-        labels = " ".join(str(_head(each).get(key, "")) for each in curves for key in ("xlabel", "ylabel"))
+        heads = [_head(each) for each in (response, *curves) if isinstance(each, dict)]
+        labels = " ".join(str(head.get(key, "")) for head in heads for key in ("xlabel", "ylabel"))
     except (KeyError, TypeError, AttributeError, json.JSONDecodeError):
         raise ValueError(f"{name} is no hazard curve of the USGS: it has no response with curves") from None
     if "probab" in labels.lower() or ("cm/s" in labels.lower() and given.kind != "pgv"):
@@ -497,13 +508,13 @@ def _require_measure(given: _Given, names: Iterable[str]) -> str:
     """Name of a curve that is of the measure and the period: PGA, SA(0.2) or SA0P2."""
     known = list(names)
     for name in known:
-        match = re.fullmatch(r"(PGA|PGV|SA)\(?(\d*[P.]?\d*)\)?", name.upper())
+        match = _MEASURE.fullmatch(name.upper())
         if match is not None and match[1].lower() == given.kind:
             at, period = float(match[2].replace("P", ".")) if match[2] else None, given.period
             if (at is None and period is None) or (at and period and abs(at - period) <= 1e-6 * period):
                 return name
-    wanted = given.kind.upper() + (f" at {given.period:g} s" if given.period else "")
-    raise ValueError(
-        f"{given.place.name} is of {', '.join(known) or 'no measure'}, not of {wanted}: choose measure (and "
-        "period) of it"
-    )
+    wanted = f"of {given.kind.upper()}" + (f" at {given.period:g} s" if given.period else "")
+    way = "choose measure (and period) of it"
+    if not any(_MEASURE.fullmatch(name.upper()) for name in known):
+        wanted, way = "read here", "export PGA, PGV or SA(T)"
+    raise ValueError(f"{given.place.name} is of {', '.join(known) or 'no measure'}, not {wanted}: {way}")

@@ -179,8 +179,8 @@ def test_a_table_that_could_be_read_wrongly_is_refused(
         ("0.1,0.2,0.3\n", "two columns"),
         ("0.1,2\n0.2,nan\n", "two numbers"),
         ("0.1,0\n0.2,0\n", "no hazard at this site"),
-        ("0.1,0.1\n0.2,0\n0.3,0.01\n", "positive and finite"),
-        ("0.1,0.1\n", "fewer than two levels"),
+        ("0.1,0.1\n0.2,0.1\n0.2,0.05\n", "two frequencies at the level 0.2"),
+        ("0,0.1\n0.2,0.05\n", "a level must be positive, got 0: leave"),
         ("", "no rows below its header"),
         ("0.05,0.1\n0.2,0.01\n0.1,0.05\n", "rise, or fall, throughout"),
         ("0.1,-2\n0.2,-3\n", "a logarithm"),
@@ -199,13 +199,27 @@ def test_a_comma_that_may_part_thousands_is_refused(tmp_path: Path) -> None:
         read(tmp_path, "PGA (g);TR\n0,1;1.000\n0,2;2.475\n")
 
 
-def test_levels_that_say_nothing_are_left_out(tmp_path: Path) -> None:
-    text = "PGA (g),poe in 50 years\n0.01,1\n0.02,1.0\n0.05,0.9\n0.1,0.5\n0.2,0.5\n0.5,0.001\n1,0\n2,0\n"
-    assert read(tmp_path, text).intensity == pytest.approx([0.05, 0.2, 0.5])
+def test_a_curve_is_its_highest_levels_or_refused_in_a_line(tmp_path: Path) -> None:
+    """Levels of probability 1 before it and 0 behind it are left out, and of a plateau all but the last."""
+    chance = np.random.default_rng(58)
+    read_so_far = 0
+    for _ in range(80):
+        p = chance.choice([0.0, 0.01, 0.1, 0.5, 1.0], chance.integers(1, 6))
+        p = np.sort(p)[::-1] if chance.random() < 0.7 else p
+        text = "PGA (g),poe in 50 years\n" + "".join(f"{k + 1},{each}\n" for k, each in enumerate(p))
+        levels = {each: k + 1.0 for k, each in enumerate(p) if 0.0 < each < 1.0}
+        if len(levels) > 1 and (np.diff(p) <= 0.0).all():
+            site = read(tmp_path, text)
+            assert site.intensity == pytest.approx(list(levels.values()))
+            assert site.annual_frequency == pytest.approx([-math.log1p(-each) / 50.0 for each in levels])
+            read_so_far += 1
+            continue
+        with pytest.raises(ValueError, match=r"fewer than two|no hazard at this|must decrease") as refusal:
+            read(tmp_path, text)
+        assert refusal.value.args[0].startswith("site.csv")
+    assert read_so_far > 10
     with pytest.raises(ValueError, match=r"got 1\.5"):
-        read(tmp_path, text.replace("1.0", "1.5"))
-    with pytest.raises(ValueError, match="positive and finite"):
-        read(tmp_path, text.replace("0.001", "1"))
+        read(tmp_path, text + "9,1.5\n")
 
 
 def test_a_header_may_be_the_last_comment_above_the_numbers(tmp_path: Path) -> None:
@@ -274,7 +288,13 @@ def test_a_site_of_several_is_chosen(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "options", "words"),
     [
-        (openquake("PGA"), {"measure": "pgv"}, "is of PGA, not of PGV"),
+        (openquake("PGA"), {"measure": "pgv"}, "is of PGA, not of PGV: choose"),
+        (openquake("AvgSA(0.2)"), {}, "not read here: export PGA, PGV or SA"),
+        (
+            usgs("PGA", True).replace('"hazardC', '"metadata": {"ylabel": "probability"}, "hazardC'),
+            {},
+            "annual frequencies over",
+        ),
         (openquake("PGA"), {"years": 1.0}, "is of 50 years"),
         (openquake("PGA", columns="PGA~{}"), {}, "no hazard curve of OpenQuake"),
         (openquake("PGA").replace("1,2.0,0.0,", "1,2.0,0.0,-"), {}, "from 0 to 1"),
