@@ -64,6 +64,22 @@ _ALWAYS, _AT_MOST = 2, 3
 _UNCERTAIN = 0.1
 # planar in the x z plane, with the loss of a base that lands flat
 _IMPACT = Run(None, RECESS, plane=0.0, restitution="momentum")
+# name: (unit, meaning), beside case, run and reference
+BUDGET_COLUMNS: Mapping[str, tuple[str, str]] = {
+    "whole_rms": ("alpha", "RMS of the tilt difference until 80 % of the agreement"),
+    "model_form_rms": ("alpha", "of it: reduced model of the support minus the reference"),
+    "numerics_rms": ("alpha", "of it: engine minus the engine extrapolated to a step of zero"),
+    "unexplained_rms": ("alpha", "of it: engine extrapolated minus reduced model of its support"),
+    "unexplained_share": ("", "unexplained over whole; above 0.2 it is a finding"),
+    "limit_error": ("alpha", "uncertainty of the extrapolation"),
+    "step_order": ("", "order of the engine in its step, as measured from the three finest runs"),
+    "finest_step": ("s", "smallest time step that the extrapolation rests on"),
+    "not_split": (
+        "",
+        "why numerics and unexplained are not stated: unresolved_pass, order (below a half) or error (larger "
+        "than both)",
+    ),
+}
 Simulate = Callable[[list[Job]], list[Trace]]
 Key = tuple[str, str]
 
@@ -145,7 +161,7 @@ class ErrorBudget(Brief):
         return rms(getattr(self, part)[self.time <= self.covered + _SAME_TIME])
 
     def columns(self) -> dict[str, float | str]:
-        """Return the columns of the summary; NaN for what is not stated."""
+        """Values of `BUDGET_COLUMNS`; NaN for what is not stated."""
         whole, lack = self.rms("whole"), self.not_split
         numerics, unexplained = (math.nan if lack else self.rms(part) for part in ("numerics", "unexplained"))
         return {
@@ -461,19 +477,19 @@ def _agreement(case: Case, response: Trace, trajectory: Trace) -> Agreement | No
     return agreement if agreement.length > 0.0 else None
 
 
-def unexplained_rows(summary: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows of a summary in which too much stays unexplained, the worst first.
+def unexplained_rows(budgets: pd.DataFrame) -> pd.DataFrame:
+    """Rows of a table of budgets in which too much stays unexplained, the worst first.
 
     Rows whose whole difference is below 1e-4 alpha, or is not split, are left out.
 
     Parameters
     ----------
-    summary : DataFrame
-        Summary of a comparison with budgets.
+    budgets : DataFrame
+        `Comparison.budget_rms`.
 
     Returns
     -------
     DataFrame
     """
-    rows = summary[(summary["whole_rms"] > WORTH_EXPLAINING) & (summary["unexplained_share"] > LARGEST_SHARE)]
+    rows = budgets[(budgets["whole_rms"] > WORTH_EXPLAINING) & (budgets["unexplained_share"] > LARGEST_SHARE)]
     return rows.sort_values("unexplained_share", ascending=False)

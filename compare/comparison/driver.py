@@ -12,7 +12,7 @@ from rockwobble.models.case import RECESS_MODEL
 from rockwobble.models.frames import pd
 
 from ..external.trajectory import External, read_trajectories
-from ..external.verdict import Row
+from ..external.verdict import VERDICT_COLUMNS, Row
 from ..metrics.pair import tolerance_of
 from ..runs.choice import (
     default_runs,
@@ -29,7 +29,7 @@ from .budget import ErrorBudget, case_budgets
 from .peak_error import copies_of_input, peak_error
 from .prediction import Prediction, Simulate, estimated_error, measured_error, predict
 from .result import Comparison, comparison_of
-from .summary import SUMMARY_COLUMNS, external_row, lost_row, summary_row
+from .summary import KEYS, SUMMARY_COLUMNS, external_row, lost_row, summary_row
 
 
 @with_argument_kinds
@@ -140,12 +140,12 @@ def comparison(
             for label, run in by_label.items()
             for name in references_of(case, run, label, reference, named=named)
         ]
-    rows += [
+    verdicts = [
         external_row(cases[0], other, found[name, other], label, trajectory, until=until)
         for (name, label), trajectory in brought.items()
         for other in compared_with
     ]
-    table = pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS))
+    table = pd.DataFrame([*rows, *verdicts], columns=list(SUMMARY_COLUMNS))
     comparison = comparison_of(
         table.astype({"diverged": bool, "left_tolerance": bool, "agreed_passes": int}),
         cases={case.name: case for case in cases},
@@ -153,6 +153,7 @@ def comparison(
         versions=package_versions(),
         until=until,
         budgets=budgets,
+        external=pd.DataFrame(verdicts, columns=[*KEYS, *VERDICT_COLUMNS]),
     )
     if out is not None:
         comparison.save(out)
@@ -222,7 +223,7 @@ def comparison_row(
     simulate : callable
         Runs a reduced model on a case; for the perturbed copies of the prediction.
     budget : ErrorBudget, optional
-        What the difference of run and reference is made of. Without one the error of the run is estimated.
+        Of run and reference. Without one the error of the run is estimated.
     until : float, optional
         End of the window of the RMS columns, in the time of the run [s]. Default: the whole run.
 
@@ -266,7 +267,6 @@ def comparison_row(
         prediction=prediction,
         within=own_prediction(tolerance) if tolerance < AGREEMENT else prediction,
         estimated_error=error,
-        budget=budget,
         until=until,
         reference_time=min(times),
         error=peak_error(case, trial, own, reference, copies=copies, simulate=simulate),

@@ -25,7 +25,11 @@ _SAME_END = 0.1  # [s] ends of agreements that read the same
 
 
 def case_findings(
-    case: Case, rows: pd.DataFrame, traces: Mapping[str, Trace], causes: Sequence[str]
+    case: Case,
+    rows: pd.DataFrame,
+    traces: Mapping[str, Trace],
+    causes: Sequence[str],
+    budgets: pd.DataFrame,
 ) -> Iterator[Finding]:
     """Findings on one case, in order of weight.
 
@@ -33,11 +37,13 @@ def case_findings(
     ----------
     case : Case
     rows : DataFrame
-        Its rows of the summary.
+        Its rows of the summary, with the verdicts on external trajectories.
     traces : mapping
         Its traces by label.
     causes : sequence of str
         Of each row, see `cause`; empty where the run agrees to its end.
+    budgets : DataFrame
+        Its rows of `Comparison.budget_rms`.
     """
     summary = list(rows_of(rows))
     sound = [row for row in summary if "failed" not in (row.outcome, row.reference_outcome)]
@@ -59,7 +65,7 @@ def case_findings(
         yield Finding(key="comparison.late_peak", values={"names": tuple(late)})
     yield from _causes(zip(summary, causes, strict=True))
     yield from (each for row in sound if row.support == EXTERNAL for each in _mistakes(row))
-    yield from budget_findings(rows)
+    yield from budget_findings(rows, budgets)
     supports = dict.fromkeys(SUPPORTS.get(row.support) for row in summary if row.engine != REDUCED)
     for support in filter(None, supports):
         walls, guided = support.walls, support.guided
@@ -236,7 +242,7 @@ def _loses(row: SummaryRow) -> bool:
     return ENERGY_LOSS in row.likely_mistake
 
 
-def budget_findings(summary: pd.DataFrame) -> Iterator[Finding]:
+def budget_findings(summary: pd.DataFrame, budgets: pd.DataFrame) -> Iterator[Finding]:
     """Findings on divergences earlier than predicted, and on budgets: what stays unexplained first.
 
     Of external trajectories nobody predicts a divergence: the prediction rests on the errors of an engine.
@@ -244,11 +250,10 @@ def budget_findings(summary: pd.DataFrame) -> Iterator[Finding]:
     early = (summary["divergence"] == "earlier") & (summary["support"] != EXTERNAL)
     for row in rows_of(summary[early]):
         yield Finding(key="comparison.earlier", level="caution", values=_pair(row))
-    known = summary[summary["whole_rms"].notna()]
-    if not len(known):
+    if not len(budgets):
         return
-    large = known[known["whole_rms"] > WORTH_EXPLAINING]
-    split, left = large[large["not_split"] == ""], unexplained_rows(known)
+    large = budgets[budgets["whole_rms"] > WORTH_EXPLAINING]
+    split, left = large[large["not_split"] == ""], unexplained_rows(budgets)
     for row in rows_of(left.head(_LISTED)):
         sizes = {"difference": row.whole_rms, "difference_limit": row.limit_error}
         yield Finding(
@@ -262,7 +267,7 @@ def budget_findings(summary: pd.DataFrame) -> Iterator[Finding]:
         counts = {
             "count": len(split) - len(left),
             "count_of": len(split),
-            "count_less": len(known) - len(large),
+            "count_less": len(budgets) - len(large),
         }
         bounds = {"share": LARGEST_SHARE, "difference": WORTH_EXPLAINING}
         yield Finding(key="comparison.explained", values={**bounds, **counts})
@@ -272,7 +277,7 @@ def budget_findings(summary: pd.DataFrame) -> Iterator[Finding]:
         yield Finding(
             key="comparison.not_split", values={"count": int(count), "reason": f"not_split_{reason}"}
         )
-    if missing := len(summary) - len(known):
+    if missing := len(summary) - len(budgets):
         yield Finding(key="comparison.no_budget", values={"count": missing})
 
 
@@ -280,7 +285,7 @@ def _pair(row: SummaryRow) -> dict[str, Value]:
     return {"name": row.case, "name_run": row.run, "name_reference": row.reference}
 
 
-def overview(summary: pd.DataFrame) -> Iterator[Finding]:
+def overview(summary: pd.DataFrame, budgets: pd.DataFrame) -> Iterator[Finding]:
     """Findings on many cases together: runs that agree, verdicts on predictions, budgets."""
     own = own_rows(summary)
     failed = int((own["outcome"] == "failed").sum())
@@ -290,7 +295,7 @@ def overview(summary: pd.DataFrame) -> Iterator[Finding]:
         "count_failed": failed or None,
     }
     yield Finding(key="comparison.agreeing", values=counts)
-    yield from budget_findings(summary)
+    yield from budget_findings(summary, budgets)
     verdicts = summary.loc[summary["support"] != EXTERNAL, "divergence"].value_counts()
     for verdict, count in verdicts.items():
         if verdict:

@@ -15,18 +15,19 @@ from rockwobble.models.finding import Findings
 from rockwobble.models.frames import pd
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.plain_json import plain
+from rockwobble.models.support import EXTERNAL
 from rockwobble.models.trace_file import case_facts, case_from_plain
 
-from ..external.verdict import lists_in_words, lists_of_file
+from ..external.verdict import VERDICT_COLUMNS, lists_in_words, lists_of_file
 from ..metrics.pair import first_unresolved_pass, start_of
 from ..metrics.statistics import value_if_enough
 from ..runs.execution import case_inputs
 from ..storage.manifest import Number, Stored
 from ..storage.provenance import fingerprint
 from ..storage.results import Results
-from .budget import ErrorBudget
+from .budget import BUDGET_COLUMNS, ErrorBudget
 from .findings import case_findings, causes_of, overview
-from .summary import SUMMARY_COLUMNS, agreement_matrix
+from .summary import KEYS, SUMMARY_COLUMNS, agreement_matrix
 
 _FACTS = "comparison.json"
 _SEPARATOR = "\n"  # in no name of a case or a run: these are single lines
@@ -41,9 +42,9 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
     Attributes
     ----------
     tables : mapping of str to DataFrame
-        summary: a row for each run and reference, see `SUMMARY_COLUMNS`; what differs of an external
-        trajectory, and the likely mistakes in it, are tuples. samples of all `traces`, their passes,
-        excitation: the ground motions; budget: the samples of `budgets`, where there are any.
+        summary: a row for each run and reference, see `SUMMARY_COLUMNS`; samples of all `traces`, their
+        passes, excitation: the ground motions. Where there are any, budget: the samples of `budgets`, and
+        external: verdicts on external trajectories, whose lists are tuples.
     facts : mapping
         inputs, versions, until, and of cases, traces and budgets what the tables do not hold.
 
@@ -113,6 +114,12 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
         return entries
 
     @cached_property
+    def budget_rms(self) -> pd.DataFrame:
+        """RMS of the parts of each budget: `BUDGET_COLUMNS` of case, run and reference."""
+        rows = [[*key, *budget.columns().values()] for key, budget in self.budgets.items()]
+        return pd.DataFrame(rows, columns=[*KEYS, *BUDGET_COLUMNS])
+
+    @cached_property
     def matrix(self) -> pd.DataFrame:
         """Differences of each motion from every other on its support, where two engines have run.
 
@@ -124,7 +131,7 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
     def causes(self) -> Mapping[str, Sequence[str]]:
         """Cause of the divergence in each row of a case, "" where there is none: see `findings.cause`."""
         return {
-            name: causes_of(case, self._rows(name), self._traces(name)) for name, case in self.cases.items()
+            name: causes_of(case, self.rows(name), self._traces(name)) for name, case in self.cases.items()
         }
 
     def findings(self) -> Findings:
@@ -132,16 +139,19 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
         if len(self.cases) == 1:
             return self.case_findings(*self.cases)
         each = (replace(one, runs=name) for name in self.cases for one in self.case_findings(name))
-        return Findings([*overview(self.summary), *each])
+        return Findings([*overview(self.summary, self.budget_rms), *each])
 
     def case_findings(self, name: str) -> Findings:
         """What the comparison says of one case."""
+        budgets = self.budget_rms[self.budget_rms["case"] == name]
         return Findings(
-            case_findings(self.cases[name], self._rows(name), self._traces(name), self.causes[name])
+            case_findings(self.cases[name], self.rows(name), self._traces(name), self.causes[name], budgets)
         )
 
-    def _rows(self, name: str) -> pd.DataFrame:
-        return self.summary[self.summary["case"] == name]
+    def rows(self, name: str) -> pd.DataFrame:
+        """Rows of the summary of a case, with the verdicts on external trajectories where there are any."""
+        rows = self.summary[self.summary["case"] == name]
+        return rows.merge(self.external, how="left", on=KEYS) if "external" in self.tables else rows
 
     def _traces(self, name: str) -> Mapping[str, Trace]:
         return {label: trace for (case, label), trace in self.traces.items() if case == name}
@@ -186,14 +196,13 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
         return {}
 
     def sheets(self) -> Mapping[str, bytes]:
-        """Return the facts, and summary and matrix as CSV."""
-        files = {
-            "summary.csv": lists_in_words(self.summary).to_csv(index=False).encode(),
-            _FACTS: (plain_json.dumps(self.facts, indent=1) + "\n").encode(),
+        """Return the facts, and the small tables as CSV."""
+        sheets = {"summary": self.summary, "matrix": self.matrix, "budget": self.budget_rms}
+        if "external" in self.tables:
+            sheets["external"] = lists_in_words(self.external)
+        return {_FACTS: (plain_json.dumps(self.facts, indent=1) + "\n").encode()} | {
+            f"{name}.csv": table.to_csv(index=False).encode() for name, table in sheets.items() if len(table)
         }
-        if len(self.matrix):
-            files["matrix.csv"] = self.matrix.to_csv(index=False).encode()
-        return files
 
     @classmethod
     def of_stored(cls, stored: Stored) -> Self:
@@ -205,9 +214,8 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
             If they cannot be read.
         """
         try:
-            tables = stored.tables()
             found = cls(
-                tables=tables | {"summary": _with_all_columns(lists_of_file(tables["summary"]))},
+                tables=_of_today(stored.tables(), stored.manifest.versions.get("rockwobble", "(not stated)")),
                 facts={"inputs": stored.manifest.inputs} | plain_json.loads(stored.content(_FACTS)),
                 manifest=stored.manifest,
             )
@@ -285,6 +293,7 @@ def comparison_of(
     versions: Mapping[str, str],
     until: float | None = None,
     budgets: Mapping[BudgetKey, ErrorBudget] | None = None,
+    external: pd.DataFrame | None = None,
 ) -> Comparison:
     """Return the comparison of these traces, with their summary.
 
@@ -295,6 +304,7 @@ def comparison_of(
         As those of `Comparison`.
     versions : mapping
     until : float, optional
+    external : DataFrame, optional
     """
     known = {key: trace for key, trace in traces.items() if len(trace.time)}  # the process of others died
     tables = {
@@ -303,6 +313,8 @@ def comparison_of(
         "passes": _stack({key: trace.passes for key, trace in known.items()}, "case", "run"),
         "excitation": _excitation(cases),
     }
+    if external is not None and len(external):
+        tables["external"] = external
     if budgets:
         parts = {key: budget.to_frame() for key, budget in budgets.items()}
         tables["budget"] = _stack(parts, "case", "run", "reference")
@@ -320,13 +332,30 @@ def comparison_of(
     return Comparison(tables=tables, facts=plain(facts))
 
 
-def _with_all_columns(summary: pd.DataFrame) -> pd.DataFrame:
-    """A summary of an earlier release, with what it does not know."""
-    texts = ("mode", "reference_mode")
-    absent = {
-        name: "" if name in texts else math.nan for name in SUMMARY_COLUMNS if name not in summary.columns
-    }
-    return summary.assign(**absent)
+def _of_today(tables: Mapping[str, pd.DataFrame], release: str) -> Mapping[str, pd.DataFrame]:
+    """Tables of a folder as they are today: 0.3 kept the verdicts in the summary, and had fewer columns.
+
+    Raises
+    ------
+    ValueError
+        If they are of an older release.
+    """
+    summary = tables["summary"]
+    texts = ("mode", "reference_mode", "error_source")
+    numbers = (
+        "displacement_difference",
+        "error",
+        *(f"largest_{each}_difference" for each in ("tilt", "contact", "turn")),
+    )
+    new = dict.fromkeys(texts, "") | dict.fromkeys(numbers, math.nan)
+    if lacking := {*SUMMARY_COLUMNS} - {*summary, *new}:
+        raise ValueError(f"its summary has no {min(lacking)}; the release that made it reads it, {release}")
+    external = tables.get("external", summary[summary["support"] == EXTERNAL])
+    summary = summary.assign(**{name: value for name, value in new.items() if name not in summary})
+    today = {**tables, "summary": summary[list(SUMMARY_COLUMNS)]}
+    if len(external):
+        today["external"] = lists_of_file(external.reindex(columns=[*KEYS, *VERDICT_COLUMNS]))
+    return today
 
 
 def _facts_with_source(case: Case) -> Mapping[str, object]:

@@ -1,4 +1,8 @@
-"""Summary of a comparison, a row for each run and reference, and the agreement matrix of all motions."""
+"""Summary of a comparison, a row for each run and reference, and the agreement matrix of all motions.
+
+What only some runs have stands in tables of its own, by the same `KEYS`: error budgets, and verdicts on
+external trajectories.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +17,7 @@ from rockwobble.models import AGREEMENT, Case, Run, Trace
 from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.frames import pd
 
-from ..external.verdict import NO_VERDICT, VERDICT_COLUMNS, JudgedRow, Row, judge
+from ..external.verdict import JudgedRow, Row, judge
 from ..metrics.pair import (
     Agreement,
     Pair,
@@ -33,10 +37,10 @@ from ..metrics.pair import (
     tolerance_of,
     turn_difference,
 )
-from .budget import ErrorBudget
 from .peak_error import NO_ERROR, PeakError
 from .prediction import Prediction, close_pass, verdict
 
+KEYS = ["case", "run", "reference"]  # columns that name a row in each table
 # name: (unit, meaning); the order is that of the table
 SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     "case": ("", "name of the case"),
@@ -113,34 +117,14 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
         "alpha",
         "RMS error of the engine early on (the first second at R = 6 m), on which growth rests",
     ),
-    "whole_rms": ("alpha", "RMS of the tilt difference until 80 % of the agreement; with a budget only"),
-    "model_form_rms": ("alpha", "of it: reduced model of the support minus the reference"),
-    "numerics_rms": ("alpha", "of it: engine minus the engine extrapolated to a step of zero"),
-    "unexplained_rms": ("alpha", "of it: engine extrapolated minus reduced model of its support"),
-    "unexplained_share": ("", "unexplained over whole; above 0.2 it is a finding"),
-    "limit_error": ("alpha", "uncertainty of the extrapolation"),
-    "step_order": ("", "order of the engine in its step, as measured from the three finest runs"),
-    "finest_step": ("s", "smallest time step that the extrapolation rests on"),
-    "not_split": (
-        "",
-        "why numerics and unexplained are not stated: unresolved_pass, order (below a half) or error (larger "
-        "than both)",
-    ),
     "error": ("alpha", "error of the peak tilt: the largest of what error_source may name"),
     "error_source": (
         "",
         "integration (a tolerance ten times as large), step (the engine's estimate, else its difference from "
         "the model of its support), copies (input 1 % off) or model form (the reference)",
     ),
-    **VERDICT_COLUMNS,
 }
-# of a run without a budget that is no external trajectory
-_UNKNOWN: Row = {
-    **dict.fromkeys(SUMMARY_COLUMNS, math.nan),
-    "not_split": "",
-    "error_source": "",
-    **NO_VERDICT,
-}
+_UNKNOWN: Row = {**dict.fromkeys(SUMMARY_COLUMNS, math.nan), "error_source": ""}
 
 
 def summary_row(
@@ -153,7 +137,6 @@ def summary_row(
     prediction: Prediction,
     within: Prediction | None = None,
     estimated_error: float = math.nan,
-    budget: ErrorBudget | None = None,
     until: float | None = None,
     allowance: float = 0.0,
     reference_time: float | None = None,
@@ -176,8 +159,6 @@ def summary_row(
         The same for the tolerance of `tolerance_of`. Default: `prediction`.
     estimated_error : float, optional
         Error of the run that the prediction rests on [alpha].
-    budget : ErrorBudget, optional
-        What their difference is made of; without one its columns are NaN.
     until : float, optional
         End of the window of tilt_rms, tilt_rms_relative and contact_rms, in the time of the run
         [s]. Default: the whole run.
@@ -236,7 +217,6 @@ def summary_row(
         "estimated_error": estimated_error,
         "error": error.size,
         "error_source": error.source,
-        **({} if budget is None else budget.columns()),
     }
 
 
@@ -275,7 +255,7 @@ def external_row(
     *,
     until: float | None = None,
 ) -> Row:
-    """Return the row of an external trajectory: nothing is known of its steps and errors.
+    """Row and verdict of an external trajectory, of whose steps and errors nothing is known.
 
     Its uplift is compared as its samples show it: see `external.verdict.uplift_differences`. Its peak is
     compared with that of the reference while the file lasts.
@@ -318,7 +298,7 @@ def lost_row(case: Case, name: str, reference: Trace, label: str, trial: Trace) 
 
 
 class SummaryRow(JudgedRow, Protocol):
-    """A row of the summary, or of the agreement matrix: what is findings and pages read of its columns."""
+    """A row of the summary, a table beside it, or the agreement matrix: what findings and pages read."""
 
     case: str
     run: str

@@ -25,12 +25,9 @@ from .trajectory import external_motion, measurement, trajectory_of, twist_since
 CONFIDENCE = 4.0
 
 Row = dict[str, Any]  # of a summary
-# columns of the summary that only external trajectories have: unit, meaning
+# of an external trajectory, beside case, run and reference: unit, meaning
 VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = {
-    "differs_in": (
-        "",
-        "of an external trajectory: tilt, azimuth, path, twist, uplift_time, uplift_direction",
-    ),
+    "differs_in": ("", "tilt, azimuth, path, twist, uplift_time, uplift_direction"),
     "not_compared": (
         "",
         "azimuth or path, where not given or where the tilts agree over too little motion",
@@ -60,7 +57,7 @@ LISTS = (
     *("differs_in", "not_compared", "not_given", "differs_without_mistake"),
     *("likely_mistake", "likely_mistake_in", "likely_mistake_value"),
 )
-# what they hold of a run that is no external trajectory
+# of one that differs in nothing
 NO_VERDICT: Row = {name: () if name in LISTS else math.nan for name in VERDICT_COLUMNS}
 
 
@@ -81,9 +78,9 @@ def reference_of(trace: Trace, case: Case) -> Reference:
 
 
 def judge(trajectory: Trace, reference: Trace, case: Case) -> Row:
-    """Return the columns of the summary on an external trajectory of a case and the trace of a model.
+    """Verdict on an external trajectory of a case and the trace of a model.
 
-    Those of `VERDICT_COLUMNS`, and the differences at uplift where both uplift.
+    The columns are `VERDICT_COLUMNS`, and the differences at uplift where both uplift.
     """
     model, motion, source = (
         reference_of(reference, case),
@@ -182,7 +179,7 @@ def first_passage(trace: Trace, tilt: float) -> float:
 
 
 class JudgedRow(Protocol):
-    """A row of the summary, with the columns that say what explains its differences."""
+    """A row of the verdicts: the columns that say what explains the differences."""
 
     likely_mistake: Sequence[str]
     likely_mistake_in: Sequence[str]
@@ -190,7 +187,7 @@ class JudgedRow(Protocol):
 
 
 def mistakes_of(row: JudgedRow) -> tuple[Mistake, ...]:
-    """Return the likely mistakes of a row of the summary."""
+    """Likely mistakes of a verdict."""
     columns = zip(row.likely_mistake, row.likely_mistake_in, row.likely_mistake_value, strict=True)
     return tuple(
         (Loss if code in LOSSES else Mistake)(code=code, concerns=part, value=value)
@@ -198,9 +195,9 @@ def mistakes_of(row: JudgedRow) -> tuple[Mistake, ...]:
     )
 
 
-def lists_in_words(summary: pd.DataFrame) -> pd.DataFrame:
-    """Return a summary whose lists are texts, for a CSV file or a page: "azimuth; path"."""
-    return summary.assign(**{name: summary[name].map(_join) for name in LISTS})
+def lists_in_words(verdicts: pd.DataFrame) -> pd.DataFrame:
+    """Verdicts whose lists are texts, for a CSV file or a page: "azimuth; path"."""
+    return verdicts.assign(**{name: verdicts[name].map(_join) for name in LISTS})
 
 
 def _join(cell: Sequence[str | float]) -> str:
@@ -209,14 +206,6 @@ def _join(cell: Sequence[str | float]) -> str:
     )
 
 
-def lists_of_file(summary: pd.DataFrame) -> pd.DataFrame:
-    """Return a summary that was stored, with its lists as tuples again.
-
-    Raises
-    ------
-    ValueError
-        If it does not have them.
-    """
-    if not set(LISTS) <= set(summary):
-        raise ValueError("it is of another version of rockwobble")
-    return summary.assign(**{name: summary[name].map(tuple) for name in LISTS})
+def lists_of_file(verdicts: pd.DataFrame) -> pd.DataFrame:
+    """Verdicts that were stored, with their lists as tuples again."""
+    return verdicts.assign(**{name: verdicts[name].map(tuple) for name in LISTS})

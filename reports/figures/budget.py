@@ -51,15 +51,15 @@ def budget_picture(view: CaseView, name: str) -> Picture | None:
 
 
 def all_budgets_picture(comparison: Comparison) -> Picture | None:
-    """Return a bar for each row of the summary whose difference is split, the findings on top.
+    """Bar for each difference that is split, the findings on top.
 
     The order is: rows above the bound, the worst first; then those worth explaining; then the rest, which
     is drawn pale.
     """
-    summary = comparison.summary[comparison.summary["unexplained_rms"].notna()]
-    worth = summary["whole_rms"] > WORTH_EXPLAINING
-    finding = worth & (summary["unexplained_share"] > LARGEST_SHARE)
-    ordered = summary.assign(worth=worth, finding=finding).sort_values(
+    split = comparison.budget_rms[comparison.budget_rms["not_split"] == ""]
+    worth = split["whole_rms"] > WORTH_EXPLAINING
+    finding = worth & (split["unexplained_share"] > LARGEST_SHARE)
+    ordered = split.assign(worth=worth, finding=finding).sort_values(
         ["finding", "worth", "unexplained_share"], ascending=False
     )
     bars = [

@@ -29,7 +29,7 @@ class CaseView:
     facts : dict
         Diagnostics of every label, also of a run without samples.
     rows : DataFrame
-        Rows of the summary.
+        Rows of the summary, see `Comparison.rows`.
     styles : dict
         Style of each label.
     budgets : dict
@@ -75,7 +75,7 @@ def case_views(comparison: Comparison) -> list[CaseView]:
     """Return the view of each case of a comparison."""
     views = []
     for name, case in comparison.cases.items():
-        rows = comparison.summary[comparison.summary["case"] == name]
+        rows = comparison.rows(name)
         whole = {label: trace for (of, label), trace in comparison.traces.items() if of == name}
         traces = {label: trace for label, trace in whole.items() if len(trace.time)}
         runs = {label: trace for label, trace in traces.items() if label in set(rows["run"])}

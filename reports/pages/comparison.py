@@ -11,7 +11,6 @@ import pandas as pd
 from rockwobble.compare import SUMMARY_COLUMNS, WORTH_EXPLAINING, Comparison
 from rockwobble.compare.comparison.budget import COVERED
 from rockwobble.compare.comparison.summary import SummaryRow, own_rows, rows_of
-from rockwobble.compare.external.verdict import lists_in_words
 from rockwobble.models import Run
 from rockwobble.models.diagnostic import codes_in
 from rockwobble.models.finding import Finding
@@ -276,7 +275,7 @@ def _degrees(angle: float, uncertainty: float) -> float | None:
 
 def all_columns(rows: pd.DataFrame) -> tuple[list[Row], list[list[str]]]:
     """Return a line for each column of the summary, and the columns of that table: one for each row."""
-    found = list(rows_of(lists_in_words(rows)))
+    found = list(rows_of(rows))
     lines: list[Row] = [
         {
             "all": "All numbers",

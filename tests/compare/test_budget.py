@@ -205,7 +205,7 @@ def test_the_numerics_of_an_extrapolated_run_are_what_its_extrapolation_leaves()
     runs = [Run("mujoco", "recess", STEP), Run("mujoco", "recess", "extrapolated", finest_step=STEP / 2)]
     case = dataclasses.replace(CASE, duration=1.0)
     found = comparison(Suite([case], runs), runs=runs, budget=True, workers=1)
-    plain, extrapolated = found.summary.to_dict("records")
+    plain, extrapolated = found.budget_rms.to_dict("records")
     # both rest on the same finest run, the one at an eighth of the step
     assert extrapolated["numerics_rms"] < 0.1 * plain["numerics_rms"]
     assert extrapolated["unexplained_rms"] == pytest.approx(plain["unexplained_rms"], abs=1e-8)
@@ -220,7 +220,7 @@ def test_a_base_that_lands_flat_loses_what_the_model_keeps():
     case = Case(pier, initial=InitialState(0.04 * pier.alpha), duration=0.5, name="release")
     run = Run("mujoco", "recess", 2e-4)
     found = comparison(Suite([case], [run]), runs=[run], budget=True, workers=1)
-    (row,) = found.summary.to_dict("records")
+    (row,) = found.budget_rms.to_dict("records")
     assert row["whole_rms"] > WORTH_EXPLAINING
     assert row["model_form_rms"] == pytest.approx(row["whole_rms"], rel=0.1)
     # 1 %: the engine is twice as coarse here as its default

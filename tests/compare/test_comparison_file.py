@@ -98,13 +98,25 @@ def test_the_tables_say_what_made_them(saved, tmp_path):
         assert len(about["inputs"]) == 32
 
 
-def test_a_summary_of_an_earlier_release_lacks_columns_and_is_read(saved, tmp_path):
-    made = saved[0]
-    summary = made.summary.drop(columns=["mode", "reference_mode", "largest_turn_difference"])
-    dataclasses.replace(made, tables={**made.tables, "summary": summary}).save(tmp_path)
-    read = Comparison.load(tmp_path)
-    assert read.findings()
-    assert set(read.summary.columns) == set(made.summary.columns)
+def test_a_folder_of_0_3_is_read_and_an_older_one_names_its_release(saved, tmp_path):
+    made, trace = saved[0], saved[0].traces["release", "recess model"]
+    columns = {"time": trace.time, "tilt [rad]": trace.tilt, "azimuth [deg]": np.degrees(trace.rolling_angle)}
+    pd.DataFrame(columns).to_csv(path := tmp_path / "table.csv", index=False)
+    made = comparison(CASES[0], runs=[], external=[path], workers=1)
+    # one table held all, and there were no modes
+    whole = made.rows("release").drop(columns=["mode", "reference_mode", "twist_rms"])
+    tables = {name: table for name, table in made.tables.items() if name != "external"}
+    dataclasses.replace(made, tables=tables | {"summary": whole}).save(tmp_path / "old")
+    read = Comparison.load(tmp_path / "old")
+    assert [*map(str, read.findings())] == [*map(str, made.findings())]
+    assert set(read.summary) == set(made.summary)
+    assert read.external["differs_in"].tolist() == made.external["differs_in"].tolist() == [()]
+    older = tables | {"summary": whole.drop(columns="energy_loss")}
+    dataclasses.replace(made, tables=older).made_by().save(tmp_path / "older")
+    with pytest.raises(
+        ValueError, match=f"no energy_loss; the release .* reads it, {made.versions['rockwobble']}"
+    ):
+        Comparison.load(tmp_path / "older")
 
 
 def test_the_manifest_has_the_main_numbers(saved, tmp_path):

@@ -50,7 +50,7 @@ def row(agreement: float = 20.0, predicted: float = 18.0, **values: Any) -> Any:
     """A row of a summary, under shaking: the reference uplifts at 1.7 s."""
     common = {"case": "El Centro", "run": "mujoco recess", "engine": "mujoco", "support": "recess"}
     ended = {"outcome": "stands", "reference_outcome": "stands", "left_tolerance": True, "divergence": ""}
-    pass_ = {"predicted_by": "pass", "closest_pass": 3e-3, "tolerance": 0.01, "whole_rms": math.nan}
+    pass_ = {"predicted_by": "pass", "closest_pass": 3e-3, "tolerance": 0.01}
     times = {
         "reference_uplift_time": 1.7,
         "within_tolerance_until": agreement + 1.7,
@@ -72,7 +72,8 @@ def found(*rows: Any, **traces: Any) -> dict[str, Any]:
     """Findings on a case by key."""
     causes = [cause(each, LENGTH) if each.left_tolerance else "" for each in rows]
     case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940(), duration=LENGTH)
-    return {each.key.partition(".")[2]: each for each in case_findings(case, table(*rows), traces, causes)}
+    findings = case_findings(case, table(*rows), traces, causes, pd.DataFrame())
+    return {each.key.partition(".")[2]: each for each in findings}
 
 
 @pytest.mark.parametrize(
@@ -172,7 +173,7 @@ def test_a_mistake_of_a_file_is_said_with_what_it_explains():
 
 
 def budgets(*reasons: str) -> pd.DataFrame:
-    """A summary whose differences are split where the reason is empty."""
+    """Budgets of differences that are split where the reason is empty."""
     shares = {reason: math.nan if reason else 0.1 for reason in reasons}
     return table(
         *(
@@ -183,18 +184,18 @@ def budgets(*reasons: str) -> pd.DataFrame:
 
 
 def test_what_is_not_split_is_neither_explained_nor_unexplained():
-    (unsplit,) = budget_findings(budgets("order", "order"))
+    (unsplit,) = budget_findings(table(row(), row()), budgets("order", "order"))
     assert (unsplit.key, value(unsplit, "count")) == ("comparison.not_split", 2)
-    explained, unsplit = budget_findings(budgets("", "unresolved_pass"))
+    explained, unsplit = budget_findings(table(row(), row()), budgets("", "unresolved_pass"))
     assert [value(explained, each) for each in ("count", "count_of", "count_less")] == [1, 1, 0]
     assert value(unsplit, "count") == 1
 
 
 def test_a_large_rest_and_an_early_end_are_cautions():
-    rest = budgets("", "").assign(unexplained_share=[0.5, 0.1], divergence=["", "earlier"])
-    early, unexplained, explained = budget_findings(rest)
+    rest = budgets("", "").assign(unexplained_share=[0.5, 0.1])
+    early, unexplained, explained = budget_findings(table(row(), row(divergence="earlier")), rest)
     assert [early.key, unexplained.key] == ["comparison.earlier", "comparison.unexplained"]
     assert {early.level, unexplained.level} == {"caution"}
     assert (value(unexplained, "share"), value(explained, "count")) == (0.5, 1)
     # of external trajectories nobody can predict their end
-    assert not list(budget_findings(table(row(**TABLE | {"divergence": "earlier"}))))
+    assert not list(budget_findings(table(row(**TABLE | {"divergence": "earlier"})), rest.iloc[:0]))

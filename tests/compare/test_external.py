@@ -76,7 +76,7 @@ def rows(case, path, **given):
         external=[External(path=path, **given)],
         workers=1,
     )
-    table = found.summary.set_index("run")
+    table = found.rows(case.name).set_index("run")
     return table.loc["mujoco recess"], table.loc[path.stem]
 
 

@@ -88,7 +88,7 @@ def test_a_clock_that_is_late_shows_in_the_uplift(save, sample_step):
     steps = np.arange(sample_step, 0.05, sample_step)
     rest = pd.DataFrame({"time": steps, "tilt [rad]": 0.0, "azimuth [rad]": 0.0})
     table = pd.concat([table.iloc[:1], rest, table.iloc[1:]])
-    (row,) = comparison(case, runs=[], external=[save(table)], workers=1).summary.to_dict("records")
+    (row,) = comparison(case, runs=[], external=[save(table)], workers=1).rows(case.name).to_dict("records")
     assert row["uplift_time_difference"] == pytest.approx(0.05, abs=row["uplift_time_uncertainty"])
     assert row["uplift_time_uncertainty"] <= 0.5 * sample_step + 0.01
     assert "uplift_time" in row["differs_in"]

@@ -376,16 +376,16 @@ def test_of_a_trajectory_of_another_problem_nothing_is_explained(save):
     assert found.mistakes == ()
 
 
-def test_the_columns_of_the_summary_say_the_verdict(save, tmp_path):
+def test_a_verdict_is_a_row_of_its_own_table(save, tmp_path):
     path = save(turned(samples("pier shaken", "angles"), 10.0))
     found = comparison(CASES["pier shaken"], runs=[], external=[path], workers=1, out=tmp_path / "out")
-    (row,) = found.summary.to_dict("records")
-    again = Comparison.load(tmp_path / "out").summary
-    pd.testing.assert_frame_equal(found.summary, again, check_exact=True)
-    text = pd.read_csv(tmp_path / "out" / "summary.csv").iloc[0]
+    (row,) = found.external.to_dict("records")
+    again = Comparison.load(tmp_path / "out").external
+    pd.testing.assert_frame_equal(found.external, again, check_exact=True)
+    text = pd.read_csv(tmp_path / "out" / "external.csv").iloc[0]
     assert (text["differs_in"], text["likely_mistake"]) == ("azimuth; uplift_direction", "turned")
     assert set(VERDICT_COLUMNS) <= set(row)
-    assert not row["diverged"]  # the tilts agree
+    assert not found.summary["diverged"].any()  # the tilts agree
     assert row["differs_in"] == ("azimuth", "uplift_direction")
     assert row["azimuth_rms"] == pytest.approx(10.0, abs=0.1)
     # from the first lean of more than 5 % of the largest on
@@ -397,7 +397,8 @@ def test_the_columns_of_the_summary_say_the_verdict(save, tmp_path):
 
 def test_noise_is_no_divergence(save):
     path = save(samples("pier wobbles", "angles", noise=NOISE))
-    (row,) = comparison(CASES["pier wobbles"], runs=[], external=[path], workers=1).summary.to_dict("records")
-    assert not row["diverged"]
+    found = comparison(CASES["pier wobbles"], runs=[], external=[path], workers=1)
+    (row,) = found.external.to_dict("records")
+    assert not found.summary["diverged"].any()
     assert row["noise"] == pytest.approx(NOISE, rel=0.2)
     assert row["tilt_bound"] == pytest.approx(0.01 + 5.0 * row["noise"])
