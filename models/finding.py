@@ -29,6 +29,7 @@ QUANTITIES: Mapping[str, tuple[str, str]] = MappingProxyType(
         # value of a finding: (unit, meaning)
         "given": ("", "what the case states"),
         "demand": ("", "what the motion asks for, in the unit of what is given"),
+        "size": ("", "size of a difference, in the unit of its bound"),
         "bound": ("", "limit that a size is compared with"),
         "factor": ("", "factor on the shaking as given"),
         "ratio": ("", "ratio of two sizes"),

@@ -90,12 +90,16 @@ class CertificateItem(pytest.Item):
 
     def runtest(self) -> None:
         """Repeat the fingerprint, and raise if it changed."""
-        from rockwobble.compare.check.baseline import read_certificate, verify
+        from rockwobble.compare.check.baseline import certificate_findings, read_certificate, verify
 
-        verdict = verify(read_certificate(self.certificate))
+        from .pages.wording import joined
+
+        stated = read_certificate(self.certificate)
+        verdict = verify(stated)
+        text = joined(certificate_findings(stated, verdict))
         if verdict.exit_code:
-            raise ChangedError(verdict.words())
-        self.add_report_section("call", "certificate", verdict.words())
+            raise ChangedError(text)
+        self.add_report_section("call", "certificate", text)
 
     def repr_failure(
         self, excinfo: pytest.ExceptionInfo[BaseException], style: TracebackStyle | None = None

@@ -25,11 +25,12 @@ from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.models.case import RECESS_MODEL
+from rockwobble.models.finding import Finding, Findings, Value
 from rockwobble.multibody.engines.registry import find_engine
 
 from ..runs.progress import ProgressCallback
 from ..storage.files import replace_files
-from ..storage.provenance import commit, other_versions, package_versions, version_words
+from ..storage.provenance import commit, other_versions, package_versions
 from .fingerprint import as_json, fingerprint, repeat, short_cases
 from .measurement import NO_BASELINE, NOT_RUN, Bound, Result, at_most, not_run
 from .subject import Subject, engine, reduced_model
@@ -114,7 +115,7 @@ def same_as_baseline(subject: Subject, support: str) -> Iterator[Result]:
     for one, new in zip(old, repeat(subject, old), strict=True):
         verdict = compare_entries(one, new)
         share = _share(verdict, one, new)
-        notes = [] if verdict.word == SAME else [verdict.words(), version_words(others)]
+        notes = [] if verdict.word == SAME else [str(verdict), *others]
         found = at_most(one["name"], share, _BOUND)
         if version != kept.version:
             notes.insert(0, f"the baseline is of {subject.label} {kept.version}, this is {version}")
@@ -127,7 +128,7 @@ def baseline_changes(old: Baseline, new: tuple[Entry, ...], subject: Subject) ->
     """Changes by a new fingerprint: versions, cases that differ, and new cases."""
     before, after = ({one["name"]: one for one in each} for each in (old.fingerprint, new))
     verdicts = [compare_entries(before[name], after[name]) for name in before if name in after]
-    lines = [verdict.words() for verdict in verdicts if verdict.word != SAME]
+    lines = [str(verdict) for verdict in verdicts if verdict.word != SAME]
     for words, ours, theirs in (("new", after, before), ("gone", before, after)):
         if names := [name for name in ours if name not in theirs]:
             lines.append(f"{words}: {', '.join(names)}")
@@ -272,6 +273,27 @@ def verify(
         raise ValueError(f"the certificate has a case {unknown[0]}, this version has none: make it anew")
     own = subject_of(certificate) if subject is None else subject
     return compare(old, repeat(own, old, progress))
+
+
+def certificate_findings(certificate: Certificate, verdict: FingerprintVerdict) -> Findings:
+    """The verdict on a certificate, and the versions that are others than those it was made with."""
+    values: dict[str, Value] = {
+        "name": verdict.case,
+        "name_quantity": verdict.quantity,
+        "name_claim": verdict.claim,
+        "name_term": verdict.term,
+        "time": verdict.time,
+        "size": verdict.difference,
+        "bound": verdict.allowed,
+    }
+    others = other_versions(certificate["versions"], certificate["method"]["engine"])
+    word = Finding(
+        key=f"certificate.{verdict.word}",
+        level="not satisfied" if verdict.exit_code else "satisfied",
+        values=values if verdict.case else {},
+    )
+    versions = Finding(key="certificate.versions", values={"names": others})
+    return Findings([word, versions if others else Finding(key="certificate.same_versions")])
 
 
 def read_certificate(path: Path) -> Certificate:

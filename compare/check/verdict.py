@@ -15,7 +15,7 @@ import json
 import math
 import sys
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from typing import Literal, NotRequired, TypedDict
@@ -105,17 +105,10 @@ class FingerprintVerdict:
         """1 where it changed."""
         return int(self.word == CHANGED)
 
-    def words(self) -> str:
-        """Return one line."""
-        if not self.case:
-            return self.word
-        at = f" from {self.time:.4g} s" if math.isfinite(self.time) else ""
-        size = (
-            f" by {self.difference:.2g}, allowed {self.allowed:.2g}" if math.isfinite(self.difference) else ""
-        )
-        return (
-            f"{self.word}: {self.quantity} of {self.case}{at}{size}; claim: {self.claim}; term: {self.term}"
-        )
+    def __str__(self) -> str:
+        """The word, and what is known of the case that decides, by the names of the parameters."""
+        known = {name: value for name, value in asdict(self).items() if value and value == value}
+        return "; ".join([known.pop("word"), *(f"{name}: {value}" for name, value in known.items())])
 
 
 def compare(old: Iterable[Entry], new: Iterable[Sample]) -> FingerprintVerdict:
@@ -282,7 +275,7 @@ def main(arguments: list[str]) -> int:
         print(f"{arguments[1]} has no case {missing[0]}: make both anew", file=sys.stderr)
         return 2
     verdict = compare(old["fingerprint"], [cases[one["name"]] for one in old["fingerprint"]])
-    print(verdict.words())
+    print(verdict)
     return verdict.exit_code
 
 

@@ -103,19 +103,13 @@ def package_versions(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
     return versions | {package: _version(package) for package in packages}
 
 
-def other_versions(then: Mapping[str, str], engine: str | None = None) -> dict[str, tuple[str, str]]:
-    """Return the versions that are others than `then`: then and now, by name; of engines that of one."""
+def other_versions(then: Mapping[str, str], engine: str | None = None) -> tuple[str, ...]:
+    """Versions that are others than `then`, as "numpy 1.26 -> 2.0"; of engines that of one."""
     now, engines = package_versions(), engine_packages()
     for name, package in engines.items():
         if name != engine:
             now.pop(package, None)
-    return {name: (old, now[name]) for name, old in then.items() if now.get(name, old) != old}
-
-
-def version_words(others: Mapping[str, tuple[str, str]]) -> str:
-    """Differing versions, as `other_versions` returns them, in words."""
-    apart = ", ".join(f"{name} {then} -> {now}" for name, (then, now) in others.items())
-    return f"versions: {apart}" if apart else "versions: the same"
+    return tuple(f"{name} {old} -> {now[name]}" for name, old in then.items() if now.get(name, old) != old)
 
 
 @cache

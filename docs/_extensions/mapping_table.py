@@ -1,13 +1,17 @@
-"""Tables of names, units and meanings, from the mappings that the code itself uses."""
+"""Tables of names, units and meanings, and of findings, from what the code itself uses."""
 
 from __future__ import annotations
 
 import importlib
+import re
 from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
+
+from rockwobble.models.finding import unit_of
+from rockwobble.reports.pages.wording import words
 
 
 def table(head: tuple[str, ...], widths: tuple[int, ...], rows: list[tuple[nodes.Node, ...]]) -> nodes.table:
@@ -41,7 +45,28 @@ class MappingTable(SphinxDirective):
         return [table(("name", "unit", "meaning"), (30, 10, 60), rows)]
 
 
+class FindingsTable(SphinxDirective):
+    """`findings-table:: GROUP ...`, of the lines of the file of words whose keys are of these groups."""
+
+    required_arguments = 1
+    final_argument_whitespace = True
+
+    def run(self) -> list[nodes.Node]:
+        """Return the table."""
+        rows: list[tuple[nodes.Node, ...]] = []
+        for group in self.arguments[0].split():
+            for name, line in words()[group].items():
+                sentence = line if isinstance(line, str) else line[-1]
+                values = dict.fromkeys(re.findall(r"\{(\w+)", sentence))
+                key = f"{group}.{name}"
+                said = ", ".join(f"{value} [{unit_of(value)}]".removesuffix(" []") for value in values)
+                rows.append((nodes.paragraph("", "", nodes.literal(key, key)), nodes.paragraph("", said)))
+                rows[-1] += (nodes.paragraph("", sentence),)
+        return [table(("key", "values", "sentence"), (25, 25, 50), rows)]
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
     """Register the directive."""
     app.add_directive("mapping-table", MappingTable)
+    app.add_directive("findings-table", FindingsTable)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import datetime
-import json
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -353,7 +352,7 @@ def verify(
     certificate: Annotated[
         Path, typer.Argument(help="Certificate written by rockwobble certify.", show_default=False)
     ],
-    as_json: Annotated[bool, typer.Option("--json", help="Print the answer as JSON.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the findings as JSON.")] = False,
 ) -> None:
     """Verdict on a certificate: same, chaotic or changed results on this installation.
 
@@ -366,18 +365,15 @@ def verify(
     Example: rockwobble verify mujoco.json
     """
     with interruptible(), user_input():
-        from rockwobble.compare.check.baseline import read_certificate
+        from rockwobble.compare.check.baseline import certificate_findings, read_certificate
         from rockwobble.compare.check.baseline import verify as verdict_on
-        from rockwobble.compare.storage.provenance import other_versions, version_words
+
+        from ..pages.wording import joined
 
         stated = read_certificate(certificate)
         with shown_progress("cases", each=False) as progress:
             verdict = verdict_on(stated, progress=progress)
-        others = other_versions(stated["versions"], stated["method"]["engine"])
-    if as_json:
-        known = {name: None if value != value else value for name, value in asdict(verdict).items()}
-        print(json.dumps({**known, "other_versions": others}, indent=1, allow_nan=False))
-    else:
-        print(f"{verdict.words()}; {version_words(others)}")
+        findings = certificate_findings(stated, verdict)
+    print(findings.to_json("certificate").decode() if as_json else joined(findings))
     if verdict.exit_code:
         raise typer.Exit(verdict.exit_code)

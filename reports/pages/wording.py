@@ -42,7 +42,7 @@ _BY_UNIT: Mapping[str, Callable[[float], str]] = {
     "p": lambda value: (
         "p < 0.001" if value < 1e-3 else f"p = {number(value, '.3f' if value < 0.1 else '.2f')}"
     ),
-    "a": lambda value: f"{value:,.0f} years",
+    "a": lambda value: f"{number(value, ',.0f')} years",
 }
 
 
@@ -75,6 +75,11 @@ def statement(finding: Finding, *, short: bool = False) -> str:
     """A finding in words, with capital and full stop."""
     said = sentence(finding, short=short)
     return f"{said[0].upper()}{said[1:]}."
+
+
+def joined(findings: Iterable[Finding]) -> str:
+    """Findings in words, on one line."""
+    return "; ".join(map(sentence, findings))
 
 
 def text(findings: Iterable[Finding]) -> str:
@@ -123,19 +128,20 @@ def _is_known(value: Value) -> bool:
 
 
 def _value(value: Value, unit: str, form: str) -> str:
+    if value is None or value == ():
+        return NONE
     if form == "word":
-        each = [value] if isinstance(value, str) else value if isinstance(value, tuple) else []
-        return enumeration([str(words()["word"].get(str(name), name)) for name in each])
+        names = value if isinstance(value, tuple) else (value,)
+        return enumeration([str(words()["word"].get(str(name), name)) for name in names])
     if isinstance(value, str):
         return value
     if isinstance(value, tuple):
-        if value and isinstance(value[0], str):
-            if form in _SEPARATORS:
-                return form.join(map(str, value))
-            return enumeration([str(each) for each in value])
+        if isinstance(value[0], str):
+            each = [str(one) for one in value]
+            return form.join(each) if form in _SEPARATORS else enumeration(each)
         middle, low, high = (_value(each, unit, form) for each in value)
         return f"{middle} ({low} to {high})"
-    if value is None or math.isnan(value):
+    if math.isnan(value):
         return NONE
     if "/" in form:
         one, many = form.split("/")

@@ -18,6 +18,7 @@ from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.models.suites.tables import TABLES
 from rockwobble.models.trace_file import COLUMNS, OF_FRAMES, OF_TENDONS, PASS_COLUMNS
 from rockwobble.reports.cli.main import app
+from rockwobble.reports.pages.wording import words
 from rockwobble.reports.registry import COMMANDS
 
 pytestmark = pytest.mark.checkout
@@ -135,6 +136,12 @@ def test_every_key_of_a_suite_file_is_on_its_page() -> None:
     keys = [key for name, table in TABLES.items() if name for key in table.model_fields]
     assert len(keys) > 40
     assert [key for key in keys if f"`{key}`" not in page] == []
+
+
+def test_every_group_of_findings_is_on_its_page_once() -> None:
+    page = (DOCS / "reference" / "findings.md").read_text(encoding="utf-8")
+    listed = [group for line in re.findall(r"\{findings-table\} (.*)", page) for group in line.split()]
+    assert sorted(listed) == sorted({*words()} - {"word", "diagnostic"})
 
 
 def test_every_file_of_a_comparison_and_key_of_its_manifest_is_on_its_page(tmp_path: Path) -> None:

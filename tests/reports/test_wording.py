@@ -11,12 +11,13 @@ import pytest
 
 from rockwobble.models import Diagnostic
 from rockwobble.models.diagnostic import CODES, REASONS
-from rockwobble.models.finding import QUANTITIES, Finding, Findings, unit_of
+from rockwobble.models.finding import QUANTITIES, Finding, Findings, Value, unit_of
 from rockwobble.reports.pages.diagnostics import sentence as diagnosed
 from rockwobble.reports.pages.wording import filled, lines_of, sentence, words
 
 ROOT = Path(__file__).parents[2]
 PARTS = ("models", "compare", "studies")
+TEXTS = ("code", "name", "names", "reason", "detail")  # quantities that are no numbers
 _FIELD = re.compile(r"\{(\w+)(?::[^}]*)?\}")
 SENTENCES = {
     f"{group}.{name}": line
@@ -50,12 +51,19 @@ def test_each_key_in_the_code_has_a_line_and_each_line_a_key():
     assert not [key for key in lines if not texts & {key, f"{key.partition('.')[0]}."}]
 
 
-@pytest.mark.parametrize("key", SENTENCES)
-def test_each_line_names_known_quantities_and_takes_their_values(key: str):
-    both = SENTENCES[key]
-    for short, line in enumerate([both] if isinstance(both, str) else reversed(both)):
-        values = {name: 2.0 if unit_of(name) else "text" for name in _FIELD.findall(line)}
-        assert "{" not in sentence(Finding(key=key, values=values), short=bool(short))
+def values_of(line: str, number: Value, text: Value) -> dict[str, Value]:
+    """Values of the quantities that a line names, each of its type."""
+    return {name: text if name.partition("_")[0] in TEXTS else number for name in _FIELD.findall(line)}
+
+
+@pytest.mark.parametrize("number", [2.0, 0, -0.5, math.nan, math.inf, (0.4, 0.26, math.inf), None])
+@pytest.mark.parametrize("text", ["words", ("a", "b"), ()])
+def test_each_line_takes_every_value_of_its_types(number: Value, text: Value):
+    for key, both in SENTENCES.items():
+        for short, line in enumerate([both] if isinstance(both, str) else reversed(both)):
+            finding = Finding(key=key, values=values_of(line, number, text))
+            said = sentence(finding, short=bool(short))
+            assert not re.search(r"[{}[\]]|\bnan\b|\binf\b|None", said), (key, said)
 
 
 @pytest.mark.parametrize("code", CODES)
