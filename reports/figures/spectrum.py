@@ -61,8 +61,7 @@ def picture_of(spectrum: TiltMaps) -> Picture:
         title=f"Peak tilt of sizes under intensities, {spectrum.motion.name or 'record'}, "
         f"tan α = {spectrum.tan_alpha:g}",
         caption="Each cell is a run; runs that overturn, and runs that do not uplift, have colours of their "
-        "own. The overturning boundary is as found by the search, in steps down to "
-        + (f" and of {spectrum.probes} random intensities below." if spectrum.probes else "."),
+        "own. The overturning boundary is as found by the search.",
         panels=[*maps, curves],
         columns=2,
         shades=PEAKS,

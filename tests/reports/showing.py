@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
 from rockwobble.compare import Results
+from rockwobble.compare.storage.manifest import Manifest
 from rockwobble.models.shown import LONGEST, Shown
+from rockwobble.reports.pages import page_of
 
 
 def shows_itself(result: Shown, *facts: str) -> None:
@@ -36,3 +39,16 @@ def loads_as_it_was(made: Results, folder: Path) -> None:
     for name, table in made.tables.items():
         pd.testing.assert_frame_equal(loaded.tables[name], table, check_exact=True, obj=name)
     assert repr(dict(loaded.headline())) == repr(dict(made.headline()))
+
+
+MANIFEST = Manifest(kind="", date="2026-01-01", processor="a CPU", versions={"rockwobble": "0"})
+GOLDEN = Path(__file__).parent / "golden"
+
+
+def is_golden(made: Results) -> None:
+    """Hold that the page of results is the one in the folder `golden`, which holds the wording."""
+    kind = made.kind.rpartition(" ")[2]
+    manifest = dataclasses.replace(MANIFEST, kind=made.kind, command=f"rockwobble {kind}", about=made.facts)
+    page = page_of(dataclasses.replace(made, manifest=manifest)).markdown()
+    # made anew by writing `page` there, and read before it is committed
+    assert page == (GOLDEN / f"{kind}.md").read_text()

@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from showing import is_golden
 
+import rockwobble as rw
 from rockwobble import reduced
 from rockwobble.models import GroundMotion, el_centro_1940
 from rockwobble.reports.cli.main import main
@@ -45,10 +47,7 @@ def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, caps
     coarse = ["--search-step", "0.4", "--probes", "3"]
     assert call(*SMALL, *coarse, "--tan-alpha", "0.2", "--out", str(tmp_path)) == 0
     printed = " ".join(capsys.readouterr().out.split())
-    assert "Cylinders: tan alpha = 0.2 (alpha = 11.31 deg)" in printed
     assert "b = " not in printed  # of which of the sizes?
-    assert "planar analysis is unconservative in" in printed
-    assert "in steps down to 0.4 g tan α" in printed
     written = {"spectrum.html", "spectrum.json", "manifest.json"} | {f"{name}.parquet" for name in TABLES}
     assert {path.name for path in tmp_path.iterdir()} == written | {"kept.txt", "finished"}
     assert f"Written to {tmp_path}: " in printed
@@ -67,12 +66,11 @@ def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, caps
     stored = stored_page(KIND, tmp_path)
     assert stored.html().encode() == (tmp_path / "spectrum.html").read_bytes()
     page = stored.markdown()
-    assert page.splitlines()[0] == "# Overturning spectrum: El Centro 1940, tan α = 0.2"
     assert f"numpy {np.__version__}" in page
 
 
 @pytest.mark.slow
-def test_any_record_will_do(tmp_path: Path, monkeypatch, capsys):
+def test_any_record_will_do(tmp_path: Path, monkeypatch):
     monkeypatch.setattr(Page, "files", lambda _, **__: {})  # of one that is drawn other tests tell
     time = np.arange(0.0, 3.0, 0.02)
     for name, phase in (("x.csv", 0.0), ("y.csv", 1.0)):
@@ -80,7 +78,8 @@ def test_any_record_will_do(tmp_path: Path, monkeypatch, capsys):
         (tmp_path / name).write_text(f"time [s], acceleration [g]\n{rows}\n")
     records = ["--record-x", str(tmp_path / "x.csv"), "--record-y", str(tmp_path / "y.csv")]
     assert call(*SMALL, *records, "--out", str(tmp_path / "out")) == 0
-    assert "in steps down to 0.015 g tan α" in " ".join(capsys.readouterr().out.split())
+    table = OverturningSpectrum.load(tmp_path / "out").findings().to_frame()
+    assert list(table.loc[table["name"] == "intensity_step", "value"]) == [0.015]
     cells = pd.read_parquet(tmp_path / "out" / "spectrum.parquet")
     assert cells["overturned"].any()
     assert not cells["peak_tilt"].isna().any()
@@ -99,6 +98,12 @@ def spectrum() -> TiltMaps:
             probes=5,
         ),
     )
+
+
+@pytest.mark.slow
+def test_the_page_is_the_golden_one():
+    levels = {"semidiagonals": [1.0, 20.0], "intensities": [0.9, 4.0]}
+    is_golden(rw.spectrum(0.1, el_centro_1940(), **levels, search_step=0.2, probes=9, workers=1))
 
 
 Numbers = dict[str, dict[str, Any]]

@@ -13,6 +13,7 @@ import pytest
 
 from rockwobble.reports.figures.picture import Picture
 from rockwobble.reports.figures.validity import map_pictures, pictures
+from rockwobble.reports.pages import page_of
 from rockwobble.reports.pages.table import number
 from rockwobble.studies.validity.limits import cells, contrasts
 from rockwobble.studies.validity.study import Validity
@@ -26,6 +27,11 @@ POINT = ["tan_alpha", "semidiagonal", "intensity"]
 @pytest.fixture(scope="module")
 def found() -> Validity:
     return Validity.load(PUBLISHED)
+
+
+def test_the_published_page_is_drawn_word_for_word(found: Validity) -> None:
+    """It is the golden page of its kind: `python reports/published/remake.py --redraw` makes it anew."""
+    assert page_of(found).markdown() == (PUBLISHED / "validity.md").read_text(encoding="utf-8")
 
 
 def test_captions_of_maps_say_of_how_many_records_a_cell_is(found: Validity) -> None:
