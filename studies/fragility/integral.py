@@ -34,6 +34,9 @@ from rockwobble.models.hazard import HazardCurve
 
 from .fit import Array
 
+# frequency that no shaking exceeds [1/year]: a curve that begins steeply would exceed all numbers below it
+OFTEN = 1e3
+
 
 def lognormal_frequency(hazard: HazardCurve, centre: float, dispersion: float) -> float:
     """Return the annual frequency [1/year] by a lognormal curve.
@@ -94,11 +97,11 @@ def rate_at(hazard: HazardCurve, x: Array) -> Array:
 
 
 def continued(hazard: HazardCurve, low: float) -> HazardCurve:
-    """Return a hazard down to the logarithm of an intensity, as steep below its first point as above."""
+    """Hazard down to the logarithm of an intensity, as steep below its first point as above, to `OFTEN`."""
     x, y = np.log(hazard.intensity), np.log(hazard.annual_frequency)
     if low >= x[0] - 1e-9:
         return hazard
-    first = y[0] + (x[0] - low) * (y[0] - y[1]) / (x[1] - x[0])
+    first = min(y[0] + (x[0] - low) * (y[0] - y[1]) / (x[1] - x[0]), max(math.log(OFTEN), y[0] + 1e-6))
     ends = (hazard.intensity, low), (hazard.annual_frequency, first)
     intensity, frequency = (np.concatenate([[math.exp(end)], values]) for values, end in ends)
     return replace(hazard, intensity=intensity, annual_frequency=frequency)

@@ -311,7 +311,7 @@ def frequency_interval(
         low, high = exposure.between_levels(hazard)
     else:
         low, high = of_motions.low * least / total, of_motions.high + most - total
-    return Interval(value=total, low=low, high=high)
+    return Interval(value=total, low=min(low, total), high=max(high, total))
 
 
 def _frequency_row(

@@ -138,8 +138,8 @@ def test_what_rests_on_either_end_is_stated() -> None:
 
 
 def test_a_power_law_continued_is_the_same_law() -> None:
-    longer = continued(power_law(low=0.1), math.log(1e-3))
-    assert longer.exceedance([1e-3 * (1 + 1e-9), 0.03]) == pytest.approx(K0 * np.array([1e-3, 0.03]) ** -K)
+    longer = continued(power_law(low=0.1), math.log(2e-3))
+    assert longer.exceedance([2e-3 * (1 + 1e-9), 0.03]) == pytest.approx(K0 * np.array([2e-3, 0.03]) ** -K)
 
 
 @pytest.mark.filterwarnings("error")
@@ -188,6 +188,7 @@ def test_no_interval_of_a_frequency_has_no_width(stripes: bool) -> None:
                 power_law(low=3.0),
                 power_law(high=0.3),
                 power_law(high=0.05),
+                HazardCurve([1.0, 1.001, 3.0], [1e-1, 5e-3, 1e-4], measure="pga"),  # begins steeply
             ):
                 low, value, high = interval_of(hazard, levels, y, strata)
                 assert 0.0 <= low <= value * (1.0 + 1e-12)
