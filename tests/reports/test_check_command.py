@@ -103,40 +103,6 @@ def test_the_version_of_a_baseline_is_said_once_where_nothing_has_changed() -> N
     assert console.export_text().splitlines() == ["baseline: 2 passed", f"  {note}"]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "line"),
-    [
-        (["--only", "equation"], "--only must be one of equations, exact, conserved, "),
-        (["--suite", "nothing"], "cannot read the suite nothing: "),
-        (["--reason", "because"], "--reason belongs to --update-baseline"),
-        (["--tolerance", "1e-5"], "--tolerance belongs to --model or --trajectory, got it without either"),
-        (["--support", "flat", "--only", "exact"], "--support belongs to --model or --trajectory"),
-        (["--model", "a:b", "--suite", "canon"], "one subject may be given, got --model and --suite"),
-        (["--model", "a:b", "--engine", "mujoco"], "one subject may be given, got --engine and --model"),
-        (["--trajectory", "a.csv"], "--trajectory needs a --suite with one case, got "),
-        (["--time-step", "1e-4"], "--time-step belongs to --engine"),
-        (["--workers", "2"], "--workers belongs to the runs of a --suite"),
-        (["--engine", "chrono"], "engine must be one of mujoco, "),
-        (
-            ["--update-baseline", "--only", "exact"],
-            "--update-baseline goes with no subject and not with --only",
-        ),
-        (["--json", "no/such/folder/a.json"], "--json must be a file in a folder that exists, got no/such"),
-        (
-            ["--json", "no/such/a.json", "--overwrite"],
-            "--json must be a file in a folder that exists, got no/such",
-        ),
-        (["--markdown", "no/such/a.md"], "--markdown must be a file in a folder that exists, got no/such"),
-        (["--only", "exact", "--json", "/proc/a.json"], "the output folder /proc cannot be written"),
-        (["--only", "exact", "--markdown", "/proc/a.md"], "the output folder /proc cannot be written"),
-    ],
-)
-def test_bad_input_is_one_line(arguments: list[str], line: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(*arguments) == 2
-    (said,) = capsys.readouterr().err.splitlines()
-    assert said.startswith(f"rockwobble: {line}")
-
-
 @pytest.mark.parametrize("option", ["--json", "--junit", "--markdown"])
 def test_a_report_that_cannot_be_written_in_the_end_is_one_line_after_the_result(
     option: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
@@ -210,12 +176,6 @@ def test_checks_that_are_loaded_are_the_same_value(tmp_path: Path) -> None:
     loads_as_it_was(made, tmp_path)
     assert [repr(each) for each in Checks.load(tmp_path).results] == [repr(each) for each in made.results]
     assert [repr(each) for each in made.results] == [repr(each) for each in (GOOD, BAD, NONE, LEFT)]
-
-
-def test_outcomes() -> None:
-    assert [result.outcome for result in (GOOD, BAD, NONE, LEFT)] == [PASSED, FAILED, FAILED, NOT_RUN]
-    (passed,) = checks(GOOD).findings()
-    assert (passed.key, passed.level) == ("check.passed", "satisfied")
 
 
 def test_an_update_needs_a_reason_and_keeps_it(

@@ -177,33 +177,6 @@ def test_a_release_and_a_plane_are_where_it_begins(folder: Path) -> None:
     assert (state["support"], state["plane"]) == ("planar", pytest.approx(57.2957795))
 
 
-@pytest.mark.parametrize(
-    ("arguments", "line"),
-    [
-        (["--friction", "0.5"], "--friction is not part of the model in the page"),
-        (["--support", "ring"], "--support must be one of recess, flat, got 'ring'"),
-        (["--plane", "0", "--support", "flat"], "--plane holds the motion on any support, got --support"),
-        (["--tendon-prestress", "1", "--support", "flat"], "the models have no tendon on --support flat"),
-        (
-            ["--release-tilt-deg", "3", "--record-x", "EW.AT2", "--record-y", "NS.AT2"],
-            "--release-tilt-deg takes the place of a record here, got --record-x beside it",
-        ),
-        (["--records", ".", "--record", "EW.AT2"], "--records names all ground motions, got --record"),
-        (["--units", "g"], "--units belongs to a record, give --record-x and --record-y as well"),
-        (["--diameter", "-1", "--height", "3"], "--diameter must be above 0, got -1"),
-        (["--out", "none/explore.html"], "--out must be a file in a folder that exists, got none"),
-        (["--out", "EW.AT2"], "--out EW.AT2 holds something else: name another file, or replace it by"),
-    ],
-)
-def test_what_does_not_go_is_refused(
-    arguments: list[str], line: str, folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert call(*arguments) == 2
-    assert capsys.readouterr().err.startswith(f"rockwobble: {line}")
-    assert not (folder / "explore.html").exists()
-    assert (folder / "EW.AT2").read_text() == PEER
-
-
 def test_a_page_of_other_options_is_not_replaced(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert call() == 0
     assert call() == 0  # the same again

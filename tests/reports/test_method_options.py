@@ -36,48 +36,6 @@ def test_settings_are_whole_numbers_numbers_or_words() -> None:
     assert settings(None) == {}
 
 
-@pytest.mark.parametrize(
-    ("given", "complaint"),
-    [
-        (
-            ["--time-step", "fast"],
-            "Invalid value for '--time-step': must be a number [s], \"auto\" or \"extrapolated\", got 'fast'",
-        ),
-        (["--time-step", "0.5"], "time_step must be at most 0.001 s for contact at this size"),
-        (["--set", "ring_facets"], "--set must be NAME=VALUE, got 'ring_facets'"),
-        (["--set", "=3"], "--set must be NAME=VALUE, got '=3'"),
-        (["--set", "cone=a", "--set", "cone=b"], "--set cone is given twice"),
-        (["--set", "ring_facets=64"], "no run has a setting 'ring_facets'; there are contact_time_constant,"),
-        (["--set", "impedance=2"], "impedance must be above 0 and at most 0.9999, got 2"),
-        # which goes with --time-step auto alone
-        (["--set", "step_tolerance=1e-4"], "no run has a setting 'step_tolerance'; there are "),
-    ],
-)
-@pytest.mark.parametrize("command", ["compare", "simulate", "view"])
-def test_bad_methods_are_one_line(
-    command: str, given: list[str], complaint: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    place = ["--out", str(tmp_path / "out"), "--engine", "mujoco", "--support", "recess"]
-    assert call(command, *RELEASE, *place, *given) == 2
-    said = capsys.readouterr().err.strip()
-    assert said.startswith(f"rockwobble: {complaint}")
-    assert "\n" not in said
-    assert not (tmp_path / "out").exists()
-
-
-def test_settings_of_an_engine_need_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert call("simulate", *RELEASE, "--out", str(tmp_path), "--set", "cone=pyramidal") == 2
-    assert "no run has a setting 'cone'; there are plane, restitution, rtol" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("name", ["rtol", "rest_tilt", "plane"])
-def test_settings_of_a_model_are_numbers(
-    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert call("simulate", *RELEASE, "--out", str(tmp_path), "--set", f"{name}=abc") == 2
-    assert capsys.readouterr().err == f"rockwobble: {name} must be a number, got 'abc'\n"
-
-
 @pytest.mark.slow
 def test_auto_says_what_error_is_left(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     method = ["--engine", "mujoco", "--time-step", "auto", "--set", "step_tolerance=1e-4"]

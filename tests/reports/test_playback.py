@@ -140,12 +140,7 @@ def test_stored_results_are_played_and_drawn_again_without_a_run(comparison, tmp
     ("arguments", "message"),
     [
         (["view", "{folder}", "--scale", "2"], "--scale states a run and does not go with a stored one"),
-        (["view", "--case", "x"], "--case chooses from a folder"),
         (["view", "{folder}/missing"], "does not hold results of rockwobble: it has no manifest.json"),
-        (
-            ["report", "{folder}/missing"],
-            "is not a folder of results",
-        ),
         (["view", "{folder}", "--case", "x"], "--case must be one of release, got 'x'"),
     ],
 )

@@ -108,15 +108,6 @@ def test_show_says_how_far_it_is_and_nothing_when_it_is_done(tmp_path, capsys):
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("nothing_runs")
-def test_report_of_a_file_says_that_it_is_no_folder_of_results(tmp_path, capsys):
-    record = tmp_path / "EW.AT2"
-    record.write_text("a record")
-    assert call("report", str(record)) == 2
-    assert f"{record} is not a folder of results" in capsys.readouterr().err
-
-
-@pytest.mark.slow
 def test_report_draws_again_here_or_elsewhere_and_leaves_the_results_as_they_are(stored, tmp_path, capsys):
     before = {path.name: path.read_bytes() for path in stored.iterdir()}
     assert call("report", str(stored), "--out", str(tmp_path)) == 0
@@ -129,15 +120,6 @@ def test_report_draws_again_here_or_elsewhere_and_leaves_the_results_as_they_are
     assert results == {name: content for name, content in before.items() if name != MANIFEST}
     (made,) = described(stored, capsys)
     assert set(made["pages"]) == set(pages)
-
-
-@pytest.mark.parametrize("command", ["show", "report"])
-@pytest.mark.parametrize("folder", ["", "nowhere"])
-def test_what_holds_no_results_gets_one_clear_line(tmp_path, capsys, command, folder):
-    assert call(command, str(tmp_path / folder)) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1
-    assert str(tmp_path / folder) in error
 
 
 def test_folders_of_an_older_release_say_which_release_draws_them(capsys):

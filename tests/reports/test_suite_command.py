@@ -15,7 +15,6 @@ from rockwobble.compare import Comparison
 from rockwobble.compare.comparison import driver
 from rockwobble.compare.comparison.result import comparison_of
 from rockwobble.compare.comparison.summary import own_rows
-from rockwobble.compare.runs import execution
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, WobblingFrame, read_suite
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.cli.suite_choice import chosen_runs
@@ -58,63 +57,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 RELEASE = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2"]
-BAD = {
-    "no such suite": (
-        ["mine"],
-        "cannot read the suite mine: No such file or directory; the suites that ship",
-    ),
-    "a problem beside a suite": (
-        ["mine.suite.toml", "--scale", "2"],
-        "--scale does not go with a suite, got mine.suite.toml: the file states the problems",
-    ),
-    "the default problem beside a suite": (
-        ["mine.suite.toml", "--semidiagonal", "6"],
-        "--semidiagonal does not go with a suite",
-    ),
-    "an unknown support beside a suite": (
-        ["mine.suite.toml", "--support", "glued"],
-        "support must be one of",
-    ),
-    "a trajectory beside a suite": (
-        ["mine.suite.toml", "--trajectory", "table.csv"],
-        "--trajectory belongs to one case, got a suite of 4",
-    ),
-    "a trajectory that is not there": (["--trajectory", "none.csv"], "cannot read the trajectory none.csv"),
-    "a trajectory without units": (
-        [*RELEASE, "--trajectory", "table.csv"],
-        "table.csv does not say the unit of tilt",
-    ),
-    "noise below zero": (
-        ["--trajectory", "none.csv", "--trajectory-noise-deg", "-1"],
-        "--trajectory-noise-deg must be above 0 and below 90, got -1",
-    ),
-    "an option of a trajectory alone": (["--trajectory-offset", "1"], "need a --trajectory"),
-    "a support of no engine": (
-        [*RELEASE, "--trajectory", "table.csv", "--engine", "none", "--support", "ring"],
-        "--support belongs to engines, got it with --engine none",
-    ),
-    "all engines and one": (
-        ["--engine", "all", "--engine", "mujoco"],
-        "all stands alone, got all and mujoco",
-    ),
-    "no engine in a suite": (
-        ["mine.suite.toml", "--engine", "none"],
-        "--engine none is for a case given by options, and mine.suite.toml is a suite",
-    ),
-    "no engine and no trajectory": (["--engine", "none"], "give a --trajectory as well"),
-}
-
-
-@pytest.mark.parametrize("kind", BAD)
-def test_bad_input_gets_one_clear_line_before_anything_runs(folder, monkeypatch, capsys, kind):
-    monkeypatch.setattr(execution, "run_tasks", lambda *_, **__: pytest.fail("it ran"))
-    before = sorted(path.name for path in folder.iterdir())
-    arguments, words = BAD[kind]
-    assert call("compare", *arguments) == 2
-    captured = capsys.readouterr()
-    assert re.fullmatch(r"rockwobble: [^\n]+\n", captured.err)
-    assert words in captured.err
-    assert sorted(path.name for path in folder.iterdir()) == before
 
 
 @pytest.mark.slow

@@ -64,38 +64,6 @@ def test_ratios_and_a_drawing_state_the_same_tendon(tmp_path: Path) -> None:
     assert "--tendon-force" in answer
 
 
-@pytest.mark.parametrize(
-    ("arguments", "line"),
-    [
-        (
-            ["simulate", "--tendon-force", "1e5"],
-            "--tendon-force needs --tendon-rigidity and --tendon-length and --mass as well",
-        ),
-        (
-            ["simulate", *STEEL, "--tendon-yield", "2"],
-            "--tendon-force states a tendon in N, got --tendon",
-        ),
-        (["simulate", "--tendon-prestress", "-1"], "--tendon-prestress must be at least 0, got -1"),
-        (
-            ["simulate", "--tendon-prestress", "2", "--tendon-yield", "1"],
-            "yield_force must be above the prestress, 2 weights, got 1",
-        ),
-        (
-            ["advise", "--tendon-stiffness", "1", "--support", "ring"],
-            "an advice on a body with a tendon is for",
-        ),
-        (["simulate", "--support", "flat", "--tendon-prestress", "1"], ""),
-    ],
-)
-def test_what_states_no_tendon_is_one_line(
-    arguments: list[str], line: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
-    assert call(*arguments, "--out", str(tmp_path / "out")) == 2
-    (said,) = capsys.readouterr().err.splitlines()
-    assert said.startswith(f"rockwobble: {line}")
-    assert not (tmp_path / "out").exists()
-
-
 def test_a_suite_states_tendons(tmp_path: Path) -> None:
     path = tmp_path / "tied.toml"
     path.write_text(
@@ -185,36 +153,3 @@ def test_a_study_of_one_body_takes_the_tendon_of_its_drawing(command: str, tmp_p
         peaks.append(table["peak_tilt"].to_numpy(float))
     assert peaks[0].max() > 0.0
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-6)  # the base radius is known to rounding
-
-
-@pytest.mark.parametrize(
-    ("arguments", "line"),
-    [
-        (
-            ["fragility", "--cylinder", "low=4,0.2", "--cylinder", "high=8,0.2", *STEEL],
-            "--tendon-force states the tendon of one body, got 2: give --tendon-prestress and",
-        ),
-        (["spectrum", *STEEL], "--tendon-force states the tendon of one body, got 100: give"),
-        (
-            ["sweep", "--semidiagonal", "6", "--tan-alpha", "0.1,0.2", *STEEL],
-            "--tendon-force states the tendon of one body, got 2: give",
-        ),
-        (
-            ["sweep", "--semidiagonal", "6", *STEEL, "--tendon-prestress", "0"],
-            "--tendon-prestress states a tendon in weights, got --tendon-force in N beside it",
-        ),
-        (["fragility", "--mass", "45"], "--mass belongs to a tendon in N, give --tendon-rigidity and"),
-        (
-            ["fragility", "--tendon-rigidity", "1e6"],
-            "--tendon-rigidity needs --tendon-length and --mass as well",
-        ),
-        (["sweep", "quick", "--tendon-length", "3"], "--tendon-length does not go with a suite, got quick"),
-    ],
-)
-def test_steel_of_no_one_body_is_refused_in_a_line(
-    arguments: list[str], line: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
-    assert call(*arguments, "--out", str(tmp_path / "out")) == 2
-    said = capsys.readouterr().err.splitlines()
-    assert len(said) == 1
-    assert said[0].startswith(f"rockwobble: {line}")
