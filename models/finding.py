@@ -42,6 +42,7 @@ QUANTITIES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "duration": ("s", "length of time"),
         "years": ("a", "mean time between two such events"),
         "tilt": ("rad", "tilt of the axis from vertical"),
+        "angle": ("rad", "an azimuth, or an angle about the vertical"),
         "peak": ("alpha", "largest tilt"),
         "difference": ("alpha", "difference of two tilts"),
         "displacement": ("m", "distance of the base centre from its place"),

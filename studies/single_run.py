@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
@@ -54,7 +54,7 @@ class SingleRun(Results, kind="run"):
     trace: Trace
 
     def findings(self) -> Findings:
-        """The mode of motion, how far it slides or what becomes of it, and from when on it is one of many."""
+        """The mode of motion, what becomes of it, from when on it is one of many, and its other numbers."""
         trace = self.trace
         said: list[Finding] = []
         if trace.run.support in SUPPORTS:
@@ -64,7 +64,7 @@ class SingleRun(Results, kind="run"):
                 said.append(slide_finding(*moved, self.facts["single_trace"].get("slid", ())))
         if trace.mode != SLIDES:
             said.append(_outcome(trace, self.facts.get("single_trace", {}).get("scatter", math.nan)))
-        return Findings([*said, *self._doubt()])
+        return Findings([*said, *self._doubt(), *_quantities(trace, self.error)])
 
     def _doubt(self) -> Iterator[Finding]:
         trace, single = self.trace, self.facts.get("single_trace", {})
@@ -146,6 +146,70 @@ def _outcome(trace: Trace, scatter: float) -> Finding:
         values = {"peak": peak / alpha, "tilt": peak, "share_scatter": scatter, "reason": about}
         return Finding(key="run.stands" if peak else "run.at_rest", values=values)
     return Finding(key="run.undecided" if trace.outcome == "undecided" else "run.failed")
+
+
+def _quantities(trace: Trace, error: PeakError) -> Iterator[Finding]:
+    """The numbers of a run, without those that do not belong to it."""
+    case, settings, slides = trace.case, trace.run.settings, trace.mode == SLIDES
+
+    def quantity(name: str, **values: Value) -> Finding:
+        return Finding(key=f"quantity.{name}", values=values)
+
+    if math.isfinite(plane := settings.get("plane", math.nan)):
+        yield quantity("plane", angle=plane)
+    if restitution := settings.get("restitution"):
+        yield quantity("restitution", detail=str(restitution))
+    if error.source:
+        yield quantity("error", peak=error.size, detail=error.source)
+    end, length = float(trace.time[-1]), case.length
+    yield quantity(
+        "end",
+        time=end,
+        time_still=length if end > length else None,
+        reason="moving" if trace.outcome == "stands" and not trace.rests else None,
+        time_followed=trace.followed_until if trace.followed_until > end else None,
+    )
+    if not case.initial and not slides:
+        uplifts = trace.uplift_time if math.isfinite(trace.uplift_time) else math.nan
+        yield quantity("uplift", time=uplifts, angle=math.remainder(trace.uplift_direction, math.tau))
+    if not slides:
+        yield quantity("passes", count=len(trace.passes))
+    closest = float(trace.passes["minimum_tilt"].min()) / case.cylinder.alpha
+    if math.isfinite(closest):
+        yield quantity("closest", peak=closest)
+    yield from _demands(trace, quantity)
+    if math.isfinite(trace.peak_tendon_force):
+        yield quantity("tendon", force=trace.peak_tendon_force)
+    if not (trace.run.is_model and trace.run.support.guided):  # it may leave its place
+        for name, moved in (("peak", trace.peak_displacement), ("residual", trace.residual_displacement)):
+            yield quantity(
+                f"displacement_{name}", displacement=moved, ratio=moved / case.cylinder.base_radius
+            )
+        yield quantity("twist", angle=trace.residual_twist)
+    if math.isfinite(first := trace.first("wall_contact")):
+        yield quantity("wall_contact", duration=float(trace.wall_contact[-1]), time=first)
+    if not trace.run.is_model:
+        yield quantity("time_step", duration=trace.time_step)
+    yield quantity("computing_time", duration=trace.wall_time)
+
+
+def _demands(trace: Trace, quantity: Callable[..., Finding]) -> Iterator[Finding]:
+    """What a model asks of friction and recess, and up to when: a fall asks nothing."""
+    falls = fall_of(trace)
+    held = trace.assumptions_until(falls)
+    if held is None:
+        return
+    # the swing that is followed past the end has no samples
+    covered = "until_the_end" if trace.followed_until > float(trace.time[-1]) else None
+    covered = "until_it_falls" if math.isfinite(falls) else covered
+    # of a base that stays closed, as a reduced model knows it; 0 of what moves
+    at_rest = trace.case.friction_at_rest if trace.run.is_model and not trace.peak_tilt else 0.0
+    lost = min((fact.time for fact in held.breaches if fact.code == "tension"), default=math.nan)
+    friction = max(at_rest, held.largest_friction_needed)
+    yield quantity("friction", demand=friction, time=lost, reason=covered)
+    moment = held.largest_restraining_moment / trace.case.cylinder.base_radius
+    if moment > 0.0:
+        yield quantity("moment", demand=moment, reason=covered)
 
 
 def single_run(
