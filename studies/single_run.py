@@ -152,7 +152,7 @@ def _quantities(trace: Trace, error: PeakError) -> Iterator[Finding]:
     """The numbers of a run, without those that do not belong to it."""
     case, settings, slides = trace.case, trace.run.settings, trace.mode == SLIDES
 
-    def quantity(name: str, **values: Value) -> Finding:
+    def quantity(name: str, /, **values: Value) -> Finding:
         return Finding(key=f"quantity.{name}", values=values)
 
     if math.isfinite(plane := settings.get("plane", math.nan)):

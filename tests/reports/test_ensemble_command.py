@@ -176,7 +176,7 @@ def test_a_narrow_terminal_leaves_out_details_and_no_name(columns, details):
 def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process, capsys):
     assert call("ensemble", *RELEASE, "--out", str(tmp_path)) == 0
     printed = " ".join(capsys.readouterr().out.split())
-    assert "alpha = 11.31 deg" in printed
+    assert "alpha = 11.31°" in printed
     assert "Members: 3, perturbed copies, 1 %" in printed
     assert {"few", "undecided"} <= keys(Ensemble.load(tmp_path))
     assert b'"key": "ensemble.few"' in (tmp_path / "ensemble.json").read_bytes()

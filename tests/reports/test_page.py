@@ -60,7 +60,7 @@ def test_page_is_whole_small_and_reproducible(comparison):
         "excitation-0-0",
     }
     text = " ".join(" ".join(elements.text).split())
-    assert "b = 1.177 m, 2h = 11.77 m, alpha = 11.31 deg" in text
+    assert "b = 1.177 m, 2h = 11.77 m, alpha = 11.31°" in text
     for name in SUMMARY_COLUMNS:
         if name not in ("case", "run", "reference"):
             assert name.replace("_", " ") in text

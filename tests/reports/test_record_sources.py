@@ -37,9 +37,9 @@ def record(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize(("count", "last"), [(12, "Record: 11"), (13, "and 1 records more, in a table")])
+@pytest.mark.parametrize(("count", "last"), [(12, "Record: 11"), (13, "and 1 record more, in manifest.json")])
 def test_the_first_sources_are_listed_and_the_others_counted(count: int, last: str) -> None:
-    lines = source_lines([str(place) for place in range(count)], "in a table")
+    lines = source_lines([str(place) for place in range(count)])
     assert lines[:12] == [f"Record: {place}" for place in range(12)]
     assert (len(lines), lines[-1]) == (count, last)
 

@@ -16,11 +16,13 @@ from rockwobble.compare.comparison import driver
 from rockwobble.compare.comparison.result import comparison_of
 from rockwobble.compare.comparison.summary import own_rows
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, WobblingFrame, read_suite
+from rockwobble.models.finding import Value
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.cli.suite_choice import chosen_runs
 from rockwobble.reports.pages import comparison as report
-from rockwobble.reports.pages.cases import case_lines, group_of
+from rockwobble.reports.pages.cases import group_of
 from rockwobble.reports.pages.page import Page
+from rockwobble.studies.stated import case_findings
 
 PAGE_LIMIT = 2_000_000  # [bytes]
 CASES = 6
@@ -131,27 +133,32 @@ def test_a_group_is_the_name_up_to_its_values():
     assert group_of("pier") == "pier"
 
 
+def stated(case: Case) -> dict[str, dict[str, Value]]:
+    return {each.key.partition(".")[2]: dict(each.values) for each in case_findings(case)}
+
+
 def test_a_peak_is_told_in_times_of_what_uplifts_under_the_vertical_component():
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     level = [[0.0, 0.0], [1.5, 2.0], [0.0, 0.0]]
     falling = [[x, y, -3.0 * (x > 0.0)] for x, y in level]
     # of a record this many times weaker, the vertical component too, nothing would uplift
     for motion, drive in ((level, 2.5), (falling, 2.5 + 3.0 * 0.2)):
-        _, ground, _ = case_lines(Case(pier, GroundMotion(motion, 0.1)))
-        assert f"peak 0.255 g ({drive / 9.81 / 0.2:.2f} times the uplift threshold)" in ground
-    _, ground, _ = case_lines(Case(pier, GroundMotion(level, 0.1), duration=0.05))
-    assert f"({0.5 * 2.5 / 9.81 / 0.2:.2f} times the uplift threshold within the run)" in ground
+        ground = stated(Case(pier, GroundMotion(motion, 0.1)))["ground"]
+        assert (ground["ratio"], ground["factor"]) == pytest.approx((2.5 / 9.81, drive / 9.81 / 0.2))
+        assert ground["reason"] is None
+    ground = stated(Case(pier, GroundMotion(level, 0.1), duration=0.05))["ground"]
+    assert ground["factor"] == pytest.approx(0.5 * 2.5 / 9.81 / 0.2)
+    assert ground["reason"] == "within_the_run"
 
 
 def test_the_slab_of_a_frame_and_its_resistance_are_stated():
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     motion = GroundMotion([[0.0, 0.0], [2.5, 0.0], [0.0, 0.0]], 0.1)
-    alone = case_lines(Case(pier, motion))
-    loaded = case_lines(Case(WobblingFrame(pier, 0.25), motion, rolling_resistance=0.05 * pier.base_radius))
-    assert loaded[1].startswith("Slab: 0.25 times the mass of all 3 columns")
-    assert loaded[2].endswith("(0.05 b)")
-    assert "(1.27 times the uplift threshold)" in alone[1]
-    assert "(1.21 times the uplift threshold)" in loaded[3]
+    alone = stated(Case(pier, motion))
+    loaded = stated(Case(WobblingFrame(pier, 0.25), motion, rolling_resistance=0.05 * pier.base_radius))
+    assert loaded["slab"] == {"ratio": 0.25, "count": 3}
+    assert loaded["resistance"]["ratio"] == pytest.approx(0.05)
+    assert alone["ground"]["factor"] == pytest.approx(1.05 * loaded["ground"]["factor"])
 
 
 @pytest.mark.slow
