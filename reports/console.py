@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import shlex
+import shutil
 import sys
 import textwrap
 import time
@@ -40,9 +41,14 @@ def complain(message: str) -> None:
 
 
 def echo(lines: Iterable[str]) -> None:
-    """Print lines, warnings among them on standard error."""
+    """Print lines, wrapped where they are longer than the terminal is wide; warnings on standard error."""
     for line in lines:
-        print(line, file=sys.stderr if line.startswith("Warning: ") else sys.stdout)
+        print(_wrapped(line), file=sys.stderr if line.startswith("Warning: ") else sys.stdout)
+
+
+def _wrapped(line: str) -> str:
+    width = shutil.get_terminal_size().columns
+    return textwrap.fill(line, width, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
 
 
 @contextmanager
@@ -237,10 +243,19 @@ def save_with_page(found: Results, out: Path, *, details: bool = False) -> Calla
 
     def show() -> None:
         page.show(details=details)
+        first, *rest = dict.fromkeys([*reversed(pages), *found.sheets(), "manifest.json"])
         tables = [f"{name}.parquet" for name in found.tables]
-        few = tables if len(tables) <= 3 else []
-        names = dict.fromkeys([*reversed(pages), *found.sheets(), "manifest.json", *few])
-        more = "" if few else f" and {len(tables)} tables as Parquet"
-        print(f"\nWritten to {out}: {', '.join(names)}{more}")
+        print(_wrapped(f"Written to {out}: {_listed(first, [*rest, *tables], len(str(out)))}"))
 
     return show
+
+
+def _listed(first: str, names: Sequence[str], before: int) -> str:
+    """As many names as one line has room for, and how many more there are."""
+    shown, room = [first], shutil.get_terminal_size().columns - before - len("Written to : , and 99 more")
+    for name in names:
+        if len(", ".join([*shown, name])) > room:
+            break
+        shown.append(name)
+    more = len(names) + 1 - len(shown)
+    return ", ".join(shown) + (f" and {more} more" if more else "")

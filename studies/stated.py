@@ -50,7 +50,7 @@ def case_findings(case: Case) -> Iterator[Finding]:
             "ground",
             name=motion.name or "record",
             count=samples,
-            duration=motion.time_step,
+            duration=motion.duration,
             count_components=components,
             ratio=motion.peak / case.gravity,
             factor=1.0 / factor,

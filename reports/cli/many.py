@@ -102,17 +102,7 @@ def fragility(
                 source = many.source
             else:
                 motions, source = many.read(plan.seed)
-            for name, each in bodies.items():
-                size = f"R = {each.semidiagonal:g} m, tan alpha = {each.tan_alpha:g}"
-                print(f"{name}: {size}" if cylinder else size)
-            echo(
-                [
-                    f"Motions: {len(motions)}, {source}"
-                    + (f", of their own at each of {len(stripes)} levels" if stripes else ""),
-                    *record_lines(motions),
-                    *warnings_about(motions, bodies.values(), plan.gravity),
-                ]
-            )
+            echo([*record_lines(motions), *warnings_about(motions, bodies.values(), plan.gravity)])
         with user_input(), shown_progress() as progress:
             results = rw.fragility(
                 bodies,
@@ -192,7 +182,7 @@ def spectrum(
             f"Cylinders: tan alpha = {tan_alpha:g} (alpha = {math.degrees(slender.cylinder.alpha):.4g} deg)"
         )
         # the ground: the threshold of uplift is that of all sizes
-        echo(case_lines(slender)[1:-1])
+        echo(case_lines(slender)[1:])
         with user_input(), shown_progress("parts") as progress:
             results = rw.spectrum(
                 tan_alpha,

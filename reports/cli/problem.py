@@ -150,6 +150,11 @@ class Record(ReadingOptions):
     record_z: Path | None = _ground(None, "Vertical component. Default: none.")
     scale: float = _ground(1.0, "Scale factor of all components.", above=0.0)
 
+    @property
+    def names_record(self) -> bool:
+        """Whether files are named, which a command then says how it read."""
+        return any(path is not None for path in (self.record, self.record_x, self.record_y))
+
     def motion(self, *, still: bool = False) -> rw.GroundMotion | None:
         """Return the ground motion; without a record El Centro, or None where the ground is then `still`.
 

@@ -152,7 +152,7 @@ def compare(
                     require_runnable(each, run)
             trajectories = external.read(cases)
         if suite is None:
-            echo(case_lines(cases[0], problem.mass))
+            echo(case_lines(cases[0], problem.mass, record=problem.names_record))
         else:
             echo(suite_lines(suite, cases, runs))
         if engine == [options.ALL]:
@@ -248,7 +248,7 @@ def simulate(
             named = None if engine == options.NO_ENGINE else engine
             run = _with_settings(case, rw.Run(named, support, time_step), setting, dataclasses.asdict(model))
             require_runnable(case, run)
-        echo([*record_lines([case.motion]), *case_warnings([case], problem.mass)])
+        echo(case_lines(case, problem.mass, record=problem.names_record))
         with user_input(), shown_progress() as progress:
             found = single_run(
                 case,
@@ -322,7 +322,9 @@ def advise(
             require_judged(case, plan.support, plan.gap)
             run = _run(case, engine, plan.support, time_step)
             claim_folder(context)
-        echo([*record_lines([case.motion]), *case_warnings([case], plan.mass)])
+        # what else is understood stands in the advice
+        records = record_lines([case.motion]) if problem.names_record else []
+        echo([*records, *case_warnings([case], plan.mass)])
         with shown_progress("stages") as progress:
             results = rw.advise(
                 case,

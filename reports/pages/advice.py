@@ -61,7 +61,11 @@ def page_of(found: Advice) -> Page:
         "cautions": _said(findings.of("caution")),
         "compared": " ".join(_said(beside)),
         "criteria": [
-            {"topic": topic, "grade": grade, "reason": sentence(findings.of(topic)[0])}
+            {"topic": topic, "grade": grade}
+            | {
+                "reason": sentence(findings.of(topic)[0]),
+                "short": sentence(findings.of(topic)[0], short=True),
+            }
             | {each: sentence(criterion(topic, each)) for each in GRADES}
             for topic, grade in found.grades.items()
         ],
@@ -71,6 +75,7 @@ def page_of(found: Advice) -> Page:
         "weight": " ".join(_said(findings.of("weight"))),
         "demanded": list(_demand_rows(found, findings)),
         "demand_columns": list(_demand_columns(found)),
+        "wall": " ".join(_said(each for each in findings.of("wall") if each.key not in _DEMAND_DETAILS)),
         "acting": " ".join(_said([*acting, *(each for each in findings if each.key == "demand.weaker")])),
         "steps": _steps(found, findings),
         "groups": _groups(found, findings),

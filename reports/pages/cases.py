@@ -12,15 +12,20 @@ if TYPE_CHECKING:
     from rockwobble.models.plain_json import Facts
 
 
-def case_lines(case: Case, mass: float | None = None) -> list[str]:
-    """Lines that echo a case and the mass of a column [t]: what was understood, in numbers."""
+def case_lines(case: Case, mass: float | None = None, *, record: bool = True) -> list[str]:
+    """Lines that echo a case and the mass of a column [t]: what was understood, in numbers.
+
+    Without `record` there is none on the files of the ground motion.
+    """
     from rockwobble.models.finding import Finding
     from rockwobble.studies.stated import case_findings
 
     from .wording import sentence
 
-    length = Finding(key="input.length", values={"duration": case.length})
-    return [*map(sentence, case_findings(case)), *case_warnings([case], mass), sentence(length)]
+    stated = [each for each in case_findings(case) if record or each.key != "input.record"]
+    if case.motion is None or case.length != case.motion.duration:
+        stated.append(Finding(key="input.length", values={"duration": case.length}))
+    return [*map(sentence, stated), *case_warnings([case], mass)]
 
 
 def conditions(facts: Facts) -> list[str]:

@@ -101,6 +101,7 @@ def _case(view: CaseView, results: Comparison, *, many: bool) -> dict[str, objec
         "lines": case_lines(view.case),
         "headline": headline(findings),
         "findings": [statement(each) for each in findings if each.key not in (*_HEADLINE, *_SUPPORTS)],
+        "unusual": [statement(each) for each in findings if each.key not in _USUAL],
         "supports": [statement(each) for each in findings if each.key in _SUPPORTS],
         "diagnostics": run_diagnostics(view),
         "first": first_rows(rows),
@@ -114,6 +115,9 @@ def _case(view: CaseView, results: Comparison, *, many: bool) -> dict[str, objec
 _MODES = tuple(f"mode.{name}" for name in words()["mode"])
 _HEADLINE = (*_MODES, "comparison.agree", "comparison.agree_to_end", "comparison.none")
 _SUPPORTS = ("comparison.on_guide", "comparison.on_flat", "comparison.on_walls")
+# what a terminal leaves to the page
+_CAUSES = ("slides", "support", "walls", "pass", "near_passes", "distributions")
+_USUAL = (*_HEADLINE, *_SUPPORTS, *(f"comparison.{cause}" for cause in _CAUSES))
 
 
 def headline(findings: Sequence[Finding]) -> str:

@@ -126,8 +126,13 @@ def _counts(found: Fragility) -> dict[str, object]:
         )
     ]
     columns = [(f"{level:g}", f"{level:g}") for level in levels]
+    fallen = [row for row in rows if row["limit"] == OVERTURNED]
+    for row in fallen:
+        shares = [(level, str(row.get(f"{level:g}", "0"))) for level in levels]
+        row["first"] = next((level for level, share in shares if not share.startswith("0")), None)
     return {
         "count_rows": rows,
+        "fallen_rows": fallen,
         "count_columns": [
             *([name, name, "words"] for name in ("method", "limit", "all")),
             *([*each, "words", "wide"] for each in columns),

@@ -38,6 +38,7 @@ _PLACE = re.compile(r"\n?@@(\d+)@@\n?")
 _MARKUP = re.compile(r"([\\`*<])|(?<!\w)_|_(?!\w)")
 # a command at the end of a line
 _COMMAND = re.compile(r"^(.*\S) `([^`\n]* [^`\n]*)`$", re.MULTILINE)
+_HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
 _LEAST_WIDTH = 80  # of what is not a terminal, such as a file
 
 
@@ -181,7 +182,7 @@ class Page:
                 if place and isinstance(parts[place - 1], Table):
                     console.print()
                 console.print(part.rich(console.width))
-                if isinstance(after, str) and after.startswith("#"):
+                if isinstance(after, str):
                     console.print()
             elif isinstance(part, Command):
                 # a word that is longer than the line runs on: a break in it would be copied, too
@@ -191,7 +192,7 @@ class Page:
                     console.print()
             else:
                 with console.capture() as shown:
-                    console.print(Markdown(part), highlight=False)
+                    console.print(Markdown(_HEADING.sub(r"**\1**", part)), highlight=False)
                 # a list begins with an empty line, which would part its items where one has a command
                 within = place and isinstance(parts[place - 1], Command) and part.startswith("- ")
                 console.out(shown.get().lstrip("\n") if within else shown.get(), end="", highlight=False)

@@ -166,13 +166,6 @@ def test_the_axis_of_ratios_is_as_long_on_both_sides():
     assert log_ticks(0.07, 14.0) == [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0]
 
 
-@pytest.mark.parametrize(("columns", "details"), [(300, True), (80, False)])
-def test_a_narrow_terminal_leaves_out_details_and_no_name(columns, details):
-    words = said(made_up(model="pybullet flat", engine="pybullet recess"), columns)
-    assert ("p (Holm)" in words) is details
-    assert "pybullet recess" in words
-
-
 def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process, capsys):
     assert call("ensemble", *RELEASE, "--out", str(tmp_path)) == 0
     printed = " ".join(capsys.readouterr().out.split())

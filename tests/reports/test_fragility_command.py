@@ -121,8 +121,8 @@ def test_files_of_a_small_study_and_its_page_again(tmp_path, capsys):
     cylinders = ["--cylinder", "pier=6,0.2", "--cylinder", "column=3,0.15"]
     assert call("fragility", *SMALL, *cylinders, "--out", str(tmp_path)) == 0
     printed = " ".join(capsys.readouterr().out.split())
-    assert "column: R = 3 m, tan alpha = 0.15" in printed
-    assert "Motions: 8, synthetic ground motions, seed 0" in printed
+    assert "column: R = 3 m, tan α = 0.15" in printed
+    assert "8 motions: synthetic ground motions, seed 0" in printed
     (manifest,) = read_manifests(tmp_path)
     assert (manifest.kind, manifest.seeds) == (KIND, {"seed": 0})
     assert stored_page(KIND, tmp_path).files(document=False) == {
@@ -195,7 +195,7 @@ def test_records_by_level_are_stripes_of_their_own(tmp_path: Path, capsys: Any) 
     out = tmp_path / "out"
     small = ["--model", "recess", "--resamples", "40", "--workers", "1"]
     assert call("fragility", "--records", str(records), *small, "--out", str(out)) == 0
-    assert "12, records of records, of their own at each of 2 levels" in capsys.readouterr().out
+    assert "of their own at each of 2 levels" in " ".join(capsys.readouterr().out.split())
     found = Fragility.load(out)
     assert found.facts["levels"] == [2.0, 9.0]
     assert found.facts["motions_of_levels"] == [6, 6]
