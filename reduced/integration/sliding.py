@@ -36,11 +36,11 @@ Force = tuple[float, float, float, float]  # f at the beginning of a sample and 
 
 _STILL = 1e-11  # speed that counts as none, over what gravity gives in a sample
 _STEADY = 0.1  # share of n - |f| by which it may change while a body stops
-# Share of |f| by which f may change in a short time: with K over |f| above it, and below.
-_SOON, _EARLY = 0.25, 1e-2  # the first as a power of the tolerance: 6e-4 of 1e-13
+_SOON = 0.25  # share of |f| by which f may change in a short time, as a power of the tolerance: 6e-4 of 1e-13
 # Low is a speed at which the direction lags that of f by so many radians at most; K over |f| of such a time,
-# and by how much the direction may be off that lag [rad], to which it is drawn within |v|/|f|.
-_LOW, _LEVEL, _ALIGNED = 1e-3, 0.05, 1e-5
+# over the root of the share above; and by how much the direction may be off that lag [rad], to which it is
+# drawn within |v|/|f|.
+_LOW, _LEVEL, _ALIGNED = 1e-3, 0.4, 1e-5
 VALUES = 7  # of a sample: x, y, x', y', path, energy lost per unit mass, whether it slides
 
 
@@ -222,10 +222,9 @@ def _creep(f: Force, n0: float, n1: float, time: float, left: float, v0: float,
     steepest = max(slope, abs(n1))
     e = left
     if steepest > 0.0:
-        e = min(left, (soon if abs(K) > soon * force else _EARLY) * force / steepest)
+        e = min(left, soon * force / steepest)
     c1 = -K * W / (K + force)
     c2 = -(0.5 * q * (W + c1) + f1 * c1 + K * W1) / (force + 2.0 * K)
-    c3 = -(0.5 * q * (W1 + 2.0 * c2) + f1 * c2) / (force + 3.0 * K)
     # what the lag takes, at its leading term
     middle = v0 + 0.5 * e * (K + 0.25 * q * e)
     slower = 0.5 * middle * middle * W * W / force if v0 > 0.0 else 0.0
@@ -242,11 +241,7 @@ def _creep(f: Force, n0: float, n1: float, time: float, left: float, v0: float,
         speed = v0 + t * (K - slower + t * (0.5 * q + t * (curve - fourth) / 6.0))
         fxt, fyt = fx + gx * t, fy + gy * t
         ft = hypot(fxt, fyt)
-        if v0 > 0.0:
-            turn, rate, rise = (fxt * gy - fyt * gx) / (ft * ft), K + q * t, (fxt * gx + fyt * gy) / ft
-            lag = -speed / ft * turn * (1.0 - (rate - 3.0 * speed * rise / ft) / ft)
-        else:
-            lag = t * (c1 + t * (c2 + t * c3))
+        lag = -speed * (fxt * gy - fyt * gx) / ft**3 if v0 > 0.0 else t * (c1 + t * c2)
         heading = atan2(fyt, fxt) + lag
         weight = (4.0 if k == 1 else 1.0) * e / 6.0 * speed
         x, y, path = x + weight * cos(heading), y + weight * sin(heading), path + weight
@@ -290,8 +285,8 @@ def slide(
     count, taken, steps = len(times), 0, 0
     samples = np.zeros((count, VALUES))
     c = np.zeros((10, _WIDTH))
-    still, soon = _STILL * gravity * time_step, min(tolerance**_SOON, _EARLY)
-    stops = tolerance * gravity * time_step * time_step
+    still, soon = _STILL * gravity * time_step, tolerance**_SOON
+    level, stops = _LEVEL * sqrt(soon), tolerance * gravity * time_step * time_step
     loads = np.maximum(gravity + record[:, 2], 0.0)
     held = (friction * loads) ** 2 - record[:, 0] ** 2 - record[:, 1] ** 2
     held[loads == 0.0] = -1.0
@@ -337,13 +332,14 @@ def slide(
                     change * spent * spent < stops
                     and change <= _STEADY * (n - force)
                     and spent <= reach
+                    and (taken == count or times[taken] >= base + now + spent)  # no sample on its way
                     and (x * (p * p - q * q) + y * 2.0 * p * q <= 0.0 or x * fx + y * fy >= 0.0)
                 ):
                     x, y, path, lost = x + dx, y + dy, path + moved, lost + n * moved
                     peak, now, slides = max(peak, x * x + y * y), now + spent, False
                     continue
             if not slides or (
-                abs(force - n) < _LEVEL * force
+                abs(force - n) < level * force
                 and fx * (p * p - q * q) + fy * 2.0 * p * q > 0.0
                 and abs(fx * 2.0 * p * q - fy * (p * p - q * q) + (fx * gy - fy * gx) * (speed / force) ** 2)
                 < _ALIGNED * force * speed

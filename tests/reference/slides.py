@@ -80,11 +80,13 @@ def slide(samples, friction, A, B, C, E3, E5):
                 if speed <= 0.0:
                     t = at + e
                     continue
-                ahead = f + g * (at + e)
+                here = f + g * at
+                size = np.hypot(here[0], here[1])
+                ahead = here + g * e * size / (size + first)
                 size = np.hypot(ahead[0], ahead[1])
                 y[2], y[3] = speed * ahead[0] / size, speed * ahead[1] / size
-                y[0] += y[2] * e / 3.0
-                y[1] += y[3] * e / 3.0
+                y[0] += (2.0 * first + last) / 6.0 * e * e * ahead[0] / size
+                y[1] += (2.0 * first + last) / 6.0 * e * e * ahead[1] / size
                 t, moving, h = at + e, True, 1e-9
                 continue
             h = min(h, STEP - t)
