@@ -94,6 +94,7 @@ ENTRIES = (
     Entry(name="fragility", group="many", results="studies.fragility.study.Fragility"),
     Entry(name="show", group="results"),
     Entry(name="report", group="results"),
+    Entry(name="view", group="results", results="compare.comparison.result.View"),
     Entry(name="check", group="trust", results="compare.check.groups.Checks"),
     Entry(name="certify", group="trust"),
     Entry(name="verify", group="trust"),

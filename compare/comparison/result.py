@@ -13,6 +13,7 @@ import numpy as np
 from rockwobble.models import Case, Trace, plain_json
 from rockwobble.models.finding import Findings
 from rockwobble.models.frames import pd
+from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.plain_json import plain
 from rockwobble.models.support import EXTERNAL
 from rockwobble.models.trace_file import case_facts, case_from_plain
@@ -155,6 +156,28 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
     def _traces(self, name: str) -> Mapping[str, Trace]:
         return {label: trace for (case, label), trace in self.traces.items() if case == name}
 
+    def of_case(self, name: str) -> Comparison:
+        """Return the part on one case.
+
+        Raises
+        ------
+        ValueError
+            If there is no such case.
+        """
+        require_one_of("case", name, self.facts["cases"])
+
+        def facts_of(part: str) -> Mapping[str, object]:
+            facts: Mapping[str, object] = self.facts[part]
+            return {key: fact for key, fact in facts.items() if key.split(_SEPARATOR)[0] == name}
+
+        return Comparison(
+            tables={
+                table: rows[rows["case"] == name].reset_index(drop=True)
+                for table, rows in self.tables.items()
+            },
+            facts={**self.facts, **{part: facts_of(part) for part in ("cases", "traces", "budgets")}},
+        )
+
     def headline(self) -> Mapping[str, Number]:
         """Return numbers of cases, rows and divergences, and the agreement time."""
         rows = self.summary
@@ -205,6 +228,61 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
     def _repr_html_(self) -> str:
         names = ["case", "run", "reference", "outcome", "peak_tilt", "tilt_rms_relative", "agreement_time"]
         return str(self.summary[[*names, "diverged", "diagnostics"]].to_html(index=False))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class View(Results, kind="view"):
+    """Motion to be played, with tables and facts of the comparison of one case.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> case = rw.Case(pier, initial=rw.InitialState(0.5 * pier.alpha), duration=1.0, name="release")
+    >>> found = rw.comparison(case, runs=[rw.Run(None, "flat")], workers=1)
+    >>> list(View.of(found, "release").comparison.cases)
+    ['release']
+    """
+
+    @classmethod
+    def of(cls, comparison: Comparison, name: str) -> Self:
+        """Return the view of one case of a comparison.
+
+        Raises
+        ------
+        ValueError
+            If there is no such case.
+        """
+        part = comparison.of_case(name)
+        return cls(tables=part.tables, facts=part.facts)
+
+    @cached_property
+    def comparison(self) -> Comparison:
+        """The comparison of the case."""
+        return Comparison(tables=self.tables, facts=self.facts, manifest=self.manifest)
+
+    def headline(self) -> Mapping[str, Number]:
+        """Return the numbers of the comparison."""
+        return self.comparison.headline()
+
+    def _about(self) -> Mapping[str, object]:
+        return {}  # as of a comparison
+
+    def sheets(self) -> Mapping[str, bytes]:
+        """Return the files of the comparison."""
+        return self.comparison.sheets()
+
+    @classmethod
+    def of_stored(cls, stored: Stored) -> Self:
+        """Return the results whose files are whole.
+
+        Raises
+        ------
+        ValueError
+            If they cannot be read.
+        """
+        found = Comparison.of_stored(stored)
+        return cls(tables=found.tables, facts=found.facts, manifest=found.manifest)
 
 
 def comparison_of(

@@ -1,19 +1,27 @@
-"""Commands on stored results: `rockwobble show` and `report`."""
+"""Commands on stored results: `rockwobble show`, `report` and `view`."""
 
 from __future__ import annotations
 
 import dataclasses
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..console import interruptible, print_facts, user_input
+import rockwobble as rw
+
+from ..console import complain, echo, interruptible, print_facts, show_and_save, shown_progress, user_input
 from ..pages import stored_page
+from ..pages.cases import case_lines
 from ..pages.table import number
 from ..registry import KINDS
 from . import options
+from .command import takes_options
+from .options import settings
+from .outputs import claim_folder
+from .problem import Problem, given_options, refuse
 
 if TYPE_CHECKING:
     from rockwobble.compare.storage.manifest import Manifest
@@ -162,3 +170,98 @@ def report(
                 write_pages(place, kind, pages)
     names = dict.fromkeys(name for pages in drawn.values() for name in pages)
     print(f"Written to {place}: {', '.join(names)}")
+
+
+Stored = Annotated[
+    Path | None,
+    typer.Argument(
+        help="Folder of a stored comparison. Without it the case is run.",
+        show_default=False,
+    ),
+]
+CaseName = Annotated[str | None, typer.Option("--case", help="Name of the case, if the folder has several.")]
+Engine = Annotated[str | None, options.method(f"{options.ENGINES}. Default: mujoco.")]
+Open = Annotated[
+    bool | None,
+    options.output("Open the page in the browser. Default: yes in a terminal.", "--open/--no-open"),
+]
+
+
+@takes_options
+def view(
+    context: typer.Context,
+    problem: Problem,
+    folder: Stored = None,
+    case_name: CaseName = None,
+    engine: Engine = None,
+    support: options.Support = "recess",
+    time_step: options.TimeStep = None,
+    setting: options.Settings = None,
+    out: options.Out = Path("rockwobble-view"),
+    overwrite: options.Overwrite = False,
+    opened: Open = None,
+) -> None:
+    """3D animation of one case: the cylinder of an engine, with the reduced model translucent over it.
+
+    Without options: MuJoCo in a recess under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
+
+    Writes view.html (works offline) and the comparison that it shows.
+
+    Example: rockwobble view --scale 2 --support flat
+    """
+    from rockwobble.compare.comparison.result import View
+    from rockwobble.compare.runs.choice import require_runnable, with_settings
+
+    from ..figures.playback import require_motion
+
+    with interruptible():
+        with user_input():
+            if folder is not None:
+                others = set(given_options(context)) - {"folder", "case_name", "out", "overwrite", "opened"}
+                refuse(context, others, "states a run and does not go with a stored one")
+                comparison = rw.Comparison.load(folder)
+                name = _chosen_case(comparison, case_name)
+            elif case_name is not None:
+                raise ValueError("--case chooses from a folder, give the folder of a comparison as well")
+            else:
+                case = problem.case()
+                asked = rw.Run(engine or _default_engine(support), support, time_step)
+                (run,) = with_settings(case, [asked], settings(setting))
+                require_runnable(case, run)
+                name = case.name
+                require_motion(name, [rw.simulate(case)])  # before an engine runs for seconds
+            claim_folder(context)
+        if folder is None:
+            echo(case_lines(case))
+            with user_input(), shown_progress() as progress:
+                comparison = rw.comparison(case, runs=[run], progress=progress)
+        found = View.of(comparison, name)
+        with user_input():
+            require_motion(name, found.comparison.traces.values())
+        show_and_save(found, out)
+    if sys.stdout.isatty() if opened is None else opened:
+        import webbrowser
+
+        webbrowser.open((out / "view.html").resolve().as_uri())
+
+
+def _default_engine(support: str) -> str:
+    """Return the default engine, or in its place the first with the support that loads."""
+    from rockwobble.multibody.engines.registry import engine_fault, find_engine, standard_engines
+
+    default = rw.multibody.DEFAULT_ENGINE
+    fault = engine_fault(default)
+    for name in standard_engines() if fault else ():
+        if not engine_fault(name) and support in find_engine(name).supports:
+            complain(f"{default} {fault}; {name} runs in its place")
+            return name
+    return default
+
+
+def _chosen_case(comparison: rw.Comparison, name: str | None) -> str:
+    names = list(comparison.cases)
+    if name is None and len(names) > 1:
+        complain(f"{len(names)} cases, the first is shown; --case chooses: {'; '.join(names[:6])} ...")
+    if name is not None and name not in names:
+        raise ValueError(f"--case must be one of {'; '.join(names)}, got {name!r}")
+    return names[0] if name is None else name

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +63,17 @@ def playback(view: CaseView) -> dict[str, object] | None:
         "shown": max((each for each in factors if each * largest < _SEEN), default=1),
         "trail": round(_TRAIL * _PICTURES),
     }
+
+
+def require_motion(name: str, traces: Iterable[Trace]) -> None:
+    """Refuse the traces of a case if nothing moves in any.
+
+    Raises
+    ------
+    ValueError
+    """
+    if not any(_pose(trace)["tilt"].any() for trace in traces if len(trace.time)):
+        raise ValueError(f"there is nothing to play in {name!r}: the cylinder never uplifts")
 
 
 def _body(label: str, trace: Trace, colour: str, opacity: float) -> dict[str, object]:

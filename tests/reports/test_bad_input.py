@@ -104,6 +104,8 @@ BAD = {
         "--engine all --engine mujoco": "all stands alone, got all and mujoco",
         "--engine none": "--engine none leaves nothing to compare, give a --trajectory as well",
     },
+    "view": {"--case x": "--case chooses from a folder"}
+    | {f"--engine mujoco --support recess {RELEASE} {line}": words for line, words in METHODS.items()},
     "advise": {
         "--copies 5": "copies must be a whole number from 20 to 10000, got 5",
         "--engine none --time-step 1e-4": "--time-step belongs to an engine",

@@ -9,6 +9,7 @@ from browser import complaints, needs_chromium
 
 import rockwobble as rw
 from rockwobble.compare import Comparison
+from rockwobble.compare.comparison.result import View
 from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests
 from rockwobble.models import Case, Cylinder, InitialState
 from rockwobble.reports.pages import comparison as report
@@ -64,6 +65,8 @@ def test_page_of_a_study_is_drawn(kind: str, tmp_path: Path):
 @needs_chromium
 def test_pages_of_a_comparison_are_drawn(comparison: Comparison, tmp_path: Path, monkeypatch):
     assert complaints(page_of(comparison.made_by()).html(), tmp_path, figures=15, further=PLAYER) == []
+    played = page_of(View.of(comparison, "El Centro 1940").made_by())
+    assert complaints(played.html(), tmp_path, figures=0, further=PLAYER) == []
     monkeypatch.setattr(report, "SINGLY", 0)
     assert complaints(page_of(comparison.made_by()).html(), tmp_path, figures=6, further=CHOOSER) == []
 

@@ -22,6 +22,7 @@ RELEASE = ("--release-tilt-deg", "5", "--duration", "0.2")
 COMMANDS = {
     "compare": RELEASE,
     "simulate": RELEASE,
+    "view": RELEASE,
     "advise": (),
     "ensemble": (*RELEASE, "--copies", "2"),
     "fragility": ("--semidiagonal", "6", "--tan-alpha", "0.2", "--synthetic", "4"),
@@ -89,7 +90,15 @@ def test_a_command_without_an_engine_runs_what_loads_and_says_so(damaged, in_thi
     assert f"{registry.standard_engines()[1]} recess" in captured.out
 
 
-@pytest.mark.parametrize("command", ["compare", "simulate"])
+def test_a_view_takes_another_engine_and_says_so(damaged, in_this_process, capsys):
+    other = registry.standard_engines()[1]
+    assert call("view", *RELEASE) == 0
+    error = capsys.readouterr().err
+    said = [line for line in error.splitlines() if "does not load" in line]
+    assert said == [f"rockwobble: mujoco is installed and does not load: {REASON}; {other} runs in its place"]
+
+
+@pytest.mark.parametrize("command", ["compare", "view", "simulate"])
 def test_a_support_that_only_it_has_is_refused_for_it(damaged, monkeypatch, capsys, command):
     monkeypatch.setattr(execution, "run_tasks", lambda *_, **__: pytest.fail("it ran"))
     engine = ("--engine", "mujoco") if command == "simulate" else ()

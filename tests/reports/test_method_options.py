@@ -24,7 +24,7 @@ def call(*arguments: str) -> int:
     return ended.value.code
 
 
-@pytest.mark.parametrize("name", ["advise", "compare", "ensemble", "fragility", "simulate"])
+@pytest.mark.parametrize("name", ["advise", "compare", "ensemble", "fragility", "simulate", "view"])
 def test_every_command_of_a_cylinder_states_it_in_the_same_way(name: str) -> None:
     assert {option.name for option in get_command(app).commands[name].params} >= BODY  # type: ignore[attr-defined]
 

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 import rockwobble as rw
+from rockwobble.compare.comparison.result import View
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.case_view import case_views
 from rockwobble.reports.figures.comparison import _reach
 from rockwobble.reports.figures.playback import _largest_upright_tilt, playback
+from rockwobble.reports.pages.view import page_of
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 # a page plays in float32: seven digits of some metres
@@ -91,10 +93,22 @@ def test_nothing_is_played_where_nothing_moves():
     still = GroundMotion(np.zeros((20, 2)), 0.01, "still")
     made = rw.comparison(Case(PIER, still, name="still"), runs=[Run("mujoco", "recess", 1e-3)], workers=1)
     assert playback(case_views(made)[0]) is None
+    with pytest.raises(ValueError, match="there is nothing to play in 'still'"):
+        page_of(View.of(made, "still"))
 
 
 @pytest.mark.slow
-def test_stored_results_are_drawn_again_without_a_run(comparison, tmp_path, monkeypatch, capsys):
+def test_a_view_of_what_never_uplifts_is_one_line(tmp_path, in_this_process, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as end:
+        main(["view", "--scale", "0.01"])
+    assert end.value.code == 2
+    assert capsys.readouterr().err.splitlines()[-1].startswith("rockwobble: there is nothing to play in")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.slow
+def test_stored_results_are_played_and_drawn_again_without_a_run(comparison, tmp_path, monkeypatch, capsys):
     stored = tmp_path / "stored"
     comparison.save(stored)
 
@@ -106,7 +120,37 @@ def test_stored_results_are_drawn_again_without_a_run(comparison, tmp_path, monk
     with pytest.raises(SystemExit) as ended:
         main(["report", str(stored)])
     assert ended.value.code == 0
-    page = (stored / "report.html").read_text()
-    assert "release" in page
-    assert "rockwobblePlayback" in page
+    assert "release" in (stored / "report.html").read_text()
     assert (stored / "figure.svg").read_bytes().startswith(b"<?xml")
+    with pytest.raises(SystemExit) as ended:
+        main(["view", str(stored), "--no-open", "--out", str(tmp_path / "played")])
+    assert ended.value.code == 0
+    page = (tmp_path / "played" / "view.html").read_text()
+    assert "rockwobblePlayback" in page
+    (tmp_path / "played" / "view.html").unlink()
+    for command in ("show", "report"):
+        with pytest.raises(SystemExit) as ended:
+            main([command, str(tmp_path / "played")])
+        assert ended.value.code == 0
+    assert (tmp_path / "played" / "view.html").read_text() == page
+    assert list(View.load(tmp_path / "played").comparison.cases) == ["release"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["view", "{folder}", "--scale", "2"], "--scale states a run and does not go with a stored one"),
+        (["view", "{folder}/missing"], "does not hold results of rockwobble: it has no manifest.json"),
+        (["view", "{folder}", "--case", "x"], "--case must be one of release, got 'x'"),
+    ],
+)
+def test_bad_input_is_one_line(comparison, tmp_path, capsys, arguments, message):
+    comparison.save(tmp_path / "stored")
+    given = [text.format(folder=tmp_path / "stored") for text in arguments]
+    with pytest.raises(SystemExit) as ended:
+        main([*given, *(["--out", str(tmp_path / "out")] if given[0] == "view" else [])])
+    assert ended.value.code == 2
+    said = capsys.readouterr().err
+    assert message in said
+    assert len(said.strip().splitlines()) == 1
+    assert not (tmp_path / "out").exists()

@@ -32,6 +32,7 @@ COMMANDS = {
     "spectrum": ["spectrum", "--semidiagonal", "5:6:2", "--intensity", "2:3:2"],
     "sweep": ["sweep", "--semidiagonal", "5,6"],
     "ensemble": ["ensemble", "--engine", "none"],
+    "view": ["view", "--engine", "mujoco"],
 }
 
 
@@ -62,7 +63,9 @@ def test_a_bad_file_is_one_line_and_leaves_nothing(
     folder: Path, capsys: pytest.CaptureFixture[str], command: str, name: str
 ) -> None:
     before = sorted(folder.iterdir())
-    assert exit_code(*COMMANDS[command], "--record", name, "--out", "out") == 2
+    assert (
+        exit_code(*COMMANDS[command], "--record", name, *(["--out", "out"] if command != "view" else [])) == 2
+    )
     written = capsys.readouterr()
     assert written.out == ""
     (line,) = written.err.splitlines()

@@ -10,6 +10,7 @@ from showing import loads_as_it_was, shows_itself
 import rockwobble as rw
 import rockwobble.compare as rc
 import rockwobble.studies as rs
+from rockwobble.compare.comparison.result import View
 from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Bounds
@@ -66,6 +67,7 @@ def test_budgets_and_external_trajectories_load_as_they_were(tmp_path):
     made = rw.comparison(RELEASE, runs=[run], external=[external], budget=True, workers=1)
     assert len(made.budgets) == 1
     loads_as_it_was(made, tmp_path / "comparison")
+    loads_as_it_was(View.of(made, RELEASE.name), tmp_path / "view")
 
 
 def test_a_run_loads_as_it_was(tmp_path):
