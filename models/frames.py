@@ -2,11 +2,18 @@
 
 from typing import TYPE_CHECKING
 
-import lazy_loader
-
 if TYPE_CHECKING:
     import pandas as pd
 else:
-    pd = lazy_loader.load("pandas")
+
+    class _Pandas:
+        """The package by its names: a lazy module would show a second thread those that are there so far."""
+
+        def __getattr__(self, name: str) -> object:
+            import pandas
+
+            return getattr(pandas, name)
+
+    pd = _Pandas()
 
 __all__ = ["pd"]

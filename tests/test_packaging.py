@@ -124,9 +124,18 @@ def test_the_command_is_installed_and_knows_its_version() -> None:
     ],
 )
 def test_importing_loads_no_engine_no_tables_and_no_scipy(load: str) -> None:
-    heavy = {*HEAVY, "pandas.core"} - {"pandas"}  # which is there under its name before it is loaded
-    script = f"import sys, rockwobble; {load}; print(*sorted({heavy!r} & set(sys.modules)))"
+    script = f"import sys, rockwobble; {load}; print(*sorted({ {*HEAVY}!r} & set(sys.modules)))"
     assert run(sys.executable, "-c", script).split() == []
+
+
+def test_threads_that_ask_for_the_first_table_at_once_all_get_it() -> None:
+    script = """
+from concurrent.futures import ThreadPoolExecutor
+from rockwobble.models.frames import pd
+with ThreadPoolExecutor(8) as pool:
+    print({*pool.map(lambda _: pd.DataFrame.__name__, range(8))})
+"""
+    assert run(sys.executable, "-c", script).strip() == "{'DataFrame'}"
 
 
 @pytest.mark.slow

@@ -66,7 +66,7 @@ _LIMITS = " ".join(
 _SUPPORTS = "--support recess --support flat --support ring"
 # folder: command, or script with its options
 STUDIES = {
-    "compare": f"compare {_SUPPORTS}",
+    "compare": "compare compare/el-centro.suite.toml",
     "paper": "make.py",
     "spectrum": "spectrum",
     "advice/pier": "advise",

@@ -1,263 +1,298 @@
-"""Which settings of an engine give the least error for a given cost.
+"""Settings of the engines by their error on four exact solutions, and how MuJoCo's standing base uplifts.
 
-`python tests/benchmarks engine_settings` prints the table. Each variant differs from the default in
-one setting. First the time of a step is measured, in turns, so that a change of the machine's speed meets
-all alike; then each runs with the step that its time allows, so that all cost the same. The errors are
-those of the tilt, in the recess against the recess model and on flat ground against the flat-ground model:
+`python tests/benchmarks engine_settings` prints a row for each value of a setting, all others at their
+defaults, at the default step. No column rests on the equations that the engines are compared with:
 
-* shaken: two cases with teeth under El Centro to 15 s, (10 m, 0.1) as recorded and (6 m, 0.2) doubled,
-  relative RMS, geometric mean of the two. By chance alone these differ by a factor of two from one azimuth
-  of the record to another: --turns 3 averages over three, at 2.4 times the cost;
-* released: at half of alpha with 0.5 rad/s for 4 s at tan alpha 0.2, 1 and 3, the largest in alpha.
+* free: releases at half of alpha with 0.5 rad/s at (6 m, 0.2) and (6 m, 1), four swings in the recess, by
+  quadrature: the largest error, at the tilt maxima, of their time [period], tilt [alpha] and azimuth [rad];
+* wobble: steady wobble at half of alpha for 4 s, which keeps tilt and rate: the largest distance of the tilt
+  vectors [alpha];
+* slide: El Centro x 2.5 at friction 0.3 and 0.48 of b/h 0.5, in closed form between samples: the largest
+  distance of the bases [peak displacement];
+* impact: closings in one plane under a sine of 0.65 g by the moment of momentum: the largest error of the
+  three peaks after them [alpha]; the median of five steps, for single ones leave it to chance.
+
+`--uplift` prints MuJoCo's base that nothing steers, on n points, beside the one that follows the load, from
+rest under three motions for five bodies.
 """
 
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import product
+from typing import Any
 
 import numpy as np
 
-from rockwobble import multibody
-from rockwobble.compare.metrics.pair import make_pair, tilt_rms_relative
-from rockwobble.compare.runs.execution import Job, simulate_all
-from rockwobble.compare.runs.progress import ProgressCallback
-from rockwobble.models import Case, Cylinder, InitialState, Run, el_centro_1940
-from rockwobble.models.support import MODELLED
+from rockwobble import multibody, reduced
+from rockwobble.compare.metrics.pair import (
+    agreement_of,
+    direction_difference,
+    displacement_difference,
+    make_pair,
+)
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, el_centro_1940
+from rockwobble.models.synthetic import synthetic_motions
+from rockwobble.reduced.exact import free_response, steady_wobble_rate
 
-from .console import options_of, show, tell
+from .console import options_of, show
 
-if TYPE_CHECKING:
-    import pandas as pd
+STEP = 1e-4  # [s] at 6 m, the default
+G = 9.81
+GRIP = 5.0  # friction that suffices
+DRAWS = (1.0, 0.98, 0.96, 0.94, 0.92)  # steps of an impact
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+CAN = Cylinder(semidiagonal=5.0**0.5, tan_alpha=0.5)
 
-STEP = 1e-4  # [s] of the default at the reference size
-TURNS = (0.0, 0.4, 0.9)  # azimuths of the record [rad]
-_PILOT = 0.5  # [s] of motion timed in each turn
-_TURNS = 5
+# values of each setting, the default among them where it is no matter of the mode
+SETTINGS: Mapping[str, Mapping[str, Sequence[Any]]] = {
+    "mujoco": {
+        "contact_time_constant": (1.0, 2.0, 4.0, 10.0),
+        "contact_damping_ratio": (0.5, 1.0, 3.0, 4.0),
+        "impedance": (0.99, 0.999, 0.9999),
+        "rolling_impedance": (0.98, 0.995, 0.9999),
+        "friction_damping": (1.0, 1.6, 1.8, 1.9),
+        "noslip_iterations": (0, 20),
+        "guide_stiffness": (0.05, 0.1, 0.2, 0.4),
+        "integrator": ("Euler", "implicitfast", "implicit", "RK4", "discrete"),
+        "cone": ("elliptic", "pyramidal"),
+        "tolerance": (1e-12, 1e-6),
+        "points": (0, 8, 16, 64),
+        "points_damping_ratio": (1.0, 3.0, 10.0),
+        "points_inset": (1e-3, 0.01, 0.05),
+    },
+    "pybullet": {
+        "friction_damping": (1.0, 1.6, 1.8, 1.9),
+        "contact_erp": (0.05, 0.2, 0.8),
+        "contact_slop": (0.0, 1e-5),
+        "collision_margin": (0.0, 0.04),
+        "solver_residual": (1e-16, 1e-7),
+        "iterations": (10, 100),
+        "guide_stiffness": (0.05, 0.1, 0.2, 0.4),
+    },
+    "dart": {
+        "depth": (1e-7, 1e-6, 1e-5),
+        "depth_gain": (0.05, 0.3, 1.0),
+        "friction_damping": (1.0, 1.6, 1.8, 1.9),
+        "tolerance": (1e-12, 1e-6),
+        "iterations": (100, 1000),
+        "guide_stiffness": (0.05, 0.1, 0.2, 0.4),
+    },
+    "drake": {
+        "approximation": ("lagged", "similar", "tamsi", "sap"),
+        "contact_stiffness": (1e8, 1e10, 1e11),
+        "dissipation": (0.0, 10.0, 100.0, 1000.0),
+        "stiction_tolerance": (1e-6, 1e-4),
+        "friction_damping": (1.0, 1.6, 1.8, 1.9),
+        "guide_stiffness": (0.05, 0.1, 0.2, 0.4),
+    },
+    "exudyn": {
+        "integrator": ("trapezoidal", "generalized-alpha"),
+        "spectral_radius": (0.5, 0.9, 1.0),
+        "relative_tolerance": (1e-12, 1e-8),
+        "absolute_tolerance": (1e-13, 1e-10),
+        "iterations": (3, 25),
+    },
+    "rapier": {
+        "contact_frequency": (0.03, 0.1, 0.3),
+        "contact_damping_ratio": (1.0, 10.0, 30.0),
+        "depth": (1e-7, 1e-6, 1e-5),
+        "depth_gain": (0.05, 0.3, 1.0),
+        "substeps": (1, 4),
+        "iterations": (1, 4, 16),
+        "guide_stiffness": (0.05, 0.1, 0.2, 0.4),
+    },
+}
+# over a step h [s]: time constant/h, frequency times h, 2 h sqrt(stiffness)
+SCALED: Mapping[str, Callable[[float, float], float]] = {
+    "contact_time_constant": lambda value, h: value * h,
+    "contact_frequency": lambda value, h: value / h,
+    "guide_stiffness": lambda value, h: (value / h) ** 2 / 4.0,
+}
+Simulate = Callable[..., Trace]
+Used = tuple[float, Mapping[str, Any]]  # step [s] and settings of a run
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Variant:
-    """An engine and what is not the default.
+def simulator(engine: str, name: str = "", value: Any = None, used: list[Used] | None = None) -> Simulate:
+    """Runs of an engine at its default step, or a share of it, with one setting that may be no default.
 
-    Parameters
-    ----------
-    engine : str
-    what : str
-        In words.
-    settings : dict
-        Those that do not depend on the step.
-    contact, guide : float, optional
-        Contact time constant over the step, and 2 h sqrt(guide stiffness); default that of the engine.
+    The settings of each run are appended to `used`.
     """
 
-    engine: str
-    what: str
-    settings: dict[str, Any] = field(default_factory=dict)
-    contact: float = math.nan
-    guide: float = math.nan
+    def simulate(case: Case, support: str, share: float = 1.0) -> Trace:
+        step = share * STEP * math.sqrt(case.cylinder.semidiagonal / 6.0)
+        given: dict[str, Any] = {name: SCALED[name](value, step) if name in SCALED else value} if name else {}
+        trace = multibody.simulate(case, engine=engine, support=support, time_step=step, **given)
+        if used is not None:
+            used.append((step, trace.settings))
+        return trace
 
-    def run(self, support: str, time_step: float, unit_time: float) -> Run:
-        """Return the run with a step [s] at the reference size; `unit_time` scales it to the case."""
-        step = time_step * unit_time
-        more: dict[str, Any] = {}
-        if math.isfinite(self.contact):
-            more["contact_time_constant"] = self.contact * step
-        if math.isfinite(self.guide):
-            more["guide_stiffness"] = (0.5 * self.guide / step) ** 2
-        return Run(self.engine, support, step, **self.settings, **more)
+    return simulate
 
 
-def variants(engines: Sequence[str] | None = None) -> list[Variant]:
-    """Return the defaults of the engines that are installed, and what differs from them by one setting."""
-    dampings = (1.0, 1.6, 1.9)
-    found = [
-        Variant(engine="mujoco", what="default"),
-        *(
-            Variant(engine="mujoco", what=f"integrator {name}", settings={"integrator": name})
-            for name in ("implicitfast", "implicit", "RK4", "discrete")
-        ),
-        Variant(
-            engine="mujoco", what="discrete, contact 0.2 h", settings={"integrator": "discrete"}, contact=0.2
-        ),
-        *(
-            Variant(engine="mujoco", what=f"contact time constant {contact:g} h", contact=contact)
-            for contact in (1.0, 1.5, 4.0, 10.0)
-        ),
-        *_varied("mujoco", "friction_damping", dampings),
-        *_guides("mujoco"),
-        Variant(engine="pybullet", what="default"),
-        *_varied("pybullet", "friction_damping", dampings),
-        *_varied("pybullet", "contact_erp", (0.05, 0.8)),
-        *_guides("pybullet"),
-    ]
-    known = multibody.available_engines() if engines is None else engines
-    return [variant for variant in found if variant.engine in known]
-
-
-def _varied(engine: str, name: str, values: Sequence[float]) -> list[Variant]:
-    words = name.replace("_", " ")
-    return [Variant(engine=engine, what=f"{words} {value:g}", settings={name: value}) for value in values]
-
-
-def _guides(engine: str) -> list[Variant]:
-    return [
-        Variant(engine=engine, what=f"guide 2 h sqrt(k) = {guide:g}", guide=guide)
-        for guide in (0.025, 0.05, 0.1, 0.2, 0.4, 0.8)
-    ]
-
-
-def cases(turns: int = 1) -> tuple[Case, ...]:
-    """Return the cases, those under El Centro first, the record turned by the first so many azimuths."""
-    record = el_centro_1940()
-    shaken, released = [], []
-    for size, tan_alpha, motion in ((10.0, 0.1, record), (6.0, 0.2, record.scaled(2.0))):
-        cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
-        shaken += [
-            Case(
-                cylinder,
-                motion.rotated(turn),
-                duration=15.0,
-                name=f"El Centro, R {size:g} m, tan alpha {tan_alpha:g}, {turn:g} rad",
-            )
-            for turn in TURNS[:turns]
+def free(simulate: Simulate) -> float:
+    """Largest error at the tilt maxima of free responses."""
+    errors = []
+    for tan_alpha in (0.2, 1.0):
+        body = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
+        initial = InitialState(0.5 * body.alpha, rolling_rate=0.5)
+        exact = free_response(body, initial)
+        trace = simulate(Case(body, initial=initial, duration=4.2 * exact.period, friction=GRIP), "recess")
+        maxima = trace.extrema[(trace.extrema[:, 3] > 0.0) & (trace.extrema[:, 0] > 0.5 * exact.period)][:4]
+        swings = np.arange(1, len(maxima) + 1)
+        errors += [
+            math.inf if len(maxima) < 4 else 0.0,
+            *(maxima[:, 0] / exact.period - swings),
+            *((maxima[:, 1] - exact.maximum_tilt) / body.alpha),
+            *(maxima[:, 2] - swings * exact.angle_of_turn),
         ]
-    for tan_alpha in (0.2, 1.0, 3.0):
-        cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
-        release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.5)
-        released.append(
-            Case(cylinder, initial=release, duration=4.0, name=f"release, tan alpha {tan_alpha:g}")
-        )
-    return (*shaken, *released)
+    return float(np.abs(errors).max())
 
 
-def seconds_per_step(chosen: Sequence[Variant]) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Return the time of a step of each variant [s]: the median ratio to the first, times its time."""
-    case = cases()[-2]
-    steps = _PILOT / STEP
-    times = np.empty((_TURNS, len(chosen)))
-    for turn in times:
-        for index, variant in enumerate(chosen):
-            run = variant.run("recess", STEP, 1.0)
-            started = time.process_time()
-            multibody.simulate(
-                Case(case.cylinder, initial=case.initial, duration=_PILOT),
-                engine=variant.engine,
-                support=run.support,
-                time_step=STEP,
-                **run.settings,
-            )
-            turn[index] = (time.process_time() - started) / steps
-    ratio: np.ndarray[Any, np.dtype[np.float64]] = np.median(times / times[:, :1], axis=0)
-    return ratio * float(np.median(times[:, 0]))
+def wobble(simulate: Simulate) -> float:
+    """Largest distance of the tilt vectors in steady wobble over alpha."""
+    tilt = 0.5 * PIER.alpha
+    rate = float(steady_wobble_rate(PIER, tilt))
+    # without friction along the rim, so that it is the same motion in the recess and on flat ground
+    trace = simulate(
+        Case(PIER, initial=InitialState(tilt, rolling_rate=rate), duration=4.0, friction=GRIP), "flat"
+    )
+    right = tilt * np.exp(1j * rate * trace.time)
+    return float(np.abs(trace.tilt * np.exp(1j * trace.rolling_angle) - right).max() / PIER.alpha)
 
 
-def measure(
-    chosen: Sequence[Variant] | None = None,
-    *,
-    turns: int = 1,
-    workers: int | None = None,
-    progress: ProgressCallback | None = None,
-) -> pd.DataFrame:
-    """Run all variants at equal cost.
-
-    Parameters
-    ----------
-    chosen : sequence of Variant, optional
-        Of one engine or several, the default of each first. Default: all of the engines that are installed.
-    turns : int
-        Azimuths of the record, up to three.
-    workers : int, optional
-        Processes.
-    progress : callable, optional
-
-    Returns
-    -------
-    DataFrame
-        engine, setting, microseconds (a step), time_step [s] (at which it costs what the default of its
-        engine costs at 1e-4 s), and the errors shaken_recess, shaken_flat, released_recess and
-        released_flat. NaN where a run failed.
-    """
-    import pandas as pd
-
-    chosen = variants() if chosen is None else chosen
-    cost = seconds_per_step(chosen)
-    base = {variant.engine: cost[index] for index, variant in reversed(list(enumerate(chosen)))}
-    # a tenth more or less is noise of the clock, and a step of its own would make the errors differ by it
-    ratio = [value / base[variant.engine] for variant, value in zip(chosen, cost, strict=True)]
-    steps = [STEP * (1.0 if abs(each - 1.0) < 0.1 else each) for each in ratio]
-    problems = cases(turns)
-    jobs = [Job(case=case, run=Run(None, support)) for case in problems for support in MODELLED]
-    for variant, step in zip(chosen, steps, strict=True):
-        for case in problems:
-            unit_time = math.sqrt(case.cylinder.semidiagonal / 6.0)
-            jobs += [
-                Job(
-                    case=case,
-                    run=variant.run(support, step, unit_time),
-                    label=f"{variant.engine} {variant.what}",
-                )
-                for support in MODELLED
-            ]
-    results = simulate_all(jobs, workers=workers, progress=progress)
-    count = 2 * len(problems)
-    shaken = 2 * sum(case.motion is not None for case in problems)
-    rows = []
-    for index, (variant, step) in enumerate(zip(chosen, steps, strict=True)):
-        block = results[count * (index + 1) : count * (index + 2)]
-        errors = [
-            _error(job.case, reference, trial)
-            for job, reference, trial in zip(jobs[:count], results[:count], block, strict=True)
-        ]
-        rows.append(
-            {
-                "engine": variant.engine,
-                "setting": variant.what,
-                "microseconds": 1e6 * cost[index],
-                "time_step": step,
-                "shaken_recess": math.exp(float(np.mean(np.log(errors[0:shaken:2])))),
-                "shaken_flat": math.exp(float(np.mean(np.log(errors[1:shaken:2])))),
-                "released_recess": float(np.max(errors[shaken::2])),
-                "released_flat": float(np.max(errors[shaken + 1 :: 2])),
-            }
-        )
-    return pd.DataFrame(rows)
+def slide(simulate: Simulate) -> float:
+    """Largest distance of the bases in a slide over its peak displacement."""
+    body, errors = Cylinder(semidiagonal=3.0, tan_alpha=0.5), []
+    for friction in (0.3, 0.48):
+        case = Case(body, el_centro_1940().scaled(2.5), duration=6.0, friction=friction)
+        pair = make_pair(body, reduced.simulate(case, support="flat"), simulate(case, "flat"))
+        errors.append(displacement_difference(pair))
+    return max(errors)
 
 
-def _error(case: Case, reference: Any, trial: Any) -> float:
-    if getattr(trial, "outcome", "failed") == "failed":
+def impact(simulate: Simulate) -> float:
+    """Largest error of the peaks after closings in one plane over alpha."""
+    times = np.arange(0.0, 0.8001, 0.005)
+    motion = GroundMotion(np.column_stack([0.65 * G * np.sin(2.0 * np.pi * times / 0.8), 0.0 * times]), 0.005)
+    case = Case(CAN, motion, duration=3.0, friction=GRIP)
+
+    def peaks(trace: Trace) -> np.ndarray[Any, np.dtype[np.float64]]:
+        maxima = trace.extrema[(trace.extrema[:, 3] > 0.0) & (trace.extrema[:, 1] > 5e-3), 1][:4] / CAN.alpha
+        return np.pad(maxima, (0, 4 - len(maxima)))  # one that is lost is an error of all of it
+
+    right = peaks(reduced.simulate(case, plane=0.0, restitution="momentum"))
+    return float(np.median([np.abs(peaks(simulate(case, "flat", each)) - right)[1:].max() for each in DRAWS]))
+
+
+SOLUTIONS: Mapping[str, Callable[[Simulate], float]] = {
+    each.__name__: each for each in (free, wobble, slide, impact)
+}
+
+
+def error_of(solution: str, simulate: Simulate) -> float:
+    """Error of a run; infinite where it failed, NaN where the engine refuses the setting or the problem."""
+    try:
+        return SOLUTIONS[solution](simulate)
+    except ValueError:
         return math.nan
-    pair = make_pair(case.cylinder, reference, trial)
-    if case.motion is not None:
-        return tilt_rms_relative(pair)
+
+
+def settings_table(engine: str, names: Sequence[str] = ()) -> Iterator[dict[str, str]]:
+    """Rows of an engine, the default first; what is the default of a solution is marked there and not run."""
+    used: dict[str, list[Used]] = {solution: [] for solution in SOLUTIONS}
+    defaults = {each: f"{error_of(each, simulator(engine, used=used[each])):.1e}" for each in SOLUTIONS}
+
+    def error(solution: str, name: str, value: Any) -> str:
+        for step, settings in used[solution][:1]:
+            known, of_step = settings[name], SCALED.get(name)
+            if math.isclose(known, of_step(value, step)) if of_step else known == value:
+                return f"{defaults[solution]} *"
+        return f"{error_of(solution, simulator(engine, name, value)):.1e}"
+
+    yield {"engine": engine, "setting": "default", "value": "", **defaults}
+    for name in names or SETTINGS[engine]:
+        for value in SETTINGS[engine][name]:
+            errors = {solution: error(solution, name, value) for solution in SOLUTIONS}
+            yield {"engine": engine, "setting": name, "value": str(value), **errors}
+
+
+BODIES = ((10.0, 0.1), (6.0, 0.2), (6.0, 0.35), (3.0, 0.5), (3.0, 1.0))  # R [m], tan alpha
+POINTS = (16, 32, 64, 128)
+LENGTH, EARLY = 6.0, 2.0  # [s]
+
+
+def motions_of(body: Cylinder) -> list[GroundMotion]:
+    """El Centro and two synthetic motions, their peak twice what uplifts a body."""
+    peak = 2.0 * G * body.tan_alpha
+    record = el_centro_1940()
+    return [record.scaled(peak / record.peak), *synthetic_motions(2, peak=peak, seed=59)]
+
+
+def early_difference(model: Trace, trace: Trace) -> float:
+    """Largest tilt difference over alpha in the time `EARLY` after uplift."""
+    pair = make_pair(model.case.cylinder, model, trace, until=model.uplift_time + EARLY)
     return float(np.abs(pair.tilt_difference).max())
+
+
+def uplift_table() -> Iterator[dict[str, Any]]:
+    """Rows of support, body and base: the worst of three motions."""
+    for support, (size, tan_alpha) in product(("recess", "flat"), BODIES):
+        body = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
+        cases = [Case(body, motion, duration=LENGTH, friction=GRIP) for motion in motions_of(body)]
+        models = [reduced.simulate(case, support=support) for case in cases]
+        for points in (0, *POINTS):
+            given: dict[str, Any] = (
+                {"follow_load": False, "points": points} if points else {"follow_load": True}
+            )
+            traces = [multibody.simulate(case, engine="mujoco", support=support, **given) for case in cases]
+            pairs = list(zip(models, traces, strict=True))
+            ends = [agreement_of(model, trace) for model, trace in pairs]
+            yield {
+                "support": support,
+                "body": f"{size:g} m, {tan_alpha:g}",
+                "base": f"{points} points" if points else "follows",
+                "uplift": max(1e3 * abs(trace.uplift_time - model.uplift_time) for model, trace in pairs),
+                "direction": max(abs(math.degrees(direction_difference(*pair))) for pair in pairs),
+                "tilt": max(early_difference(*pair) for pair in pairs),
+                "agrees": min(end.length for end in ends),
+                "to_end": sum(not end.diverged for end in ends),
+                "step": 1e6 * float(np.mean([t.wall_time * t.time_step / t.time[-1] for t in traces])),
+            }
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table."""
-    parser = options_of(
-        "engine_settings",
-        "Which settings of an engine give the least error for a given cost. "
-        "Example: --engine mujoco --turns 3",
-    )
-    parser.add_argument("--engine", action="append", choices=("mujoco", "pybullet"), help="may be repeated")
-    parser.add_argument(
-        "--turns",
-        type=int,
-        choices=range(1, len(TURNS) + 1),
-        default=1,
-        help="azimuths of the record over which errors are averaged (%(default)s)",
-    )
+    import pandas as pd
+
+    parser = options_of("engine_settings", "Settings of the engines by their error on four exact solutions.")
+    parser.add_argument("--engine", action="append", choices=SETTINGS, help="may be repeated")
+    parser.add_argument("--setting", action="append", default=[], help="may be repeated")
+    parser.add_argument("--uplift", action="store_true", help="MuJoCo's standing base, by number of points")
     given = parser.parse_args(arguments)
-    errors = ("shaken_recess", "shaken_flat", "released_recess", "released_flat")
-    formats = {"engine": "", "setting": "", "microseconds": ".1f", "time_step": ".2e"}
-    show(
-        measure(variants(given.engine), turns=given.turns, progress=tell),
-        "Error of the tilt at equal cost",
-        formats | dict.fromkeys(errors, ".1e"),
-        "time step at 6 m in s; shaken: RMS over that of the model; released: largest, in alpha; - failed",
+    if given.uplift:
+        text, numbers = ("support", "body", "base"), ("uplift", "direction", "tilt")
+        forms = dict.fromkeys(text, "") | dict.fromkeys(numbers, ".1e")
+        note = (
+            "the worst of three motions: time [ms] and direction [deg] of uplift, tilt [alpha] in "
+            f"{EARLY:g} s after it; agrees: within 1 % of alpha [s] after it, how many to the end, "
+            f"{LENGTH:g} s; step: microseconds"
+        )
+        forms |= {"agrees": ".2f", "to_end": "d", "step": ".0f"}
+        show(
+            pd.DataFrame(uplift_table()),
+            "Differences from the model by base: n points, or followed",
+            forms,
+            note,
+        )
+        return 0
+    engines = [each for each in given.engine or SETTINGS if each in multibody.available_engines()]
+    rows = [row for engine in engines for row in settings_table(engine, given.setting)]
+    forms = dict.fromkeys(("engine", "setting", "value", *SOLUTIONS), "")
+    note = (
+        "*: default; nan: refused, inf: failed; contact_time_constant in steps, "
+        "contact_frequency times a step, guide_stiffness k as 2 h sqrt(k)"
     )
+    show(pd.DataFrame(rows), "Error on exact solutions at the default step", forms, note)
     return 0
