@@ -9,21 +9,19 @@ from .cases import conditions
 from .page import Page
 from .wording import statement
 
-# columns that tell the parts of a grid apart, and those of a suite of cases
-_OF_GRID = (("motion", "ground motion", "words"), ("model", "model", "words"), ("tan_alpha", "tan α"))
-_OF_CASES = (("run", "run", "words"),)
-
 
 def page_of(results: Sweep) -> Page:
     """Return the page of a sweep."""
-    plan, grid = results.facts, "model" in results.table
+    plan = results.facts
     values = {
         "plan": plan,
         "findings": list(map(statement, results.findings())),
-        "conditions": conditions(plan.get("options", plan)) if grid else [],  # cases have their own
+        "conditions": conditions(plan["options"]),
         "parts": results.summary().to_dict("records"),
         "columns": [
-            *(_OF_GRID if grid else _OF_CASES),
+            ("motion", "ground motion", "words"),
+            ("model", "model", "words"),
+            ("tan_alpha", "tan α"),
             ("runs", "runs", "d"),
             *((outcome, outcome, "d") for outcome in results.outcomes),
             ("no_uplift", "did not uplift", "d"),
