@@ -87,12 +87,11 @@ def explanations(values: Values, read: Read, reference: Reference) -> Iterator[E
         return
     for changes, other in search.tilt_explained(motion):
         for more, frame, turned in search.azimuth_explained(changes, other):
-            of_axes = _path_explained(reference, turned, frame)
+            of_axes = search.path_explained(turned, frame)
             if frame != Frame() and frame not in (change.frame for change in of_axes):
                 of_axes = (frame.change("azimuth"), *of_axes)
-            of_axes += _spin_explained(reference, with_changes(turned, of_axes))
-            left = reference.difference(with_changes(turned, of_axes))
-            yield Explanation(changes=(*changes, *more, *of_axes), left=left)
+            of_axes += search.spin_explained(turned, of_axes)
+            yield Explanation(changes=(*changes, *more, *of_axes), left=search.left(turned, of_axes))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,9 +102,13 @@ class _Search:
     read: Read
     reference: Reference
 
+    def left(self, motion: Motion, changes: Sequence[Change] = ()) -> Difference:
+        """What is left of the difference with changes of a motion."""
+        return self.reference.difference(with_changes(motion, changes))
+
     def tilt_explained(self, motion: Motion) -> Iterator[tuple[tuple[Change, ...], Motion]]:
         """Yield a change with which the tilt follows the reference, the closest first; last none at all."""
-        before = self.reference.difference(motion)
+        before = self.left(motion)
         if before.tilt.differs:
             otherwise = [(one, self.read(one.values(self.values))) for one in readings(self.values)]
             alone = [((change,), other) for change, other in otherwise if other is not None]
@@ -117,7 +120,7 @@ class _Search:
         self, before: Difference, tried: Sequence[tuple[tuple[Change, ...], Motion]]
     ) -> Iterator[tuple[tuple[Change, ...], Motion]]:
         """Yield those that follow the reference, the closest first."""
-        found = [(changes, motion, self.reference.difference(motion)) for changes, motion in tried]
+        found = [(changes, motion, self.left(motion)) for changes, motion in tried]
         for changes, motion, after in sorted(found, key=lambda one: one[2].tilt.size):
             by_rate = any(change.mistake.code == "time_scale" for change in changes)
             if self._follows(before, after, motion, by_rate=by_rate):
@@ -146,7 +149,7 @@ class _Search:
         self, changes: tuple[Change, ...], motion: Motion
     ) -> Iterator[tuple[tuple[Change, ...], Frame, Motion]]:
         """Yield columns read otherwise, or axes, with which the azimuth follows; last none at all."""
-        found = self.reference.difference(motion)
+        found = self.left(motion)
         part = found.azimuth
         if part is not None and part.differs:
             tried: list[tuple[tuple[Change, ...], Frame, Motion | None]] = []
@@ -160,51 +163,53 @@ class _Search:
             tried += [((), fit, motion) for fit in fits]
             for more, frame, other in tried:
                 if other is not None:
-                    left = self.reference.difference(frame.apply(other))
+                    left = self.left(frame.apply(other))
                     if explains(part, left.azimuth):
                         yield more, frame, other
         yield (), Frame(), motion
 
+    def path_explained(self, motion: Motion, axes: Frame) -> tuple[Change, ...]:
+        """The fewest changes that explain a path; what is wrong with the axes of the lean is expected."""
+        before = self.left(motion)
+        part = before.path
+        if motion.path is None or part is None or not (part.differs or axes != Frame()):
+            return ()
+        expected = (Frame(), axes)
+        fits = fitted_frames(
+            self.reference, _with_lean_of_path(motion), start=before.start, end=before.covered
+        )
+        own = [
+            (of_path(one),)
+            for one in readings(dict.fromkeys(POSITION, motion.time))
+            if one.mistake.concerns != "time"
+        ]
+        passing: list[tuple[float, float, tuple[Change, ...]]] = []
+        for frame, read, moved in itertools.product((*expected, *fits), ((), *own), (False, True)):
+            turn = [frame.change("axes" if frame == axes else "path")] if frame != Frame() else []
+            # y up is no horizontal axis
+            changes = tuple(sorted((*turn, *read), key=lambda one: one.mistake.code != "y_up"))
+            changes += (
+                (_origin(self.reference, with_changes(motion, changes), before.covered),) if moved else ()
+            )
+            left = self.left(motion, changes).path
+            if left is not None and not left.differs and (explains(part, left) or not part.differs):
+                # a constant offset has three numbers to fit: it comes after what has none
+                count = (frame not in expected) + len(read) + 1.5 * moved
+                passing.append((count, left.size, changes))
+        return min(passing, key=lambda one: one[:2])[2] if passing else ()
 
-def _path_explained(reference: Reference, motion: Motion, axes: Frame) -> tuple[Change, ...]:
-    """Return the fewest changes that explain a path; what is wrong with the axes of the lean is expected."""
-    before = reference.difference(motion)
-    part = before.path
-    if motion.path is None or part is None or not (part.differs or axes != Frame()):
-        return ()
-    expected = (Frame(), axes)
-    fits = fitted_frames(reference, _with_lean_of_path(motion), start=before.start, end=before.covered)
-    own = [
-        (of_path(one),)
-        for one in readings(dict.fromkeys(POSITION, motion.time))
-        if one.mistake.concerns != "time"
-    ]
-    passing: list[tuple[float, float, tuple[Change, ...]]] = []
-    for frame, read, moved in itertools.product((*expected, *fits), ((), *own), (False, True)):
-        turn = [frame.change("axes" if frame == axes else "path")] if frame != Frame() else []
-        # y up is no horizontal axis
-        changes = tuple(sorted((*turn, *read), key=lambda one: one.mistake.code != "y_up"))
-        changes += (_origin(reference, with_changes(motion, changes), before.covered),) if moved else ()
-        left = reference.difference(with_changes(motion, changes)).path
-        if left is not None and not left.differs and (explains(part, left) or not part.differs):
-            # a constant offset has three numbers to fit: it comes after what has none
-            count = (frame not in expected) + len(read) + 1.5 * moved
-            passing.append((count, left.size, changes))
-    return min(passing, key=lambda one: one[:2])[2] if passing else ()
-
-
-def _spin_explained(reference: Reference, motion: Motion) -> tuple[Change, ...]:
-    """Return the steady spin about the axis that explains its turn, if one does."""
-    before = reference.difference(motion)
-    if before.twist is None or not before.twist.differs:
-        return ()
-    model, trial = on_samples_of(reference.motion, motion)
-    assert model.twist is not None
-    assert trial.twist is not None
-    within = model.time <= before.covered + SAME_TIME
-    time, apart = (model.time - model.time[0])[within], (trial.twist - model.twist)[within]
-    change = spinning(float(time @ apart / (time @ time)))
-    return (change,) if explains(before.twist, reference.difference(change.motion(motion)).twist) else ()
+    def spin_explained(self, motion: Motion, changes: tuple[Change, ...]) -> tuple[Change, ...]:
+        """The steady spin about the axis that explains what turn is left with changes, if one does."""
+        before = self.left(motion, changes)
+        if before.twist is None or not before.twist.differs:
+            return ()
+        model, trial = on_samples_of(self.reference.motion, with_changes(motion, changes))
+        assert model.twist is not None
+        assert trial.twist is not None
+        within = model.time <= before.covered + SAME_TIME
+        time, apart = (model.time - model.time[0])[within], (trial.twist - model.twist)[within]
+        change = spinning(float(time @ apart / (time @ time)))
+        return (change,) if explains(before.twist, self.left(motion, (*changes, change)).twist) else ()
 
 
 def _origin(reference: Reference, motion: Motion, end: float) -> Change:
