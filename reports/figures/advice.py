@@ -17,7 +17,7 @@ from rockwobble.studies.spectrum.parts import SERIES
 
 from .ensemble import peak_shares
 from .palette import GREY, Style, model_style, run_styles
-from .picture import TIME, Array, Axis, Band, Line, Panel, Picture, Rule
+from .picture import TIME, Array, Axis, Band, Line, Panel, Picture, Rule, caption
 from .spectrum import NAMES, series_styles
 
 SHORT = {"copies": "copies", "acceleration": "same acceleration", "velocity": "same velocity"}
@@ -37,8 +37,7 @@ def pictures(results: Advice) -> list[Picture]:
     picture = Picture(
         name="advice",
         title=f"{results.facts['case']}: largest tilts, the trace, other scales and friction demand",
-        caption="Largest tilts: share of the runs that tilt no more; curves end below 1 where runs overturn "
-        "(triangle), the diamond is the case as given. Tilt: as given over the band of 90 % of the copies.",
+        caption=caption("advice"),
         panels=panels,
         columns=2,
         legend="panels",

@@ -11,7 +11,7 @@ from rockwobble.compare.comparison.summary import rows_of
 
 from .case_view import CaseView
 from .palette import Style, pale
-from .picture import TIME, Axis, Bars, Layer, Line, Panel, Picture, Rule, Text, list_axis
+from .picture import TIME, Axis, Bars, Layer, Line, Panel, Picture, Rule, Text, caption, list_axis
 from .thinning import envelope
 
 # blue, pale orange and vermilion of Okabe and Ito: apart in every kind of colour vision and in grey
@@ -25,11 +25,6 @@ _WHOLE = ("whole", Style(colour="#000000", dash="solid"), "")
 _SMALLEST = 1e-10
 # a taller picture cannot be read any more; the table has them all
 _MOST = 60
-_CAPTION = (
-    "Model form: the reduced model of the support minus what is asked about. Numerics: the engine minus the "
-    "engine extrapolated to a time step of zero. What is left nobody explains. RMS until 80 % of the "
-    "agreement, over the sum of the three; on the right the RMS of the whole difference."
-)
 
 
 Bar = tuple[str, ErrorBudget, bool]  # a difference: its name, its budget, and whether it is worth explaining
@@ -91,7 +86,9 @@ def _stack(bars: Sequence[Bar], name: str) -> Picture | None:
         layers=layers,
         height=0.9 + 0.27 * len(bars),
     )
-    return Picture(name=name, title="What the difference is made of", caption=_CAPTION, panels=[panel])
+    return Picture(
+        name=name, title="What the difference is made of", caption=caption("budget"), panels=[panel]
+    )
 
 
 def parts_picture(view: CaseView, name: str, *, above: float = 0.0) -> Picture | None:
@@ -113,7 +110,8 @@ def parts_picture(view: CaseView, name: str, *, above: float = 0.0) -> Picture |
                 lines.append(Line(x=budget.time, y=upper, name=words, style=style, width=width))
         layers: list[Layer] = [*lines, Rule(at=budget.covered, axis="x", text="counted up to here")]
         panels.append(Panel(x=TIME, y=y, layers=layers, title=f"{run} − {model}"))
-    caption = "Each as its largest value within the last second."
     if not panels:
         return None
-    return Picture(name=name, title="The parts against time", caption=caption, panels=panels, link_x=True)
+    return Picture(
+        name=name, title="The parts against time", caption=caption("budget_parts"), panels=panels, link_x=True
+    )

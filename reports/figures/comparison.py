@@ -16,7 +16,7 @@ from rockwobble.reduced import limiting_angle_of_turn
 from .case_view import CaseView, case_views
 from .heat import names
 from .palette import DARK, GREY, SYMBOLS, Style
-from .picture import TIME, Array, Axis, Bars, Layer, Line, Panel, Picture, Rule, tilt_axis
+from .picture import TIME, Array, Axis, Bars, Layer, Line, Panel, Picture, Rule, caption, tilt_axis
 from .thinning import envelope
 
 # smaller differences are drawn here: a logarithm has no zero [alpha]
@@ -39,10 +39,7 @@ def tilt_picture(view: CaseView, name: str = "figure") -> Picture:
     return Picture(
         name=name,
         title=f"Tilt: {view.case.name}, R = {cylinder.semidiagonal:g} m, tan α = {cylinder.tan_alpha:g}",
-        caption="Angle of the axis from the vertical over the slenderness, of the runs of each support and "
-        "its model. Below, the difference from the reference: its largest value within the last second. "
-        "Diamonds mark where 1 % of α, or a tenth of the peak where that is less, is first exceeded: beyond "
-        "it single traces say nothing about each other.",
+        caption=caption("tilt"),
         panels=[
             *(_tilts(view, group, support) for group, support in zip(groups, view.supports, strict=True)),
             *(_differences(view, reference) for reference in view.rows["reference"].unique()),
@@ -106,9 +103,7 @@ def contact_picture(view: CaseView, name: str) -> Picture:
     return Picture(
         name=name,
         title="Where the rim touches",
-        caption="Azimuth of the contact point, counted through whole turns; a jump of about half a turn is a "
-        "pass. Below, its distance from the original circle, where the tilt exceeds 5 % of its peak: a "
-        "cylinder in a recess keeps to the circle, on flat ground it rolls out.",
+        caption=caption("contact_point"),
         panels=[_azimuth(view), *(_drift(view, support) for support in view.supports)],
         link_x=True,
     )
@@ -170,8 +165,7 @@ def turn_picture(view: CaseView, name: str, *, notes: bool = True) -> Picture:
     return Picture(
         name=name,
         title="Angle of turn of each pass",
-        caption="How far the contact point turns from one tilt maximum to the next; dashed: the exact answer "
-        "for vanishing spin. Open symbols are passes closer to upright than contact resolves.",
+        caption=caption("turns"),
         panels=[Panel(x=x, y=_ANGLE, layers=layers)],
         link_x=True,
     )
@@ -203,8 +197,7 @@ def orbit_picture(view: CaseView, name: str) -> Picture:
     return Picture(
         name=name,
         title="Paths of the centre of mass, seen from above",
-        caption="Each run over the model of its support, relative to the moving ground: strong until they "
-        "diverge, faint from then on.",
+        caption=caption("orbits"),
         panels=panels,
         columns=2,
         legend="panels",
@@ -244,8 +237,7 @@ def residual_picture(view: CaseView, name: str) -> Picture:
     return Picture(
         name=name,
         title="How the cylinder stands at the end",
-        caption="Distance of the base centre from its old place, and turn of the cylinder about its own "
-        "axis. The recess model has none of either.",
+        caption=caption("residuals"),
         panels=[
             _bars(runs, moved, colours, Axis(label="displacement / b", unit="-", low=0.0), "b"),
             _bars(runs, twisted, colours, Axis(label="twist", unit="deg", low=0.0), "°"),
@@ -293,8 +285,7 @@ def excitation_picture(view: CaseView, name: str) -> Picture | None:
     return Picture(
         name=name,
         title="Excitation",
-        caption="Acceleration of the ground. The cylinder uplifts where the horizontal resultant exceeds the "
-        "dashed line.",
+        caption=caption("excitation"),
         panels=[Panel(x=TIME, y=y, layers=layers)],
         link_x=True,
     )

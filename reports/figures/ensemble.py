@@ -17,7 +17,7 @@ from rockwobble.studies.ensemble_findings import main_pairs
 from rockwobble.studies.fragility.study import Row
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles
-from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, ecdf, list_axis, log_ticks
+from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, caption, ecdf, list_axis, log_ticks
 
 # beyond the largest ratio, and at least beyond the margin
 _ROOM = 1.25
@@ -34,11 +34,7 @@ def pictures(found: Ensemble) -> list[Picture]:
     picture = Picture(
         name="ensemble",
         title="Distributions of peak tilt by method, and ratios of the peaks of each member",
-        caption="Above: share of the members whose peak tilt is at most that of the axis; curves end below "
-        "1 where members overturn (triangle). Below: ratio of the two peaks of each member (dots; triangles "
-        "at the edges count those that overturn by one method alone), the median with its 95 % interval "
-        "(diamond, thick bar), 5 to 95 % of the members (thin bar), and the margin of "
-        f"{100.0 * MARGIN:g} % (shaded).",
+        caption=caption("ensemble", share=MARGIN),
         panels=panels,
         legend="panels",
     )

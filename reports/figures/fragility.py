@@ -16,7 +16,7 @@ from rockwobble.studies.fragility.tables import ALL, OVERTURNED
 
 from .ensemble import margin_rules, ratio_axes
 from .palette import DARK, GREY, ORDER, Style, mark_styles, pale
-from .picture import Axis, Band, Line, Panel, Picture, Rule
+from .picture import Axis, Band, Line, Panel, Picture, Rule, caption
 
 # of a panel: the support, and what it is called
 _PANELS = {"planar": "Planar analysis"} | {each: each.words.capitalize() for each in SUPPORTS.values()}
@@ -81,9 +81,7 @@ def _ratios(results: Fragility) -> Picture | None:
     return Picture(
         name="fragility-ratios",
         title="Ratios of the median overturning intensities of two methods",
-        caption="Above 1 the median overturning intensity of the first method is higher: it is "
-        "unconservative. Bars: 95 % intervals by resampling the motions, the same for both methods. "
-        f"Shaded: the margin of {100.0 * margin:g} %.",
+        caption=caption("fragility_ratios", share=margin),
         panels=panels,
         columns=2,
     )
@@ -101,16 +99,10 @@ def _curves(results: Fragility, cylinder: str, place: int) -> Picture:
             panels.append(_panel(results, cylinder, shown, title))
     measure = MEASURES[str(results.facts["measure"])]
     drawn = (results.curves["cylinder"] == cylinder) & (results.curves["limit"] == OVERTURNED)
-    lines = (
-        "Lines: lognormal curves by maximum likelihood, with 95 % bands by resampling the motions; marks: "
-        "shares of the runs."
-        if drawn.any()
-        else "Marks: shares of the runs."
-    )
     return Picture(
         name=f"fragility-{place}",
         title=f"Fragility of {cylinder}: probability of overturning",
-        caption=f"Over the intensity, {measure.title}. {lines}",
+        caption=caption("fragility_curves" if drawn.any() else "fragility_marks", name=measure.title),
         panels=panels,
         columns=2,
         legend="panels",

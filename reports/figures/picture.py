@@ -11,6 +11,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockwobble.models.finding import Finding, Value
+
 from .heat import Heat, Shades
 from .palette import DARK, Style, mark_styles
 from .thinning import POINTS
@@ -221,6 +223,11 @@ class Panel:
         return list(dict.fromkeys(name for layer in self.layers for name in _names(layer) if name))
 
 
+def caption(key: str, /, **values: Value) -> Finding:
+    """Caption of a picture as data."""
+    return Finding(key=f"figure.{key}", values=values)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Picture:
     """Panels that stand together, with a title and a caption that explain them alone.
@@ -229,7 +236,9 @@ class Picture:
     ----------
     name : str
         Name of its file.
-    title, caption : str
+    title : str
+    caption : str or Finding
+        A finding, see `caption`, is worded where the picture stands on a page.
     panels : sequence of Panel
     columns : int
         Columns of panels, in a document; a page has as many as fit.
@@ -246,7 +255,7 @@ class Picture:
     name: str
     title: str
     panels: Sequence[Panel]
-    caption: str = ""
+    caption: str | Finding = ""
     columns: int = 1
     shades: Shades | None = None
     legend: Literal["below", "panels"] = "below"

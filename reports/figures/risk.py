@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from rockwobble.studies import Fragility
 
 from .palette import DARK, GREY, ORDER, Style, mark_styles
-from .picture import Axis, Line, Panel, Picture, Rule
+from .picture import Axis, Line, Panel, Picture, Rule, caption
 
 _MOST = 4  # methods of a panel: more lines cannot be told apart
 _COLOURS = (DARK, *ORDER)
@@ -76,10 +76,7 @@ def _picture(results: Fragility, cylinder: str, place: int) -> Picture:
     return Picture(
         name=f"risk-{place}",
         title=f"Hazard, fragility and their product: {cylinder}",
-        caption="Annual frequency of exceedance; share of the motions that overturn at an intensity, "
-        "without a fitted curve; and their product per unit of the logarithm of the intensity, "
-        "whose area is the annual frequency of overturning."
-        + (" Only the first methods are drawn." if len(set(table["method"])) > _MOST else ""),
+        caption=caption("risk", count=len(labels) if len(set(table["method"])) > _MOST else None),
         panels=panels,
         columns=2,
         legend="panels",

@@ -11,7 +11,7 @@ from rockwobble.studies.spectrum.study import OverturningSpectrum
 
 from .heat import PEAKS, Heat, peak_map
 from .palette import Style, model_style, run_styles
-from .picture import Axis, Line, Panel, Picture, bar_ends
+from .picture import Axis, Line, Panel, Picture, bar_ends, caption
 
 NAMES = TITLES | {SPATIAL: "3D"}
 _HEIGHT = 3.4
@@ -60,8 +60,7 @@ def picture_of(spectrum: TiltMaps) -> Picture:
         name="spectrum",
         title=f"Peak tilt of sizes under intensities, {spectrum.motion.name or 'record'}, "
         f"tan α = {spectrum.tan_alpha:g}",
-        caption="Each cell is a run; runs that overturn, and runs that do not uplift, have colours of their "
-        "own. The overturning boundary is as found by the search.",
+        caption=caption("spectrum"),
         panels=[*maps, curves],
         columns=2,
         shades=PEAKS,

@@ -12,7 +12,7 @@ from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.studies.advice.demands import fall_of
 
 from .palette import GREY, ORDER, Style
-from .picture import TIME, Array, Axis, Layer, Line, Panel, Picture, Rule, tilt_axis
+from .picture import TIME, Array, Axis, Layer, Line, Panel, Picture, Rule, caption, tilt_axis
 
 _PATH = Style(colour=ORDER[0])
 _POINT = Style(colour=ORDER[1])
@@ -53,8 +53,7 @@ def pictures(trace: Trace) -> list[Picture]:
         ),
     ]
     title = f"{trace.case.name}, {trace.run}"
-    caption = "Tilt of the axis in units of alpha, and the centre of the top, seen from above."
-    return [Picture(name="trace", title=title, caption=caption, panels=panels, columns=2)]
+    return [Picture(name="trace", title=title, caption=caption("trace"), panels=panels, columns=2)]
 
 
 def _top(trace: Trace) -> Array:

@@ -25,7 +25,7 @@ from rockwobble.studies.validity.study import Validity
 
 from .heat import Gap, Heat, Shades, contour, names
 from .palette import DARK, GREY, ORDER, PALE, Style, mark_styles
-from .picture import Array, Axis, Layer, Line, Panel, Picture, Rule, bar_ends, group_lines, list_axis
+from .picture import Array, Axis, Layer, Line, Panel, Picture, Rule, bar_ends, caption, group_lines, list_axis
 
 _FREE_PANELS = 4
 _FAR = 1e3  # what infinite is drawn as: beyond every scale
@@ -45,61 +45,47 @@ _LINES = (
 )
 
 
-# of how many records a cell is, and which has none
-_PAIRED = "Each cell: up to {{members}} records, without those that overturn by both; gray: {few} left."
-_STANDING = f"Each cell: up to {{members}} such records; gray: fewer than {FEWEST}."
-# name, title, caption, its end, column of the cells, shades
+# name, title, fewest records of a cell that is not gray, column of the cells, shades
 _MAPS = (
     (
         "bias",
         "Where rolling out changes the peak: bias",
-        "Median over the records of the ratio of the peaks on flat ground and in an ideal recess, minus "
-        "1, by the reduced models: red, higher on flat ground; blue, lower; beyond ±50 % as at ±50 %.",
-        _PAIRED.format(few=f"fewer than {FEWEST_OF_A_QUANTILE}"),
+        FEWEST_OF_A_QUANTILE,
         "flat_percent",
         Shades(label="flat ground / recess − 1, median", unit="%", low=-50.0, high=50.0, centre=0.0),
     ),
     (
         "spread",
         "Where rolling out changes the peak: spread",
-        "90th percentile over the records of the ratio of the peaks on flat ground and in the recess, or its "
-        "inverse; darkest: 10 and more, or it overturns on one of the two supports alone.",
-        _PAIRED.format(few="none"),
+        1,
         "flat_90",
         Shades(label="90th percentile of the ratio", unit="-", low=1.0, high=10.0, log=True),
     ),
     (
         "sensitivity",
         "Sensitivity: the recess model under a record 1 % stronger",
-        "The same ratio between the recess model and itself under a record 1 % stronger: where it is as "
-        "large, neither model predicts the peak under one record.",
-        _PAIRED.format(few="none"),
+        1,
         "copy_90",
         Shades(label="90th percentile of the ratio", unit="-", low=1.0, high=10.0, log=True),
     ),
     (
         "need-friction",
         "Friction demand of the recess model",
-        "90th percentile of the friction demand over the records that rock without overturning.",
-        _STANDING,
+        FEWEST,
         "friction_90",
         Shades(label="friction demand / tan α", unit="-", low=1.0, high=3.0),
     ),
     (
         "need-contact",
         "Least normal force",
-        "10th percentile of the least normal force over the records that rock without overturning; "
-        "below zero (red) the ground would have to pull.",
-        _STANDING,
+        FEWEST,
         "normal_10",
         Shades(label="normal force / weight", unit="-", low=-1.0, high=1.0, centre=0.0, reverse=True),
     ),
     (
         "need-moment",
         "Restraining moment of the recess",
-        "90th percentile of κ, of the restraining moment κ (vertical + axis), over the records that rock "
-        "without overturning.",
-        _STANDING,
+        FEWEST,
         "moment_90",
         Shades(label="κ / (weight × b)", unit="-", low=0.01, high=1.0, log=True),
     ),
@@ -110,7 +96,7 @@ def map_pictures(tables: Tables) -> list[Picture]:
     """Return the maps in which anything is known: of peaks over records, of needs, and of free response."""
     table, free = cells(tables), tables["free_response"]
     table = table.assign(flat_percent=100.0 * (table["flat_ratio"] - 1.0))
-    found = [_shaken(table, *given) for given in _MAPS if table[given[4]].notna().any()]
+    found = [_shaken(table, *given) for given in _MAPS if table[given[3]].notna().any()]
     two = free["flat_turn"].notna().any()  # models of free response, which are compared
     for name, what in (("turn", "Azimuth change"), ("period", "Period")) if two else ():
         off = 100.0 * (free[f"flat_{name}"] / free[name] - 1.0)
@@ -118,9 +104,7 @@ def map_pictures(tables: Tables) -> list[Picture]:
     return found
 
 
-def _shaken(
-    table: pd.DataFrame, name: str, title: str, caption: str, counted: str, column: str, shades: Shades
-) -> Picture:
+def _shaken(table: pd.DataFrame, name: str, title: str, fewest: int, column: str, shades: Shades) -> Picture:
     panels = []
     for tan_alpha, own in table.groupby("tan_alpha"):
         (x, x_ticks), (y, y_ticks) = (
@@ -148,7 +132,7 @@ def _shaken(
     return Picture(
         name=name,
         title=title,
-        caption=f"{caption} {counted.format(members=int(table['members'].max()))}",
+        caption=caption(name.replace("-", "_"), count=int(table["members"].max()), count_fewest=fewest),
         panels=panels,
         columns=len(panels) if len(panels) < 4 else 2,
         shades=shades,
@@ -184,7 +168,7 @@ def _free(name: str, what: str, table: pd.DataFrame) -> Picture:
     return Picture(
         name=name,
         title=f"{what} from tilt maximum to next maximum",
-        caption="Free response by the reduced models: value on flat ground / in an ideal recess − 1.",
+        caption=caption("free"),
         panels=panels,
         columns=2,
         shades=Shades(label="flat ground / recess − 1", unit="%", low=-reach, high=reach, centre=0.0),
@@ -266,10 +250,7 @@ def _records(table: pd.DataFrame) -> Picture:
     return Picture(
         name="records",
         title="Peak tilt over records, compared with the recess model",
-        caption="Marks: the median over the records of the ratio of the two peaks; bars: nine in ten "
-        "records. What overturns by one of the two alone is at an end. Beside them the recess "
-        "model under a record 1 % stronger: a scatter no wider is sensitivity, not an error of "
-        "a method. Above 1 the recess model is unconservative.",
+        caption=caption("records"),
         panels=panels,
         columns=min(2, len(panels)),
     )
@@ -290,8 +271,7 @@ def _agreement(table: pd.DataFrame) -> Picture:
     return Picture(
         name="agreement",
         title="Agreement time of traces, measured against predicted",
-        caption="Time from uplift until the tilts of engine and model differ by more than 1 % of α, against "
-        "the time that the reduced models predict. Open marks: runs that agree to their end.",
+        caption=caption("agreement"),
         panels=[Panel(x=predicted, y=measured, layers=layers, height=3.2)],
     )
 
@@ -303,17 +283,10 @@ def _verification(table: pd.DataFrame) -> Picture:
     layers = group_lines(groups, "apart", "off", lines=False, filled="resolved")
     ends = table["apart"].agg(["min", "max"]).to_numpy(dtype=np.float64)
     layers.append(Line(x=ends, y=CONFIRMS * ends, name="half of the difference", width=0.8))
-    unresolved = (
-        ""
-        if table["resolved"].all()
-        else " Open marks: near-upright passes that its contact does not resolve."
-    )
     return Picture(
         name="verification",
         title="The engine distinguishes the models of recess and flat ground",
-        caption="Each mark is a run: error of the azimuth change in the engine, against the difference of "
-        "the two models. Below the line, half of that difference, the engine decides between them."
-        f"{unresolved}",
+        caption=caption("verification", reason=None if table["resolved"].all() else "open_marks"),
         panels=[
             Panel(
                 x=Axis(label="recess − flat model", unit="deg", log=True),
@@ -338,8 +311,7 @@ def _slip(table: pd.DataFrame) -> Picture:
     return Picture(
         name="slip",
         title="Slip in the engine where friction is insufficient",
-        caption="Distance over which the contact slips in one period of free response, against friction / "
-        "friction demand of the recess model.",
+        caption=caption("slip"),
         panels=[
             Panel(
                 x=Axis(label="friction / friction demand", unit="-"),
@@ -372,9 +344,7 @@ def _rings(table: pd.DataFrame, uplift: float) -> Picture:
     return Picture(
         name="rings",
         title="A recess with clearance, compared with the ideal recess",
-        caption=f"Recesses whose walls lean by α, under El Centro at {INTENSITY * uplift:.3g} g tan α and in "
-        "free response; bars: range over the azimuths of the ground motion. Energy: runs that touch the "
-        "walls.",
+        caption=caption("rings", intensity=INTENSITY * uplift),
         panels=[
             Panel(
                 x=clearance,
@@ -420,8 +390,7 @@ def _contact(table: pd.DataFrame, uplift: float) -> Picture:
     return Picture(
         name="contact",
         title="Compliant contact",
-        caption=f"Peak tilt under El Centro at {STRONG * uplift:.3g} g tan α, and energy lost in a pass of "
-        "free response over that of the release, by the softness of contact and its damping ratio.",
+        caption=caption("contact", intensity=STRONG * uplift),
         panels=[
             Panel(
                 x=softness,

@@ -31,6 +31,7 @@ from ..figures.picture import Picture
 from .command_line import command_lines
 from .sentences import environment
 from .table import Row, Table, columns_of, number
+from .wording import sentence
 
 Output = Literal["terminal", "markdown", "html"]
 _PLACE = re.compile(r"\n?@@(\d+)@@\n?")
@@ -147,7 +148,7 @@ class Page:
             if isinstance(thing, Fold):
                 return thing.title and f"## {thing.title}"
             if isinstance(thing, Picture):
-                caption = f"*{thing.title}.* {thing.caption}".strip()
+                caption = f"*{thing.title}.* {_caption(thing)}".strip()
                 return f"![{thing.title}]({thing.name}.svg)\n\n{caption}"
             return thing.markdown() if isinstance(thing, Table) else ""
 
@@ -270,6 +271,10 @@ def _with_commands(parts: Iterable[str | Table]) -> Iterator[str | Table | Comma
             yield last
 
 
+def _caption(picture: Picture) -> str:
+    return picture.caption if isinstance(picture.caption, str) else sentence(picture.caption)
+
+
 def _html(part: Part) -> str:
     if isinstance(part, Fold):
         summary = f'<details class="fold"><summary>{html.escape(part.title)}</summary>'
@@ -281,7 +286,7 @@ def _html(part: Part) -> str:
         )
         columns = f' class="panels" style="--columns: {part.columns}"'
         several = columns if len(part.panels) > 1 and not part.link_x else ""
-        words = f"<h3>{html.escape(part.title)}</h3><p>{html.escape(part.caption)}</p>"
+        words = f"<h3>{html.escape(part.title)}</h3><p>{html.escape(_caption(part))}</p>"
         scale = colour_bar(part.shades) if part.shades else ""
         return f'<figure id="{html.escape(part.name)}">{words}<div{several}>{panels}</div>{scale}</figure>'
     if isinstance(part, Table):

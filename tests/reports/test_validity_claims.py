@@ -11,10 +11,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from rockwobble.models.finding import Finding
 from rockwobble.reports.figures.picture import Picture
 from rockwobble.reports.figures.validity import map_pictures, pictures
 from rockwobble.reports.pages import page_of
 from rockwobble.reports.pages.table import number
+from rockwobble.reports.pages.wording import sentence
 from rockwobble.studies.validity.limits import cells, contrasts
 from rockwobble.studies.validity.study import Validity
 
@@ -45,7 +47,7 @@ def test_captions_of_maps_say_of_how_many_records_a_cell_is(found: Validity) -> 
     def empty_below(name: str, column: str, known: pd.Series[bool]) -> None:
         counts = known.groupby([peaks[axis] for axis in POINT]).sum()
         assert counts.max() == peaks.groupby(POINT).size().max() > counts.min()
-        (fewest,) = re.findall(r"up to 22 .*; gray: (?:fewer than (\d+)|none)", drawn[name].caption)
+        (fewest,) = re.findall(r"up to 22 .*; gray: (?:fewer than (\d+)|none)", worded(drawn[name]))
         pd.testing.assert_series_equal(
             table[column].isna(), (counts < int(fewest or 1)).reindex(table.index), check_names=False
         )
@@ -64,6 +66,11 @@ def test_captions_of_maps_say_of_how_many_records_a_cell_is(found: Validity) -> 
         empty_below(name, column, peaks["least_normal"].notna())
 
 
+def worded(picture: Picture) -> str:
+    assert isinstance(picture.caption, Finding)
+    return sentence(picture.caption)
+
+
 def shades_end(picture: Picture) -> tuple[float, float]:
     assert picture.shades is not None
     return picture.shades.low, picture.shades.high
@@ -72,7 +79,7 @@ def shades_end(picture: Picture) -> tuple[float, float]:
 def test_the_map_of_the_bias_says_where_its_colours_end(found: Validity) -> None:
     (bias,) = (picture for picture in map_pictures(found.tables) if picture.name == "bias")
     assert shades_end(bias) == (-50.0, 50.0)
-    assert "beyond ±50 % as at ±50 %" in bias.caption
+    assert "beyond ±50 % as at ±50 %" in worded(bias)
 
 
 def test_open_marks_are_explained_where_there_are_some(found: Validity) -> None:
@@ -81,7 +88,7 @@ def test_open_marks_are_explained_where_there_are_some(found: Validity) -> None:
         other = table.assign(resolved=[resolved, *table["resolved"][1:]])
         drawn = pictures(dataclasses.replace(found, tables={**found.tables, "verification": other}))
         (picture,) = (each for each in drawn if each.name == "verification")
-        assert ("Open marks" in picture.caption) is not resolved
+        assert ("Open marks" in worded(picture)) is not resolved
 
 
 def test_the_guide_says_of_contact_and_of_clearance_what_the_tables_bear(found: Validity) -> None:
