@@ -68,16 +68,13 @@ class RingSettings(EngineSettings):
     ----------
     ring_clearance : float
         Distance of the foot of the walls from the base circle, in base radii. 1e-3 is not touched by a
-        slender cylinder in free response (tan alpha 0.2, half of alpha); a tighter ring takes energy from
-        it and holds it no better.
+        slender cylinder in free response; a tighter ring takes energy from it and holds it no better.
     ring_inclination : float
         Inclination of the walls, outward from the vertical [rad]. Default alpha: the side of a cylinder
-        that leans less than to its balance does not meet such a wall. Steeper walls hold better: under El
-        Centro a slender cylinder rolls out by 0.005 b at 0.1 rad, 0.02 b at 0.5 and 0.1 b at 1.1.
+        that leans less than to its balance does not meet such a wall. Steeper walls hold better.
     ring_facets : int
-        Number of walls. The rim of a squat cylinder bumps from wall to wall: in free response at tan alpha
-        1 it loses 34, 14, 7 and 5 % of its energy with 32, 64, 128 and 256; a slender one sees no
-        difference. A wall costs 1.5 % of a step.
+        Number of walls. The rim of a squat cylinder bumps from wall to wall and loses energy, the more the
+        fewer there are; a slender one sees no difference. Each wall costs some per cent of a step.
     ring_friction : float
         Coulomb coefficient of the pair wall and cylinder [-]. 0.5 is that of concrete or steel; without
         friction a cylinder rolls out and twists several times as far.

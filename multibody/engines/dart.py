@@ -55,14 +55,11 @@ class DartSettings(EngineSettings):
         rim instead of corners, from a lean of depth/b on, its radius is off by 1e-4 b only. It is taken off
         the poses.
     depth_gain : float
-        Share of a change of depth that one step takes back. At 0.3 what two steps extrapolate to is 4e-9,
-        1e-8 and 2e-7 alpha off after a release at tan alpha 0.35, 1 and 3; at 0.05 it is 7e-8, 5e-7 and 3e-6.
-        1 would make landing elastic.
+        Share of a change of depth that one step takes back. With little of it the rim is late by many steps,
+        and two steps do not extrapolate; 1 would make landing elastic.
     friction_damping : float
         As for MuJoCo: share of the slip velocity that one step removes. DART knows no other than 1, which is
-        made up for by a velocity of the ground. At 1.8 the error of a free response is a fifth to a tenth of
-        that at 1, and under twice El Centro on flat ground (R = 6 m, tan alpha 0.2, to 22 s) it is 7e-3 alpha
-        and not 7e-2, for a fifth more time a step.
+        made up for by a velocity of the ground.
     tolerance, iterations : float, int
         Tolerance and iterations of the Gauss-Seidel method; one contact takes a single sweep, the four of a
         base that is about to open some hundreds, and fewer leave it a velocity.

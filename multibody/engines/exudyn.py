@@ -35,25 +35,19 @@ if TYPE_CHECKING:
 class ExudynSettings(EngineSettings):
     """Settings of Exudyn: its integrator; an ideal rim leaves nothing else to set.
 
-    Measured on a release at alpha/2 with a rolling rate of 0.1 rad/s, h = 2 b, b = 1 m: error of the angle of
-    turn against the equations of the flat-ground model, 203.909800 deg.
-
     Attributes
     ----------
     integrator : {"trapezoidal", "generalized-alpha"}
         The trapezoidal rule with constraints on velocities (index 2), or the generalized alpha method with
-        constraints on positions (index 3). Both are second order and give the same turn to 1e-7 deg:
-        2.1e-3, 8.4e-5 and 2.1e-5 deg off at steps of 1e-3, 2e-4 and 1e-4 s. The second is a third cheaper;
-        the first holds what rolling is, a rim whose velocity is zero at the contact. Exudyn's explicit
+        constraints on positions (index 3). Both are second order. The second is cheaper; the first holds
+        what rolling is, a rim whose velocity is zero at the contact. Exudyn's explicit
         integrators, though of high order, do not take constraints.
     spectral_radius : float
         Spectral radius of the generalized alpha method at infinite frequency. An ideal rim has no high
-        frequency that would have to be damped: 0.5 makes the error of the tilt larger by half at 1e-4 s, and
-        by 27 times at 2e-5 s; 0.9, the engine's default, by 2 %.
+        frequency that would have to be damped, and what damps one errs more. 0.9 is the engine's default.
     relative_tolerance, absolute_tolerance : float
         Relative tolerance and absolute tolerance at which Newton's iteration stops. The engine's own, 1e-8
-        and 1e-10, show as a fiftieth of the
-        error of the tilt at 1e-4 s and as a fifth at 2e-5 s; these cost a quarter more there.
+        and 1e-10, show at small steps.
     iterations : int
         At most. With three, no step reaches these tolerances.
     """

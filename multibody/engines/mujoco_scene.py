@@ -1,8 +1,8 @@
 """The settings of MuJoCo, its scene files with the values of one run set on them, and its start.
 
-Times of settings are in the units of the user, like the time step. Each value was chosen at the reference
-size (semidiagonal 6 m, h = 1e-4 s), under El Centro as well as in free response. A run starts at the depth at
-which contact carries the load, and for leapfrog half a step back.
+Times of settings are in the units of the user, like the time step. Their values stand on exact solutions, at
+the reference size (semidiagonal 6 m, h = 1e-4 s): `python tests/benchmarks engine_settings`. A run starts
+at the depth at which contact carries the load, and for leapfrog half a step back.
 """
 
 from __future__ import annotations
@@ -38,40 +38,28 @@ class MujocoSettings(EngineSettings):
         the speed at which it came, at every step alike: half of the peak after an impact in one plane may be
         lost. So it is 4 in one plane.
     impedance : float
-        Share of a load that contact takes at once; 0.9999 is the engine's maximum. The rest sinks in: with
-        0.999 a standing cylinder has leant by the time it uplifts, which adds 2e-5 to the error under El
-        Centro at 2e-4 s.
+        Share of a load that contact takes at once; 0.9999 is the engine's maximum. The rest sinks in, so
+        that a standing cylinder has leant by the time it uplifts.
     rolling_impedance : float
         The same of the rim, once the cylinder leans; its friction stays as hard as `impedance` says. Its
         lowest point sinks and rises by a curvature of its path that no velocity shows, and where it rises by
-        more than the rim has sunk in, contact is lost for a step, and with it friction. At 0.9999 that lets
-        the rim slip by 1e-5 m under El Centro on (10 m, 0.1), and twice that on (6 m, 0.2) doubled, where
-        the relative RMS at 1e-4 s is 1.0e-5 and 1.2e-5; at 0.995 they are 3.7e-6 and 6.4e-6, at 0.98 3.7e-6
-        and 7.5e-6.
+        more than the rim has sunk in, contact is lost for a step, and with it friction: the rim slips.
     friction_damping : float
         Share of the slip velocity that one step removes, at most 2. The rim's material point moves on
         while it rolls, and friction, which has no memory, lets it creep by (1/friction_damping - 1/2) h
         times its acceleration. At 1.8 that is a ninth of what it is at 1 (the engine's default), and still
-        first order in h: from tan alpha 0.2 to 3 a release in the recess errs by 5e-6 alpha instead of
-        1.3e-4. Where the case slides it is what stops a slip within 2 ms at the reference size.
+        first order in h. Where the case slides it is what stops a slip within 2 ms at the reference size.
     noslip_iterations : int
         Sweeps of a second solver, which finds friction under the loads that the first has found; 0 for
         friction and load at once. The engine's cone is convex: friction that would remove a slip velocity v
         lifts the contact by mu v times its share in a step, whatever the step, and a base that hops has lost
         its friction. Found one after the other, neither lifts the other. So it is used where the case slides.
     guide_stiffness : float
-        Guide stiffness of each half of the guide, over the axial inertia [1/s^2]. (0.2/h)^2/4: the twist
-        stays below 1e-6
-        rad, and a period has 40 steps. In free response the stiffness makes no difference. Under El Centro
-        (relative RMS on (10 m, 0.1) and (6 m, 0.2) doubled, at h = 2e-4 s) the error is 3.4e-4 and 8.3e-4 at
-        (0.05/h)^2/4, 1.6e-4 and 3.6e-4 at (0.1/h)^2/4, and 1.2e-4 and 3.0e-4 here: as small as with the
-        first at half the step, which is twice the cost.
+        Guide stiffness of each half of the guide, over the axial inertia [1/s^2]. (0.2/h)^2/4: stiff enough
+        that the twist does not show, and a period of its own has 40 steps.
     integrator : str
-        Euler. At the cost of its step of 1e-4 s the error under El Centro (recess, relative RMS) is 2.0e-4
-        by Euler, 2.5e-4 by implicitfast, 2.3e-4 by implicit, 3.0e-4 by RK4, whose step takes 3.2 times as
-        long, and 3.9e-3 by "discrete"; that of a release 5e-6, 3e-5, 4e-5, 5e-4 and 0.5 alpha: "discrete"
-        damps the guide, and is sound on flat ground. `python tests/benchmarks engine_settings` prints
-        them all.
+        Euler: velocities and poses are a leapfrog, which keeps the energy. RK4 evaluates contact four times
+        a step and gains nothing from it; "discrete" damps the guide, and is sound on flat ground.
     cone : str
         The elliptic cone is Coulomb's; the friction damping above exists for it only.
     tolerance, iterations : float, int
@@ -82,13 +70,14 @@ class MujocoSettings(EngineSettings):
         turn until one of them is under the load, and once the base opens under its lean: fixed ones uplift
         early by up to 1 - cos(pi/corners) of it, and roll on as a polygon, which no step removes. Neighbours
         that share the load let the base lean before it opens, which leaves a tilt rate: so where it is about
-        to open four are left, which on their own would chatter under a load near the rim. All 48 to the end
-        make a relative RMS of 5.8e-5 under El Centro on (10 m, 0.1). Not in the scene of a release.
+        to open four are left, which on their own would chatter under a load near the rim. Not in the scene
+        of a release.
     follow_load : bool
         Whether a standing base is carried by those corners, which turn with the load and leave when it has
         uplifted. If not, nothing is steered and the scene is the same throughout: points just inside the rim,
         and the rim as a flat ellipsoid, whose lowest point runs under the load by itself. By default what
-        wobbles is followed, for the last digit of its uplift; what closes in one plane or slides is not.
+        wobbles is followed, for the last digit after its uplift; what closes in one plane or slides is not.
+        `python tests/benchmarks engine_settings --uplift` compares them.
     points : int
         Points of a base that is not followed. On its rim alone it would shake from side to side.
     points_damping_ratio : float

@@ -36,22 +36,19 @@ class PybulletSettings(EngineSettings):
     Attributes
     ----------
     guide_stiffness : float
-        As for MuJoCo [1/s^2]; from (0.05/h)^2/4 to (0.2/h)^2/4 nothing changes, stiffer ones are worse.
+        As for MuJoCo [1/s^2].
     friction_damping : float
         As for MuJoCo: share of the slip velocity that one step removes. Bullet knows no other than 1, which
-        is made up for by a velocity of the ground, a plane that may move along itself unseen. At 1.8 the
-        error of a free response is a tenth to a seventieth of that at 1, for a quarter more time a step.
+        is made up for by a velocity of the ground, a plane that may move along itself unseen.
     solver_residual : float
-        Solver residual at which an iteration stops. Bullet's own 1e-7 leaves an error fifty times that of
-        the step.
+        Solver residual at which an iteration stops. Bullet's own, 1e-7, leaves more than the step does.
     iterations : int
         At most. One contact takes a few; four contacts of a standing cylinder take all, and with fewer
         it creeps and uplifts early.
     contact_slop : float
         Depth that is not corrected, at the reference size [m]. Bullet's own is 1e-5.
     contact_erp : float
-        Share of a depth that one step corrects. Under El Centro, turned by three azimuths, no value from
-        0.02 to 0.2 is better by more than chance; 0.8 is worse.
+        Share of a depth that one step corrects: little enough that what is corrected throws nothing up.
     collision_margin : float
         Rounds the rim, at the reference size [m]. Bullet's own, 0.04, leaves a bias that no step removes.
     """

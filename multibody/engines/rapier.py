@@ -57,18 +57,16 @@ class RapierSettings(EngineSettings):
     guide_stiffness : float
         As for MuJoCo [1/s^2].
     contact_frequency : float
-        Natural frequency of contact [1/s]. Rapier's own, 30 1/s, lets a base lean by 4e-4 alpha under 0.9
-        of the load that uplifts it (tan alpha 0.1).
+        Natural frequency of contact [1/s]. Rapier's own, 30 1/s, lets a base lean before it uplifts.
     contact_damping_ratio : float
-        1 is critical, and lets a base under 0.98 of its uplift lean by twice as much as 10, Rapier's own.
+        1 is critical, and lets a base that is about to uplift lean by more than 10, Rapier's own.
     depth : float
         Depth at which the rim is kept, at the reference size [m].
     depth_gain : float
         Share of a change of depth that one step takes back.
     substeps, iterations : int
         Substeps and iterations of a step. A rim needs one of each, since what is left of an iteration starts
-        the next step; with four iterations the horizontal force on a standing base scatters by 1.7e-3
-        weights, with one by 3.1e-3.
+        the next step; with four iterations the horizontal force on a standing base scatters less.
     """
 
     guide_stiffness: Positive
