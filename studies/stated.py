@@ -88,7 +88,7 @@ def condition_findings(facts: Facts) -> Iterator[Finding]:
         elif name == "tendon":
             if any(value.values()):
                 given = {"given": value["prestress"], "given_stiffness": value["stiffness"]}
-                yield _stated("tendon", **given, bound=value.get("yield_force"))
+                yield _stated("tendon", **given, bound=value.get("yield_force") or math.nan)
         elif not value:
             continue
         elif name == "slab_mass_ratio":
