@@ -41,6 +41,7 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "solver": ("steps", "the solver had not converged in some of the steps looked at"),
         "mode": ("", "another mode of motion than the mechanics lets the case have"),
         "unresolved_slide": ("", "the displacement is off that of Coulomb's law, over its peak"),
+        "turning_slide": ("rad", "it turns while it slides, which friction of a closed base does not do"),
         "early_uplift": ("", "the base opened before the load was at its rim"),
         "unresolved_pass": ("passes", "passes are closer to upright than contact resolves"),
         "settled": ("alpha", "error that the time step leaves, by extrapolation"),

@@ -20,10 +20,11 @@ from .excitation import StepMeans
 from .scene import Array, Scale, default_step
 
 TOLERANCE = 0.05  # of the peak displacement
+TURN = 0.01  # [rad] of a slide, whose friction has no moment about the axis
 
 
 def mode_facts(trace: Trace) -> Iterator[Diagnostic]:
-    """Deviations of an engine's run from mechanics: another mode, or a slide of another length."""
+    """Deviations of an engine's run from mechanics: another mode, or a slide that turns or ends elsewhere."""
     case = trace.case
     expected = expected_mode(case, trace.run.support)
     allowed = {REST: (REST,), SLIDES: (REST, SLIDES)}.get(expected)
@@ -32,6 +33,10 @@ def mode_facts(trace: Trace) -> Iterator[Diagnostic]:
     if trace.mode not in allowed:
         yield Diagnostic(code="mode", detail=trace.mode)
     if expected == SLIDES and trace.outcome not in NO_PEAK:
+        twist = np.abs(trace.twist)
+        if twist.max() > TURN:
+            first = float(trace.time[int(np.argmax(twist > TURN))])
+            yield Diagnostic(code="turning_slide", time=first, size=float(twist.max()), bound=TURN)
         path = path_of_slide(case, trace.time)
         away = np.hypot(*(trace.displacement - path).T)
         size = float(away.max()) / float(np.hypot(*path.T).max())

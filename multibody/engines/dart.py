@@ -14,7 +14,8 @@ Contact has no stiffness to choose: after a step the rim's lowest point rests or
 * Dantzig's method bounds friction by what the load would be without it, and lets a squat rim slip; the
   nonsmooth Gauss-Seidel method does not, and is exact for one contact. With four it takes hundreds of sweeps,
   so it has the rim, and Dantzig's method what stands. There its friction is a box, which is turned into the
-  load: a base that slides across its load feels up to 41 % more.
+  load. A box stops what slides across it, or is 41 % too strong: a base that slides, and cannot open, has the
+  cone of Gauss and Seidel, whose four contacts need no more than a tolerance of 1e-5 to slide.
 * Friction stops the point of the rim that a step starts on, and a rim that rolls on creeps. So the ground
   moves along itself, against the slip that the last step left at the rim of this pose.
 * The slab of a frame is a plane that looks down. What the ground does to the base it does to the top: it goes
@@ -31,6 +32,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
+
+from rockwobble.models.mode import SLIDES
 
 from ..kinematics import about_vertical, axis_of
 from ..protocol import EngineFacts, SceneCounts, Steps
@@ -96,9 +99,9 @@ _OPEN = 5e-8  # [rad] lean at which the base is open; standing it stays below 5e
 # eccentricities of the load: from the first, of b, or of the friction, the scene follows it, at the second,
 # of b, the base may open
 _LOADED, _OPENING = 0.5, 0.999
-# [rad] between the scene and the load of a base that slides, of which friction in a box is 2 % off then: to
-# turn the scene costs more than a step
+# [rad] between the scene and the load of a base that slides: to turn the scene costs more than a step
 _OFF_LOAD = 0.02
+_SLIDING_TOLERANCE, _SLIDING_SWEEPS = 1e-5, 100  # at 1e-8 it slides as far, at four times the cost
 _REDUCTION, _FASTEST_REDUCTION = 0.01, 1e-3  # [-], [m/s] by which DART itself reduces a depth
 _SLOWING = 0.1  # of gravity, by which the ground slows down that takes a landed base back
 _LANDED = 2.0  # depths of the rim by which a closed base is deeper than it was kept where it has landed
@@ -186,8 +189,13 @@ class _DartStepper(Leapfrog):
         options = dartpy.constraint.NsgsFrictionSolver.Options()
         options.tolerance, options.maxSweeps = settings.tolerance, settings.iterations
         self._use = solver.setBoxedLcpSolver
-        self._flat_solver = solver.getBoxedLcpSolver()
         self._rim_solver = dartpy.constraint.NsgsFrictionSolver(options)
+        self._flat_solver = solver.getBoxedLcpSolver()
+        if scene.mode == SLIDES:
+            sliding = dartpy.constraint.NsgsFrictionSolver.Options()
+            sliding.tolerance, sliding.maxSweeps = _SLIDING_TOLERANCE, _SLIDING_SWEEPS
+            self._flat_solver = dartpy.constraint.NsgsFrictionSolver(sliding)
+        self._use(self._flat_solver)
 
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
@@ -217,8 +225,8 @@ class _DartStepper(Leapfrog):
         tipping, tied = self._scene.tipping_gravity, self._scene.restraint.tendon is not None
         friction = self._scene.friction * self._scene.pressing_gravity / tipping
         followed = _LOADED * min(1.0, friction * arm)
-        # where friction gives way before the base opens, the four contacts of a closed base slide: those of
-        # the rim solver take its hundreds of sweeps in every step, for no motion that could follow
+        # where friction gives way before the base opens, it slides on four contacts: those of the rim solver
+        # take its hundreds of sweeps in every step, for no motion that could follow
         opens = friction * arm > _OPENING
         turn_x, turn_y = cosine(heading), sine(heading)
         spin_x, spin_y = cosine(0.5 * _SPIN), sine(0.5 * _SPIN)

@@ -7,10 +7,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from functools import cache
 from importlib.metadata import version
+from types import MappingProxyType
 from typing import Any, ClassVar
 
 import numpy as np
 
+from rockwobble.models.mode import SLIDES
 from rockwobble.models.support import FLAT, RECESS
 
 from ..kinematics import about_vertical, turning
@@ -35,6 +37,8 @@ class Declared:
     supports : tuple of str
     uplifts : bool
         Whether the base is in contact as well as the rim.
+    sliding : mapping
+        Defaults of settings where the case slides.
     """
 
     package: ClassVar[str]
@@ -43,6 +47,7 @@ class Declared:
     facts: EngineFacts
     supports: tuple[str, ...] = (RECESS, FLAT)
     uplifts: bool = True
+    sliding: ClassVar[Settings] = MappingProxyType({})
 
     def version(self) -> str:
         """Version of the package."""
@@ -50,7 +55,8 @@ class Declared:
 
     def settings(self, given: Settings, scene: Scene) -> Mapping[str, object]:
         """Return every setting; see the type of the settings."""
-        return asdict(self.settings_type.resolve(given, scene.time_step * scene.unit_time))
+        chosen = {**self.sliding, **given} if scene.mode == SLIDES else given
+        return asdict(self.settings_type.resolve(chosen, scene.time_step * scene.unit_time))
 
     @contextlib.contextmanager
     def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:

@@ -26,6 +26,7 @@ SCRIPTS = (
     "rolling_losses",
     "tendons",
     "who_can_rock",
+    "who_can_slide",
     "witnesses",
 )
 

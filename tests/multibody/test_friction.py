@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=3.0)
 
@@ -53,32 +53,3 @@ def test_too_little_friction_in_a_release_is_said(engine: str, time_step: float 
     # rolling creeps by 1e-5 b
     assert enough.slip[-1] < 1e-4 * pier.base_radius
     assert "slip" in {fact.code for fact in little.facts}
-
-
-def test_a_base_that_slides_in_dart_goes_as_far_by_the_solver_that_is_fast(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    dart = pytest.importorskip("rockwobble.multibody.engines.dart")
-    pytest.importorskip("dartpy", reason="DART has no wheel for this Python")
-    solvers: list[bool] = []
-    use = dart._DartStepper._use_for
-    monkeypatch.setattr(
-        dart._DartStepper,
-        "_use_for",
-        lambda self, *, opening: (solvers.append(opening), use(self, opening=opening)),
-    )
-    friction, motion, end = 0.15, el_centro_1940().scaled(2.0), 2.5
-    case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), motion, duration=end, friction=friction)
-    run = multibody.simulate(case, engine="dart", support="flat")
-    # a point with Coulomb friction on the moving ground
-    step, velocity, way = 1e-4, np.zeros(2), np.zeros(2)
-    times = np.arange(0.0, end, step)
-    grid = motion.time_step * np.arange(len(motion.acceleration))
-    for push in np.column_stack([np.interp(times, grid, column) for column in motion.acceleration.T]):
-        velocity = velocity - push * step
-        speed = float(np.hypot(*velocity))
-        velocity *= max(0.0, 1.0 - friction * 9.81 * step / speed) if speed > 0.0 else 0.0
-        way += velocity * step
-    # friction in a box, which follows the load and not the slip: 3 % was measured
-    assert run.residual_displacement == pytest.approx(float(np.hypot(*way)), rel=0.05)
-    assert not any(solvers)

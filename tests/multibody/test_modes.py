@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
-from rockwobble.multibody.slide import path_of_slide
+from rockwobble.multibody.engines.registry import engine_named, own_engines
+from rockwobble.multibody.slide import mode_facts, path_of_slide
 
 
 def one_sine(tan_alpha: float) -> Case:
@@ -31,20 +34,19 @@ def test_an_impact_in_one_plane_is_of_momentum_at_coarse_and_fine_steps(
     assert run.peak_tilt == pytest.approx(exact, rel=0.01)
 
 
-@pytest.mark.parametrize(("used", "share"), [("mujoco", 0.6), ("mujoco", 0.96), ("pybullet", 0.96)])
-def test_a_slide_below_the_border_neither_tilts_nor_turns(used: str, share: float) -> None:
-    pytest.importorskip(used)
+@pytest.mark.parametrize("sliding", [name for name in own_engines() if engine_named(name).uplifts])
+def test_a_slide_below_the_border_neither_tilts_nor_turns(sliding: str) -> None:
     case = Case(
         Cylinder(semidiagonal=3.0, tan_alpha=0.5),
         el_centro_1940().scaled(2.5),
-        friction=0.5 * share,
+        friction=0.48,
         duration=4.0,
     )
     exact = reduced.simulate(case, support="flat")
     np.testing.assert_allclose(
         path_of_slide(case, exact.time), exact.displacement, atol=2e-3 * exact.peak_displacement
     )
-    run = multibody.simulate(case, engine=used, support="flat")
+    run = multibody.simulate(case, engine=sliding, support="flat")
     assert (run.mode, run.facts) == ("slides", ())
     away = run.displacement - exact.displacement[: len(run.time)]
     assert np.abs(away).max() < 0.03 * exact.peak_displacement
@@ -58,3 +60,6 @@ def test_an_engine_that_tilts_what_slides_says_so() -> None:
     hops = {"follow_load": True, "friction_damping": 1.8, "points": 0, "noslip_iterations": 0}
     run = multibody.simulate(case, support="flat", **hops)
     assert {"mode", "unresolved_slide"} <= {fact.code for fact in run.facts}
+    slid = multibody.simulate(case, support="flat")
+    turned = replace(slid, twist=slid.twist + 0.02 * (slid.time > 2.0))
+    assert [(fact.code, fact.time > 2.0) for fact in mode_facts(turned)] == [("turning_slide", True)]
