@@ -34,7 +34,7 @@ from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL, TERMS
 from rockwobble.models.cylinder import WobblingFrame, cylinder_of
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.finding import Finding, Findings, Grade
-from rockwobble.models.mode import SLIDES
+from rockwobble.models.mode import REST, SLIDES, expected_mode
 from rockwobble.models.plain_json import plain
 from rockwobble.models.records.units import sources_of
 from rockwobble.models.support import RECESS, support_named
@@ -190,7 +190,14 @@ class Advice(Results, kind=KIND):
     """
 
     def headline(self) -> dict[str, Number]:
-        """Return outcome, grade, the shares that overturn, and the largest tilt as given."""
+        """Outcome, grade, the shares that overturn, and the largest tilt as given; of a slide how far it goes."""
+        if self.slides:
+            return {
+                "case": self.facts["case"],
+                "outcome as given": SLIDES,
+                "peak displacement as given [m]": self.response["displacement"],
+                "residual displacement as given [m]": self.response["residual_displacement"],
+            }
         return {
             "case": self.facts["case"],
             "outcome as given": self.response["outcome"],
@@ -258,7 +265,8 @@ class Advice(Results, kind=KIND):
     def slides_at_rest(self) -> bool:
         """Whether the friction given does not keep a base in its place that stays closed."""
         motion, friction = self.facts["motion"], self.facts["friction"]
-        if self.moves or self.response["outcome"] in NO_PEAK or motion is None or friction is None:
+        known = motion is not None and friction is not None and self.response["outcome"] not in NO_PEAK
+        if self.moves or self.slides or not known:
             return False
         # an earlier version stated none
         return bool(friction < motion.get("friction_at_rest", 0.0))
@@ -537,11 +545,13 @@ def advise(
     model, other = Run(None, plan.support).compared_with[-1], FLAT_MODEL
     if model == other:
         other = RECESS_MODEL
-    stage = stages(progress, [1.0] * (5 if run is None else 6))
     inputs = fingerprint(
         [*(job_fingerprint(Job(case=case, run=each)) for each in (model, run) if each), plan]
     )
-    with stage("both reduced models (compiled on their first run)"):
+    if expected_mode(case, plan.support) in (REST, SLIDES):
+        run = None  # which has no tilt to verify
+    stage = stages(progress, [1.0] * (5 if run is None else 6))
+    with stage("the reduced model (compiled on its first run)"):
         trace = simulate_run(case, model)
         if trace.time[-1] > case.length:
             case = with_time_to_fall(case, trace)

@@ -26,6 +26,8 @@ def test_advice_on_a_slide_says_how_far_and_uses_up_a_gap() -> None:
     rows = found.tables["slides"].groupby("group", sort=False)["displacement"]
     assert shares == [(moved > 0.1).mean() for _, moved in rows]
     assert not len(found.groups)
+    assert not found.findings().of("use")  # which says nothing of the flat-ground model of rolling
+    assert found.headline()["residual displacement as given [m]"] == trace.residual_displacement
 
 
 @pytest.mark.slow
