@@ -190,7 +190,7 @@ class Advice(Results, kind=KIND):
     """
 
     def headline(self) -> dict[str, Number]:
-        """Outcome, grade, the shares that overturn, and the largest tilt as given; of a slide how far it goes."""
+        """Outcome, grade, the shares that overturn, and the largest tilt as given; how far a slide goes."""
         if self.slides:
             return {
                 "case": self.facts["case"],
