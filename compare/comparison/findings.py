@@ -97,7 +97,7 @@ def agreements(rows: pd.DataFrame, length: float) -> Iterator[Finding]:
         )
         left = any(row.left_tolerance for row in summary)
         yield Finding(
-            key="comparison.agree" if left else "comparison.agree_to_end",
+            key=f"comparison.agree{'_slide' * (first.reference_mode == SLIDES)}{'' if left else '_to_end'}",
             level="note",
             values={
                 "reason": first.support,

@@ -113,7 +113,8 @@ def _case(view: CaseView, results: Comparison, *, many: bool) -> dict[str, objec
 
 
 _MODES = tuple(f"mode.{name}" for name in words()["mode"])
-_HEADLINE = (*_MODES, "comparison.agree", "comparison.agree_to_end", "comparison.none")
+_AGREE = [f"comparison.agree{of}{until}" for of in ("", "_slide") for until in ("", "_to_end")]
+_HEADLINE = (*_MODES, *_AGREE, "comparison.none")
 _SUPPORTS = ("comparison.on_guide", "comparison.on_flat", "comparison.on_walls")
 # what a terminal leaves to the page
 _CAUSES = ("slides", "support", "walls", "pass", "near_passes", "distributions")

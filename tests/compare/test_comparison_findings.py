@@ -143,6 +143,8 @@ def test_agreement_is_of_the_runs_of_a_support_and_their_own_model():
     assert [value(recess, each) for each in ("until", "until_last")] == [13.7, 21.7]
     assert whole.key == "comparison.agree_to_end"
     assert value(whole, "names_reference") == ("flat-ground model",)
+    (slid,) = agreements(table(row(reference_mode="slides")), LENGTH)
+    assert slid.key == "comparison.agree_slide"
     # a small motion agrees within a tenth of its peak, a measurement within its noise besides
     (small,) = agreements(table(row(tolerance=2.3e-6)), LENGTH)
     (noisy,) = agreements(table(row(**TABLE | {"tilt_bound": 0.034})), LENGTH)
