@@ -74,6 +74,13 @@ def case_findings(
         )
 
 
+# of a tilt and of a slide, each until it leaves its tolerance and to the end
+AGREE = (
+    ("comparison.agree", "comparison.agree_to_end"),
+    ("comparison.agree_slide", "comparison.agree_slide_to_end"),
+)
+
+
 def agreements(rows: pd.DataFrame, length: float) -> Iterator[Finding]:
     """Findings on how long the runs of each support follow their own model; external ones one by one.
 
@@ -97,7 +104,7 @@ def agreements(rows: pd.DataFrame, length: float) -> Iterator[Finding]:
         )
         left = any(row.left_tolerance for row in summary)
         yield Finding(
-            key=f"comparison.agree{'_slide' * (first.reference_mode == SLIDES)}{'' if left else '_to_end'}",
+            key=AGREE[first.reference_mode == SLIDES][not left],
             level="note",
             values={
                 "reason": first.support,

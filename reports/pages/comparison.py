@@ -10,6 +10,7 @@ import pandas as pd
 
 from rockwobble.compare import SUMMARY_COLUMNS, WORTH_EXPLAINING, Comparison
 from rockwobble.compare.comparison.budget import COVERED
+from rockwobble.compare.comparison.findings import AGREE
 from rockwobble.compare.comparison.summary import SummaryRow, own_rows, rows_of
 from rockwobble.models import Run
 from rockwobble.models.diagnostic import codes_in
@@ -113,8 +114,7 @@ def _case(view: CaseView, results: Comparison, *, many: bool) -> dict[str, objec
 
 
 _MODES = tuple(f"mode.{name}" for name in words()["mode"])
-_AGREE = [f"comparison.agree{of}{until}" for of in ("", "_slide") for until in ("", "_to_end")]
-_HEADLINE = (*_MODES, *_AGREE, "comparison.none")
+_HEADLINE = (*_MODES, *AGREE[0], *AGREE[1], "comparison.none")
 _SUPPORTS = ("comparison.on_guide", "comparison.on_flat", "comparison.on_walls")
 # what a terminal leaves to the page
 _CAUSES = ("slides", "support", "walls", "pass", "near_passes", "distributions")
