@@ -203,7 +203,7 @@ class FragilityPlan(YieldPlan):
         "Multiplies the default time step of the engines; probabilities need less accuracy than traces.",
         above=0.0,
     )
-    friction: float = option(1.0, "Friction coefficient between cylinder and ground.", above=0.0)
+    friction: float = option(1.0, "Friction coefficient between cylinder and ground.", least=0.0)
     gap: float | None = option(
         None, "Displacement on flat ground that the limit state slides asks for, in m.", least=0.0
     )
@@ -265,6 +265,12 @@ class SpectrumPlan(YieldPlan):
     )
     gravity: float = option(9.81, "Gravitational acceleration g, in m/s2.", group="Ground motion", above=0.0)
     rolling_resistance: float = option(0.0, _ROLLING, group="Ground motion", least=0.0)
+    friction: float | None = option(
+        None,
+        "Friction coefficient, which decides the mode of motion. Default: enough.",
+        group="Ground motion",
+        least=0.0,
+    )
     support: str = option("recess", "Support of the 3D model: recess or flat.", choices=("recess", "flat"))
     search_step: float = option(
         STEP,

@@ -11,7 +11,7 @@ from ..figures.spectrum import pictures
 from .page import Page
 from .wording import statement
 
-_ANSWERS = ("spectrum.unsolved", "spectrum.overturned")
+_ANSWERS = ("mode.", "spectrum.unsolved", "spectrum.overturned")
 
 
 def page_of(found: OverturningSpectrum) -> Page:
@@ -32,6 +32,6 @@ def spectrum_values(found: OverturningSpectrum) -> dict[str, object]:
         )
         .replace(math.inf, math.nan)
         .to_dict("records"),
-        "answers": [line for key, line in said.items() if key in _ANSWERS],
-        "findings": [line for key, line in said.items() if key not in _ANSWERS],
+        "answers": [line for key, line in said.items() if key.startswith(_ANSWERS)],
+        "findings": [line for key, line in said.items() if not key.startswith(_ANSWERS)],
     }

@@ -8,8 +8,12 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import pandas as pd
 
+from rockwobble.compare.metrics.mode import mode_findings
+from rockwobble.models import Case, Cylinder, WobblingFrame
 from rockwobble.models.finding import Finding, Value
+from rockwobble.models.mode import ROCKS_AND_SLIDES, expected_mode
 
+from ..plans import tendon_of
 from .maps import TiltMaps
 from .parts import SPATIAL
 from .search import gap_bound
@@ -17,7 +21,8 @@ from .verification import CHECK_RTOL, NUDGE, SAME_PEAK, unconservative_from
 
 
 def spectrum_findings(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> Iterator[Finding]:
-    """Findings: what overturns, where planar analysis is another answer, how far both can be relied on."""
+    """Findings: which motion, what overturns, where planar analysis differs, how far both are reliable."""
+    yield from _mode(spectrum)
     every = tables["contrast"].iloc[-1]
     if not every["cells"]:
         yield Finding(key="spectrum.unsolved", level="not tested")
@@ -35,6 +40,23 @@ def spectrum_findings(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) ->
     values = {"bound": CHECK_RTOL, "count": len(checked), "count_agree": agree, "share": SAME_PEAK}
     others = {"count_chance": chance or None, "count_other": len(checked) - agree - chance or None}
     yield Finding(key="spectrum.checked", values=values | others)
+
+
+def _mode(spectrum: TiltMaps) -> Iterator[Finding]:
+    """Findings on the mode under the strongest shaking, where the friction is given."""
+    if spectrum.friction is None:
+        return
+    column = Cylinder(semidiagonal=float(spectrum.semidiagonals[0]), tan_alpha=spectrum.tan_alpha)
+    case = Case(
+        WobblingFrame(column, spectrum.slab_mass_ratio),
+        spectrum.motion.scaled(float(spectrum.scales[-1])),
+        gravity=spectrum.gravity,
+        friction=spectrum.friction,
+        tendon=tendon_of(spectrum.tendon_prestress, spectrum.tendon_stiffness, spectrum.tendon_yield),
+    )
+    yield from mode_findings(case, spectrum.support)
+    if expected_mode(case, spectrum.support) == ROCKS_AND_SLIDES:
+        yield Finding(key="mode.no_engine", level="not tested")
 
 
 def _boundary(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> Iterator[Finding]:

@@ -22,6 +22,7 @@ from rockwobble.compare.runs.progress import ProgressCallback
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, WobblingFrame
 from rockwobble.models.number_checks import require_increasing
 from rockwobble.models.plain_json import Facts
+from rockwobble.models.support import support_named
 
 from ..plans import SpectrumPlan
 from ..study import Study
@@ -101,6 +102,7 @@ _FACTS = (
     "probes",
     "slab_mass_ratio",
     "rolling_resistance",
+    "friction",
     "tendon_prestress",
     "tendon_stiffness",
     "tendon_yield",
@@ -146,6 +148,8 @@ class TiltMaps:
         Mass of a slab over that of the cylinders that carry it [-]; 0 without one.
     rolling_resistance : float
         [m]
+    friction : float, optional
+        That decides which motion it is [-]; the runs take it for enough.
     tendon_prestress, tendon_stiffness : float
         Tendon prestress and tendon stiffness of a tendon [weights of one column, and these per base radius].
     tendon_yield : float, optional
@@ -166,6 +170,7 @@ class TiltMaps:
     probes: int = 0
     slab_mass_ratio: float = 0.0
     rolling_resistance: float = 0.0
+    friction: float | None = None
     tendon_prestress: float = 0.0
     tendon_stiffness: float = 0.0
     tendon_yield: float | None = None
@@ -316,7 +321,7 @@ def require_cases(tan_alpha: float, motion: GroundMotion, plan: SpectrumPlan) ->
     Raises
     ------
     ValueError
-        As for a `Case` of it.
+        As for a `Case` of it, and where all of them slide and nothing more.
     """
     sizes = SpectrumPlan.SIZES[:2] if plan.semidiagonals is None else plan.semidiagonals
     for size in (sizes[0], sizes[-1]):
@@ -325,9 +330,16 @@ def require_cases(tan_alpha: float, motion: GroundMotion, plan: SpectrumPlan) ->
             body,
             motion,
             gravity=plan.gravity,
+            friction=1.0 if plan.friction is None else plan.friction,
             rolling_resistance=plan.rolling_resistance,
             tendon=plan.tendon,
         )
+        bound = case.friction_of_uplift
+        if plan.friction is not None and plan.friction < bound and support_named(plan.support).lets_slide:
+            raise ValueError(
+                f"friction {plan.friction:g} is below b/h = {bound:g}: on flat ground every size slides "
+                "alike and none uplifts; a fragility with a gap, or reduced.peak_displacements, says how far"
+            )
         require_runnable(case, Run(None, plan.support))
 
 

@@ -81,6 +81,7 @@ def spectrum(
     slab_mass_ratio: float = 0.0,
     gravity: float = 9.81,
     rolling_resistance: float = 0.0,
+    friction: float | None = None,
     tendon_prestress: float = 0.0,
     tendon_stiffness: float = 0.0,
     tendon_yield: float | None = None,
@@ -108,6 +109,8 @@ def spectrum(
         g [m/s^2].
     rolling_resistance : float, optional
         Length of the couple against rolling [m].
+    friction : float, optional
+        Friction coefficient, by which the mode of motion is said; the runs take it for enough.
     tendon_prestress, tendon_stiffness : float, optional
         Tendon prestress and tendon stiffness of a tendon [weights of one column, and these per base radius].
     tendon_yield : float, optional
@@ -128,7 +131,8 @@ def spectrum(
     Raises
     ------
     ValueError
-        If an axis is not increasing and positive, the motion is still, or an option is out of range.
+        If an axis is not increasing and positive, the motion is still, an option is out of range, or friction
+        is below b/h on flat ground, where all sizes slide.
 
     Examples
     --------
@@ -143,6 +147,7 @@ def spectrum(
         slab_mass_ratio=slab_mass_ratio,
         gravity=gravity,
         rolling_resistance=rolling_resistance,
+        friction=friction,
         tendon_prestress=tendon_prestress,
         tendon_stiffness=tendon_stiffness,
         tendon_yield=tendon_yield,

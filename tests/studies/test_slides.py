@@ -53,6 +53,14 @@ def test_friction_near_the_border_and_friction_unknown_are_said() -> None:
     assert math.isnan(unknown.mode_findings[0].values["given"])
 
 
+def test_spectrum_says_the_mode_first_and_refuses_what_only_slides() -> None:
+    grid = {"semidiagonals": [3.0], "intensities": [2.0], "search_step": 1.0, "probes": 0, "support": "flat"}
+    both = rw.spectrum(0.5, CASE.motion, friction=0.52, **grid)
+    assert [each.key for each in both.findings()][:2] == ["mode.rocks_and_slides", "mode.no_engine"]
+    with pytest.raises(ValueError, match="slides alike"):
+        rw.spectrum(0.5, CASE.motion, friction=0.3, **grid)
+
+
 def test_fragility_counts_the_slides_that_use_up_a_gap() -> None:
     motions = rw.synthetic_motions(6, peak=3.0, seed=1)
     options = {"friction": 0.2, "gap": 0.05, "measure": "pga", "resamples": 20, "workers": 1}
