@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import sys
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -119,8 +120,24 @@ Forms = Annotated[
 ]
 
 
+Width = Annotated[
+    str | None,
+    options.output(
+        "Width of the figures as pdf or png in print, with letters of 6 to 8 pt, as 89mm or 183mm of many "
+        "journals. Default: that of a screen, 218mm.",
+        metavar="MM",
+    ),
+]
+_WIDTHS = (60.0, 300.0)  # [mm]
+_INCH = 25.4  # [mm]
+
+
 def report(
-    folder: Folder, out: Out = None, forms: Forms = None, overwrite: options.Overwrite = False
+    folder: Folder,
+    out: Out = None,
+    forms: Forms = None,
+    width: Width = None,
+    overwrite: options.Overwrite = False,
 ) -> None:
     """Pages and figures of stored results, drawn again without new runs.
 
@@ -143,6 +160,7 @@ def report(
         drawings = [form for form in forms or () if form not in EXPORTS]
         for form in forms or ():
             require_one_of("--format", form, ("pdf", "png", "tex", *EXPORTS))
+        inches = _inches(width, drawings)
         if not folder.is_dir():
             raise ValueError(f"{folder} is not a folder of results")
         require_writable(place)
@@ -159,7 +177,9 @@ def report(
                 f"the folder {place} holds {listed}: choose another by --out, or write there by --overwrite"
             )
         found = {kind: stored_page(kind, folder) for kind in kinds}
-        drawn = {kind: {**page.files(), **page.exports(drawings)} for kind, page in found.items()}
+        drawn = {
+            kind: {**page.files(), **page.exports(drawings, width=inches)} for kind, page in found.items()
+        }
         if data:
             if Fragility.kind not in drawn:
                 raise ValueError(f"--format {data[0]} is of a fragility, got {', '.join(drawn)} in {folder}")
@@ -170,6 +190,22 @@ def report(
                 write_pages(place, kind, pages)
     names = dict.fromkeys(name for pages in drawn.values() for name in pages)
     print(f"Written to {place}: {', '.join(names)}")
+
+
+def _inches(width: str | None, forms: Collection[str]) -> float | None:
+    """Width in print, as 89mm, of the figures of these forms [inch]."""
+    if width is None:
+        return None
+    if not {"pdf", "png"} & {*forms}:
+        raise ValueError(f"--width is of --format pdf or png, got {width} without one")
+    try:
+        size = float(width.removesuffix("mm"))
+    except ValueError:
+        size = math.nan
+    if not _WIDTHS[0] <= size <= _WIDTHS[1]:
+        low, high = (f"{each:g}mm" for each in _WIDTHS)
+        raise ValueError(f"--width must be {low} to {high}, as 89mm, got {width}")
+    return size / _INCH
 
 
 Stored = Annotated[

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import textwrap
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import matplotlib as mpl
@@ -39,6 +40,7 @@ _STYLE: Any = {
     # what is placed stays where it is, whatever the user has set
     "figure.autolayout": False,
     "figure.constrained_layout.use": False,
+    "figure.figsize": (WIDTH, 1.0),
     "font.size": 9.5,
     "axes.titlesize": 10,
     "axes.titlelocation": "left",
@@ -51,7 +53,18 @@ _STYLE: Any = {
     "hatch.linewidth": 0.5,
     "path.simplify_threshold": 0.3,
 }
-_SMALL = 8
+# of a journal at the width of its columns, between 6 and 8 pt
+_PRINTED: Any = {
+    **_STYLE,
+    "font.size": 7.5,
+    "axes.titlesize": 8,
+    "xtick.labelsize": 7,
+    "ytick.labelsize": 7,
+    "legend.fontsize": 6.5,
+    "lines.linewidth": 1.0,
+}
+_LOWER = 0.65  # height of a panel in one column of a journal over that on a screen
+_LEAST_COLUMNS = 5.0  # width from which panels have room beside each other [inch]
 _BETWEEN = 4.0  # least distance of the words of two ticks [pixel]
 _RASTER_DPI = 200  # of maps, whose cells as paths would take ten times the room
 _EDGED_CELLS = 2500  # with more cells than these, a white edge would hide them
@@ -73,20 +86,25 @@ def svg(picture: Picture, *, titled: bool = False) -> bytes:
     return image(picture, "svg", titled=titled)
 
 
-def image(picture: Picture, form: str, *, titled: bool = False) -> bytes:
-    """Return a picture as "svg", "pdf" or "png"."""
+def image(picture: Picture, form: str, *, titled: bool = False, width: float | None = None) -> bytes:
+    """Return a picture as "svg", "pdf" or "png", see `figure`."""
     buffer = io.BytesIO()
     with mpl.rc_context(_STYLE):
-        figure(picture, titled=titled).savefig(buffer, format=form, dpi=_RASTER_DPI, metadata=_METADATA[form])
+        drawn = figure(picture, titled=titled, width=width)
+        dpi = _RASTER_DPI if width is None else 600
+        drawn.savefig(buffer, format=form, dpi=dpi, metadata=_METADATA[form])
     return buffer.getvalue()
 
 
-def figure(picture: Picture, *, titled: bool = False) -> Figure:
-    """Return a picture as a matplotlib figure."""
+def figure(picture: Picture, *, titled: bool = False, width: float | None = None) -> Figure:
+    """Return a picture as a matplotlib figure, of a `width` in print [inch] or of that of a screen."""
+    if width is not None and width < _LEAST_COLUMNS:
+        lower = [replace(panel, height=_LOWER * panel.height) for panel in picture.panels]
+        picture = replace(picture, columns=1, panels=lower)
     heights = [max(panel.height for panel in row) for row in picture.rows]
     many = len(picture.panels) > 1
-    with mpl.rc_context(_STYLE):
-        drawn = Figure(figsize=(WIDTH, sum(heights) + 0.7), layout="constrained")
+    with mpl.rc_context(_STYLE if width is None else {**_PRINTED, "figure.figsize": (width, 1.0)}):
+        drawn = Figure(figsize=(_width(), sum(heights) + 0.7), layout="constrained")
         if titled:
             drawn.suptitle(picture.title, x=0.01, horizontalalignment="left", fontsize=12)
         places = drawn.subplots(
@@ -115,6 +133,15 @@ def figure(picture: Picture, *, titled: bool = False) -> Figure:
         # now, since each label asks all others for their place; one beside long names has its own room
         drawn.align_ylabels([axes for axes in drawn.axes if axes.get_ylabel()])
     return drawn
+
+
+def _width() -> float:
+    return float(mpl.rcParams["figure.figsize"][0])
+
+
+def _small() -> float:
+    """Size of what is written into a panel [pt]."""
+    return float(mpl.rcParams["font.size"]) - 1.5
 
 
 def _settle(drawn: Figure) -> None:
@@ -158,7 +185,7 @@ def _panel(axes: Axes, panel: Panel, picture: Picture) -> None:
             _rule(axes, layer)
         elif isinstance(layer, Text):
             axes.text(layer.x, layer.y, layer.text, color=layer.colour, ha=layer.anchor, va="bottom",
-                      fontsize=_SMALL)  # fmt: skip
+                      fontsize=_small())  # fmt: skip
         else:
             assert picture.shades is not None
             _heat(axes, layer, panel, picture.shades)
@@ -184,11 +211,11 @@ def _panel(axes: Axes, panel: Panel, picture: Picture) -> None:
         axes.secondary_yaxis("right", functions=(there, back)).set_ylabel(second.title)
     if picture.legend == "panels" and panel.entries():
         handles, words = _handles([axes])
-        columns = _columns(words, WIDTH / picture.columns)
+        columns = _columns(words, _width() / picture.columns)
         # below the words of its axis, where it covers nothing
         below = axes.transAxes + ScaledTranslation(0.0, _BELOW, axes.figure.dpi_scale_trans)
         axes.legend(handles, words, loc="upper left", bbox_to_anchor=(0.0, 0.0), bbox_transform=below,
-                    ncols=columns, fontsize=_SMALL, frameon=False, borderpad=0.0)  # fmt: skip
+                    ncols=columns, fontsize=_small(), frameon=False, borderpad=0.0)  # fmt: skip
 
 
 def _scale(axes: Axes, panel: Panel) -> None:
@@ -239,7 +266,7 @@ def _bars(axes: Axes, bars: Bars) -> None:
     )
     for place, end, text in zip(bars.places, bars.end, bars.texts, strict=False):
         axes.annotate(text, (end, place), xytext=(4, 0), textcoords="offset points", va="center",
-                      fontsize=_SMALL)  # fmt: skip
+                      fontsize=_small())  # fmt: skip
 
 
 def _rule(axes: Axes, rule: Rule) -> None:
@@ -259,7 +286,7 @@ def _rule(axes: Axes, rule: Rule) -> None:
         place, at, coordinates = (4 if left else -4, 2), (0.0 if left else 1.0, rule.at), _ACROSS
         where = {"ha": "left" if left else "right", "va": "bottom"}
     axes.annotate(rule.text, at, xycoords=coordinates, xytext=place, textcoords="offset points",
-                  fontsize=_SMALL, bbox=_BEHIND, **where)  # fmt: skip
+                  fontsize=_small(), bbox=_BEHIND, **where)  # fmt: skip
 
 
 _ACROSS = ("axes fraction", "data")
@@ -289,7 +316,7 @@ def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
                 at = place[row, column]
                 dark = abs(at - 0.5) > 0.5 * _DARK if sided else at > _DARK
                 where = float(heat.x[column]), float(heat.y[row])
-                axes.text(*where, format(value, heat.written), ha="center", va="center", fontsize=_SMALL,
+                axes.text(*where, format(value, heat.written), ha="center", va="center", fontsize=_small(),
                           color="white" if dark else "black", clip_on=True)  # fmt: skip
 
 
@@ -324,7 +351,7 @@ def _handles(panels: Sequence[Axes]) -> tuple[list[Artist], list[str]]:
 
 def _legend(drawn: Figure, panels: Sequence[Axes]) -> None:
     handles, words = _handles(panels)
-    columns = _columns(words, WIDTH)
+    columns = _columns(words, _width())
     drawn.legend(handles, words, loc="outside lower center", ncols=columns, frameon=False, labelcolor=DARK)
 
 

@@ -116,10 +116,10 @@ class Page:
             },
         }
 
-    def exports(self, forms: Sequence[str]) -> dict[str, bytes]:
+    def exports(self, forms: Sequence[str], *, width: float | None = None) -> dict[str, bytes]:
         """Return its figures as "pdf" or "png", and its tables as "tex", by the names of their files.
 
-        A table has the name of the page and of the heading above it.
+        Figures are `width` wide [inch]. A table has the name of the page and of the heading above it.
         """
         entries: dict[str, bytes] = {}
         for form in dict.fromkeys(forms):
@@ -128,7 +128,7 @@ class Page:
             else:
                 from ..figures.svg import image
 
-                entries |= {f"{each.name}.{form}": image(each, form) for each in self.pictures}
+                entries |= {f"{each.name}.{form}": image(each, form, width=width) for each in self.pictures}
         return entries
 
     def _named_tables(self) -> Iterator[tuple[str, Table]]:

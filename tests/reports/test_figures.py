@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.text import Text as Words
 
 from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
 from rockwobble.reduced import simulate
@@ -80,6 +81,14 @@ def test_no_text_is_too_small_to_be_read():
     drawn = figure(maps(np.ones((2, 2)), Shades(label="bias", unit="%", low=0.0, high=2.0)))
     sizes = [text.get_fontsize() for text in drawn.findobj(lambda each: hasattr(each, "get_fontsize"))]
     assert min(sizes) >= 8.0
+
+
+@pytest.mark.parametrize("width", [89.0, 183.0])
+def test_in_print_letters_have_6_to_8_pt_at_the_width_of_a_column(width):
+    drawn = figure(lines(columns=2), width=width / 25.4)
+    sizes = [each.get_fontsize() for each in drawn.findobj(Words) if each.get_text()]
+    assert drawn.get_figwidth() == pytest.approx(width / 25.4)
+    assert 6.0 <= min(sizes) <= max(sizes) <= 8.0
 
 
 def test_legend_has_at_most_eight_entries_and_says_that_there_are_more():
