@@ -10,7 +10,7 @@ import sys
 import textwrap
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -41,9 +41,13 @@ def complain(message: str) -> None:
 
 
 def echo(lines: Iterable[str]) -> None:
-    """Print lines, wrapped where they are longer than the terminal is wide; warnings on standard error."""
-    for line in lines:
-        print(_wrapped(line), file=sys.stderr if line.startswith("Warning: ") else sys.stdout)
+    """Print lines, wrapped where they are longer than the terminal is wide; warnings on standard error.
+
+    Where nothing can be printed, what runs and is written goes on: what prints the answer fails.
+    """
+    with suppress(OSError):
+        for line in lines:
+            print(_wrapped(line), file=sys.stderr if line.startswith("Warning: ") else sys.stdout)
 
 
 def _wrapped(line: str) -> str:
