@@ -1,9 +1,9 @@
-"""Sweeps: any number of runs of a grid, in chunks that are kept as they are finished."""
+"""Sweeps: any number of runs, of a grid or of a suite, in chunks that are kept as they are finished."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Integral
 from pathlib import Path
@@ -12,23 +12,126 @@ from typing import ClassVar
 import numpy as np
 import pandas as pd
 
+from rockwobble.compare.metrics.pair import outcome_of
 from rockwobble.compare.metrics.statistics import value_if_enough
+from rockwobble.compare.runs.choice import require_runnable, run_labels
+from rockwobble.compare.runs.execution import Job, all_makers, jobs_fingerprint, run_job
 from rockwobble.compare.runs.progress import ProgressCallback
 from rockwobble.compare.storage.manifest import Number
 from rockwobble.compare.storage.provenance import fingerprint
 from rockwobble.compare.storage.results import Results
-from rockwobble.models import GroundMotion
+from rockwobble.models import Case, GroundMotion, Suite, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
+from rockwobble.models.case import RECESS_MODEL
+from rockwobble.models.diagnostic import cell_of
+from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.finding import Finding, Findings, Value
 from rockwobble.models.number_checks import require_in_range
-from rockwobble.models.plain_json import plain
+from rockwobble.models.plain_json import fields_of, plain
 from rockwobble.models.records.units import sources_of
+from rockwobble.models.trace_file import case_facts
 
 from .grid import Grid, GridChunk
 from .study import Study
 
+# An engine's run takes seconds, a reduced one milliseconds.
+_REDUCED_CHUNK_SIZE, _ENGINE_CHUNK_SIZE = 200, 1
+# not the computing time: the table of two sweeps of the same runs is the same
+_RESULTS = (
+    "peak_tilt",
+    "uplift_time",
+    "uplift_direction",
+    "contact_resolution",
+    "residual_displacement",
+    "residual_twist",
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class CaseChunk:
+    """Some cases with one method; `run` solves them."""
+
+    jobs: tuple[Job, ...]
+
+    @property
+    def name(self) -> str:
+        """Description of the chunk, for the progress callback."""
+        more = f" and {len(self.jobs) - 1} more" if len(self.jobs) > 1 else ""
+        return f"{self.jobs[0].name}{more}"
+
+    def key(self) -> str:
+        """Hash that identifies the results."""
+        return jobs_fingerprint(self.jobs)
+
+    def run(self) -> pd.DataFrame:
+        """Return the table of the results, one row for each run."""
+        return pd.DataFrame([_row(job, run_job(job)) for job in self.jobs])
+
+
+def runnable_suite(plan: Suite | Iterable[Case]) -> Suite:
+    """Return the suite that is swept: cases alone, and a suite without runs, are run with the recess model.
+
+    Raises
+    ------
+    ValueError
+        If there is no case, two cases or two runs are alike, or an engine cannot run a case.
+    """
+    suite = plan if isinstance(plan, Suite) else Suite(plan, ())
+    if not suite.runs:
+        suite = Suite(suite.cases, (RECESS_MODEL,), suite.bounds)
+    run_labels(suite.runs)
+    for run in suite.runs:
+        for case in suite.cases:
+            require_runnable(case, run)
+    return suite
+
+
+def chunks_of(suite: Suite, size: int | None = None) -> Iterator[CaseChunk]:
+    """Cut the runs of a suite into chunks, in the order of the table: method by method."""
+    for run, label in zip(suite.runs, run_labels(suite.runs), strict=True):
+        step = size or (_REDUCED_CHUNK_SIZE if run.is_model else _ENGINE_CHUNK_SIZE)
+        for i in range(0, len(suite.cases), step):
+            yield CaseChunk(
+                jobs=tuple(Job(case=case, run=run, label=label) for case in suite.cases[i : i + step])
+            )
+
+
+def describe_suite(suite: Suite) -> dict[str, object]:
+    """Return cases and runs, for a file; SI units and radians."""
+    return {
+        "plan": "cases and runs",
+        "runs": len(suite.cases) * len(suite.runs),
+        "cases": {case.name: case_facts(case) | {"duration": case.length} for case in suite.cases},
+        "runs of each": [
+            {"label": label, **fields_of(run)}
+            for run, label in zip(suite.runs, run_labels(suite.runs), strict=True)
+        ],
+    }
+
+
+def _row(job: Job, trace: Trace) -> dict[str, object]:
+    cylinder, motion, passes = job.case.cylinder, job.case.motion, trace.passes
+    return {
+        "case": job.case.name,
+        "run": job.label,
+        "engine": job.run.engine_name,
+        "support": job.run.support,
+        "time_step": trace.time_step,
+        "semidiagonal": cylinder.semidiagonal,
+        "tan_alpha": cylinder.tan_alpha,
+        "motion": motion.name if motion else "",
+        "peak_tilt_over_alpha": float(trace.peak_tilt) / cylinder.alpha,
+        **{name: float(getattr(trace, name)) for name in _RESULTS},
+        "outcome": outcome_of(trace),
+        "diagnostics": cell_of(fact.code for fact in trace.facts),
+        "version": trace.version,
+        "end": float(trace.time[-1]),
+        "passes": len(passes),
+        "closest_pass": float(passes["minimum_tilt"].min()) if len(passes) else math.nan,
+    }
+
+
 KIND = "sweep"
-PARTS = ["motion", "model", "tan_alpha"]  # columns whose values tell its parts apart
 _OUTCOMES = ("stands", "overturned", "undecided", "failed")
 
 
@@ -39,20 +142,16 @@ class Sweep(Results, kind=KIND):
     Attributes
     ----------
     sweep : DataFrame
-        One row for each run, in the order of the grid; `table`, too.
+        One row for each run, in the order of the plan; `table`, too.
     motions : DataFrame
-        Samples of its ground motions.
+        Of a grid the samples of its ground motions.
 
-    Its facts are the number of runs and the axes of the grid.
+    Its facts are the plan: its kind, the number of runs, and the axes of a grid or its cases and methods.
     """
-
-    def __post_init__(self) -> None:
-        if "model" not in self.table:
-            raise ValueError("a sweep is of a grid, got one of cases: the release that made it draws it")
 
     @property
     def table(self) -> pd.DataFrame:
-        """One row for each run, in the order of the grid."""
+        """One row for each run, in the order of the plan."""
         return self.tables[KIND]
 
     def headline(self) -> dict[str, Number]:
@@ -64,13 +163,26 @@ class Sweep(Results, kind=KIND):
         """Return what was run, and how many runs ended in each way."""
         plan = self.facts
         values: dict[str, Value] = {"runs": len(self.table)}
-        axes = {"length": "semidiagonals", "ratio": "tan_alphas", "factor": "scales"}
-        for name, axis in axes.items():
-            values |= {f"count_{name}": len(plan[axis]), name: min(plan[axis])}
-            values[f"{name}_end"] = max(plan[axis])
-        values |= {"count_motions": len(plan["motions"]), "names": tuple(plan["models"])}
+        if "model" in self.table:
+            axes = {"length": "semidiagonals", "ratio": "tan_alphas", "factor": "scales"}
+            for name, axis in axes.items():
+                values |= {f"count_{name}": len(plan[axis]), name: min(plan[axis])}
+                values[f"{name}_end"] = max(plan[axis])
+            values |= {"count_motions": len(plan["motions"]), "names": tuple(plan["models"])}
+        else:
+            values |= {"count": len(plan["cases"]), "count_of_each": len(plan["runs of each"])}
         ended = {f"count_{name}": value for name, value in self.headline().items() if name != "runs"}
-        return Findings([Finding(key="sweep.grid", values=values), Finding(key="sweep.ended", values=ended)])
+        return Findings(
+            [
+                Finding(key="sweep.grid" if "model" in self.table else "sweep.cases", values=values),
+                Finding(key="sweep.ended", values=ended),
+            ]
+        )
+
+    @property
+    def keys(self) -> list[str]:
+        """Columns whose values tell the parts of the sweep apart, as `summary` and figures have them."""
+        return ["motion", "model", "tan_alpha"] if "model" in self.table else ["run"]
 
     @property
     def outcomes(self) -> list[str]:
@@ -81,16 +193,16 @@ class Sweep(Results, kind=KIND):
     def summary(self) -> pd.DataFrame:
         """Return one row for each part: how many runs ended how, and their peak tilts.
 
-        Columns: motion, model, tan_alpha, runs, a count for each outcome that there is, no_uplift (how many
-        of them stood still throughout), and in alpha median, in which an overturned run is infinite, NaN of
-        fewer than six, and largest, of those that do not overturn.
+        Columns: `keys`, runs, a count for each outcome that there is, no_uplift (how many of them stood still
+        throughout), and in alpha median, in which an overturned run is infinite, NaN of fewer than six, and
+        largest, of those that do not overturn.
         """
         rows, outcomes = [], self.outcomes
-        for key, own in self.table.groupby(PARTS, sort=False):
+        for key, own in self.table.groupby(self.keys, sort=False):
             fell, peaks = own["outcome"] == "overturned", own["peak_tilt_over_alpha"]
             rows.append(
                 {
-                    **dict(zip(PARTS, key, strict=True)),
+                    **dict(zip(self.keys, key, strict=True)),
                     "runs": len(own),
                     **{name: int((own["outcome"] == name).sum()) for name in outcomes},
                     "no_uplift": int((peaks == 0.0).sum()),
@@ -101,9 +213,12 @@ class Sweep(Results, kind=KIND):
         return pd.DataFrame(rows)
 
 
+Chunk = GridChunk | CaseChunk
+
+
 @with_argument_kinds
 def sweep(
-    plan: Grid,
+    plan: Grid | Suite | Iterable[Case],
     *,
     out: str | Path | None = None,
     scheduler: str | None = None,
@@ -121,9 +236,11 @@ def sweep(
 
     Parameters
     ----------
-    plan : Grid
+    plan : Grid, Suite or iterable of Case
+        A grid of peak tilts; every case of a suite with each of its runs; cases alone are run with the recess
+        model.
     out : str or Path, optional
-        Folder of the sweep: sweep.parquet is the table, motions.parquet the ground motions. The
+        Folder of the sweep: sweep.parquet is the table, motions.parquet the ground motions of a grid. The
         chunks of another sweep stay there until this one is complete.
     scheduler : str, optional
         Address of a Dask scheduler, such as `tcp://10.0.0.1:8786`; its workers must have the same
@@ -158,10 +275,22 @@ def sweep(
     Sweep(runs 4, stands 2, overturned 2)
     >>> found.table[["semidiagonal", "scale", "outcome"]].values.tolist()
     [[2.0, 1.0, 'stands'], [2.0, 3.0, 'overturned'], [6.0, 1.0, 'stands'], [6.0, 3.0, 'overturned']]
+
+    Every case of a suite with each of its runs:
+
+    >>> from rockwobble.models import Cylinder, InitialState, Run
+    >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> case = Case(pier, initial=InitialState(0.5 * pier.alpha, rolling_rate=0.5), duration=4.0)
+    >>> sweep(Suite([case], [Run(None, "recess"), Run(None, "flat")]), workers=1)
+    Sweep(runs 2, stands 2)
     """
+    whole = plan if isinstance(plan, Grid) else runnable_suite(plan)
     if chunk_size is not None:
         require_in_range("chunk_size", chunk_size, Integral, least=1)
-    return SweepStudy(plan, [*plan.chunks(chunk_size)]).run(
+    chunks: list[Chunk] = (
+        [*whole.chunks(chunk_size)] if isinstance(whole, Grid) else [*chunks_of(whole, chunk_size)]
+    )
+    return SweepStudy(whole, chunks).run(
         folder=out,
         workers=workers,
         scheduler=scheduler,
@@ -171,40 +300,50 @@ def sweep(
 
 
 @dataclass(frozen=True, slots=True)
-class SweepStudy(Study[GridChunk, Sweep]):
-    """All runs of a grid, in chunks."""
+class SweepStudy(Study[Chunk, Sweep]):
+    """All runs of a grid or of a suite, in chunks."""
 
     kind: ClassVar[str] = KIND
     what: ClassVar[str] = "chunks"
     tries: ClassVar[int] = 3
-    plan: Grid
-    chunks: Sequence[GridChunk]
+    plan: Grid | Suite
+    chunks: Sequence[Chunk]
 
-    def tasks(self) -> Sequence[GridChunk]:
+    def tasks(self) -> Sequence[Chunk]:
         """Chunks."""
         return self.chunks
 
-    def key(self, task: GridChunk) -> str:
+    def key(self, task: Chunk) -> str:
         """Hash of what the table of a chunk depends on."""
         return task.key()
+
+    def makers(self) -> Mapping[str, str]:
+        """Versions and code of the methods."""
+        return all_makers(() if isinstance(self.plan, Grid) else self.plan.runs)
 
     def results(self, tables: list[pd.DataFrame]) -> Sweep:
         """Sweep of the tables of all chunks."""
         plan = self.plan
-        about = {"doubts": plan.doubts(), "record_sources": sources_of(plan.motions)}
+        if isinstance(plan, Grid):
+            stated, doubts, motions = plan.describe(), plan.doubts(), list(plan.motions)
+        else:
+            stated, doubts = describe_suite(plan), doubts_of_cases(plan.cases)
+            motions = [case.motion for case in plan.cases if case.motion is not None]
         inputs = fingerprint([chunk.key() for chunk in self.chunks])
-        samples = [_samples(motion) for motion in plan.motions]
+        facts = {**stated, "doubts": doubts, "record_sources": sources_of(motions), "inputs": inputs}
         return Sweep(
-            tables={
-                KIND: pd.concat(tables, ignore_index=True),
-                "motions": pd.concat(samples, ignore_index=True),
-            },
-            facts=plain({**plan.describe(), **about, "inputs": inputs}),
+            tables={KIND: pd.concat(tables, ignore_index=True), **_motions(plan)}, facts=plain(facts)
         )
 
 
+def _motions(plan: Grid | Suite) -> dict[str, pd.DataFrame]:
+    """Return the table of the motions of a grid; a component that one does not have is missing, not zero."""
+    if not isinstance(plan, Grid):
+        return {}
+    return {"motions": pd.concat([_samples(motion) for motion in plan.motions], ignore_index=True)}
+
+
 def _samples(motion: GroundMotion) -> pd.DataFrame:
-    """Samples of a motion; a component that it does not have is missing, not zero."""
     samples = motion.acceleration
     columns = {f"acceleration_{axis}": np.full(len(samples), np.nan) for axis in "xyz"}
     columns |= {f"acceleration_{axis}": column for axis, column in zip("xyz", samples.T, strict=False)}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -35,6 +36,7 @@ from .several import GridOptions, Hazard, ManyMethods, ManyMotions, cylinders_of
 from .suite_choice import chosen_runs, refuse_problem_options, say_what_is_left_out, without_missing
 
 if TYPE_CHECKING:
+    from rockwobble.models import RockingBody
     from rockwobble.models.case import TimeStep
 
 Cylinders = Annotated[
@@ -311,9 +313,20 @@ def _runs(
     return [rw.Run(run.engine, run.support, time_step) for run in chosen]
 
 
+SuiteFile = Annotated[
+    str | None,
+    typer.Argument(
+        metavar="[SUITE]",
+        help="Suite instead of a grid: a TOML file, or a shipped one (canon, p695, quick).",
+        show_default=False,
+    ),
+]
 Models = Annotated[
     list[str] | None,
-    options.method("Reduced model: recess, flat or planar; may be repeated. Default: recess."),
+    options.method(
+        "Reduced model: recess, flat or planar; may be repeated. Default: recess; with a suite, the "
+        "runs of the suite."
+    ),
 ]
 ChunkSize = Annotated[
     int | None,
@@ -326,6 +339,7 @@ def sweep(
     context: typer.Context,
     grid: GridOptions,
     steel: Steel,
+    suite: SuiteFile = None,
     model: Models = None,
     workers: options.Workers = None,
     scheduler: options.Scheduler = None,
@@ -335,7 +349,8 @@ def sweep(
 ) -> None:
     """Peak tilt over a grid of sizes, slendernesses and scales.
 
-    Every size, slenderness, scale, record and model, from rest, without sliding.
+    A grid combines every size, slenderness, scale, record and model, from rest, without sliding. A suite
+    combines its cases and runs.
 
     An interrupted run resumes with the same command.
 
@@ -344,13 +359,19 @@ def sweep(
     Example: rockwobble sweep --semidiagonal 0.5:30:100 --scale 1,2,4 --out grid
     """
     with user_input():
-        plan = grid.grid(model)
-        bodies = [
-            rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
-            for size in plan.semidiagonals
-            for tan_alpha in plan.tan_alphas
-        ]
-        plan = with_steel(context, plan, steel, bodies, plan.gravity)
+        plan: rw.Grid | rw.Suite
+        if suite is None:
+            made = grid.grid(model)
+            bodies = [
+                rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
+                for size in made.semidiagonals
+                for tan_alpha in made.tan_alphas
+            ]
+            plan = with_steel(context, made, steel, bodies, made.gravity)
+        else:
+            stated = {each.name for each in (*fields(GridOptions), *fields(Steel))}
+            refuse(context, stated, f"does not go with a suite, got {suite}: the file states the problems")
+            plan = _suite(suite, model)
         claim_folder(context)
     echo(_echo(plan))
     shows: list[Callable[[], None]] = []
@@ -368,14 +389,45 @@ def sweep(
         show()
 
 
-def _echo(plan: rw.Grid) -> list[str]:
+def _suite(name: str, models: list[str] | None) -> rw.Suite:
+    from rockwobble.models.number_checks import require_one_of
+    from rockwobble.models.support import RECESS
+    from rockwobble.studies.sweep import runnable_suite
+
+    for model in models or ():
+        require_one_of("--model", model, rw.reduced.MODELS)
+    suite = rw.read_suite(name)
+    chosen = [rw.Run(None, **{"support": RECESS, **rw.reduced.MODELS[model]}) for model in models or ()]
+    added = suite.runs
+    if not added and not models:
+        say_what_is_left_out()
+        added = rc.default_runs(cases=suite.cases)
+    runs = (*chosen, *added)
+    return runnable_suite(rw.Suite(suite.cases, runs))
+
+
+def _echo(plan: rw.Grid | rw.Suite) -> list[str]:
+    from rockwobble.models.doubts import doubts_of_cases
+
     from ..pages.diagnostics import warnings
 
-    ends = [
-        rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
-        for size in (min(plan.semidiagonals), max(plan.semidiagonals))
-        for tan_alpha in (min(plan.tan_alphas), max(plan.tan_alphas))
-    ]
+    if isinstance(plan, rw.Grid):
+        doubts = plan.doubts()
+        ends: list[RockingBody] = [
+            rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
+            for size in (min(plan.semidiagonals), max(plan.semidiagonals))
+            for tan_alpha in (min(plan.tan_alphas), max(plan.tan_alphas))
+        ]
+        runs = plan.rows
+        what = (
+            f"{len(plan.semidiagonals)} sizes, {len(plan.tan_alphas)} slendernesses, "
+            f"{len(plan.scales)} scales, {len(plan.motions)} records, models {', '.join(plan.models)}"
+        )
+    else:
+        doubts = doubts_of_cases(plan.cases)
+        ends = [case.cylinder for case in plan.cases]
+        runs = len(plan.cases) * len(plan.runs)
+        what = f"{len(plan.cases)} cases, {len(plan.runs)} runs of each"
     return [
         "Cylinders: "
         + ", ".join(
@@ -385,10 +437,9 @@ def _echo(plan: rw.Grid) -> list[str]:
                 f"alpha = {_span([math.degrees(c.alpha) for c in ends])} deg",
             )
         ),
-        f"Runs: {plan.rows:,} ({len(plan.semidiagonals)} sizes, {len(plan.tan_alphas)} slendernesses, "
-        f"{len(plan.scales)} scales, {len(plan.motions)} records, models {', '.join(plan.models)})",
-        *record_lines(plan.motions),
-        *warnings(plan.doubts()),
+        f"Runs: {runs:,} ({what})",
+        *record_lines(plan.motions if isinstance(plan, rw.Grid) else [case.motion for case in plan.cases]),
+        *warnings(doubts),
     ]
 
 

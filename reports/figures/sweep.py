@@ -1,4 +1,4 @@
-"""Peak tilts of a sweep: maps over size and scale."""
+"""Peak tilts of a sweep: maps over size and scale of a grid, distributions over the cases of a suite."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from itertools import islice
 import numpy as np
 import pandas as pd
 
-from rockwobble.studies.sweep import PARTS, Sweep
+from rockwobble.models.case import REDUCED
+from rockwobble.studies import Sweep
 
+from .ensemble import distributions
 from .heat import PEAKS, names, peak_map
 from .picture import Array, Axis, Panel, Picture
 
@@ -19,15 +21,19 @@ _NAMED = 12  # so many values have a tick each
 
 
 def pictures(results: Sweep) -> list[Picture]:
-    """Return the maps of the parts of a grid."""
-    parts = results.table.groupby(PARTS, sort=False)
+    """Return a map of each part of a grid, or of cases the distribution of their peaks by each run."""
+    return [_maps(results) if "model" in results.table else _distributions(results.table)]
+
+
+def _maps(results: Sweep) -> Picture:
+    parts = results.table.groupby(results.keys, sort=False)
     sizes, scales = (results.table[name].nunique() for name in ("semidiagonal", "scale"))
     steps = _step(sizes, scales), _step(scales, sizes)
     panels = [_map(own, *steps) for _, own in islice(parts, _MOST_MAPS)]
     thinned = zip(("sizes", "scales"), steps, strict=True)
     left_out = "".join(f" Of the {what} one in {step} is shown." for what, step in thinned if step > 1)
     left_out += f" The first {_MOST_MAPS} of {len(parts)} maps." if len(parts) > _MOST_MAPS else ""
-    picture = Picture(
+    return Picture(
         name="sweep",
         title="Peak tilt of sizes under scaled records",
         caption="Each cell is a run. What overturns has a colour of its own, what does not uplift none."
@@ -36,7 +42,6 @@ def pictures(results: Sweep) -> list[Picture]:
         columns=min(2, len(panels)),
         shades=PEAKS,
     )
-    return [picture]
 
 
 def _step(count: int, other: int) -> int:
@@ -71,3 +76,18 @@ def _axis(values: Array, label: str, unit: str) -> tuple[Array, Axis]:
         return values, Axis(label=label, unit=unit)
     places, ticks = names(values.tolist())
     return places, Axis(label=label, unit=unit, ticks=ticks[:: math.ceil(len(ticks) / _NAMED)])
+
+
+def _distributions(table: pd.DataFrame) -> Picture:
+    members = table.drop(columns="peak_tilt").rename(
+        columns={"run": "method", "case": "member", "peak_tilt_over_alpha": "peak_tilt"}
+    )
+    overturned = (members["outcome"] == "overturned").any()
+    models = members.loc[members["engine"] == REDUCED, "method"].unique()
+    return Picture(
+        name="sweep",
+        title="Distributions of peak tilt over the cases, by run",
+        caption="Share of the cases whose peak tilt is at most that of the axis"
+        + ("; curves end below 1 where runs overturn (triangle)." if overturned else "."),
+        panels=[distributions(members, list(models), "cases")],
+    )

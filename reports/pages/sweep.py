@@ -9,19 +9,21 @@ from .cases import conditions
 from .page import Page
 from .wording import statement
 
+# columns that tell the parts of a grid apart, and those of a suite of cases
+_OF_GRID = (("motion", "ground motion", "words"), ("model", "model", "words"), ("tan_alpha", "tan α"))
+_OF_CASES = (("run", "run", "words"),)
+
 
 def page_of(results: Sweep) -> Page:
     """Return the page of a sweep."""
-    plan = results.facts
+    plan, grid = results.facts, "model" in results.table
     values = {
         "plan": plan,
         "findings": list(map(statement, results.findings())),
-        "conditions": conditions(plan["options"]),
+        "conditions": conditions(plan.get("options", plan)) if grid else [],  # cases have their own
         "parts": results.summary().to_dict("records"),
         "columns": [
-            ("motion", "ground motion", "words"),
-            ("model", "model", "words"),
-            ("tan_alpha", "tan α"),
+            *(_OF_GRID if grid else _OF_CASES),
             ("runs", "runs", "d"),
             *((outcome, outcome, "d") for outcome in results.outcomes),
             ("no_uplift", "did not uplift", "d"),

@@ -51,6 +51,13 @@ def keys(found: SingleRun) -> list[str]:
     return [each.key for each in found.findings()]
 
 
+@pytest.fixture(scope="module")
+def swept() -> dict[str, rs.Sweep]:
+    cases = [rw.Case(PIER, initial=RELEASE.initial, duration=0.5 * n, name=f"{n}") for n in (1, 2)]
+    plans = {"grid": GRID, "cases": rw.Suite(cases, [rw.Run(None, "recess"), rw.Run(None, "flat")])}
+    return {name: rw.sweep(plan, workers=1) for name, plan in plans.items()}
+
+
 @pytest.mark.slow
 def test_the_page_of_a_run_is_the_golden_one():
     trace = rw.simulate(rw.Case(PIER, rw.el_centro_1940(), duration=15.0))
@@ -61,8 +68,8 @@ def test_the_page_of_a_run_is_the_golden_one():
     is_golden(doubted)
 
 
-def test_the_page_of_a_sweep_is_the_golden_one():
-    is_golden(rw.sweep(GRID, workers=1))
+def test_the_page_of_a_sweep_is_the_golden_one(swept):
+    is_golden(swept["grid"])
 
 
 def test_a_run_says_what_its_method_gives_and_no_more():
@@ -161,6 +168,12 @@ def test_a_single_trace_is_doubted_from_when_its_copies_spread(part, before):
     assert ("Distribution: `rockwobble ensemble`" in page_of(spread).markdown()) == bool(doubts)
 
 
+def test_a_sweep_of_cases_counts_runs_and_how_they_end(swept):
+    cases, ended = swept["cases"].findings()
+    assert cases.values == {"runs": 4, "count": 2, "count_of_each": 2}
+    assert ended.values["count_stands"] == 4
+
+
 def test_a_map_has_a_cell_for_each_run_or_says_of_how_many(monkeypatch):
     found = rw.sweep(GRID, workers=1)
     own = found.table[found.table["tan_alpha"] == 0.1].set_index(["scale", "semidiagonal"])
@@ -230,8 +243,9 @@ def test_a_stored_folder_draws_its_pages_again(tmp_path, monkeypatch, capsys, co
 
 @pytest.mark.slow
 @needs_chromium
-def test_pages_of_runs_are_drawn(tmp_path: Path):
-    swept = registry.page_of(rw.sweep(GRID, workers=1))
-    pages = [page_of(run_of(RELEASE, rw.Run(None, "recess")).made_by()), swept]
+def test_pages_of_runs_are_drawn(swept, tmp_path: Path):
+    pages = [page_of(run_of(RELEASE, rw.Run(None, "recess")).made_by()), registry.page_of(swept["grid"])]
     found = complaints_of_all([page.html() for page in pages], tmp_path, figures=2)
     assert found == {0: [], 1: []}
+    (wrong,) = complaints_of_all([registry.page_of(swept["cases"]).html()], tmp_path, figures=1).values()
+    assert wrong == []

@@ -49,6 +49,9 @@ def test_ensemble_shows_itself(tmp_path):
 
 
 def test_sweep_shows_itself(tmp_path):
+    found = rw.sweep([RELEASE], workers=1)
+    shows_itself(found, "runs 1, stands 1")
+    loads_as_it_was(found, tmp_path / "cases")
     grid = rs.Grid(semidiagonals=[1, 6], tan_alphas=[0.2], scales=[0.1, 2], motions=[rw.el_centro_1940()])
     found = rw.sweep(grid, workers=1)
     shows_itself(found, "runs 4, stands 2, overturned 2")
@@ -76,7 +79,7 @@ def test_a_run_loads_as_it_was(tmp_path):
 
 
 def test_facts_that_would_load_as_another_value_are_not_saved(tmp_path):
-    made = rw.ensemble(RELEASE, runs=[], copies=2, workers=1)
+    made = rw.sweep([RELEASE], workers=1)
     for facts, named in (({"steps": (1, 2)}, "steps, tuple"), ({"order": np.float64(2.0)}, "order, float64")):
         with pytest.raises(TypeError, match=f"got facts.{named}"):
             replace(made, facts=facts).save(tmp_path)

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble import ensemble, reduced
+from rockwobble import ensemble, reduced, sweep
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import (
     Case,
@@ -17,6 +17,7 @@ from rockwobble.models import (
     GroundMotion,
     InitialState,
     Run,
+    Suite,
     Trace,
     el_centro_1940,
     far_field_motions,
@@ -35,7 +36,7 @@ CASE = Case(PIER, initial=InitialState(0.1, rolling_rate=0.5), duration=1.0, nam
 
 
 @pytest.mark.slow
-def test_what_a_wall_holds_beyond_its_balance_has_overturned():
+def test_what_a_wall_holds_beyond_its_balance_has_overturned_in_every_study():
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     cases = [
         Case(cylinder, initial=InitialState(share * cylinder.alpha), duration=3.0, name=f"{share}")
@@ -45,6 +46,8 @@ def test_what_a_wall_holds_beyond_its_balance_has_overturned():
     found = ensemble(cases, runs=[run], models=[], workers=1)
     assert found.members["outcome"].tolist()[1:] == ["overturned", "overturned"]
     assert (found.members["peak_tilt"] < 0.5 * math.pi / cylinder.alpha).all()
+    swept = sweep(Suite(cases, [run]), workers=1).table
+    assert swept["outcome"].tolist() == found.members["outcome"].tolist()
 
 
 def test_copies_are_perturbed_by_the_stated_size():

@@ -7,16 +7,17 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced, sweep
-from rockwobble.compare import IncompleteError
+from rockwobble.compare import IncompleteError, Progress
 from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.progress import Lost
 from rockwobble.compare.storage.claim import CACHE, claim_folder
 from rockwobble.compare.storage.manifest import read_results
-from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
 from rockwobble.studies import Grid, Sweep, study
 from rockwobble.studies.sweep import KIND
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+STANDING = Case(PIER, duration=1.0, name="a")
 SIZES, SCALES = [0.5, 2.0, 6.0, 20.0], [0.4, 1.0, 2.5, 6.0, 8.0]
 SHORT = GroundMotion(el_centro_1940().acceleration[:500], el_centro_1940().time_step, "short")
 
@@ -142,6 +143,31 @@ def test_each_input_of_a_chunk_is_in_its_key():
     assert base == next(grid().chunks()).key()
 
 
+def test_cases_with_engines_and_models(tmp_path):
+    cases = [
+        Case(PIER, initial=InitialState(tilt * PIER.alpha, rolling_rate=0.5), duration=0.5, name=f"{tilt:g}")
+        for tilt in (0.3, 0.5)
+    ]
+    in_recess = Run("mujoco", "recess", 1e-3)
+    table = sweep(Suite(cases, [Run(None, "recess"), in_recess]), out=tmp_path, workers=1).table
+    assert table[["case", "run"]].to_numpy().tolist() == [
+        ["0.3", "recess model"],
+        ["0.5", "recess model"],
+        ["0.3", "mujoco recess"],
+        ["0.5", "mujoco recess"],
+    ]
+    assert table.peak_tilt_over_alpha.tolist() == pytest.approx([0.3, 0.5, 0.3, 0.5], rel=1e-3)
+    again = sweep(Suite(cases, [in_recess]), workers=1).table
+    pd.testing.assert_frame_equal(again, table.tail(2).reset_index(drop=True), check_exact=True)
+
+
+def test_the_chunks_of_a_suite_have_names_for_whoever_waits():
+    cases = [Case(PIER, duration=0.1, name=name) for name in "abc"]
+    events: list[Progress] = []
+    sweep(Suite(cases, [Run(None, "recess")]), workers=1, chunk_size=2, progress=events.append)
+    assert [event.label for event in events[::2]] == ["a, recess model and 1 more", "c, recess model"]
+
+
 def test_the_manifest_says_what_was_swept(tmp_path):
     found = sweep(grid(), out=tmp_path, workers=1)
     made = read_results(tmp_path, KIND).manifest
@@ -189,6 +215,10 @@ def test_a_damaged_chunk_runs_again(tmp_path, where):
         (lambda: grid(motions=[SHORT, SHORT]), "motions must differ, got 'short' twice"),
         (lambda: grid(models=["glued"]), "must be one of recess, flat, planar, got 'glued'"),
         (lambda: grid(rtol=1.0), "rtol must be from"),
+        (lambda: sweep([]), "at least one case"),
+        (lambda: sweep([STANDING, STANDING]), "got 'a' twice"),
+        (lambda: sweep(Suite([STANDING], [Run(None, "recess")] * 2)), "got 'recess model' twice"),
+        (lambda: sweep(Suite([STANDING], [Run("mujoco", "glued")])), "got 'glued'"),
         (lambda: sweep(grid(), chunk_size=0), "chunk_size must be a whole number, at least 1"),
         (
             lambda: grid(semidiagonals=[*range(1, 20_001)], scales=[*range(20_000)]),
@@ -200,8 +230,3 @@ def test_a_damaged_chunk_runs_again(tmp_path, where):
 def test_bad_input_gets_one_clear_line(make, words):
     with pytest.raises(ValueError, match=words):
         make()
-
-
-def test_a_sweep_of_cases_of_an_earlier_release_is_refused():
-    with pytest.raises(ValueError, match="a sweep is of a grid, got one of cases"):
-        Sweep(tables={KIND: pd.DataFrame({"run": ["recess model"]})}, facts={})
