@@ -256,7 +256,7 @@ def comparison_row(
             tolerance=tolerance,
         )
 
-    copies = [simulate(copy, own.run) for copy in copies_of_input(case)]
+    copies = [timed(copy, own.run) for copy in copies_of_input(case)]
     prediction, tolerance = own_prediction(AGREEMENT), tolerance_of(reference, trial)
     return summary_row(
         case,
