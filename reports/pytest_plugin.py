@@ -162,7 +162,7 @@ class SuiteItem(pytest.Item):
         from rockwobble.compare.check.suite import SuiteRuns, check_run, reference_of
         from rockwobble.compare.runs.execution import Job
 
-        from .pages.comparison import budget_lines
+        from .pages.wording import statement
 
         runs, bounds = SuiteRuns(workers=1), self.suite.bounds
         job = Job(case=self.case, run=self.run, label=self.label)
@@ -172,7 +172,8 @@ class SuiteItem(pytest.Item):
             wanted = trace.outcome != "failed" and not self.config.getoption(_OPTION)
             reference = reference_of(self.run, bounds)
             budget = rw.comparison(self.case, runs=[self.run], budget=True) if wanted else None
-            lines = budget_lines(budget, self.run, reference) if budget else []
+            parts = budget.parts_findings(self.run, reference) if budget else ()
+            lines = [statement(each) for each in parts]
             raise DisagreementError(failed, lines)
 
     def repr_failure(

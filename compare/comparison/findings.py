@@ -16,7 +16,7 @@ from ..external.loss import ENERGY_LOSS
 from ..external.verdict import mistakes_of
 from ..metrics.mode import mode_findings, slide_finding
 from ..metrics.pair import make_pair
-from .budget import LARGEST_SHARE, WORTH_EXPLAINING, unexplained_rows
+from .budget import COVERED, LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget, unexplained_rows
 from .prediction import BEATEN
 from .summary import SummaryRow, own_rows, rows_of
 
@@ -286,6 +286,19 @@ def budget_findings(summary: pd.DataFrame, budgets: pd.DataFrame) -> Iterator[Fi
         )
     if missing := len(summary) - len(budgets):
         yield Finding(key="comparison.no_budget", values={"count": missing})
+
+
+def parts_finding(budget: ErrorBudget | None, reference: str) -> Finding:
+    """What a difference is made of; a reference that is not the run's own has no budget."""
+    if budget is None:
+        return Finding(key="comparison.no_parts")
+    sizes = {part: budget.rms(part) for part in ("whole", "model_form", "limit_error")}
+    if not budget.not_split:
+        sizes |= {part: budget.rms(part) for part in ("numerics", "unexplained")}
+    values: dict[str, Value] = {f"difference_{part}": size for part, size in sizes.items()}
+    values |= {"name_reference": reference, "until": budget.covered, "share": COVERED}
+    values["names"] = tuple(f"{step:g}" for step in budget.steps)
+    return Finding(key="comparison.parts", values=values)
 
 
 def _pair(row: SummaryRow) -> dict[str, Value]:

@@ -10,7 +10,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from rockwobble.models import Case, Trace, plain_json
+from rockwobble.models import Case, Run, Trace, plain_json
 from rockwobble.models.finding import Findings
 from rockwobble.models.frames import pd
 from rockwobble.models.number_checks import require_one_of
@@ -26,7 +26,7 @@ from ..storage.manifest import Number, Stored
 from ..storage.provenance import fingerprint
 from ..storage.results import Results
 from .budget import BUDGET_COLUMNS, ErrorBudget
-from .findings import case_findings, causes_of, overview
+from .findings import case_findings, causes_of, overview, parts_finding
 from .summary import KEYS, SUMMARY_COLUMNS, agreement_matrix
 
 _FACTS = "comparison.json"
@@ -140,6 +140,14 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
             return self.case_findings(*self.cases)
         each = (replace(one, runs=name) for name in self.cases for one in self.case_findings(name))
         return Findings([*overview(self.summary, self.budget_rms), *each])
+
+    def parts_findings(self, run: Run, reference: Run) -> Findings:
+        """What the difference of one run of a single case from one reference is made of."""
+        labels = {trace.run: label for (_, label), trace in self.traces.items()}
+        pair = labels[run], labels.get(reference)
+        budget = next((each for key, each in self.budgets.items() if key[1:] == pair), None)
+        not_split = (each for each in self.findings() if each.key == "comparison.not_split")
+        return Findings([parts_finding(budget, str(pair[1])), *not_split])
 
     def case_findings(self, name: str) -> Findings:
         """What the comparison says of one case."""

@@ -9,7 +9,6 @@ from collections.abc import Iterator, Mapping, Sequence
 import pandas as pd
 
 from rockwobble.compare import SUMMARY_COLUMNS, WORTH_EXPLAINING, Comparison
-from rockwobble.compare.comparison.budget import COVERED
 from rockwobble.compare.comparison.findings import AGREE
 from rockwobble.compare.comparison.summary import SummaryRow, own_rows, rows_of
 from rockwobble.models import Run
@@ -36,7 +35,7 @@ from .diagnostics import code_counts, remarks
 from .page import Page
 from .sentences import fragment
 from .table import Row, enumeration
-from .wording import lines_of, sentence, statement, words
+from .wording import lines_of, statement, words
 
 # up to so many cases each has a part of the report of its own
 SINGLY = 3
@@ -139,25 +138,6 @@ def counted_diagnostics(summary: pd.DataFrame) -> list[str]:
     counts = code_counts(map(codes_in, runs.drop_duplicates(["case", "run"])["diagnostics"]))
     said = f"Of the runs {', '.join(counts)}: see the column diagnostics of summary.csv."
     return [said] if counts else []
-
-
-def budget_lines(results: Comparison, run: Run, reference: Run) -> list[str]:
-    """Lines of a console on what the difference of one run from one reference is made of."""
-    labels = {trace.run: label for (_, label), trace in results.traces.items()}
-    budget = next(
-        (each for key, each in results.budgets.items() if key[1:] == (labels[run], labels.get(reference))),
-        None,
-    )
-    if budget is None:  # a reference that is not its own has none
-        return ["There is no budget of the difference: traces diverge at once, or there is no finer step."]
-    parts = ["whole", "model_form", *(() if budget.not_split else ("numerics", "unexplained")), "limit_error"]
-    steps = ", ".join(f"{step:g}" for step in budget.steps)
-    return [
-        f"Difference from the {labels[reference]}, RMS in alpha until {budget.covered:.3g} s "
-        f"({100.0 * COVERED:.0f} % of the agreement), steps of {steps} s:",
-        *(f"  {part.replace('_', ' '):<12} {budget.rms(part):8.1e}" for part in parts),
-        *(sentence(each) for each in results.findings() if each.key == "comparison.not_split"),
-    ]
 
 
 def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:

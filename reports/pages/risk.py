@@ -7,7 +7,6 @@ from rockwobble.studies.fragility.risk import TARGET
 from rockwobble.studies.fragility.tables import OVERTURNED
 
 from ..figures.risk import risk_pictures
-from .table import number
 from .wording import sentence
 
 _MAIN = ("risk.frequency", "risk.none")
@@ -28,12 +27,8 @@ def risk_values(results: Fragility) -> dict[str, object] | None:
         "rows": [{**row, **{name: _UNIT * row[name] for name in scaled}} for row in rows],
         "main": [sentence(each) for each in said if each.key in _MAIN],
         "reference": reference,
-        "remarks": [f"{each.runs}: {sentence(each)}" for each in said if each.key not in _MAIN],
-        "dispersion": _dispersion(results.facts["hazard"]["total_dispersion"]),
+        "remarks": [
+            f"{each.runs}: {sentence(each)}".removeprefix(": ") for each in said if each.key not in _MAIN
+        ],
         "pictures": [picture.name for picture in risk_pictures(results)],
     }
-
-
-def _dispersion(total: float | None) -> str:
-    """The dispersion that was given for the curves, in place of that of the motions; empty of none."""
-    return f". The total dispersion of the lognormal curves is {number(total)}" if total else ""

@@ -263,7 +263,7 @@ def risk_findings(rows: Sequence[Mapping[str, Any]], site: Mapping[str, Any]) ->
     rows : sequence of mapping
         Of the table.
     site : mapping
-        Facts of the hazard: limit, target.
+        Facts of the hazard: limit, target, total_dispersion.
     """
     limit, target = site.get("limit", OVERTURNED), site.get("target", TARGET)
     values: dict[str, Value]
@@ -295,6 +295,8 @@ def risk_findings(rows: Sequence[Mapping[str, Any]], site: Mapping[str, Any]) ->
         if far > _SCALED:
             scaled = {"share": far, "factor": FAR}
             yield Finding(key="risk.far", level="caution", values=values | scaled, runs=runs)
+    if total := site.get("total_dispersion"):
+        yield Finding(key="risk.dispersion", values={"ratio": total})
 
 
 def frequency_interval(

@@ -115,7 +115,7 @@ def test_a_report_that_cannot_be_written_in_the_end_is_one_line_after_the_result
     monkeypatch.setitem(groups.GROUPS, "exact", check_of(in_the_way))
     assert run("--only", "exact", option, str(tmp_path / "a")) == 2
     out, err = capsys.readouterr()
-    assert out.splitlines()[-1].startswith("1 checks passed")
+    assert out.splitlines()[-1].startswith("1 check passed")
     # on a slow machine with how far it is
     assert re.fullmatch(r"checking \.\.\.\n(\d of \d checks\n)*rockwobble: [^\n]*/a\b[^\n]*\n", err)
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from types import SimpleNamespace
 from typing import Any
 
 import pandas as pd
 import pytest
 
-from rockwobble.models import Diagnostic, Run
+from rockwobble.compare.comparison.findings import parts_finding
+from rockwobble.models import Diagnostic
 from rockwobble.models.diagnostic import REASONS
-from rockwobble.models.finding import Finding
-from rockwobble.reports.pages.comparison import budget_lines, counted_diagnostics, run_diagnostics
+from rockwobble.reports.pages.comparison import counted_diagnostics, run_diagnostics
 from rockwobble.reports.pages.diagnostics import failure, remarks, sentence
 
 
@@ -55,15 +54,8 @@ def test_diagnostics_of_many_cases_count_each_run_that_did_not_fail():
 
 @pytest.mark.parametrize("reason", ["", "order"])
 def test_a_budget_that_is_not_split_states_no_numerics(reason):
-    run, model = Run("mujoco", "recess"), Run(None, "recess")
-    budget = SimpleNamespace(not_split=reason, rms=lambda _: 1e-3, covered=1.6, steps=(2e-4, 1e-4))
-    found: Any = SimpleNamespace(
-        traces={("case", str(each)): SimpleNamespace(run=each) for each in (run, model)},
-        budgets={("case", str(run), str(model)): budget},
-        findings=lambda: [Finding(key="comparison.not_split", values={"count": 1, "reason": "x"})],
-    )
-    names = [line.split()[0] for line in budget_lines(found, run, model)[1:]]
-    assert ("numerics" in names) == (not reason)
-    assert math.isclose(float(budget_lines(found, run, model)[1].split()[1]), 1e-3)
-    (none,) = budget_lines(found, run, Run(None, "flat"))
-    assert "no budget" in none
+    budget: Any = SimpleNamespace(not_split=reason, rms=lambda _: 1e-3, covered=1.6, steps=(2e-4, 1e-4))
+    stated = dict(parts_finding(budget, "recess model").values)
+    assert ("difference_numerics" in stated) == (not reason)
+    assert (stated["difference_whole"], stated["names"]) == (1e-3, ("0.0002", "0.0001"))
+    assert parts_finding(None, "flat-ground model").key == "comparison.no_parts"
