@@ -25,6 +25,9 @@ from .page import Page
 from .table import number, scattered
 from .wording import lines_of, sentence, statement
 
+_MARKS = dict(zip(GRADES, "✓?!✗", strict=True))
+# what is handed over is signed by hand
+_SIGNED = '<p class="signed">Project: <span></span> Checked by: <span></span> Date: <span></span></p>'
 # rows of the box of demands, in order; of the moment of a recess also the force on a wall
 _DEMANDS = (
     *("friction", "shear", "force", "moment", "wall_force", "shear_and_wall"),
@@ -61,7 +64,7 @@ def page_of(found: Advice) -> Page:
         "cautions": _said(findings.of("caution")),
         "compared": " ".join(_said(beside)),
         "criteria": [
-            {"topic": topic, "grade": grade}
+            {"topic": topic, "grade": f"{_MARKS[grade]} {grade}"}
             | {
                 "reason": sentence(findings.of(topic)[0]),
                 "short": sentence(findings.of(topic)[0], short=True),
@@ -88,7 +91,7 @@ def page_of(found: Advice) -> Page:
         "shares": planar_shares(found.planar) if len(found.planar) and not found.yielded else [],
         "assumptions": _said(findings.of("assumption")),
     }
-    return Page(name="advice", template="advice", values=values, pictures=drawn)
+    return Page(name="advice", template="advice", values=values, pictures=drawn, blocks={"signed": _SIGNED})
 
 
 _DEMAND_DETAILS = ("demand.levels", "wall.moment", "wall.balance")
