@@ -43,6 +43,12 @@ class Heat:
     gaps: Sequence[Gap] = ()
     written: str = ""
 
+    @property
+    def shaded(self) -> bool:
+        """Whether a cell has the colour of its value, and not that of a gap."""
+        covered = np.any([np.isnan(self.values), *(gap.cells for gap in self.gaps)], axis=0)
+        return not covered.all()
+
     def edges(self, *, log_x: bool = False, log_y: bool = False) -> tuple[Array, Array]:
         """Return the edges of the cells, (len(x) + 1,) and (len(y) + 1,)."""
         return _edges(self.x, log_x), _edges(self.y, log_y)

@@ -125,7 +125,8 @@ def figure(picture: Picture, *, titled: bool = False, width: float | None = None
             axes.set_ylabel("" if [each.y.title for each in left] == [panel.y.title] else panel.y.title)
             letter = f"({chr(ord('a') + place)}) " if many and panel.title else ""
             axes.set_title(letter + panel.title)
-        if picture.shades is not None:
+        maps = (each for panel in picture.panels for each in panel.layers if isinstance(each, Heat))
+        if picture.shades is not None and any(each.shaded for each in maps):
             _colour_bar(drawn, places, picture.shades)
         if picture.legend == "below" and picture.entries():
             _legend(drawn, list(places.flat[: len(picture.panels)]))

@@ -92,6 +92,7 @@ STUDIES = {
     "--limit overturned --friction 3 --step-factor 8 --engine mujoco --support recess "
     "--tendon-prestress 0.5 --tendon-stiffness 1 --hazard risk/en1998-k3.csv --hazard-measure pga",
     "extremes": "make.py",
+    "friction_map": "make.py",
     "tradeoff": "make.py --quick",  # the full extent takes an hour of one core
     "validity": "validity",
 }
