@@ -8,70 +8,68 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from .argument_kinds import with_argument_kinds
+from .finding import Finding, Findings
 from .shown import Brief
 
-# code: (unit of size and bound, meaning); why a run failed
-FAILURES: Mapping[str, tuple[str, str]] = MappingProxyType(
+# code: unit of size and bound; why a run failed
+FAILURES: Mapping[str, str] = MappingProxyType(
     {
-        "not_finite": ("", "the state is not finite"),
-        "energy_gain": ("", "the engine gained energy that nothing supplied"),
-        "penetration": ("", "the cylinder sank into the ground"),
-        "wall_penetration": ("", "the cylinder sank into a wall"),
-        "guide": ("", "the guide did not hold the twist"),
-        "warning": ("", "the engine warned"),
-        "died": ("", "the run ended its process"),
-        "step_budget": ("steps", "the steps allowed were used up: the motion chatters near upright"),
-        "tolerance": ("", "no step met the tolerance"),
-        "weightless": ("weights", "g + az reached 0: the ground does not carry it, and nothing here applies"),
+        "not_finite": "",
+        "energy_gain": "",
+        "penetration": "",
+        "wall_penetration": "",
+        "guide": "",
+        "warning": "",
+        "died": "",
+        "step_budget": "steps",
+        "tolerance": "",
+        "weightless": "weights",
     }
 )
 # and of every diagnostic
-CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
+CODES: Mapping[str, str] = MappingProxyType(
     {
         **FAILURES,
         # what limits a run
-        "slip": ("", "contact slipped"),
-        "lift_off": ("", "the cylinder left the ground"),
-        "tension": ("weights", "the ground would have to pull: contact is lost"),
-        "friction_needed": ("", "the rim would slip: more friction is needed than there is"),
-        "wall_contact": ("", "the cylinder touched a wall"),
-        "energy": ("", "contact made (above 0) or took (below 0) of the energy of the motion"),
-        "rolling_loss": ("", "rolling resistance took of the energy of the motion, besides"),
-        "undecided": ("", "it stays by its balance: rounding decides whether it falls or turns back"),
-        "solver": ("steps", "the solver had not converged in some of the steps looked at"),
-        "mode": ("", "another mode of motion than the mechanics lets the case have"),
-        "unresolved_slide": ("", "the displacement is off that of Coulomb's law, over its peak"),
-        "turning_slide": ("rad", "it turns while it slides, which friction of a closed base does not do"),
-        "early_uplift": ("", "the base opened before the load was at its rim"),
-        "unresolved_pass": ("passes", "passes are closer to upright than contact resolves"),
-        "settled": ("alpha", "error that the time step leaves, by extrapolation"),
-        "unsettled": ("alpha", "change from twice the time step: it has not settled, or nobody knows"),
-        "extrapolated": ("alpha", "error left after extrapolation in the time step, by estimate"),
-        "not_extrapolated": ("", "runs at successive time steps do not agree well enough to extrapolate"),
-        "one_column": ("columns", "the engine runs one column, under a slab that only translates"),
-        "side": ("", "it passed through upright itself: the side to which it goes on is undetermined"),
-        "tendon_yield": ("weights", "the tendon would yield: what comes after is not modelled"),
+        "slip": "",
+        "lift_off": "",
+        "tension": "weights",
+        "friction_needed": "",
+        "wall_contact": "",
+        "energy": "",
+        "rolling_loss": "",
+        "undecided": "",
+        "solver": "steps",
+        "mode": "",
+        "unresolved_slide": "",
+        "turning_slide": "rad",
+        "early_uplift": "",
+        "unresolved_pass": "passes",
+        "settled": "alpha",
+        "unsettled": "alpha",
+        "extrapolated": "alpha",
+        "not_extrapolated": "",
+        "one_column": "columns",
+        "side": "",
+        "tendon_yield": "weights",
         # what makes a record of the ground improbable
-        "large_peak": ("g", "no record has such a peak: is its unit another?"),
-        "unlike_components": ("", "peaks of components differ as only units do"),
-        "same_components": ("", "two components are the same: is one file given twice?"),
-        "large_hazard": (
-            "g or m/s",
-            "half of a hazard curve is above strong shaking: is its unit another?",
-        ),
+        "large_peak": "g",
+        "unlike_components": "",
+        "same_components": "",
+        "large_hazard": "g or m/s",
         # and a length, a gravity, a mass or a tendon
-        "unlikely_length": ("m", "no structure has such a length: is its unit another?"),
-        "unlikely_gravity": ("m/s2", "no planet has such a gravity: is its unit another?"),
-        "unlikely_mass": ("t/m3", "no structure has such a density: is the unit of its mass another?"),
-        "unlikely_tendon": ("weights", "no tendon has such a force: is its unit another?"),
-        "offset": ("", "the mean is a large part of the peak: the offset was not removed"),
-        "gravity_in_record": ("g", "the mean is 1 g: the sensor has recorded gravity"),
-        "unlikely_step": ("s", "no recorder has such a time step: is the unit of time another?"),
-        "ends_in_strong_motion": ("", "the record ends in strong motion: is it cut?"),
-        "other_direction": ("", "a component stands in the place of another direction"),
+        "unlikely_length": "m",
+        "unlikely_gravity": "m/s2",
+        "unlikely_mass": "t/m3",
+        "unlikely_tendon": "weights",
+        "offset": "",
+        "gravity_in_record": "g",
+        "unlikely_step": "s",
+        "ends_in_strong_motion": "",
+        "other_direction": "",
         # what an external trajectory leaves open
-        "note": ("", "how the file was read"),
-        "missed_pass": ("passes", "passes fell between two samples"),
+        "note": "",
+        "missed_pass": "passes",
     }
 )
 # code: why, as its detail says it
@@ -146,7 +144,7 @@ class Diagnostic(Brief):
     Examples
     --------
     >>> Diagnostic(code="slip", time=2.5, duration=0.1).meaning
-    'contact slipped'
+    'contact slipped from 2.5 s on'
     """
 
     code: str
@@ -167,10 +165,15 @@ class Diagnostic(Brief):
             # one NaN, which is itself: facts that say the same are equal
             object.__setattr__(self, name, math.nan if math.isnan(value) else value)
 
+    def finding(self) -> Finding:
+        """The fact as a finding."""
+        values = {name: getattr(self, name) for name in ("time", "duration", "size", "bound", "detail")}
+        return Finding(key=f"diagnostic.{self.code}", values=values)
+
     @property
     def meaning(self) -> str:
-        """The code in words."""
-        return CODES[self.code][1]
+        """The fact in words."""
+        return repr(Findings([self.finding()]))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

@@ -289,4 +289,4 @@ def trace_of(result: object, case: Case, support: str) -> Trace:
 
 def why(trace: Trace) -> str:
     """Reason of the end of a run, for a note."""
-    return "; ".join(f"{fact.meaning} {fact.detail}".strip() for fact in trace.facts)
+    return "; ".join(fact.meaning for fact in trace.facts)

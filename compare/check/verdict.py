@@ -107,7 +107,7 @@ class FingerprintVerdict:
 
     def __str__(self) -> str:
         """The word, and what is known of the case that decides, by the names of the parameters."""
-        known = {name: value for name, value in asdict(self).items() if value and value == value}
+        known = {name: value for name, value in asdict(self).items() if value == value != ""}
         return "; ".join([known.pop("word"), *(f"{name}: {value}" for name, value in known.items())])
 
 

@@ -10,6 +10,7 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
+from rockwobble.models.diagnostic import CODES
 from rockwobble.models.finding import unit_of
 from rockwobble.reports.pages.wording import words
 
@@ -59,7 +60,10 @@ class FindingsTable(SphinxDirective):
                 sentence = line if isinstance(line, str) else line[-1]
                 values = dict.fromkeys(re.findall(r"\{(\w+)", sentence))
                 key = f"{group}.{name}"
-                said = ", ".join(f"{value} [{unit_of(value)}]".removesuffix(" []") for value in values)
+                units = {value: unit_of(value) for value in values}
+                if group == "diagnostic":
+                    units["size"] = CODES[name.partition(":")[0]]
+                said = ", ".join(f"{value} [{units[value]}]".removesuffix(" []") for value in values)
                 rows.append((nodes.paragraph("", "", nodes.literal(key, key)), nodes.paragraph("", said)))
                 rows[-1] += (nodes.paragraph("", sentence),)
         return [table(("key", "values", "sentence"), (25, 25, 50), rows)]

@@ -9,18 +9,13 @@ from rockwobble.models import Diagnostic
 from rockwobble.models.diagnostic import CODES, FAILURES
 from rockwobble.models.plain_json import Facts
 
-from .wording import lines_of, written
+from .wording import lines_of
+from .wording import sentence as worded
 
 
 def sentence(fact: Diagnostic) -> str:
     """Return a diagnostic in words, without capital and full stop."""
-    unit = CODES[fact.code][0]
-    values = {name: getattr(fact, name) for name in ("time", "duration", "size", "bound", "detail")}
-    units = {"time": "s", "duration": "s", "size": "count" if unit in _COUNTED else ""}
-    return written(f"diagnostic.{fact.code}", values, units)
-
-
-_COUNTED = ("steps", "passes", "columns")
+    return worded(fact.finding())
 
 
 def remarks(facts: Iterable[Diagnostic]) -> str:

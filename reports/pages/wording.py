@@ -3,10 +3,10 @@
 A line names values in braces. How a value looks follows its unit: an angle in degrees, a share in per cent,
 a time in s, a number with its 95 % interval behind it. `{runs:copy/copies}` adds the noun that fits the
 count; `{size:added|dissipated}` is the first word above zero, the second below; `{reason:word}` looks its
-value up in the table [word]; `{peak:scattered}` has as many digits as the value share_scatter leaves; any
-other format is one of `number`, as `{bound:.1e}`. What stands in square brackets is left out where a value
-in it is not known. A line whose key ends in `:NAME unknown` or `:NAME infinite` takes the place of the
-plain one where that value is.
+value up in the table [word], `{names:diagnosed}` codes in [diagnostic]; `{peak:scattered}` has as many
+digits as the value share_scatter leaves; any other format is one of `number`, as `{bound:.1e}`. What stands
+in square brackets is left out where a value in it is not known. A line whose key ends in `:NAME unknown` or
+`:NAME infinite` takes the place of the plain one where that value is.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from .table import NONE, enumeration, number, scattered
 
 _FIELD = re.compile(r"\{(\w+)(?::([^}]*))?\}")
 _OPTIONAL = re.compile(r"\[([^\]]*)\]")
+_UNKNOWN: Mapping[str, Value] = dict.fromkeys(("time", "duration", "size", "bound"), math.nan)
 _SEPARATORS = (", ", "; ")
 # unit: how a number looks
 _BY_UNIT: Mapping[str, Callable[[float], str]] = {
@@ -133,6 +134,9 @@ def _value(value: Value, unit: str, form: str) -> str:
     if form == "word":
         names = value if isinstance(value, tuple) else (value,)
         return enumeration([str(words()["word"].get(str(name), name)) for name in names])
+    if form == "diagnosed":
+        names = value if isinstance(value, tuple) else (value,)
+        return "; ".join(written(f"diagnostic.{name}", _UNKNOWN, {}) for name in names)
     if isinstance(value, str):
         return value
     if isinstance(value, tuple):

@@ -9,7 +9,7 @@ from typing import Any
 from rockwobble.compare.comparison.prediction import UNTESTED
 from rockwobble.compare.metrics.statistics import FEWEST
 from rockwobble.models import AGREEMENT, CLOSED_TILT
-from rockwobble.models.diagnostic import CODES, codes_in
+from rockwobble.models.diagnostic import codes_in
 from rockwobble.models.finding import Finding, Findings, Level, Value
 from rockwobble.models.support import FLAT, RECESS, support_named
 from rockwobble.models.trace import NO_PEAK
@@ -105,7 +105,7 @@ def _at_rest(advice: Advice) -> Finding:
     """Why a case does not move, or what it would take."""
     motion, vertical = advice.facts["motion"], advice.vertical
     if codes := advice.response["diagnostics"]:
-        return _note("rest.diagnosed", detail=", ".join(CODES[code][1] for code in codes))
+        return _note("rest.diagnosed", names=tuple(codes))
     if motion is None:
         return _note("rest.nothing")
     if motion["uplift_factor"] >= _NO_SCALE:
@@ -283,7 +283,7 @@ def _engine(advice: Advice) -> Reason:
     if verification is None:
         return "engine.not_run", {}
     if verification.outcome in NO_PEAK:
-        return f"engine.{verification.outcome}", {"detail": _failure(verification)}
+        return f"engine.{verification.outcome}", {"names": tuple(codes_in(verification.diagnostics))}
     # copies part earlier: they are shaken by a little more or less
     until, predicted = _agreed_until(verification), _predicted_until(advice)
     stopped = verification.stopped if math.isfinite(verification.stopped) else math.nan
@@ -315,10 +315,6 @@ def _predicted_until(advice: Advice) -> float:
 def _agreed_until(verification: Verification) -> float:
     """End of the agreement [s]; inf: that of the run."""
     return verification.agreed_until if verification.diverged else math.inf
-
-
-def _failure(verification: Verification) -> str:
-    return "; ".join(CODES[code][1] for code in codes_in(verification.diagnostics))
 
 
 def _groups(advice: Advice) -> Iterator[Finding]:
@@ -492,7 +488,10 @@ def _agreement(advice: Advice) -> Iterator[Finding]:
     }
     if not ran:
         yield _note(
-            "evidence.engine_failed", **engine, detail=_failure(verification), reason=verification.outcome
+            "evidence.engine_failed",
+            **engine,
+            names=tuple(codes_in(verification.diagnostics)),
+            reason=verification.outcome,
         )
         return
     fell = verification.outcome == "overturned"

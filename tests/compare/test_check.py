@@ -566,7 +566,8 @@ def test_an_update_keeps_the_reason_and_names_what_changes(right: Subject) -> No
     signals = {**first["signals"], "tilt": [2.0 * float(tilt or 0.0) for tilt in first["signals"]["tilt"]]}
     new = ({**first, "signals": signals}, second, *others[:-1])
     changed, gone = baseline.baseline_changes(kept, new, right)
-    assert changed.startswith("changed: tilt of tilting from 0 s by 0.5, allowed ")
+    assert changed.startswith("changed; case: tilting; ")
+    assert "quantity: tilt; time: 0.0; difference: 0.5; allowed: " in changed
     assert gone == f"gone: {others[-1]['name']}"
     assert baseline.baseline_changes(kept, kept.fingerprint, right) == []
     older = baseline_of("0.0.1", kept)

@@ -17,7 +17,6 @@ from rich.console import Console
 from rockwobble import advise
 from rockwobble.compare.comparison.prediction import UNTESTED, Prediction, verdict
 from rockwobble.models import Case, Cylinder, InitialState, WobblingFrame, el_centro_1940
-from rockwobble.models.diagnostic import CODES
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.advice import pictures
@@ -304,7 +303,7 @@ def test_a_case_at_rest_begins_with_what_keeps_it_there(found):
         vertical = values.get("factor_vertical", math.nan)
         assert (key, values.get("factor"), None if math.isnan(vertical) else vertical) == expected
     failed = {**still.facts["response"], "diagnostics": ["step_budget"]}
-    assert finding_of(changed(still, response=failed), "rest")[1] == {"detail": CODES["step_budget"][1]}
+    assert finding_of(changed(still, response=failed), "rest")[1] == {"names": ("step_budget",)}
     assert not found.findings().of("rest")
 
 

@@ -53,7 +53,8 @@ def test_each_key_in_the_code_has_a_line_and_each_line_a_key():
 
 def values_of(line: str, number: Value, text: Value) -> dict[str, Value]:
     """Values of the quantities that a line names, each of its type."""
-    return {name: text if name.partition("_")[0] in TEXTS else number for name in _FIELD.findall(line)}
+    values = {name: text if name.partition("_")[0] in TEXTS else number for name in _FIELD.findall(line)}
+    return values | ({"names": ("slip", "tolerance")} if "{names:diagnosed}" in line else {})
 
 
 @pytest.mark.parametrize("number", [2.0, 0, -0.5, math.nan, math.inf, (0.4, 0.26, math.inf), None])
