@@ -18,7 +18,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rockwobble.models import Case, GroundMotion, InitialState
+from rockwobble.models import Case, GroundMotion, InitialState, Tendon
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.cylinder import PIER
 
@@ -60,20 +60,25 @@ def free_response(subject: Subject, support: str) -> Iterator[Result]:
     Time and turn between two tilt maxima are those of the quadrature; without loss the tilt comes back.
     """
     for of, case in _RELEASES.items():
-        cylinder, start = case.cylinder, case.initial
-        assert start is not None
-        if cylinder.slab_mass_ratio > 0.0 and not subject.carries_slab:
+        if case.cylinder.carries_slab and not subject.carries_slab:
             continue
-        time, turn = period_and_turn(shape_of(cylinder), start.tilt, start.rolling_rate)
-        trace = subject.simulate(case, support)
-        maxima = trace.extrema[(trace.extrema[:, 3] > 0.0) & (trace.extrema[:, 0] > 0.5 * time)]
-        first = maxima[0] if len(maxima) else np.full(4, math.nan)
-        bound = subject.tolerance_bound(3.0, _QUADRATURE)
-        yield at_most(f"period of a release, {of}", abs(first[0] / time - 1.0), bound)
-        yield at_most(f"tilt that a release returns to, {of}", abs(first[1] / start.tilt - 1.0), bound)
-        if "rolling_angle" in subject.knows:
-            off = math.remainder(first[2] - start.rolling_angle - turn, 2.0 * math.pi)
-            yield at_most(f"angle of turn of a release, {of}", abs(off) / turn, bound)
+        yield from returns(subject, support, case, of)
+
+
+def returns(subject: Subject, support: str, case: Case, of: str) -> Iterator[Result]:
+    """Yield period, regained tilt and angle of turn of a release, with the tendon of its case."""
+    start = case.initial
+    assert start is not None
+    time, turn = period_and_turn(shape_of(case.cylinder, case.tendon), start.tilt, start.rolling_rate)
+    trace = subject.simulate(case, support)
+    maxima = trace.extrema[(trace.extrema[:, 3] > 0.0) & (trace.extrema[:, 0] > 0.5 * time)]
+    first = maxima[0] if len(maxima) else np.full(4, math.nan)
+    bound = subject.tolerance_bound(3.0, _QUADRATURE)
+    yield at_most(f"period of a release, {of}", abs(first[0] / time - 1.0), bound)
+    yield at_most(f"tilt that a release returns to, {of}", abs(first[1] / start.tilt - 1.0), bound)
+    if "rolling_angle" in subject.knows:
+        off = math.remainder(first[2] - start.rolling_angle - turn, 2.0 * math.pi)
+        yield at_most(f"angle of turn of a release, {of}", abs(off) / turn, bound)
 
 
 def steady_wobble(subject: Subject, support: str) -> Iterator[Result]:
@@ -99,12 +104,17 @@ def vanishing_spin(subject: Subject, support: str) -> Iterator[Result]:
 
 def planar_rocking(subject: Subject, support: str) -> Iterator[Result]:
     """Time from rest to upright in one plane: a quadrature, Housner's quarter period."""
-    quarter = planar_quarter(shape_of(PIER), 0.5 * PIER.alpha)
-    case = Case(PIER, initial=InitialState(0.5 * PIER.alpha), duration=1.5 * quarter)
+    yield from reaches_upright(subject, support, None, "planar rocking")
+
+
+def reaches_upright(subject: Subject, support: str, tendon: Tendon | None, of: str) -> Iterator[Result]:
+    """Yield the time from rest at half of alpha to the upright position in one plane."""
+    quarter = planar_quarter(shape_of(PIER, tendon), 0.5 * PIER.alpha)
+    case = Case(PIER, initial=InitialState(0.5 * PIER.alpha), duration=1.5 * quarter, tendon=tendon)
     trace = subject.simulate(case, support)
     minima = trace.extrema[trace.extrema[:, 3] < 0.0]
     off = largest(minima[:1, 0] / quarter - 1.0)
-    yield at_most("planar rocking, time to upright", off, subject.tolerance_bound(30.0, _QUADRATURE))
+    yield at_most(f"{of}, time to upright", off, subject.tolerance_bound(30.0, _QUADRATURE))
 
 
 def tilt_inertia(shape: Shape) -> float:

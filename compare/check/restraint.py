@@ -8,7 +8,6 @@ and the quadratures of `laws` stay, with another V.
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -18,7 +17,7 @@ from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.cylinder import PIER
 
 from .lagrange import TENDON, Shape, energy, potential, shape_of, slope
-from .laws import period_and_turn, planar_quarter
+from .laws import reaches_upright, returns
 from .measurement import (
     FRAME_RELEASE,
     RELEASE,
@@ -30,11 +29,9 @@ from .measurement import (
 )
 from .subject import Subject
 
-_QUADRATURE = "quadrature of the energies, good to 1e-9"
 _HELD = dataclasses.replace(RELEASE, tendon=TENDON)
 _HELD_FRAME = dataclasses.replace(FRAME_RELEASE, tendon=TENDON)
-# tilt over alpha of releases on both sides of the balance: so near, and so far
-_NEAR, _TILT = 0.005, 0.5
+_NEAR = 0.005  # of the balance: releases on both sides of it
 
 
 def _releases(subject: Subject) -> dict[str, Case]:
@@ -45,30 +42,12 @@ def _releases(subject: Subject) -> dict[str, Case]:
 def releases(subject: Subject, support: str) -> Iterator[Result]:
     """Period, regained tilt and angle of turn of a release are those of the quadrature with its energy."""
     for of, case in _releases(subject).items():
-        start = case.initial
-        assert start is not None
-        time, turn = period_and_turn(shape_of(case.cylinder, TENDON), start.tilt, start.rolling_rate)
-        found = subject.simulate(case, support)
-        maxima = found.extrema[(found.extrema[:, 3] > 0.0) & (found.extrema[:, 0] > 0.5 * time)]
-        first = maxima[0] if len(maxima) else np.full(4, math.nan)
-        bound = subject.tolerance_bound(3.0, _QUADRATURE)
-        yield at_most(f"period with a tendon, {of}", abs(first[0] / time - 1.0), bound)
-        yield at_most(f"tilt regained with a tendon, {of}", abs(first[1] / start.tilt - 1.0), bound)
-        if "rolling_angle" in subject.knows:
-            off = math.remainder(first[2] - start.rolling_angle - turn, 2.0 * math.pi)
-            yield at_most(f"angle of turn with a tendon, {of}", abs(off) / turn, bound)
+        yield from returns(subject, support, case, f"{of} with a tendon")
 
 
 def rocking(subject: Subject, support: str) -> Iterator[Result]:
     """Time from rest to upright in one plane with a tendon: a quadrature."""
-    tilt = _TILT * PIER.alpha
-    quarter = planar_quarter(shape_of(PIER, TENDON), tilt)
-    case = Case(PIER, initial=InitialState(tilt), duration=1.5 * quarter, tendon=TENDON)
-    found = subject.simulate(case, support)
-    minima = found.extrema[found.extrema[:, 3] < 0.0]
-    off = largest(minima[:1, 0] / quarter - 1.0)
-    bound = subject.tolerance_bound(30.0, _QUADRATURE)
-    yield at_most("planar rocking with a tendon, time to upright", off, bound)
+    yield from reaches_upright(subject, support, TENDON, "planar rocking with a tendon")
 
 
 def stored_energy(subject: Subject, support: str) -> Iterator[Result]:
