@@ -45,7 +45,7 @@ _SLIDING: Settings = {
     "follow_load": False,
     "points": 8,
     "noslip_iterations": 20,
-    "points_damping_ratio": 3.0,
+    "points_softness": 1.0,
     "contact_damping_ratio": 3.0,
 }
 # A standing cylinder that runs into a wall, or hops while it slides, leans too and then stands on: only
@@ -85,7 +85,7 @@ def _chosen(scene: Scene, given: Settings) -> Settings:
     in_plane = scene.mode == ROCKS_IN_PLANE and not scene.support.walls
     if scene.start.standing and scene.mode == SLIDES:
         return {**_SLIDING, "friction_damping": min(_STOPPING * scene.time_step, 1.0)}
-    follow = given.get("follow_load", not (scene.start.standing and in_plane))
+    follow = given.get("follow_load", not in_plane)
     ratio = 1.0 if follow else _CLOSING if in_plane else _ROLLING
     return {"follow_load": follow, "contact_damping_ratio": ratio}
 
