@@ -1,7 +1,7 @@
 """Rocking and wobbling cylinders: a two-degree-of-freedom model compared with multibody engines.
 
-The names stand in `__init__.pyi`; each is imported when it is first used, so that `import rockwobble` costs
-nothing.
+models, reduced, multibody and compare are the core; studies and reports are built on it. The names stand in
+`__init__.pyi`; each is imported when it is first used, so that `import rockwobble` costs nothing.
 
 >>> import rockwobble as rw
 >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)

@@ -106,12 +106,28 @@ def test_the_limits_on_one_screen_are_the_published_ones() -> None:
 @pytest.mark.parametrize("page", ["README.md", "docs/start.md", "docs/index.md"])
 def test_for_how_long_traces_agree(page: str) -> None:
     rows = pd.read_csv(PUBLISHED / "compare" / "summary.csv")
+    fixed = rows["run"].str.contains("follow_load=False")  # nothing steered
     recess = rows[(rows["support"] == "recess") & (rows["reference"] == "recess model")]
     (time,) = set(re.findall(r"for (\d+) s after uplift", words(page)))
-    assert int(time) <= recess["agreement_time"].min() < int(time) + 1
-    own = rows[(rows["support"] == "flat") & (rows["reference"] == "flat-ground model")]
+    assert int(time) <= recess[~fixed[recess.index]]["agreement_time"].min() < int(time) + 1
+    for either in re.findall(r"(\d+) s with nothing steered|nothing steered [^.]*? for (\d+) s", words(page)):
+        assert int(max(either)) <= recess[fixed[recess.index]]["agreement_time"].item() < int(max(either)) + 1
+    own = rows[(rows["support"] == "flat") & (rows["reference"] == "flat-ground model") & ~fixed]
     for time in re.findall(r"another model, for (\d+\.\d) s after uplift", words(page)):
         assert time == f"{own['agreement_time'].min():.1f}"
+
+
+def test_with_nothing_steered_the_two_agree_for_as_long_as_published() -> None:
+    rows = pd.read_csv(PUBLISHED / "compare" / "summary.csv").set_index(["run", "reference"])
+    ends = rows["within_tolerance_until"]
+    runs = [("recess", "recess model"), ("flat", "flat-ground model")]
+    fixed, followed = (
+        [f"{ends[f'mujoco {support}{more}', model]:.1f}" for support, model in runs]
+        for more in (" follow_load=False", "")
+    )
+    said = f"the two agree until {fixed[0]} s in the recess and {fixed[1]} s on flat ground"
+    assert f"{said}, and until {followed[0]} s and {followed[1]} s where" in words("docs/guide/engines.md")
+    assert said in words("docs/guide/comparison.md")
 
 
 @pytest.mark.parametrize("page", ["docs/guide/frames.md", "docs/published/frames.md"])
