@@ -14,7 +14,6 @@ SCRIPTS = (
     "certified_releases",
     "convergence",
     "decks",
-    "engine_extremes",
     "engine_settings",
     "false_alarms",
     "fragility_coverage",

@@ -24,7 +24,6 @@ from rockwobble.compare.check.baseline import (
     certify,
     claims_of,
     models,
-    read_certificate,
     verify,
     write_certificate,
 )
@@ -139,13 +138,6 @@ def test_the_signals_of_a_release_begin_where_it_leans(certificate: dict[str, An
             along = [lean * math.cos(start.rolling_angle), lean * math.sin(start.rolling_angle)]
             begins = [one["signals"][name][0] for name in ("lean_x", "lean_y")]
             assert begins == pytest.approx(along, rel=WRITTEN), short.name
-
-
-def test_it_is_the_same_here_and_in_a_file(certificate: dict[str, Any], tmp_path: Path) -> None:
-    write_certificate(certificate, tmp_path / "certificate.json")
-    answer = verify(read_certificate(tmp_path / "certificate.json"))
-    assert answer.word == SAME
-    assert answer.exit_code == 0
 
 
 def test_a_certificate_follows_its_schema(certificate: dict[str, Any]) -> None:

@@ -376,23 +376,6 @@ def test_a_model_is_found_by_its_name(tmp_path: Path, monkeypatch: pytest.Monkey
             subject.load_model(name)
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ({"engine": "mujoco", "model": "a:b"}, "one of engine, model"),
-        ({"time_step": 1e-4}, "belong to an engine"),
-        ({"only": ["equation"]}, "a group must be one of equations, "),
-        ({"model": "a:b"}, "cannot be imported"),
-        ({"engine": "chrono"}, "engine must be one of mujoco"),
-        ({"model": ours, "support": "ring"}, "support must be 'recess' or 'flat'"),
-        ({"model": ours, "tolerance": 0.0}, "tolerance must be above 0"),
-    ],
-)
-def test_bad_input_is_refused(options: dict[str, Any], words: str) -> None:
-    with pytest.raises(ValueError, match=words):
-        rw.check(**options)
-
-
 def test_the_results_are_a_table_and_a_line() -> None:
     found = rw.check(model=restless, only=["rest", "equations"])
     assert list(found.tables["results"]["name"]) == [each.name for each in found.results]

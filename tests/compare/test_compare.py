@@ -188,18 +188,6 @@ def test_a_suite_is_cases_times_runs(made_up, case, cylinder, monkeypatch):
     ]
 
 
-def test_progress_is_told_of_every_run(made_up, case):
-    made_up()
-    told = []
-    comparison(case, runs=[Run("mujoco", "recess")], workers=1, progress=told.append)
-    assert [(p.label, p.state, p.done, p.total) for p in told] == [
-        ("synthetic, recess model", "started", 0, 2),
-        ("synthetic, recess model", "finished", 1, 2),
-        ("synthetic, mujoco recess", "started", 1, 2),
-        ("synthetic, mujoco recess", "finished", 2, 2),
-    ]
-
-
 def test_files_hold_the_whole_result(made_up, case, tmp_path):
     made_up()
     found = comparison(case, runs=[Run("mujoco", "recess"), Run("mujoco", "flat")], workers=1, out=tmp_path)

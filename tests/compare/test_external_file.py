@@ -22,9 +22,7 @@ TURN = "time,qw,qx,qy,qz"
 GOOD = "time [s],tilt [deg],azimuth [deg]\n0,1,0\n0.01,2,1\n0.02,3,2\n0.03,2,3\n"
 BAD = {
     "": "is empty",
-    "# only\n": "is empty",
     GOOD.replace("0.02,", "0.005,"): "line 4: time must rise [s], got 0.005 after 0.01",
-    GOOD.replace("0.02,", "0.01,"): "line 4: time must rise [s], got 0.01 after 0.01",
     GOOD + "0.2,1,2\n": "line 6: a gap of 0.17 s where the usual step is 0.01 s",
     "# table 3\n" + GOOD.replace("3,2\n", "much,2\n"): "line 5: tilt [deg] must be a number, got 'much'",
     GOOD.replace("3,2\n", ",2\n"): "line 4: tilt is missing",
@@ -39,11 +37,8 @@ BAD = {
     "time,x [mm],y [mm],z [mm]\n0,0,0,5.88\n0.01,0,0,5.88\n0.02,0,0,5.88\n": (
         "line 2: the mass centre must be R = 6 m from the rim and above the ground, got 1.177 m"
     ),
-    "time,x,y,z\n0,0,0,-5.88\n0.01,0,0,-5.88\n0.02,0,0,-5.88\n": "got 5.997 m and z = -5.88 m; without",
-    GOOD.replace("3,2\n", "inf,2\n"): "line 4: tilt [deg] must be finite, got 'inf'",
     GOOD.replace("3,2\n", "3\n"): "line 4: expected 3 cells as in the header, got 2",
     GOOD.replace("tilt [deg]", "tilt"): "does not say the unit of tilt: name the column 'tilt [deg]'",
-    GOOD.replace("tilt [deg]", "tilt [grad]"): "tilt must be in rad or deg, got 'grad'",
     GOOD.replace("tilt [deg]", "lean [deg]"): "must have tilt where it has azimuth, got no tilt",
     GOOD.replace("time [s]", "n"): "must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x",
     GOOD.replace("azimuth", "tilt"): "must have each column once, got tilt as 'tilt [deg]' and 'tilt [deg]'",

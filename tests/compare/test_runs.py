@@ -7,7 +7,7 @@ from typing import Literal
 import pytest
 
 from rockwobble import comparison
-from rockwobble.compare import default_runs, simulate
+from rockwobble.compare import default_runs
 from rockwobble.compare.runs.choice import (
     labels_beside_references,
     missing_engines,
@@ -21,8 +21,7 @@ from rockwobble.compare.runs.choice import (
 from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.models.support import SUPPORTS
 from rockwobble.multibody import available_engines
-from rockwobble.multibody.engines import registry
-from rockwobble.multibody.engines.registry import engine_packages, own_engines, standard_engines
+from rockwobble.multibody.engines.registry import engine_packages, standard_engines
 
 # of two seconds: 3e-7 of the tilt by its own model was measured, 5e-4 by the other
 FOLLOWS = 1e-2
@@ -86,26 +85,6 @@ def test_a_suite_leaves_out_an_engine_that_is_missing_and_keeps_an_extra(monkeyp
     assert re.fullmatch(rf"{name} is not installed here: pip install .*; it is left out", said)
 
 
-def test_an_engine_that_lacks_a_library_of_the_system_is_left_out_and_says_which(monkeypatch, case):
-    name = "exudyn"  # comes with the tests, and is linked with what draws
-    if name not in available_engines():
-        pytest.skip("exudyn is not installed")
-    load = importlib.import_module
-
-    def without_library(module, *package):
-        if module == name:
-            raise ImportError("libGL.so.1: cannot open shared object file")
-        return load(module, *package)
-
-    registry._load_failure.cache_clear()
-    monkeypatch.setattr(importlib, "import_module", without_library)
-    release = Case(case.cylinder, initial=InitialState(0.5 * case.cylinder.alpha), duration=1.0)  # it can run
-    with pytest.raises(ValueError, match=r"'exudyn' is installed and does not load: libGL.so.1"):
-        require_runnable(release, Run(name, "flat"))
-    assert name not in own_engines()
-    registry._load_failure.cache_clear()
-
-
 def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeypatch, case):
     if "exudyn" not in available_engines():
         pytest.skip("exudyn is not installed")
@@ -126,26 +105,6 @@ def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeyp
     assert "exudyn" not in missing_engines()
     with pytest.raises(ValueError, match=r"'exudyn' is not installed here: pip install 'exudyn"):
         require_runnable(released, Run("exudyn", "flat"))
-
-
-def test_what_is_no_case_is_refused_by_its_name(case):
-    for call in (simulate, comparison):
-        with pytest.raises(ValueError, match=r"Case.*, got Cylinder\("):
-            call(case.cylinder)
-
-
-def test_unknown_engines_and_supports_are_refused(case):
-    with pytest.raises(ValueError, match=r"engine must be one of mujoco, pybullet.*, got 'bullet'"):
-        require_runnable(case, Run("bullet", "recess"))
-    with pytest.raises(ValueError, match=r"support must be one of .*, got 'glued'"):
-        simulate(case, engine="mujoco", support="glued")
-
-
-def test_a_time_step_too_large_for_the_size_is_refused(case):
-    require_runnable(case, Run("mujoco", "recess", 1e-3))
-    small = Case(Cylinder(semidiagonal=0.06, tan_alpha=0.2), duration=1.0, name="small")
-    with pytest.raises(ValueError, match=r"time_step must be at most 0.0001 s"):
-        require_runnable(small, Run("mujoco", "recess", 1e-3))
 
 
 def labels(case: Case, run: Run, reference: Run | None = None) -> list[str]:

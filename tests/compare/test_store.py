@@ -13,16 +13,6 @@ def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.rglob("*"))
 
 
-def test_a_second_run_replaces_its_own_files_and_touches_nothing_else(tmp_path):
-    (tmp_path / "mine.txt").write_text("mine")
-    replace_files(tmp_path, {"a.csv": b"1", "b.csv": b"2"})
-    replace_files(tmp_path, {"a.csv": b"3"})
-    assert names(tmp_path) == ["a.csv", "b.csv", "mine.txt"]
-    assert (tmp_path / "a.csv").read_bytes() == b"3"
-    assert (tmp_path / "b.csv").read_bytes() == b"2"
-    assert (tmp_path / "mine.txt").read_text() == "mine"
-
-
 def test_folders_are_made(tmp_path):
     replace_files(tmp_path / "a" / "b", {"c.csv": b"1"})
     assert (tmp_path / "a" / "b" / "c.csv").read_bytes() == b"1"

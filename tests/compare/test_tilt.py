@@ -31,14 +31,6 @@ def test_rms_of_a_shifted_sine(cylinder, make_trace, shift):
     assert tilt_rms_relative(pair) == pytest.approx(expected / math.sqrt(mean_square), rel=GRID)
 
 
-def test_rms_of_an_offset_is_the_offset(cylinder, make_trace):
-    time = np.arange(1001) * 0.01
-    tilt = 0.3 * cylinder.alpha * np.ones_like(time)
-    pair = make_pair(cylinder, make_trace(time, tilt), make_trace(time, tilt + 0.02 * cylinder.alpha))
-    assert tilt_rms(pair) == pytest.approx(0.02, rel=ROUNDING)
-    assert tilt_rms_relative(pair) == pytest.approx(0.02 / 0.3, rel=ROUNDING)
-
-
 def test_relative_rms_counts_only_up_to_the_end_of_its_window(cylinder, make_trace):
     time = np.arange(1001) * 0.01
     tilt = np.where(time < 2.0, 0.0, 0.3 * cylinder.alpha)

@@ -43,11 +43,16 @@ WITH_PEAKS: Mapping[str, Callable[[Parts], str | bytes]] = {
     "a.EW": knet,
     "a.ASC": lambda parts: networks.esm(parts["x"]),
     "afad.txt": networks.afad,
+    "afad_turned.txt": lambda parts: networks.afad(parts, "zxy"),
     "cwa.dat": networks.cwa,
     "cwa_without_format.dat": lambda parts: networks.cwa(parts, formats=False),
     "geonet.V1A": lambda parts: networks.geonet(parts, HORIZONTAL_AND_UP, corrected=False),
+    "geonet_quadrants.V1A": lambda parts: networks.geonet(
+        parts, {"x": "S90E", "y": "N00W", "z": "Up"}, corrected=False
+    ),
     "geonet.V2A": lambda parts: networks.geonet(parts, HORIZONTAL_AND_UP, corrected=True),
     "csmip.V2": lambda parts: networks.csmip(parts, DEGREES_AND_UP, volume=2),
+    "csmip_small.V2": lambda parts: networks.csmip(parts, DEGREES_AND_UP, volume=2, capitals=False),
     "cosmos.V2c": lambda parts: networks.cosmos(parts, CHANNELS),
     "cosmos_without_formats.V2c": lambda parts: networks.cosmos(parts, CHANNELS, formats=False),
     "a.smc": lambda parts: networks.smc(parts["x"]),

@@ -28,12 +28,9 @@ def values_in_g(path: Path, **options: str) -> list[float]:
     "header",
     [
         "NPTS=      6, DT=   .0100 SEC,",
-        "NPTS=  6, DT= .01000 SEC",
         "NPTS=6,DT=.01",
-        "NPTS = 6 , DT = 0.01 SEC",
         "npts: 6, dt: 1.0E-02 sec",
         "NPTS=  6, DT= 1.D-2 SEC",
-        "6 0.0100 NPTS, DT",
         "     6    .0100    NPTS, DT(SEC)",
         "6, 0.01, NPTS, DT",
     ],
@@ -47,11 +44,8 @@ def test_each_form_of_the_header_line(write: Write, header: str) -> None:
 @pytest.mark.parametrize(
     ("line", "factor"),
     [
-        ("ACCELERATION TIME SERIES IN UNITS OF G", 9.81),
         ("ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz LP=40.0 Hz", 9.81),
         ("ACCELERATION TIME HISTORY IN UNITS OF CM/SEC/SEC.", 0.01),
-        ("ACCELERATION IN UNITS OF MG", 9.81e-3),
-        ("ACCELERATION IN UNITS OF FT/S2", 0.3048),
         ("Acceleration time series, units: m/s^2", 1.0),
         ("ACCELERATION (CM/S**2)", 0.01),
         ("Acceleration in gal", 0.01),
@@ -129,25 +123,16 @@ def record(header: str = "NPTS= 6, DT= .01 SEC", title: str = UNITS, values: str
     ("text", "message"),
     [
         (record("NPTS= 6"), r"x.txt, line 4: expected 'NPTS= n, DT= step SEC' or .*, got 'NPTS= 6'"),
-        (record("NPTS= many, DT= .01"), r"x.txt, line 4: expected 'NPTS= n, .* got 'NPTS= many, DT= .01'"),
-        (record("NPTS= 6, DT= soon"), r"x.txt, line 4: expected 'NPTS= n, .* got 'NPTS= 6, DT= soon'"),
         (record("NPTS= " + "9" * 5000 + ", DT= .01"), r"x.txt, line 4: expected 'NPTS= n"),
         (record("NPTS= 6, DT= 0.0 SEC"), r"x.txt: the time step must be positive and finite \[s\], got 0"),
-        (record("NPTS= 6, DT= -.01 SEC"), r"x.txt: the time step must be positive .*, got -0.01"),
         (record("NPTS= 6, DT= 1E999 SEC"), r"x.txt, line 4: .* finite number, got '1E999'"),
         (record("NPTS= 7, DT= .01"), r"x.txt, line 4: announces 7 samples, the file holds 6"),
         (record("NPTS= 5, DT= .01"), r"x.txt, line 4: announces 5 samples, the file holds 6"),
         (record("NPTS= 1, DT= .01", values=" .1\n"), r"x.txt must hold at least two samples, got 1"),
-        (record("NPTS= 0, DT= .01", values=""), r"x.txt must hold at least two samples, got 0"),
         (
             record(values=SIX.replace(".3000000E-01", "NaN")),
             r"x.txt, line 5: expected accelerations, got '.*NaN.*'",
         ),
-        (
-            record(values=SIX.replace("-.6", "six")),
-            r"x.txt, line 6: expected accelerations, got 'six000000E-01'",
-        ),
-        (record(values=SIX.replace(".3000000E-01", "****")), r"x.txt, line 5: expected accelerations, got"),
         (
             record(values=SIX.replace("E-01", "E+999")),
             r"x.txt, line 5: .* finite number, got '.1000000E\+999'",
@@ -156,7 +141,6 @@ def record(header: str = "NPTS= 6, DT= .01 SEC", title: str = UNITS, values: str
             record(title="VELOCITY TIME SERIES IN UNITS OF CM/S\n"),
             r"x.txt is not an acceleration record, it says 'VELOCITY TIME SERIES IN UNITS OF CM/S'",
         ),
-        (record(title="DISPLACEMENT IN UNITS OF CM\n"), r"x.txt is not an acceleration record"),
         (record(title="ACCELERATION IN UNITS OF KM/S2\n"), r"x.txt is in KM/S2, allowed are g, m/s2, cm/s2"),
         (record(title="ACCELERATION [m/s2], UNITS OF G\n"), r"x.txt states two units: m/s2 and G"),
     ],

@@ -24,24 +24,6 @@ def at2(step: float, count: int) -> str:
     return f"ACCELERATION IN UNITS OF G\nNPTS= {count}, DT= {step} SEC\n" + "1.0\n" * count
 
 
-def test_cut_to_the_shortest_component(write: Write) -> None:
-    # a tail of rest, and a sample or two of a long record
-    tail = "".join(f"{0.01 * i:.2f},0.001\n" for i in range(300, 400))
-    x = write(columns(0.01, 300) + "\n" + tail, "x")
-    y, z = write(columns(0.01, 300), "y"), write(columns(0.01, 298), "z")
-    assert read_record(x, y).acceleration.shape == (300, 2)
-    assert read_record(y, y, z).acceleration.shape == (298, 3)
-
-
-def test_half_a_component_is_no_record(write: Write) -> None:
-    x, y = write(columns(0.01, 300), "x"), write(columns(0.01, 150), "y")
-    message = (
-        r"must be equally long, got 300 samples in x and 150 in another: what would be left out has 100 %"
-    )
-    with pytest.raises(ValueError, match=message):
-        read_record(x, y)
-
-
 def test_each_file_has_its_own_place_format_and_unit(write: Write) -> None:
     x = write(at2(0.01, 4), "east.AT2")
     y = write(columns(0.01, 4, unit="m/s2", value=2.0), "north.csv")
@@ -57,30 +39,9 @@ def test_named_for_the_first_file_unless_told_otherwise(write: Write) -> None:
     assert read_record(str(x), str(x), name="Somewhere 1999").name == "Somewhere 1999"
 
 
-def test_refuses_different_time_steps(write: Write) -> None:
-    x, y = write(columns(0.01, 9), "x"), write(columns(0.02, 9), "y")
-    message = (
-        r"^the components of a record must have one time step, got 0.01 s in x and 0.02 s in y: resample"
-    )
-    with pytest.raises(ValueError, match=message):
-        read_record(x, y)
-    with pytest.raises(ValueError, match="one time step"):
-        read_record(x, x, write(at2(0.0101, 9), "z"))
-
-
 def test_steps_that_differ_by_the_rounding_of_printed_times_are_one_step(write: Write) -> None:
     x, y = (write(columns(1.0 / 60.0, count), name) for name, count in (("x", 500), ("y", 498)))
     assert read_record(x, y).acceleration.shape == (498, 2)
-
-
-def test_refuses_different_starts(write: Write) -> None:
-    x, y = write(columns(0.01, 9), "x"), write(columns(0.01, 9, start=0.05), "y")
-    with pytest.raises(
-        ValueError, match=r"^the components .* must start at one time, got 0 s in x and 0.05 s in y$"
-    ):
-        read_record(x, y)
-    # an AT2 file gives no times that could contradict
-    assert np.isfinite(read_record(write(at2(0.01, 9), "z"), y).acceleration).all()
 
 
 @pytest.mark.parametrize("units", ["furlong", "", "cm/s", "m"])
@@ -91,16 +52,6 @@ def test_refuses_units_that_are_unknown(write: Write, units: str) -> None:
         match=f"^units must be one of g, m/s2, cm/s2, .*in/s2, got '{units}'$",
     ):
         read_record(x, x, units=units)
-
-
-@pytest.mark.parametrize(
-    ("units", "unit"),
-    [("G", 9.81), ("Gal", 0.01), ("m/s^2", 1.0), ("mm/s2", 1e-3), ("mg", 9.81e-3), ("%g", 0.0981)],
-)
-def test_a_silent_file_is_in_any_unit_that_is_given(write: Write, units: str, unit: float) -> None:
-    x = write("0 0\n.01 1\n.02 2\n.03 1\n")
-    found, metre = (read_record(x, x, units=each).acceleration for each in (units, "m/s2"))
-    np.testing.assert_allclose(found, unit * metre, rtol=1e-14)
 
 
 def test_names_the_one_file_that_is_silent(write: Write) -> None:
@@ -159,31 +110,6 @@ def test_a_component_of_zeros_is_planar_motion(write: Write) -> None:
         assert not motion.acceleration[:, 1 - moves].any()
     with pytest.raises(ValueError, match="zero for both"):
         read_record("zero", "zero")
-
-
-@pytest.mark.parametrize(("steps", "common"), [((0.01, 0.02), 0.01), ((0.01, 0.015), 0.005)])
-def test_resampling_changes_no_component(write: Write, steps: tuple[float, float], common: float) -> None:
-    random = np.random.default_rng(3)
-    time = np.linspace(0.0, 1.2, 997)
-    paths, known = [], []
-    for step, name in zip(steps, "xy", strict=True):
-        grid = step * np.arange(round(1.2 / step) + 1)
-        values = random.normal(size=len(grid))
-        text = "\n".join(f"{t:.4f},{v!r}" for t, v in zip(grid, values.tolist(), strict=True))
-        paths.append(write("t [s],a [m/s2]\n" + text, name))
-        known.append(np.interp(time, grid, values))
-    motion = read_record(*paths, resample=True)
-    assert motion.time_step == pytest.approx(common, rel=1e-12)
-    grid = motion.time_step * np.arange(len(motion.acceleration))
-    # rounding of the times of samples, on slopes of some 100 m/s^3
-    for component, expected in zip(motion.acceleration.T, known, strict=True):
-        assert np.interp(time, grid, component) == pytest.approx(expected, abs=1e-11)
-
-
-def test_resampling_refuses_steps_without_a_common_one(write: Write) -> None:
-    x, y = write(columns(0.01, 900), "x"), write(columns(0.0137, 900), "y")
-    with pytest.raises(ValueError, match=r"at least 1/20 of the smallest: 0.01 s in x and 0.0137 s in y"):
-        read_record(x, y, resample=True)
 
 
 def component(direction: Direction | None, azimuth: float | None = None) -> Component:

@@ -19,25 +19,6 @@ def times(x: float, y: float) -> GroundMotion:
     return GroundMotion(RECORD.acceleration * [x, y], RECORD.time_step, "made")
 
 
-# numbers in a unit, read as another: by how much too large that is
-@pytest.mark.parametrize(
-    ("read_as", "factor", "unit"),
-    [("g for cm/s2", 981.0, "cm/s2"), ("m/s2 for cm/s2", 100.0, "cm/s2"), ("g for m/s2", 9.81 * 2.0, "m/s2")],
-)
-def test_a_peak_beyond_all_records_names_the_unit(read_as: str, factor: float, unit: str) -> None:
-    (fact,) = doubts(times(factor, factor))
-    assert (fact.code, fact.detail, fact.bound) == ("large_peak", unit, LARGEST_PEAK), read_as
-    assert fact.size == pytest.approx(factor * RECORD.peak / G, rel=1e-12)
-
-
-@pytest.mark.parametrize(("x", "y", "axis"), [(1.0, 100.0, "y"), (9.81, 0.01 * 9.81, "x"), (0.01, 1.0, "y")])
-def test_components_in_two_units_are_told(x: float, y: float, axis: str) -> None:
-    fact = doubts(times(x, y))[-1]
-    peaks = np.abs(times(x, y).acceleration).max(axis=0)
-    assert (fact.code, fact.detail) == ("unlike_components", axis)
-    assert fact.size == pytest.approx(peaks.max() / peaks.min(), rel=1e-12)
-
-
 def test_what_records_are_is_plausible() -> None:
     strong = RECORD.scaled(0.99 * LARGEST_PEAK * G / RECORD.peak)
     planar = times(1.0, 0.0)

@@ -135,16 +135,9 @@ READ: Mapping[str, tuple[str | bytes, Mapping[str, Values], dict[str, Any]]] = {
 REFUSED: Mapping[str, tuple[str | bytes, str]] = {
     "lengths.csv": (table("t (s),E (mm),N (mm)", EAST, NORTH), "no column is an acceleration.*2 E"),
     "velocities.csv": (table("t (s),Acc E (mm/s),Acc N (mm/s)", EAST, NORTH), "mm/s"),
-    "rates.csv": (
-        table("t [s],acc E [km/s2],acc N [km/s2]", EAST, NORTH),
-        "is in km/s2, allowed are g, m/s2",
-    ),
-    "other_words.txt": (table("# velocity", EAST), "not an acceleration record"),
     "two_units.csv": (table("# units: g\n" + GAL, EAST, NORTH), "states two units"),
     "factor.txt": (table("ACCELERATION IN G*100\nTime EW NS", EAST, NORTH, separator=" "), "factor"),
-    "parts.txt": (table("# acceleration [10^-3 g]\nTime EW NS", EAST, NORTH, separator=" "), "factor"),
     "minutes.csv": (table("time [min],E [g],N [g]", EAST, NORTH), "allowed are times in s, ms"),
-    "times_in_words.txt": (table("# time in ms", EAST), "time in ms"),
     "h1_h2.csv": (table("time (s),H1 (gal),H2 (gal),V (gal)", *MOTION.T), "--record-columns.*2 H1"),
     "one_direction.csv": (table("time (s),E (gal),E (gal)", EAST, NORTH), "two columns have one direction"),
     "no_names.txt": (table("", *MOTION.T, separator=" "), "--record-columns"),
@@ -158,32 +151,20 @@ REFUSED: Mapping[str, tuple[str | bytes, str]] = {
     "nan_at_the_end.csv": (table(GAL, EAST, NORTH) + "0.6,NaN,NaN\n", "line 62.*3 finite numbers"),
     "empty_cell.csv": (table(GAL, EAST, NORTH) + "0.60,,0.1\n", "line 62.*cell is empty"),
     "damaged.csv": (table(GAL, EAST, NORTH).replace("\n0.01,", "\n0.01,x"), "line 2.*whole row|line 3"),
-    "lone_sample.csv": (table("", EAST, first=None).replace("\n", "\ndamaged\n", 1), "line"),
-    "short_row.csv": (table(GAL, EAST, NORTH) + "0.6,1\n", "line 62.*two rows of 3"),
     "japanese_cp932.csv": (
         table("時刻(s),南北(gal),東西(gal)", NORTH, EAST).encode("cp932"),
         "save it as UTF-8",
-    ),
-    "russian_cp1251.csv": (
-        table("Время (с),восток [gal],север [gal]", EAST, NORTH).encode("cp1251"),
-        "UTF-8",
     ),
     "clock.csv": (stamped("time,E [gal],N [gal],Z [gal]", ""), "0 rows of numbers"),
     "touching.txt": (
         "DT = 0.01 SEC   UNITS: CM/SEC2\n" + lines(-EAST - 900.0, 8, "%9.4f"),
         "0 rows of numbers",
     ),
-    "touching_above.txt": ("0.1-0.2\ndamaged\n" + table("", EAST, first=None), "line 1.*whole row"),
     "stacked.txt": (
         "Acceleration, dt = 0.01 s\n" + lines(EAST, 5) + "Velocity\n" + lines(NORTH, 5),
         "line 14",
     ),
-    "titled.txt": (
-        "# acc E, dt = 0.01 s\n" + lines(EAST, 5) + "# acc N\n" + lines(NORTH, 5),
-        "several blocks",
-    ),
     "counted.txt": ("60\n" + table("", EAST, first=None), "their number"),
-    "numbered.txt": (table("", *MOTION.T, np.arange(COUNT), first=EAST), "numbers of lines"),
     "paired.txt": (
         table("", EAST[::2], TIME[1::2], EAST[1::2], TIME[::2], UP[::2], first=TIME[::2]),
         "times",
@@ -193,11 +174,9 @@ REFUSED: Mapping[str, tuple[str | bytes, str]] = {
         "list of",
     ),
     "python.py": (f"acc = np.array({json.dumps(EAST.tolist())})\n", "list of a program"),
-    "diana.dat": (": Diana Datafile\n'LOADS'\nFACTOR\n" + lines(EAST, 5), "DIANA"),
     "slist.txt": ("TIMESERIES XX_A__HNE_R, 60 samples, 100 sps, 2001, SLIST, FLOAT, G\n", "SAC or miniSEED"),
     "pairs.json": (json.dumps([[t, a] for t, a in zip(TIME, EAST, strict=True)]), "JSON"),
     "sheet.xlsx": (b"PK\x03\x04" + bytes(300), "Excel"),
-    "packed.AT2.gz": (b"\x1f\x8b\x08" + bytes(300), "packed or binary"),
 }
 
 

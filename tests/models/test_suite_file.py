@@ -150,135 +150,73 @@ def test_a_body_by_its_dimensions(write, width):
     assert low.cylinder.height == high.cylinder.height == 10.0
 
 
-WRONG = {
-    replaced(
-        "tan_alpha = 0.2", "tan_alpha = -0.2"
-    ): "cases[0].cylinder.tan_alpha: must be positive, got -0.2",
-    replaced("tan_alpha = 0.2", "tan_alpha = [0.2, 0]"): (
-        "cases[0].cylinder.tan_alpha[1]: must be positive, got 0"
-    ),
-    replaced(
-        "tan_alpha = 0.2", "tan_alpha = [0.2, 0.2]"
-    ): "tan_alpha[1]: must differ from the others, got 0.2",
-    replaced("tan_alpha = 0.2", "tan_alpha = []"): "tan_alpha: must hold at least one value, got []",
-    replaced("tan_alpha = 0.2", 'tan_alpha = "0.2"'): "tan_alpha: must be a number, a list, or a range such",
-    replaced("tan_alpha = 0.2", "tan_alpha = true"): "tan_alpha: must be a number, a list, or a range such",
-    replaced("tan_alpha = 0.2", "tan_alpha = nan"): "tan_alpha: must be a finite number, got nan",
-    replaced("tan_alpha = 0.2", "tan_alfa = 0.2"): (
-        "cases[0].cylinder.tan_alfa: is not known here, did you mean tan_alpha?"
-    ),
-    replaced(", tan_alpha = 0.2", ""): "cases[0].cylinder.tan_alpha: must be given: either semidiagonal",
-    replaced("tan_alpha = 0.2", "tan_alpha = 0.2, base_radius = 1"): (
-        "cylinder.semidiagonal: must be left out: it does not go with base_radius or diameter, and height"
-    ),
-    replaced("tan_alpha = 0.2", "tan_alpha = 0.2, axial_inertia = 99"): (
-        "cases[0].cylinder: axial_inertia must not exceed twice transverse_inertia, got 99"
-    ),
-    replaced("tan_alpha = 0.2", "tan_alpha = { from = 1, to = 3, step = 0.7 }"): (
-        "tan_alpha.step: must divide the range from 1 to 3, got 0.7"
-    ),
-    replaced("tan_alpha = 0.2", "tan_alpha = { from = 3, to = 1, step = 1 }"): (
-        "tan_alpha.to: must be above from = 3, got 1"
-    ),
-    replaced("tan_alpha = 0.2", "tan_alpha = { from = -1, to = 1, step = 1 }"): (
-        "cases[0].cylinder.tan_alpha: must be positive, got -1"
-    ),
-    replaced("tan_alpha = 0.2", "tan_alpha = { from = 1, to = 3 }"): (
-        "tan_alpha: a range must have either step or count"
-    ),
-    replaced("tan_alpha = 0.2", "tan_alpha = { from = 1, to = 3, steps = 1 }"): (
-        "tan_alpha.steps: is not known here, did you mean step?"
-    ),
-    replaced("tan_alpha = 0.2", "tan_alpha = { from = 0, to = 3, count = 4, spacing = 'log' }"): (
-        "tan_alpha.from: must be positive where spacing is log, got 0"
-    ),
-    replaced("tan_alpha = 0.2", "tan_alpha = { from = 1, to = 2, step = 1e-9 }"): (
-        "tan_alpha.step: must give at most 10000 values, got 1e+09"
-    ),
-    replaced("tan_alpha = 0.2", "tan_alpha = { from = 1, to = 2, count = 1.5 }"): (
-        "tan_alpha.count: must be a positive whole number, got 1.5"
-    ),
-    replaced("duration = 8", "duration = { from = 1, to = 200, step = 1 }").replace(
-        "tan_alpha = 0.2", "tan_alpha = { from = 1, to = 2, count = 200 }"
+SLOPE, LENGTH = "tan_alpha = 0.2", "duration = 8"
+ENGINE = '[[runs]]\nengine = "mujoco"\n'
+# in place of a part of the case: what is said of it
+WRONG_PARTS = {
+    (SLOPE, "tan_alpha = -0.2"): "cases[0].cylinder.tan_alpha: must be positive, got -0.2",
+    (SLOPE, "tan_alpha = [0.2, 0]"): "cases[0].cylinder.tan_alpha[1]: must be positive, got 0",
+    (SLOPE, "tan_alpha = [0.2, 0.2]"): "tan_alpha[1]: must differ from the others, got 0.2",
+    (SLOPE, "tan_alpha = []"): "tan_alpha: must hold at least one value, got []",
+    (SLOPE, "tan_alpha = true"): "tan_alpha: must be a number, a list, or a range such",
+    (SLOPE, "tan_alpha = nan"): "tan_alpha: must be a finite number, got nan",
+    (SLOPE, "tan_alfa = 0.2"): "cases[0].cylinder.tan_alfa: is not known here, did you mean tan_alpha?",
+    (", tan_alpha = 0.2", ""): "cases[0].cylinder.tan_alpha: must be given: either semidiagonal",
+    (SLOPE, "tan_alpha = 0.2, base_radius = 1"): "cylinder.semidiagonal: must be left out: it does not go",
+    (SLOPE, "tan_alpha = 0.2, axial_inertia = 99"): "cases[0].cylinder: axial_inertia must not exceed twice",
+    (SLOPE, "tan_alpha = { from = 1, to = 3, step = 0.7 }"): "step: must divide the range from 1 to 3, got",
+    (SLOPE, "tan_alpha = { from = 3, to = 1, step = 1 }"): "tan_alpha.to: must be above from = 3, got 1",
+    (SLOPE, "tan_alpha = { from = 1, to = 3 }"): "tan_alpha: a range must have either step or count",
+    (SLOPE, "tan_alpha = { from = 0, to = 3, count = 4, spacing = 'log' }"): "from: must be positive where",
+    (SLOPE, "tan_alpha = { from = 1, to = 2, step = 1e-9 }"): "must give at most 10000 values, got 1e+09",
+    (SLOPE, "tan_alpha = { from = 1, to = 2, count = 1.5 }"): "must be a positive whole number, got 1.5",
+    (LENGTH, ""): "cases[0].duration: must be given [s]: only a record has a length",
+    (LENGTH, "duration = 8\ncolour = 1"): "colour: is not known here, allowed are name, cylinder, motion",
+    (LENGTH, "duration = 8\nfriction = -1"): "cases[0].friction: must not be negative, got -1",
+    (LENGTH, f"duration = 1{400 * '0'}"): "cases[0].duration: must be a finite number, got 1000",
+    (
+        "tilt_over_alpha = 0.5",
+        "tilt = 0.1, tilt_deg = 5",
+    ): "must have exactly one of tilt, tilt_deg, tilt_over",
+    ("tilt_over_alpha = 0.5", "tilt_deg = 95"): "cases[0].release: tilt must be at least 0 and below pi/2",
+    (STILL, ""): "cases[0]: must have a motion or a release, got neither",
+    (STILL, "release = 5"): "cases[0].release: must be a table of keys and values, got 5",
+    (STILL, 'motion = { record = "el_centro" }'): "record: must be one of el_centro_1940, p695, got",
+    (STILL, 'motion = { record = "el_centro_1940", scale = 2, times_uplift = 2 }'): "it replaces scale",
+    (
+        STILL,
+        'motion = { record = "el_centro_1940", time_shift = 0.005 }',
+    ): "must be a whole number of the rec",
+    (
+        STILL,
+        'motion = { record = "el_centro_1940", time_shift = -60 }',
+    ): "must leave a part of the record, wh",
+    (STILL, 'motion = { record = "p695" }'): "cases[0].motion.pair: must be given: 1 to 22",
+    (STILL, 'motion = { x = "x.csv" }'): "cases[0].motion.y: must be given: a record has two",
+    (STILL, 'motion = { x = "x.csv", y = "y.csv" }'): "cases[0].motion: cannot read the record ",
+    (STILL, 'motion = { x = "x.csv", y = "y.csv", units = "ft" }'): "motion.units: must be one of g, m/s2, ",
+    (STILL, 'motion = { pulse = "sine", period = 1, amplitude = 1 }'): "pulse: must be one of one-sine, one-",
+    (STILL, 'motion = { pulse = "one-sine", amplitude = 1 }'): "motion.period: must be given with a pulse",
+    (
+        STILL,
+        'motion = { pulse = "one-sine", period = 1 }',
+    ): "exactly one of amplitude, times_uplift, got none",
+    ('"release"', '"a: b"'): "cases[0].name: must not hold a colon",
+    ('"release"', "5"): "cases[0].name: must be text, got 5",
+}
+WRONG = {replaced(*part): words for part, words in WRONG_PARTS.items()} | {
+    replaced(LENGTH, "duration = { from = 1, to = 200, step = 1 }").replace(
+        SLOPE, "tan_alpha = { from = 1, to = 2, count = 200 }"
     ): "cases[0]: must make at most 10000 cases, got 40000",
-    replaced("duration = 8", ""): "cases[0].duration: must be given [s]: only a record has a length",
-    replaced("duration = 8", "duratoin = 8"): "did you mean duration?",
-    replaced("duration = 8", "duration = 8\ncolour = 1"): (
-        "cases[0].colour: is not known here, allowed are name, cylinder, motion"
-    ),
-    replaced(
-        "duration = 8", "duration = 8\nfriction = -1"
-    ): "cases[0].friction: must not be negative, got -1",
-    replaced("tilt_over_alpha = 0.5", "tilt = 0.1, tilt_deg = 5"): (
-        "cases[0].release: must have exactly one of tilt, tilt_deg, tilt_over_alpha, got tilt and tilt_deg"
-    ),
-    replaced("tilt_over_alpha = 0.5", "tilt_deg = 95"): (
-        "cases[0].release: tilt must be at least 0 and below pi/2 [rad]"
-    ),
-    replaced("tilt_over_alpha = 0.5", "tilt_over_alpha = 0.5, spin = 1"): "release.spin: is not known here",
-    replaced(STILL, ""): "cases[0]: must have a motion or a release, got neither",
-    replaced(STILL, "release = 5"): "cases[0].release: must be a table of keys and values, got 5",
-    replaced(STILL, 'motion = { record = "el_centro" }'): (
-        "motion.record: must be one of el_centro_1940, p695, got 'el_centro'"
-    ),
-    replaced(STILL, 'motion = { record = "el_centro_1940", pulse = "one-sine" }'): (
-        "cases[0].motion: must have exactly one of record, x, files, pulse, got record and pulse"
-    ),
-    replaced(STILL, 'motion = { record = "el_centro_1940", pair = 3 }'): (
-        'motion.pair: must be left out: it belongs to record = "p695"'
-    ),
-    replaced(STILL, 'motion = { record = "el_centro_1940", scale = 2, times_uplift = 2 }'): (
-        "motion.times_uplift: must be left out: it replaces scale"
-    ),
-    replaced(STILL, 'motion = { record = "el_centro_1940", time_shift = 0.005 }'): (
-        "motion.time_shift: must be a whole number of the record's time steps of 0.01 s, got 0.005"
-    ),
-    replaced(STILL, 'motion = { record = "el_centro_1940", time_shift = -60 }'): (
-        "motion.time_shift: must leave a part of the record, which lasts 53.45 s, got -60"
-    ),
-    replaced(STILL, 'motion = { record = "p695" }'): "cases[0].motion.pair: must be given: 1 to 22",
-    replaced(STILL, 'motion = { record = "p695", pair = { from = 1, to = 4, count = 3 } }'): (
-        "cases[0].motion.pair: must be a positive whole number, got 2.5"
-    ),
-    replaced(
-        "duration = 8", f"duration = 1{400 * '0'}"
-    ): "cases[0].duration: must be a finite number, got 1000",
-    replaced(STILL, 'motion = { x = "x.csv" }'): "cases[0].motion.y: must be given: a record has two",
-    replaced(STILL, 'motion = { x = "x.csv", y = "y.csv" }'): "cases[0].motion: cannot read the record ",
-    replaced(STILL, 'motion = { x = "x.csv", y = "y.csv", units = "ft" }'): (
-        "motion.units: must be one of g, m/s2, cm/s2, mm/s2, µm/s2, mgal, %g, mg, µg, ft/s2, in/s2, got 'ft'"
-    ),
-    replaced(STILL, 'motion = { pulse = "sine", period = 1, amplitude = 1 }'): (
-        "motion.pulse: must be one of one-sine, one-cosine, half-sine, got 'sine'"
-    ),
-    replaced(
-        STILL, 'motion = { pulse = "one-sine", amplitude = 1 }'
-    ): "motion.period: must be given with a pulse",
-    replaced(STILL, 'motion = { pulse = "one-sine", period = 1 }'): (
-        "motion: must have exactly one of amplitude, times_uplift, got none of them"
-    ),
-    replaced(STILL, 'motion = { pulse = "one-sine", period = 1, amplitude = 1, scale = 2 }'): (
-        "motion.scale: must be left out: it belongs to a record"
-    ),
-    replaced('name = "release"\n', ""): "cases[0].name: must be given",
-    replaced('"release"', "5"): "cases[0].name: must be text, got 5",
-    replaced('"release"', '"a: b"'): "cases[0].name: must not hold a colon",
+    replaced(SLOPE, "tan_alpha = -0.2").replace(LENGTH, "duration = -8"): "got -0.2 (and 1 more error)",
     CASE + CASE: "cases[1].name: must differ from cases[0].name, got 'release' twice",
     "": "cases: must be given",
     "cases = []": "cases: List should have at least 1 item",
-    '[[runs]]\nengine = "mujoco"\nsuport = "flat"\n' + CASE: (
-        "runs[0].suport: is not known here, did you mean support?"
-    ),
     '[[runs]]\nsupport = "flat"\n' + CASE: "runs[0].engine: must be given",
-    '[[runs]]\nengine = "mujoco"\ntime_step = -1\n' + CASE: "runs[0].time_step: must be positive, got -1",
-    '[[runs]]\nengine = "mujoco"\nsettings = { time_step = 3 }\n' + CASE: (
-        "runs[0].settings.time_step: must be left out: it is a key of the run"
-    ),
-    '[run]\nengine = "mujoco"\n' + CASE: "run: is not known here, did you mean runs?",
+    ENGINE + 'suport = "flat"\n' + CASE: "runs[0].suport: is not known here, did you mean support?",
+    ENGINE + "time_step = -1\n" + CASE: "runs[0].time_step: must be positive, got -1",
+    ENGINE + "settings = { time_step = 3 }\n" + CASE: "settings.time_step: must be left out: it is a key of",
     "[[cases]\n": "is not a TOML file: ",
-    replaced("tan_alpha = 0.2", "tan_alpha = -0.2").replace("duration = 8", "duration = -8"): (
-        "cases[0].cylinder.tan_alpha: must be positive, got -0.2 (and 1 more error)"
-    ),
 }
 
 

@@ -2,11 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import importlib.util
-import subprocess
-import sys
-from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +12,6 @@ import pytest
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.models.support import SUPPORTS
-from rockwobble.multibody.engines.mujoco import MujocoEngine
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = InitialState(PIER.alpha / 2, rolling_rate=0.5)
@@ -97,49 +91,20 @@ def test_clients_are_closed_and_nothing_is_printed(
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.slow
-def test_import_loads_no_engine() -> None:
-    code = (
-        "import sys, rockwobble.multibody as m; m.available_engines();"
-        "print([n for n in ('mujoco', 'pybullet', 'pandas', 'scipy') if n in sys.modules])"
-    )
-    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert shown.stdout.strip() == "[]"
-
-
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (
-            {"engine": "chrono"},
-            f"engine must be one of {', '.join(multibody.engine_names())}, got 'chrono'",
-        ),
         ({"support": "glued"}, f"support must be one of {', '.join(SUPPORTS)}, got 'glued'"),
-        (
-            {"time_step": 1e-2},
-            "time_step must be at most 0.001 s for contact at this size and gravity, got 0.01",
-        ),
         ({"time_step": -1.0}, "time_step must be positive [s], got -1.0"),
         ({"sample_step": 0.0}, "sample_step must be positive [s], got 0.0"),
         ({"sample_step": 1e-12}, "sample_step must be at least "),
-        ({"duration": None}, "duration [s] must be given where there is no ground motion"),
-        ({"gravity": 0.0}, "gravity must be positive [m/s^2], got 0.0"),
-        ({"friction": -1.0}, "friction must not be negative, got -1.0"),
         ({"stifness": 1.0}, "'stifness' is not a setting of mujoco; allowed are contact_time_constant, "),
-        (
-            {"integrator": "leapfrog"},
-            "integrator must be one of Euler, implicitfast, implicit, RK4, discrete, ",
-        ),
+        ({"integrator": "leapfrog"}, "integrator must be one of Euler, implicitfast, implicit, RK4, disc"),
         ({"impedance": 1.0}, "impedance must be above 0 and at most 0.9999, got 1.0"),
         ({"friction_damping": float("nan")}, "friction_damping must be above 0 and at most 2, got nan"),
-        ({"contact_time_constant": "soft"}, "contact_time_constant must be above 0, got 'soft'"),
         ({"iterations": 0}, "iterations must be a whole number, at least 1, got 0"),
         ({"standing_corners": 7}, "standing_corners must be one of 0, 4, 8, "),
-        ({"engine": "pybullet", "impedance": 0.9}, "'impedance' is not a setting of pybullet; allowed are "),
-        (
-            {"engine": "pybullet", "contact_slop": -1.0},
-            "contact_slop must be from 0 to 0.1, got -1",
-        ),
+        ({"engine": "pybullet", "contact_slop": -1.0}, "contact_slop must be from 0 to 0.1, got -1"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(change: dict[str, Any], message: str) -> None:
@@ -159,33 +124,6 @@ def test_the_largest_step_scales_with_the_cylinder() -> None:
     small = Cylinder(semidiagonal=0.06, tan_alpha=0.2)
     with pytest.raises(ValueError, match=r"at most 0\.0001 s"):
         multibody.simulate(Case(small, initial=RELEASE, duration=0.1), time_step=0.0002)
-
-
-def test_an_engine_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    found: Callable[..., Any] = importlib.util.find_spec
-
-    def find(name: str, *rest: Any) -> Any:
-        return None if name == "pybullet" else found(name, *rest)
-
-    monkeypatch.setattr(importlib.util, "find_spec", find)
-    assert "pybullet" not in multibody.available_engines()
-    assert "pybullet" in multibody.engine_names()
-    with pytest.raises(
-        multibody.EngineNotInstalledError, match="'pybullet' is not installed here: pip install"
-    ):
-        multibody.simulate(Case(PIER, initial=RELEASE, duration=0.1), engine="pybullet")
-
-
-def test_an_engine_that_does_not_load_is_named_with_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
-    @contextlib.contextmanager
-    def broken(*_: Any) -> Iterator[Any]:
-        yield from ()
-        raise ImportError("libSomething.so.1: cannot open\nshared object file")
-
-    monkeypatch.setattr(MujocoEngine, "open", broken)
-    words = "'mujoco' is installed and does not load: libSomething.so.1: cannot open shared object file"
-    with pytest.raises(multibody.EngineNotInstalledError, match=words):
-        multibody.simulate(Case(PIER, initial=RELEASE, duration=0.1))
 
 
 def test_motion_ends_and_the_run_goes_on(engine: str, time_step: float | None) -> None:

@@ -137,13 +137,10 @@ def test_a_step_that_does_not_converge_ends_the_run_in_silence(
     ("change", "message"),
     [
         ({"initial": None}, "exudyn cannot uplift a cylinder that stands: give a release with a tilt, got a"),
-        ({"initial": InitialState(0.0)}, "exudyn cannot uplift a cylinder that stands: give a release"),
         ({"support": "recess"}, "support must be flat in exudyn, got 'recess'"),
-        ({"impedance": 0.9}, "'impedance' is not a setting of exudyn; allowed are integrator, "),
         ({"integrator": "RK44"}, "integrator must be one of trapezoidal, generalized-alpha, got 'RK44'"),
         ({"spectral_radius": 1.1}, "spectral_radius must be from 0 to 1, got 1.1"),
         ({"relative_tolerance": 0.0}, "relative_tolerance must be above 0 and at most 0.001, got 0"),
-        ({"iterations": 0}, "iterations must be a whole number, at least 1, got 0"),
     ],
 )
 def test_what_it_cannot_do_is_refused_in_one_line(change: dict[str, Any], message: str) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rockwobble import multibody
+from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody.guard import energy_scale, first_breach
 from rockwobble.multibody.kinematics import Kinematics, kinematics
@@ -77,6 +77,59 @@ def test_extremes_are_sound_or_say_so(
     # no engine makes energy: largest gain 1e-4 of the scale, at tan alpha 10
     assert run.energy_error.max() < 5e-4 * scale
     assert ("slip" in {fact.code for fact in run.facts}) == (friction == 0.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("support", ["recess", "flat"])
+@pytest.mark.parametrize(
+    "given",
+    [
+        # the truncation of the step is far below 1 % of alpha in all of these, and nothing limits them
+        {"time_step": 1e-6, "length": 0.01},
+        {"time_step": 1e-3, "length": 2.0},
+        {"tan_alpha": 0.05},
+        {"tan_alpha": 10.0},
+        {"rate": 3.0},
+        {"tan_alpha": 3.0, "friction": 10.0},
+    ],
+)
+def test_sound_extremes_agree_and_say_nothing(engine: str, support: str, given: dict[str, float]) -> None:
+    body = Cylinder(semidiagonal=6.0, tan_alpha=given.get("tan_alpha", 0.2))
+    release = InitialState(0.5 * body.alpha, rolling_rate=given.get("rate", 0.5))
+    case = Case(body, initial=release, duration=given.get("length", 0.5), friction=given.get("friction", 1.0))
+    run = multibody.simulate(case, engine=engine, support=support, time_step=given.get("time_step"))
+    assert run.facts == ()
+    until = run.time <= case.length  # a fall after that multiplies every difference
+    model = reduced.simulate(case, support=support).tilt[: until.sum()]
+    assert run.tilt[until] == pytest.approx(model, abs=0.01 * body.alpha)
+
+
+@pytest.mark.parametrize(
+    ("engine", "settings", "code"),
+    [
+        ("mujoco", {"contact_time_constant": 0.1}, "energy"),
+        ("mujoco", {"iterations": 1}, "solver"),
+        ("pybullet", {"contact_slop": 0.01}, "energy"),
+        ("pybullet", {"iterations": 1}, "solver"),
+    ],
+)
+def test_what_is_doubtful_is_said(engine: str, settings: dict[str, Any], code: str) -> None:
+    if engine not in multibody.available_engines():
+        pytest.skip(f"no wheel of {engine} here")
+    case = Case(PIER, initial=RELEASE, duration=1.5)
+    run = multibody.simulate(case, engine=engine, support="flat", **settings)
+    assert code in {fact.code for fact in run.facts}
+
+
+def test_friction_that_does_not_suffice_is_said(engine: str) -> None:
+    case = Case(PIER, initial=RELEASE, duration=0.5, friction=0.05)
+    assert {"slip", "energy"} <= {fact.code for fact in multibody.simulate(case, engine=engine).facts}
+
+
+def test_a_step_that_contact_cannot_follow_or_is_lost_in_rounding_is_refused(engine: str) -> None:
+    for step, words in ((1e-2, "at most 0.001 s"), (1e-300, "at least 1e-09 s")):
+        with pytest.raises(ValueError, match=f"^time_step must be {words}"):
+            multibody.simulate(Case(PIER, initial=RELEASE, duration=0.1), engine=engine, time_step=step)
 
 
 def test_flight_is_said(engine: str) -> None:

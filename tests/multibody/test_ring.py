@@ -43,23 +43,12 @@ def ring(
     ("settings", "message"),
     [
         ({"ring_clearance": -0.1}, "ring_clearance must be from 0 to 100, got -0.1"),
-        ({"ring_clearance": math.nan}, "ring_clearance must be from 0 to 100, got nan"),
-        ({"ring_clearance": "wide"}, "ring_clearance must be from 0 to 100, got 'wide'"),
-        (
-            {"ring_inclination": 1.6},
-            "ring_inclination must be from 0 to 1.5",
-        ),
+        ({"ring_inclination": 1.6}, "ring_inclination must be from 0 to 1.5"),
         ({"ring_facets": 2}, "ring_facets must be a whole number from 3 to 1000, got 2"),
-        ({"ring_facets": 8.0}, "ring_facets must be a whole number from 3 to 1000, got 8.0"),
         ({"ring_friction": -1.0}, "ring_friction must be from 0 to 100, got -1.0"),
         (
             {"ring_inclination": 0.1},
             "a release at a tilt of 0.3927 rad needs walls that lean by as much or stand back by 0.5",
-        ),
-        ({"ring_stiffness": 1.0}, "'ring_stiffness' is not a setting of mujoco; allowed are "),
-        (
-            {"support": "recess", "ring_facets": 8},
-            "ring_facets is for support 'ring' only, got support 'recess'",
         ),
         (
             {"support": "flat", "ring_clearance": 0.1, "ring_facets": 8},

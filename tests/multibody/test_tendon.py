@@ -184,21 +184,6 @@ def test_prestress_delays_uplift(name: str, gamma: float) -> None:
     assert engine.friction_needed[before] == pytest.approx(ratio, abs=tolerance)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ENGINES)
-def test_a_tendon_without_prestress_and_stiffness_is_none(name: str) -> None:
-    support = find_engine(name).supports[0]
-    motion = None if not find_engine(name).uplifts else ramp(2.0 * G * PIER.tan_alpha, 0.8)
-    cases = [dataclasses.replace(released(tendon, duration=0.4)) for tendon in (Tendon(), None)]
-    if motion is not None:
-        cases += [Case(PIER, motion, tendon=tendon) for tendon in (Tendon(), None)]
-    for tied, plain in zip(cases[::2], cases[1::2], strict=True):
-        with_one, without = run(tied, name, support), run(plain, name, support)
-        for field in ("tilt", "rolling_angle", "contact_point", "energy", "contact_force", "energy_error"):
-            assert np.array_equal(getattr(with_one, field), getattr(without, field), equal_nan=True), field
-        assert with_one.uplift_time == without.uplift_time
-
-
 @pytest.mark.parametrize("name", [name for name in ("mujoco", "pybullet") if name in ENGINES])
 def test_froude_scaling(name: str) -> None:
     tendon, factor = Tendon(prestress=0.5, stiffness=3.0), 16.0

@@ -1,7 +1,5 @@
 """Bodies other than the homogeneous cylinder, and the vertical component of the ground motion."""
 
-import math
-
 import numpy as np
 import pytest
 
@@ -79,11 +77,3 @@ def test_the_vertical_component_decides_the_uplift():
 
 def motion_without_z(motion):
     return GroundMotion(motion.acceleration[:, :2], motion.time_step)
-
-
-def test_el_centro_with_its_vertical_component_is_another_motion():
-    flat = reduced.simulate(Case(PIER, el_centro_1940()))
-    full = reduced.simulate(Case(PIER, el_centro_1940(vertical=True)))
-    assert full.outcome == "stands"
-    assert math.isfinite(full.peak_tilt)
-    assert full.uplift_time != flat.uplift_time

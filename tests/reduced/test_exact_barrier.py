@@ -126,14 +126,6 @@ def test_standing_has_no_free_response() -> None:
         free_response(PIER, InitialState(tilt=0.0))
 
 
-@pytest.mark.parametrize("gravity", [0.0, -9.81, math.nan, math.inf])
-def test_gravity_is_checked(gravity: float) -> None:
-    with pytest.raises(ValueError, match=r"gravity must be (positive|a finite number)"):
-        free_response(PIER, release(PIER, 0.5, 0.1), gravity=gravity)
-    with pytest.raises(ValueError, match=r"gravity must be (positive|a finite number)"):
-        rocking_period(PIER, 0.1, gravity=gravity)
-
-
 @pytest.mark.parametrize(
     "function", [planar_quarter_period, rocking_period, steady_wobble_rate, wobbling_period]
 )

@@ -103,9 +103,9 @@ def test_mirror_image() -> None:
     assert angle_of_turn(PIER, release(PIER, 0.5, -0.3)) == left.angle_of_turn
 
 
-@pytest.mark.parametrize("tan_alpha", SLENDERNESS)
-@pytest.mark.parametrize("spin", [1e-12, 1e-6, 1e-2, 0.5, 0.99, -0.5])
-@pytest.mark.parametrize("way", [0.0, 1e-6, 0.3, 1.0 - 1e-6])
+@pytest.mark.parametrize("tan_alpha", [1e-3, 0.2, 1e3])
+@pytest.mark.parametrize("spin", [1e-12, 1e-2, 0.99, -0.5])
+@pytest.mark.parametrize("way", [0.0, 1e-6, 1.0 - 1e-6])
 @pytest.mark.parametrize("sense", [-1.0, 1.0])
 def test_every_point_of_the_cycle_has_the_same_response(
     tan_alpha: float, spin: float, way: float, sense: float

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -178,12 +177,3 @@ def test_peak_tilts_are_those_of_single_runs() -> None:
             frame = WobblingFrame(Cylinder(semidiagonal=size, tan_alpha=0.2), 1.5)
             single = reduced.simulate(Case(frame, motion), rtol=1e-7, **options)
             assert peak == single.peak_tilt
-
-
-def test_the_trace_of_a_frame_comes_back_from_its_file(tmp_path: Path) -> None:
-    trace = shaken(1.0)
-    trace.save(tmp_path / "frame.parquet")
-    again = Trace.load(tmp_path / "frame.parquet")
-    assert again.case.cylinder == trace.case.cylinder
-    for name in ("top_contact_force", "slab_displacement", "contact_force", "energy"):
-        assert np.array_equal(getattr(again, name), getattr(trace, name)), name

@@ -23,32 +23,6 @@ def copy_difference(model, until):
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_mirror_to_the_last_bit(model):
-    plain = reduced.simulate(Case(PIER, EL_CENTRO), **reduced.MODELS[model])
-    mirrored = GroundMotion(EL_CENTRO.acceleration * [1.0, -1.0], EL_CENTRO.time_step)
-    mirror = reduced.simulate(Case(PIER, mirrored), **reduced.MODELS[model])
-    assert np.array_equal(plain.tilt, mirror.tilt)
-    assert np.array_equal(plain.rolling_angle, -mirror.rolling_angle, equal_nan=True)
-    assert np.array_equal(plain.twist, -mirror.twist)
-
-
-@pytest.mark.parametrize("model", MODELS)
-def test_four_times_the_size_in_twice_the_time_to_the_last_bit(model):
-    plain = reduced.simulate(Case(PIER, EL_CENTRO), **reduced.MODELS[model])
-    large = reduced.simulate(
-        Case(
-            Cylinder(semidiagonal=24.0, tan_alpha=0.2),
-            GroundMotion(EL_CENTRO.acceleration, 2.0 * EL_CENTRO.time_step),
-        ),
-        **reduced.MODELS[model],
-        sample_step=0.02,
-    )
-    assert np.array_equal(plain.tilt, large.tilt)
-    assert np.array_equal(plain.rolling_angle, large.rolling_angle, equal_nan=True)
-    assert plain.step_count == large.step_count
-
-
-@pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("change", ["size", "gravity", "rotation", "shift"])
 def test_other_changes_of_scale_and_frame_cost_no_more_than_rounding(model, change):
     until = 15.0

@@ -177,7 +177,7 @@ def scales_of(given: Sample, state: State) -> Scales:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(16))
 def test_recess(seed: int) -> None:
     given = sample(seed, twisting=False)
     body = given.body
@@ -199,7 +199,7 @@ def test_recess(seed: int) -> None:
         assert_close(found, expected, (scale.force, scale.force, scale.force, scale.moment))
 
 
-@pytest.mark.parametrize("seed", range(100, 140))
+@pytest.mark.parametrize("seed", range(100, 116))
 def test_rolling(seed: int) -> None:
     given = sample(seed, twisting=True)
     body = given.body
@@ -233,7 +233,7 @@ def test_rolling(seed: int) -> None:
         )
 
 
-@pytest.mark.parametrize("seed", range(100, 140))
+@pytest.mark.parametrize("seed", range(100, 116))
 def test_the_momentum_of_the_rolling_angle(seed: int) -> None:
     given = sample(seed, twisting=True)
     with mp.workdps(DIGITS):
@@ -246,7 +246,7 @@ def test_the_momentum_of_the_rolling_angle(seed: int) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("recess", [True, False])
-@pytest.mark.parametrize("seed", range(140, 156))
+@pytest.mark.parametrize("seed", range(140, 148))
 def test_rolling_resistance(seed: int, recess: bool) -> None:
     free = sample(seed, twisting=not recess)
     # a length that matters, and contact in most of the samples
@@ -318,7 +318,7 @@ def test_planar(seed: int) -> None:
             assert_close((found,), (motion.theta,), (scales_of(given, state).theta,))
 
 
-@pytest.mark.parametrize("seed", range(220, 240))
+@pytest.mark.parametrize("seed", range(220, 230))
 def test_energy(seed: int) -> None:
     given = sample(seed, twisting=bool(seed % 4))
     body = given.body

@@ -223,23 +223,6 @@ def test_at_rest_the_ground_carries_weight_and_prestress() -> None:
     assert np.allclose(reduced.simulate(case).contact_force[:, 2], 1.5, rtol=1e-14)
 
 
-def test_tension_and_elongation_are_columns_and_survive_a_file(tmp_path: object) -> None:
-    tendon = Tendon(prestress=0.5, stiffness=2.0, yield_force=0.9)
-    frame = rw.WobblingFrame(PIER, 1.0)
-    release = rw.InitialState(0.5 * PIER.alpha)
-    trace = reduced.simulate(rw.Case(frame, initial=release, duration=3.0, tendon=tendon))
-    assert trace.elongation[0] == pytest.approx(4.0 * PIER.base_radius * math.sin(0.25 * PIER.alpha))
-    assert trace.tendon_force[0] == pytest.approx(0.5 + 2.0 * trace.elongation[0] / PIER.base_radius)
-    assert trace.peak_tendon_force == pytest.approx(trace.tendon_force.max(), rel=1e-9)
-    path = tmp_path / "trace.parquet"  # type: ignore[operator]
-    trace.save(path)
-    again = rw.Trace.load(path)
-    assert again.case.tendon == tendon
-    assert np.array_equal(again.tendon_force, trace.tendon_force)
-    assert "tendon_force" in trace.to_frame()
-    assert "tendon_force" not in reduced.simulate(rw.Case(PIER, initial=release, duration=1.0)).to_frame()
-
-
 def test_yield_is_said_at_the_tilt_at_which_it_begins() -> None:
     motion = rw.el_centro_1940().scaled(2.5)
     free = reduced.simulate(rw.Case(PIER, motion, tendon=Tendon(prestress=0.2, stiffness=4.0)), rtol=1e-10)
@@ -253,13 +236,6 @@ def test_yield_is_said_at_the_tilt_at_which_it_begins() -> None:
     assert (trace.tendon_force[before] <= force * (1.0 + 1e-9)).all()
     assert np.interp(fact.time, trace.time, trace.tendon_force) == pytest.approx(force, rel=1e-3)
     assert not [each for each in free.diagnostics if each.code == "tendon_yield"]
-
-
-def test_what_is_not_modelled_is_refused_in_one_line() -> None:
-    tendon = Tendon(prestress=0.5)
-    case = rw.Case(PIER, initial=rw.InitialState(0.1), duration=1.0, tendon=tendon)
-    with pytest.raises(ValueError, match="in the recess and in a plane, got support 'flat'"):
-        reduced.simulate(case, support="flat")
 
 
 @pytest.mark.slow

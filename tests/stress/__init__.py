@@ -1,1 +1,1 @@
-"""Sweeps whose processes are killed: `python tests/stress --help`."""
+"""Processes that are killed, and machine code that is loaded: the same bits."""

@@ -31,7 +31,6 @@ from rockwobble.models import (
     Tendon,
     WobblingFrame,
     el_centro_1940,
-    plain_json,
     synthetic_motions,
 )
 from rockwobble.studies.advice import advice as study
@@ -284,17 +283,6 @@ def test_planar_shares_count_records_that_move():
     assert real.loc[real["scale"] == 1.0, "3d"].item() == pytest.approx(single.peak_tilt, rel=SAME_RUN)
 
 
-def test_the_same_seed_gives_the_same_copies():
-    start = Case(PIER, initial=InitialState(0.05, rolling_rate=0.5), duration=2.0)
-
-    def peaks(seed: int) -> list[float]:
-        found = advise(start, copies=20, seed=seed).members
-        return found.loc[found["group"] == "copies", "peak_tilt"].tolist()
-
-    assert peaks(1) == peaks(1)
-    assert peaks(1) != peaks(2)
-
-
 def acts_within_its_rows(demands: pd.DataFrame) -> None:
     """Hold that what acts together is below the demands of the same table, and near the one that it is of."""
     rows = demands.set_index("demand")
@@ -526,21 +514,6 @@ def test_a_cylinder_at_rest_needs_nothing():
     assert found.facts["motion"]["friction_at_rest"] == pytest.approx(0.3 * SHORT.peak / 9.81)
 
 
-def test_advice_is_loaded_as_it_was_saved(advice, tmp_path):
-    advice.save(tmp_path)
-    again = Advice.load(tmp_path)
-    assert plain_json.dumps(again.facts) == plain_json.dumps(advice.facts)
-    assert set(again.tables) == set(advice.tables)
-    for name, table in advice.tables.items():
-        pd.testing.assert_frame_equal(again.tables[name], table, check_dtype=bool(len(table)))
-    assert (again.grades, again.trust, again.range_as_strong) == (
-        advice.grades,
-        advice.trust,
-        advice.range_as_strong,
-    )
-    assert again.headline() == advice.headline()
-
-
 def test_shaking_as_strong_is_scanned_finely_and_holds_single_runs(advice):
     scan = advice.as_strong
     factors = scan["factor"].to_numpy()
@@ -620,13 +593,6 @@ def test_ratios_of_overturned_copies_are_counts():
     assert ratios_of(contrast(2.0 * peaks, peaks, stands, stands))["ratio"] == pytest.approx(2.0)
 
 
-def test_what_only_the_vertical_moves_needs_no_recess() -> None:
-    shaking = np.zeros((301, 3))
-    shaking[:, 2] = 0.5 * np.sin(0.09 * np.arange(301))
-    found = advise(Case(PIER, GroundMotion(shaking, 0.01, "up")), copies=20)
-    assert (len(found.demands), found.moves) == (0, False)
-
-
 @pytest.mark.slow
 def test_a_fall_that_the_record_does_not_see_is_a_fall_in_all_that_is_run(no_records):
     time = np.arange(121) * 0.01
@@ -686,17 +652,6 @@ def test_flat_ground_asks_for_the_flat_ground_model():
     assert (found.facts["model"], found.facts["other_model"]) == ("flat-ground model", "recess model")
     assert found.groups["moment_95"].tolist() == [0.0]
     assert (found.trust.kind, found.vertical.source, len(found.planar)) == ("trace", "", 0)
-
-
-def test_bad_numbers_are_refused():
-    for options in (
-        {"copies": 5},
-        {"support": "glued"},
-        {"copies": 10**6},
-        {"run": RECESS, "support": "flat"},
-    ):
-        with pytest.raises(ValueError, match="must be"):
-            advise(case(), **options)
 
 
 @pytest.mark.slow

@@ -5,7 +5,6 @@ import itertools
 import math
 import sys
 
-import numpy as np
 import pandas as pd
 import pytest
 
@@ -19,10 +18,7 @@ from rockwobble.models import (
     Run,
     Suite,
     Trace,
-    el_centro_1940,
     far_field_motions,
-    perturbed_copies,
-    synthetic_motions,
 )
 from rockwobble.models.records import p695
 from rockwobble.studies.ensemble import Ensemble, ensemble_of
@@ -48,41 +44,6 @@ def test_what_a_wall_holds_beyond_its_balance_has_overturned_in_every_study():
     assert (found.members["peak_tilt"] < 0.5 * math.pi / cylinder.alpha).all()
     swept = sweep(Suite(cases, [run]), workers=1).table
     assert swept["outcome"].tolist() == found.members["outcome"].tolist()
-
-
-def test_copies_are_perturbed_by_the_stated_size():
-    members = perturbed_copies(CASE, 400, perturbation=0.01, seed=5)
-    tilts = np.array([case.initial.tilt for case in members]) / 0.1 - 1.0
-    rates = np.array([case.initial.rolling_rate for case in members]) / 0.5 - 1.0
-    # the standard deviation of 400 draws is known to 1/sqrt(800)
-    assert np.std(tilts) == pytest.approx(0.01, rel=4.0 / math.sqrt(800.0))
-    assert np.std(rates) == pytest.approx(0.01, rel=4.0 / math.sqrt(800.0))
-    assert abs(np.corrcoef(tilts, rates)[0, 1]) < 4.0 / math.sqrt(400.0)
-    assert len({case.name for case in members}) == 400
-
-
-def test_each_component_of_a_copied_record_has_a_factor_of_its_own():
-    motion = el_centro_1940(vertical=True)
-    copies = perturbed_copies(Case(PIER, motion), 400, perturbation=0.01, seed=5)
-    given = motion.acceleration
-    factors = np.empty((400, 2))
-    for row, copy in zip(factors, copies, strict=True):
-        made = copy.motion.acceleration
-        row[:] = made[200, :2] / given[200, :2]
-        np.testing.assert_allclose(made, given * [*row, 1.0], rtol=ROUNDING)  # the vertical as it is
-    # the standard deviation of 400 draws is known to 1/sqrt(800)
-    assert np.std(factors, axis=0) == pytest.approx([0.01, 0.01], rel=4.0 / math.sqrt(800.0))
-    assert np.mean(factors, axis=0) == pytest.approx([1.0, 1.0], abs=4.0 * 0.01 / math.sqrt(400.0))
-    assert abs(np.corrcoef(*factors.T)[0, 1]) < 4.0 / math.sqrt(400.0)
-
-
-def test_synthetic_motions_repeat_with_their_seed_and_have_their_peak():
-    first, again, other = (synthetic_motions(3, peak=4.0, seed=s, duration=5.0) for s in (1, 1, 2))
-    assert np.array_equal(first[2].acceleration, again[2].acceleration)
-    assert not np.array_equal(first[2].acceleration, other[2].acceleration)
-    assert [motion.peak for motion in first] == pytest.approx([4.0] * 3, abs=1e-9)
-    assert first[0].duration == pytest.approx(5.0)
-    assert {motion.acceleration.shape for motion in first} == {(501, 2)}
 
 
 def test_a_ring_is_held_against_the_recess_model(monkeypatch):
@@ -146,15 +107,6 @@ def test_members_are_paired_by_name_and_not_by_row(monkeypatch):
     assert ensemble_of(shuffled, found.facts).contrasts.loc[0, "ratio_95_low"] == 1.0
     with pytest.raises(ValueError, match="one run by each method"):
         ensemble_of(pd.concat([found.members, found.members[:1]]), found.facts)
-
-
-def test_a_stored_ensemble_comes_back_with_the_same_bits(tmp_path):
-    found = ensemble(CASE, runs=[], copies=3, workers=1)
-    found.save(tmp_path)
-    again = Ensemble.load(tmp_path)
-    assert again.contrasts.equals(found.contrasts)
-    assert again.methods.equals(found.methods)
-    assert again.facts == found.facts
 
 
 def test_a_failed_run_is_no_member_that_stands():
@@ -236,11 +188,3 @@ def test_far_field_motions_have_their_peak_and_their_names(monkeypatch):
     assert [motion.name for motion in motions] == [f"pair {pair}" for pair in range(1, 23)]
     with pytest.raises(ValueError, match="peak must be positive"):
         far_field_motions(peak=-1.0)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"), [({"copies": 1}, "at least 2"), ({"perturbation": 0.5}, "perturbation")]
-)
-def test_bad_input_is_refused(options, message):
-    with pytest.raises(ValueError, match=message):
-        ensemble(CASE, runs=[], **options)

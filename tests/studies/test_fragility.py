@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -13,9 +12,8 @@ import pytest
 from rockwobble import fragility, reduced
 from rockwobble.compare import IncompleteError
 from rockwobble.compare.runs import execution
-from rockwobble.models import Case, Cylinder, Run, WobblingFrame, synthetic_motions
+from rockwobble.models import Case, Cylinder, Run, synthetic_motions
 from rockwobble.studies import Fragility
-from rockwobble.studies.fragility import runs as running
 from rockwobble.studies.fragility.study import fragility_of
 from rockwobble.studies.fragility.tables import below_gaps, exceedance, incremental
 
@@ -23,7 +21,6 @@ COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
 LEVELS = (1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.5, 8.0)
 COUNT = len(LEVELS)
 MOTIONS = synthetic_motions(12, peak=1.0, seed=4, duration=10.0)
-RECORDS = Path(__file__).parents[2] / "models" / "records"
 NAN = math.nan
 
 
@@ -77,15 +74,6 @@ def test_contact_is_asked_of_whole_solutions_which_have_the_peaks_of_the_kernel(
     ]
     own = whole.set_index("motion")["contact_lost"]
     assert [bool(own[motion.name]) for motion in MOTIONS[:4]] == lost
-
-
-def test_a_slab_is_carried_by_the_kernel_of_peaks() -> None:
-    frame = WobblingFrame(COLUMN, slab_mass_ratio=4.0)
-    options = {"methods": ["recess"], "levels": [2.0], "resamples": 2, "workers": 1}
-    runs = fragility(frame, MOTIONS[:2], **options)
-    scale = runs.points["scale"].iloc[0]
-    alone = reduced.simulate(Case(frame, MOTIONS[0].scaled(scale)), rtol=1e-7)
-    assert runs.runs["peak_tilt"].iloc[0] == pytest.approx(alone.peak_tilt / COLUMN.alpha, abs=1e-12)
 
 
 def test_the_worse_plane_is_the_larger_of_both(found):
@@ -276,29 +264,6 @@ def test_of_too_few_motions_or_levels_there_are_counts_and_no_curve(
     fitted = made.fits[["median", "median_low", "median_high", "dispersion"]].notna().to_numpy().any()
     stated = [fitted, *(len(getattr(made, name)) > 0 for name in ("curves", "contrasts", "gaps"))]
     assert stated == [not few] * 4
-
-
-@pytest.mark.slow
-def test_a_second_call_runs_nothing_again(tmp_path, monkeypatch):
-    def once() -> Fragility:
-        return fragility(
-            COLUMN,
-            MOTIONS[:4],
-            methods=["worse-plane"],
-            levels=LEVELS,
-            resamples=5,
-            workers=1,
-            resume=tmp_path,
-        )
-
-    first = once()
-
-    def refuse(task):
-        raise AssertionError(task.title)
-
-    monkeypatch.setattr(running.Task, "rows", refuse)
-    pd.testing.assert_frame_equal(once().runs, first.runs)
-    assert once().facts["inputs"] == first.facts["inputs"]
 
 
 @pytest.mark.slow

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import math
 import re
-from pathlib import Path
 from xml.etree import ElementTree as Tree
 
 import numpy as np
@@ -99,18 +98,6 @@ def test_nrml_gives_the_numbers_of_the_tables(fitted: bool, found: Fragility) ->
         assert poe[inside] == pytest.approx(right[inside], abs=1e-7)  # nine digits of the parameters
 
 
-def test_openquake_reads_the_same_numbers(found: Fragility, tmp_path: Path) -> None:
-    nrml = pytest.importorskip("openquake.hazardlib.nrml")
-    pytest.importorskip("openquake.risklib.read_nrml")  # registers what is made of a fragility model
-    name, text = exported(found, "nrml")
-    (tmp_path / name).write_bytes(text)
-    poes = poes_of_nrml(text)
-    model = nrml.to_python(str(tmp_path / name))
-    for (_, label), functions in model.items():
-        for function in functions.build(model.limitStates):
-            assert function(AT) == pytest.approx(poes[label, function.limit_state], abs=1e-6)
-
-
 def rows_of_pelicun(text: bytes) -> list[dict[str, str]]:
     return list(csv.DictReader(text.decode().splitlines()))
 
@@ -134,19 +121,6 @@ def test_pelicun_gets_the_curves_and_what_no_curve_has_as_shares(found: Fragilit
                 assert (np.diff(y) > 0.0).all()
                 cdf = np.interp(AT, x, y)
             assert cdf == pytest.approx(right, abs=1e-7)
-
-
-def test_pelicun_reads_the_same_numbers(found: Fragility, tmp_path: Path) -> None:
-    assessment = pytest.importorskip("pelicun.assessment")
-    name, text = exported(found, "pelicun")
-    (tmp_path / name).write_bytes(text)
-    rows = rows_of_pelicun(text)
-    damage = assessment.Assessment({"PrintLog": False, "Verbose": False}).damage
-    damage.load_model_parameters([str(tmp_path / name)], {row["ID"] for row in rows})
-    for row in rows:
-        read = damage.ds_model.damage_params.loc[row["ID"]]
-        assert read["LS2", "Theta_0"] == pytest.approx(9.80665 * float(row["LS2-Theta_0"]), rel=1e-6)
-        assert read["LS2", "Theta_1"] == pytest.approx(float(row["LS2-Theta_1"]), rel=1e-6)
 
 
 def test_velocities_are_in_the_units_of_each_program() -> None:

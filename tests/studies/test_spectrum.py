@@ -141,27 +141,6 @@ def test_a_slab_is_carried_in_every_cell_and_when_it_is_run_again():
     assert checked["agrees"].all()
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"semidiagonals": [2.0, 1.0]}, "semidiagonals must be positive, finite and increasing"),
-        ({"semidiagonals": [0.0, 1.0]}, "semidiagonals must be positive"),
-        ({"intensities": []}, r"intensities must be positive, .* got \[\]"),
-        ({"intensities": [1.0, math.nan]}, "intensities must be positive, finite and increasing"),
-        ({"support": "ring"}, "support must be one of recess, flat, got 'ring'"),
-        ({"probes": -1}, "probes must be a whole number, at least 0, got -1"),
-        ({"search_step": 0.0}, "search_step must be at least 1e-05, got 0.0"),
-        ({"semidiagonals": [1.0, 9.0], "rolling_resistance": 0.3}, "to 0.1 base radii, 0.00995037 m"),
-        ({"slab_mass_ratio": 1e300}, "slab_mass_ratio must be"),
-    ],
-)
-def test_bad_input_is_named_before_anything_runs(change, words, monkeypatch):
-    monkeypatch.setattr(reduced, "peak_tilts", lambda *_, **__: pytest.fail("a run"))
-    options = {"semidiagonals": [1.0], "intensities": [1.0]} | change
-    with pytest.raises(ValueError, match=words):
-        tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options))
-
-
 def test_a_still_record_cannot_be_scaled():
     with pytest.raises(ValueError, match="horizontal acceleration"):
         tilt_maps(

@@ -69,17 +69,6 @@ def test_a_sweep_and_an_ensemble_run_the_tendon() -> None:
     assert list(members.methods["method"]) == ["recess model"]
 
 
-def test_the_balance_of_a_case_is_alpha_without_a_tendon() -> None:
-    release = rw.InitialState(0.1)
-    tilts = [
-        reduced.balance_tilt_of_case(rw.Case(PIER, initial=release, duration=1.0, tendon=tendon))
-        for tendon in (None, rw.Tendon(), rw.Tendon(prestress=0.5), rw.Tendon(stiffness=6.0))
-    ]
-    assert tilts[0] == tilts[1] == PIER.alpha
-    assert PIER.alpha < tilts[2] < 0.5 * math.pi
-    assert np.isinf(tilts[3])
-
-
 @pytest.mark.parametrize("gravity", [1.62, 9.81])
 def test_the_balance_without_a_term_is_alpha_to_the_bit(gravity: float) -> None:
     for tan_alpha in np.geomspace(0.02, 1.5, 40).tolist():

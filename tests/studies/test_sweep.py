@@ -56,16 +56,6 @@ def test_no_cell_depends_on_chunks_workers_or_neighbours(tmp_path):
         )
 
 
-def test_a_second_sweep_repeats_nothing(tmp_path):
-    first = sweep(grid(), out=tmp_path, workers=1, chunk_size=5).table
-    before = files(tmp_path)
-    events = []
-    second = sweep(grid(), out=tmp_path, workers=1, chunk_size=5, progress=events.append).table
-    assert events == []
-    assert files(tmp_path) == before
-    pd.testing.assert_frame_equal(first, second, check_exact=True)
-
-
 def test_a_grid_that_grows_keeps_what_is_there(tmp_path):
     sweep(grid(tan_alphas=[0.2]), out=tmp_path, workers=1, chunk_size=5)
     before = set(files(tmp_path).values())
