@@ -34,9 +34,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     generated.add_argument("--seed", type=int, default=1, help="of the sample (default: %(default)s)")
     generated.add_argument("--only", default="", help="files whose path holds this text")
     generated.add_argument("--table", type=Path, default=Path("faults.csv"), help="default: %(default)s")
-    generated.add_argument(
-        "--reach", type=Path, default=Path("reach.json"), help="what each test calls (default: %(default)s)"
-    )
     options = parser.parse_args(arguments)
     if options.command == "listed":
         from mutation import listed as faults
@@ -51,7 +48,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             count=options.count,
             seed=options.seed,
             only=options.only,
-            reach=options.reach,
         )
     except ValueError as error:
         print(f"python tests/mutation: {error}", file=sys.stderr)

@@ -4,8 +4,8 @@
     python tests/mutation generated --count 10 --only reduced/integration/uplift.py
 
 A fault changes an operator, a comparison, a number, a condition, a sign or the order of two arguments.
-Conditions under which bad input is refused, messages and annotations are left out. The tests
-that call the changed function are asked first, then `rockwobble check`; a crash and a run out of time count
+Conditions under which bad input is refused, messages and annotations are left out. The test files
+that import the changed module are asked first, then `rockwobble check`; a crash and a run out of time count
 as found. Rows are kept in a table: a later call with the same sources goes on where the last one ended.
 """
 
@@ -16,23 +16,21 @@ import csv
 import hashlib
 import os
 import random
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
-from .reach import PACKAGES, Reach, near, read
-
+PACKAGES = ("models", "reduced", "multibody", "compare", "studies")
 _LEFT_OUT = shutil.ignore_patterns(".git", "__pycache__", ".mypy_cache", ".ruff_cache", "published", "docs")
 _LIMIT = 600.0  # [s] many times what the check takes
-_RECORDING = 7200.0  # [s] many times what the tests take one after another, each call recorded
-_SLOWER, _START = 10.0, 120.0  # times the recorded time of tests, and seconds beside it: of a busy machine
-# [s] of tests that are asked: what calls a function and does not see its fault in so long seldom does later
-_LONGEST = 60.0
+_LONGEST = 900.0  # [s] many times what the fast tests of a module take
+_MOST = 6  # test files that are asked
 _OPERATORS: dict[type[ast.operator], ast.operator] = {
     ast.Add: ast.Sub(),
     ast.Sub: ast.Add(),
@@ -66,8 +64,6 @@ class GeneratedFault:
     file : str
         Path in the checkout.
     place : int
-    function : int, optional
-        First line of the function that it is in.
     change : str
         Line, kind, and what is changed.
     sources : str
@@ -76,7 +72,6 @@ class GeneratedFault:
 
     file: str
     place: int
-    function: int | None
     change: str
     sources: str
 
@@ -96,13 +91,11 @@ def faults_of(file: str, source: str) -> list[GeneratedFault]:
     """Return the faults of a file."""
     digest = hashlib.sha256(source.encode()).hexdigest()[:12]
     tree = ast.parse(source)
-    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
     found = []
     for place, (kind, node) in enumerate(_sites(tree)):
         line = getattr(node, "lineno", 0)
         words = f"line {line}, {kind}: {' '.join(ast.unparse(node).split())[:60]}"
-        function = _function_at(functions, line)
-        found.append(GeneratedFault(file=file, place=place, function=function, change=words, sources=digest))
+        found.append(GeneratedFault(file=file, place=place, change=words, sources=digest))
     return found
 
 
@@ -112,15 +105,6 @@ def applied(fault: GeneratedFault, source: str) -> str:
     kind, node = list(_sites(tree))[fault.place]
     _change(kind, node)
     return ast.unparse(ast.fix_missing_locations(tree))
-
-
-def _function_at(functions: Sequence[ast.FunctionDef], line: int) -> int | None:
-    """Return the first line of the innermost function with a line in its body, as its code object has it."""
-    around = [node for node in functions if node.body[0].lineno <= line <= (node.end_lineno or 0)]
-    if not around:
-        return None
-    innermost = max(around, key=lambda node: node.lineno)
-    return min([innermost.lineno, *(each.lineno for each in innermost.decorator_list)])
 
 
 def _sites(tree: ast.AST) -> Iterator[tuple[str, ast.AST]]:
@@ -187,7 +171,24 @@ def sample(checkout: Path, count: int, seed: int, only: str = "") -> list[Genera
     return turns[:count]
 
 
-def tried(root: Path, fault: GeneratedFault, tests: Sequence[Reach]) -> Row:
+def near(root: Path, file: str) -> list[str]:
+    """Return the test files that import a module, those of its package and those named for it first.
+
+    Where none does, those of the package.
+    """
+    package, name = (
+        file.split("/")[0],
+        Path(file).parent.name if file.endswith("__init__.py") else Path(file).stem,
+    )
+    imported = re.compile(rf"^(from|import) .*\b{name}\b", re.MULTILINE)
+    files = sorted((root / "tests").rglob("test_*.py"))
+    found = [each for each in files if imported.search(each.read_text(encoding="utf-8")) or name in each.name]
+    found = found or [each for each in files if each.parent.name == package]
+    order = sorted(found, key=lambda each: (each.parent.name != package, name not in each.name))
+    return [each.relative_to(root).as_posix() for each in order[:_MOST]]
+
+
+def tried(root: Path, fault: GeneratedFault) -> Row:
     """Put a fault into a copy of the checkout, ask tests and check, and take it out again."""
     path = root / fault.file
     source = path.read_text(encoding="utf-8")
@@ -197,18 +198,9 @@ def tried(root: Path, fault: GeneratedFault, tests: Sequence[Reach]) -> Row:
         shutil.copytree(compiled, aside)
     found_by, detail = "nothing", ""
     try:
-        asked: list[str] = []
-        seconds = 0.0
-        for test in near(tests, fault.file, fault.function):
-            if asked and seconds + test.seconds > _LONGEST:
-                break
-            asked.append(test.test)
-            seconds += test.seconds
-        named = root.parent / "asked.txt"
-        named.write_text("\n".join(asked), encoding="utf-8")
-        of_tests = ["-m", "pytest", "-x", "-q", "-n0", "-p", "no:cacheprovider", f"@{named}"]
+        options = ["-x", "-q", "-n0", "-m", "not slow", "-p", "no:cacheprovider"]
         for name, command, limit in (
-            ("tests", of_tests, _START + _SLOWER * seconds),
+            ("tests", ["-m", "pytest", *options, *near(root, fault.file)], _LONGEST),
             ("check", ["-c", _CHECK], _LIMIT),
         ):
             failed, words = _run(root, command, limit=limit)
@@ -245,27 +237,7 @@ def _run(root: Path, command: list[str], *, limit: float) -> tuple[bool, str]:
     return shown.returncode != 0, " ".join(lines[-1:])[:200]
 
 
-def recorded(root: Path, reach: Path) -> list[Reach]:
-    """Return what each test calls: as it was recorded, or else by a run of the tests in the copy.
-
-    Raises
-    ------
-    ValueError
-        If check fails in the copy without a fault.
-    """
-    if not reach.is_file():
-        tests = [f"tests/{package}" for package in PACKAGES]
-        record = ["-m", "pytest", "-q", "-n2", "-p", "no:cacheprovider", "-p", "mutation.reach", *tests]
-        os.environ["REACH"] = str(reach.resolve())
-        print("recording once what each test calls, some half an hour; kept in", reach, flush=True)
-        failed, words = _run(root, ["-c", _CHECK], limit=_LIMIT)
-        if failed:
-            raise ValueError(f"check must pass without a fault, got {words}")
-        print("tests:", _run(root, record, limit=_RECORDING)[1], flush=True)
-    return read(reach)
-
-
-def run(checkout: Path, table: Path, *, count: int, seed: int, only: str, reach: Path) -> int:
+def run(checkout: Path, table: Path, *, count: int, seed: int, only: str) -> int:
     """Try a sample, keep the table, print the score, and return the exit code.
 
     Raises
@@ -281,10 +253,12 @@ def run(checkout: Path, table: Path, *, count: int, seed: int, only: str, reach:
     with tempfile.TemporaryDirectory(prefix="faults-") as folder:
         root = Path(folder) / "copy"
         shutil.copytree(checkout, root, symlinks=True, ignore=_LEFT_OUT)
-        tests = recorded(root, reach)
+        failed, words = _run(root, ["-c", _CHECK], limit=_LIMIT)
+        if failed:
+            raise ValueError(f"check must pass without a fault, got {words}")
         for fault in sample(checkout, count, seed, only):
             known = kept.get((fault.file, fault.change, fault.sources))
-            rows.append(known or tried(root, fault, tests))
+            rows.append(known or tried(root, fault))
             kept[fault.file, fault.change, fault.sources] = rows[-1]
             _write(table, list(kept.values()))
             print(f"{rows[-1].found_by}: {fault.file}, {fault.change}", flush=True)

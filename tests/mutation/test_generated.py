@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from mutation import generated
-from mutation.generated import applied, faults_of, sample, tried
-from mutation.reach import Reach, near, read
+from mutation.generated import applied, faults_of, near, sample, tried
 
 CHECKOUT = Path(__file__).parents[2]
 SOURCE = '''"""Text 1."""
@@ -39,46 +35,12 @@ def test_a_fault_is_one_change_outside_of_refusals_and_messages(kind: str, expec
     assert expected in applied(next(each for each in faults if f", {kind}: " in each.change), SOURCE)
 
 
-def test_a_fault_is_known_by_the_innermost_function() -> None:
-    inner = "ONE = 1\n\n@cache\ndef f(x=2):\n    def g():\n        return 3\n    return 4\n"
-    places = {fault.change[-1]: fault.function for fault in faults_of("f.py", inner)}
-    assert places == {"1": None, "2": None, "3": 5, "4": 3}
-
-
-def test_tests_that_call_the_function_are_nearest_and_the_fastest_first() -> None:
-    def reach(test: str, seconds: float, *calls: str) -> Reach:
-        return Reach(test=test, seconds=seconds, calls=frozenset(calls))
-
-    other = reach("tests/compare/test_a.py::test_other", 0.1, "models/a.py:3")
-    slow, fast = (reach(f"tests/models/test_a.py::test_{t}", t, "models/a.py:3") for t in (9.0, 1.0))
-    beside, far = (
-        reach("tests/models/test_a.py::test_b", 2.0, "models/a.py:7"),
-        reach("tests/models/t.py::t", 1.0),
-    )
-    tests = [other, slow, fast, beside, far]
-    assert near(tests, "models/a.py", 3) == [fast, slow, other]
-    assert near(tests, "models/a.py", None) == [fast, beside, slow, other]
-    assert near(tests, "models/b.py", 3) == [fast, far, beside, slow]
-
-
-def test_what_tests_and_shared_fixtures_call_is_recorded(tmp_path: Path) -> None:
-    (tmp_path / "models").mkdir()
-    (tmp_path / "models/a.py").write_text("def one():\n    return 1\n\ndef two():\n    return 2\n")
-    (tmp_path / "test_a.py").write_text(
-        "import pytest\nfrom models.a import one, two\n"
-        "@pytest.fixture(scope='module')\ndef shared():\n    return two()\n"
-        "def test_a(shared):\n    one()\ndef test_b(shared):\n    pass\ndef test_c():\n    pass\n"
-    )
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "mutation.reach", "--rootdir", ".", "test_a.py"]
-    paths = {
-        "PYTHONPATH": f"{tmp_path}{os.pathsep}{CHECKOUT / 'tests'}",
-        "REACH": str(tmp_path / "reach.json"),
-    }
-    # of a process of its own, also where this one is a worker of many
-    alone = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
-    subprocess.run(command, cwd=tmp_path, env=alone | paths, check=True, capture_output=True)
-    calls = {each.test.split("::")[1]: sorted(each.calls) for each in read(tmp_path / "reach.json")}
-    assert calls == {"test_a": ["models/a.py:1", "models/a.py:4"], "test_b": ["models/a.py:4"], "test_c": []}
+def test_the_files_that_import_a_module_are_nearest_and_those_of_its_package_first() -> None:
+    asked = near(CHECKOUT, "models/hazard.py")
+    assert asked[0] == "tests/models/test_hazard.py"
+    asked = near(CHECKOUT, "studies/fragility/fit.py")
+    assert asked[0] == "tests/studies/test_fragility_fit.py"
+    assert "tests/studies/test_risk.py" in asked
 
 
 def test_a_sample_is_spread_over_the_files_and_always_the_same() -> None:
@@ -106,7 +68,6 @@ def test_tests_are_asked_first_and_then_check(
     )
     monkeypatch.setattr(generated, "_CHECK", check)
     (fault,) = faults_of("models/a.py", "ONE = 1\n")
-    asked = Reach(test="tests/models/test_a.py::test_a", seconds=0.1, calls=frozenset())
-    row = tried(tmp_path, fault, [asked])
+    row = tried(tmp_path, fault)
     assert row.found_by == found_by, row.detail
     assert (tmp_path / "models/a.py").read_text() == "ONE = 1\n"

@@ -4,36 +4,23 @@ The state is that of a rigid body in space, its axis and its angular velocity, a
 Newton and Euler in vectors. The base touches the ground at the lowest point of its rim, which does not slip;
 in the recess a moment along z_world + z_body keeps the angular velocity across that direction, and a tendon
 may pull the centre of the base to its place on the ground; inside the column its forces cancel. Pair of order
-8 of Dormand and Prince. Rules of the contract: uplift at f >= 0 towards the inertia force, rest threshold,
-still ground after the record, over which a run in motion is followed to its next maximum.
+8 of Dormand and Prince. Uplift is at f >= 0, towards the inertia force.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate._ivp import dop853_coefficients as pair
-from shaken_problems import G, Problem
-
-from rockwobble.reduced.body import body_of
 
 A, B, C = np.ascontiguousarray(pair.A[:12, :12]), np.array(pair.B), np.array(pair.C[:12])
 E3, E5 = np.array(pair.E3), np.array(pair.E5)
-TURN = 4e-3  # of 1/p: a maximum is looked for in steps no longer, by a cubic
 
 Array = NDArray[np.float64]
 jit = numba.njit(cache=True)  # all of them are in this file: what is kept is as old as the file
-
-
-class Result(NamedTuple):
-    outcome: str
-    peak: float  # rad
-    uplift_time: float  # s, NaN without
-    rests: int
 
 
 @jit
@@ -168,106 +155,3 @@ def step(P: Array, p: float, y: Array, h: float, a: Array, slope: Array, rtol: f
     if level < 0.5:  # the axis stays a unit vector
         new[2] = math.sqrt(1.0 - level)
     return new, h * np.dot(fifth, fifth) / math.sqrt(7.0 * both)
-
-
-@jit
-def highest(h: float, tilt: float, rate: float, tilt_new: float, rate_new: float) -> float:
-    """Maximum of the cubic through both ends."""
-    best = max(tilt, tilt_new)
-    for i in range(1, 2000):
-        x = i / 2000
-        hermite = (1 + 2 * x) * (1 - x) ** 2 * tilt + x * x * (3 - 2 * x) * tilt_new
-        best = max(best, hermite + h * x * (1 - x) * ((1 - x) * rate - x * rate_new))
-    return best
-
-
-@jit
-def integrate_arrays(
-    P: Array, alpha: float, record: Array, dt: float, duration: float, y: Array, rest: float, rtol: float
-) -> tuple[int, float, float, int]:
-    """Return 0 at rest, 1 in motion, 2 overturned, 3 too many steps; peak, uplift time, number of rests."""
-    b, h, I1, _, g = P[:5]
-    p2 = g * math.hypot(b, h) / (I1 + h * h + b * b)
-    p, least = math.sqrt(p2), g * (b * math.sin(rest * alpha) - 2.0 * h * math.sin(0.5 * rest * alpha) ** 2)
-    moving = y[2] < 1.0
-    peak = tilt_of(y)[0] if moving else 0.0
-    uplift, rests, piece, now, end, steps = (0.0 if moving else np.nan), 0, 0, 0.0, duration, 0
-    following, proposed = False, 1e-4 / p
-    while True:
-        if now >= end * (1.0 - 1e-13):
-            if following or not moving:
-                return int(following), peak, uplift, rests
-            following, end, piece = True, now + 200.0 / p, len(record)
-        a, slope, finish = np.zeros(3), np.zeros(3), end
-        if piece < len(record) - 1:
-            a, slope, finish = (
-                record[piece],
-                (record[piece + 1] - record[piece]) / dt,
-                min(end, (piece + 1) * dt),
-            )
-        length, at = finish - now, 0.0
-        while at < length:
-            if not moving:
-                jump = excess(P, a + slope * at) > 0.0
-                if not jump and excess(P, a + slope * length) <= 0.0:
-                    break
-                lift = at if jump else crossing(P, a, slope, at, length)
-                ground = a + slope * lift
-                unit = 1.0 / max(p, math.hypot(slope[0], slope[1]) / math.hypot(ground[0], ground[1]))
-                early = min((1e-6 if jump else 3e-4) * unit, length - lift)
-                new = lifted(P, p2, ground, slope, early, y[6], jump)
-                at = lift + early if early > 0.0 else length
-                if new[0] == 0.0 and new[1] == 0.0:
-                    continue
-                if np.isnan(uplift):
-                    uplift = now + lift
-                y, moving, proposed = new, True, 0.1 * early
-                continue
-            size = min(proposed, length - at)
-            new, error = step(P, p, y, size, a + slope * at, slope, rtol)
-            steps += 1
-            if steps > 3_000_000:
-                return 3, peak, uplift, rests
-            if not error <= 1.0:
-                proposed = size * max(0.2, 0.9 * error**-0.125) if error < 1e300 else 0.2 * size
-                continue
-            (tilt, rate), (tilt_new, rate_new) = tilt_of(y), tilt_of(new)
-            turns = rate > 0.0 >= rate_new
-            if turns and size * p > TURN:
-                proposed = 0.5 * size
-                continue
-            longer = size * min(5.0, 0.9 * max(error, 1e-9) ** -0.125)
-            proposed = longer if size >= proposed else max(longer, proposed)
-            if tilt_new >= 0.5 * math.pi or new[2] <= 0.0:
-                return 2, 0.5 * math.pi, uplift, rests
-            peak = max(peak, tilt_new)
-            if turns:
-                peak = max(peak, highest(size, tilt, rate, tilt_new, rate_new))
-                if following:
-                    return 1, peak, uplift, rests
-            y, at = new, length if at + size >= length else at + size
-            f = excess(P, a + slope * at)
-            if f < 0.0 and tilt_new < alpha and energy(P, y) < least * -f * h / (g * b):
-                moving, rests = False, rests + 1
-        now, piece = finish, piece + 1
-
-
-def integrate(given: Problem, *, rtol: float = 1e-12, rest: float = 1e-8) -> Result:
-    """Integrate a problem of the recess or the flat-ground model."""
-    body = body_of(given.cylinder, G)
-    P = np.array([body.b, body.h, body.I1, body.I2, G, float(given.model == "recess"), 0.0, 0.0, 1.0])
-    record = np.zeros((len(given.motion.acceleration), 3))
-    record[:, : given.motion.acceleration.shape[1]] = given.motion.acceleration
-    y = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
-    if given.initial is not None:
-        tilt, rate = given.initial.tilt, given.initial.tilt_rate
-        angle, spin = given.initial.rolling_angle, given.initial.rolling_rate
-        s, cos, sin = math.sin(tilt), math.cos(angle), math.sin(angle)
-        y[:3] = s * cos, s * sin, math.cos(tilt)
-        y[3:6] = -spin * s * cos - rate * sin, -spin * s * sin + rate * cos, spin * (1.0 - math.cos(tilt))
-        y[6] = angle
-    motion = given.motion
-    status, peak, uplift, rests = integrate_arrays(
-        P, body.alpha, record, motion.time_step, motion.duration, y, rest, rtol
-    )
-    return Result(("stands", "stands", "overturned", "failed")[status], peak, uplift, rests)
