@@ -1,1 +1,1 @@
-"""What writes reports/published/benchmark: thirteen cases and their certified references."""
+"""What writes reports/published/benchmark: fifteen cases and their certified references."""

@@ -1,4 +1,4 @@
-"""The thirteen cases: bodies, starts, motions, and what is asked of a trajectory.
+"""The fifteen cases: bodies, starts, motions, and what is asked of a trajectory.
 
 The bounds mean the same everywhere: a body 1 % too large fails in every free motion; "good" is a tenth of
 "pass", and "exact" what only a converged solution of the same equations reaches. Under shaking the bound is
@@ -63,6 +63,11 @@ class BenchmarkRun:
     time_unit: float = 1.0
     levels: dict[str, float] = field(default_factory=dict)
     closes: bool = False
+
+    @property
+    def slides(self) -> bool:
+        """Whether it slides, and does nothing else."""
+        return "slide_level" in self.levels
 
     @property
     def model(self) -> Literal["recess", "flat"]:
@@ -458,8 +463,53 @@ def impact() -> Definition:
     )
 
 
+def slide(name: str, title: str, motion: GroundMotion, length: float, *asked: Criterion) -> Definition:
+    """Return a slide from rest under a motion of the ground, at 0.6 and at 0.9 of b/h."""
+    runs = tuple(
+        BenchmarkRun(
+            name=f"friction-{friction:g}",
+            cylinder=SQUAT,
+            support="flat",
+            duration=length,
+            motion=motion,
+            friction=friction,
+            levels={"slide_level": 1e-3},
+        )
+        for friction in (0.3, 0.45)
+    )
+    end = length - 0.01
+    return Definition(
+        name=name,
+        title=title,
+        runs=runs,
+        step=0.002,
+        criteria=(
+            *asked,
+            quantity("slide_end", "relative", 0.01, 1e-5),
+            trace("path", end, 1e-5),
+            trace("tilt", end, 1e-5),
+        ),
+        needed=("slide_end", "path", "tilt"),
+    )
+
+
+def slide_on_a_line() -> Definition:
+    """Return a slide under a rectangular pulse of 0.6 g, which is known in closed form."""
+    push = 0.6 * G * np.array([math.cos(AZIMUTH), math.sin(AZIMUTH)])
+    motion = GroundMotion(np.vstack([push, push]), 0.5)
+    begin = quantity("slide_time", "s", 0.003, 1e-5)
+    return slide("slide-line", "A slide along one line", motion, 1.6, begin)
+
+
+def slide_on_a_curve() -> Definition:
+    """Return a slide over ground that circles once a second with 0.6 g, and stops after three seconds."""
+    turn = AZIMUTH + 2.0 * math.pi * 0.01 * np.arange(301)
+    motion = GroundMotion(np.round(0.6 * G * np.column_stack([np.cos(turn), np.sin(turn)]), 6), 0.01)
+    return slide("slide-curve", "A slide along a curve", motion, 3.6)
+
+
 def definitions() -> tuple[Definition, ...]:
-    """Return the thirteen cases, in the order of the page."""
+    """Return the fifteen cases, in the order of the page."""
     return (
         turns("turn-flat", "flat", "on flat ground"),
         turns("turn-recess", "recess", "in a recess"),
@@ -474,4 +524,6 @@ def definitions() -> tuple[Definition, ...]:
         energy(),
         tendon(),
         impact(),
+        slide_on_a_line(),
+        slide_on_a_curve(),
     )

@@ -18,6 +18,7 @@ from rockwobble.reduced.body import body_of
 
 from .definitions import BenchmarkRun, Definition, G, definitions
 from .second import Array, sampled
+from .slide import integrated
 from .write import PUBLISHED
 
 RTOL = 1e-10
@@ -91,21 +92,11 @@ def check() -> ModuleType:
 
 
 def slid(run: BenchmarkRun, spacing: float) -> dict[str, Array]:
-    """Columns of a cylinder that slides in x on a ramp of the ground: x'' = -(a_x - mu (g + a_z))."""
-    assert run.motion is not None
-    ax, _, az = run.motion.acceleration[-1] / run.motion.duration
+    """Columns of a cylinder that slides."""
     time = spacing * np.arange(round(run.duration / spacing) + 1)
-    rate = ax - run.friction * az
-    past = np.maximum(time - run.friction * G / rate, 0.0)
+    x, y = integrated(run, time).T
     still, height = np.zeros_like(time), np.full_like(time, run.cylinder.mass_centre_height)
-    return {
-        "time": time,
-        "tilt": still,
-        "azimuth": still,
-        "x": -rate * past**3 / 6.0,
-        "y": still,
-        "z": height,
-    }
+    return {"time": time, "tilt": still, "azimuth": still, "x": x, "y": y, "z": height}
 
 
 def judged(definition: Definition, mistake: str) -> tuple[str, float] | None:
@@ -118,7 +109,7 @@ def judged(definition: Definition, mistake: str) -> tuple[str, float] | None:
     motions = {}
     for name, run in changed.items():
         spacing = definition.step * run.time_unit
-        if "slide_level" in run.levels:  # it slides, which this formulation does not
+        if run.slides:  # it slides, which this formulation does not
             motions[name] = check().read_motion(case.runs[name], slid(run, spacing))
             continue
         end = spacing * round(run.duration / spacing)

@@ -22,12 +22,14 @@ from rockwobble.reduced.exact import free_response, steady_wobble_rate
 from .definitions import BenchmarkRun, Definition, G
 from .impact import maximum_after
 from .second import REST, Sampled, sampled
+from .slide import closed, integrated, modelled
 
 Array = NDArray[np.float64]
 RTOL = 1e-13
 FIRST = "reduced model, rtol 1e-13"
 SECOND = "Newton-Euler in vectors, rtol 1e-13"
 SLIDING = "closed form of the sliding body"
+MODEL = "sliding model, Taylor series"
 INTEGRATED = "integration of the sliding body, Dormand-Prince 8"
 _REACH = 5  # samples on each side of a root
 
@@ -55,25 +57,46 @@ def reference(definition: Definition) -> Reference:
     """Compute the reference of a case."""
     if definition.name == "records-distribution":
         return _peaks(definition)
-    traces = {run.name: _both(definition, run) for run in definition.runs}
+    traces = {run.name: _both(definition, run) for run in definition.runs if not run.slides}
+    paths = {run.name: _paths(definition, run) for run in definition.runs if run.slides}
     quantities = []
     for criterion in definition.criteria:
         for run in definition.runs:
-            if criterion["kind"] == "quantity" and run.name in criterion.get("runs", traces):
-                name = criterion["name"]
-                known = (
-                    {}
-                    if name == "slide_time"
-                    else {
-                        by: measured(name, run, trace)
-                        for by, trace in zip((FIRST, SECOND), traces[run.name], strict=True)
-                    }
-                )
-                if run.closes:
-                    known |= _after_impact(name, run, traces[run.name][1])
-                quantities.append(_quantity(name, run.name, {**_closed(name, run), **known}))
-    columns, bounds = _columns(definition, traces)
+            name = criterion["name"]
+            if criterion["kind"] != "quantity" or run.name not in criterion.get("runs", [*traces, *paths]):
+                continue
+            if run.slides:
+                quantities.append(_quantity(name, run.name, _of_slide(name, run, *paths[run.name])))
+                continue
+            known = {
+                by: measured(name, run, trace)
+                for by, trace in zip((FIRST, SECOND), traces[run.name], strict=True)
+            }
+            if run.closes:
+                known |= _after_impact(name, run, traces[run.name][1])
+            quantities.append(_quantity(name, run.name, {**_closed(name, run), **known}))
+    columns, bounds = _columns(definition, traces, paths)
     return Reference(quantities, columns, bounds)
+
+
+def _paths(definition: Definition, run: BenchmarkRun) -> tuple[Array, Array, Array]:
+    """Times, and the path by the reduced model and by integration."""
+    times = definition.step * np.arange(round(run.duration / definition.step) + 1)
+    return times, modelled(run, times), integrated(run, times)
+
+
+def _of_slide(name: str, run: BenchmarkRun, times: Array, model: Array, other: Array) -> dict[str, float]:
+    """Return a quantity of a slide by each way in which it is known."""
+    exact, known = closed(name, run), {}
+    if exact is not None:
+        known[SLIDING] = exact
+    for by, path in ((MODEL, model), (INTEGRATED, other)):
+        moved = np.hypot(*path.T) / run.cylinder.base_radius
+        excess = moved - run.levels["slide_level"]
+        known[by] = float(moved[-1])
+        if name == "slide_time":
+            known[by] = _root(times, excess, int(np.flatnonzero(excess > 0.0)[0]) - 1)
+    return known
 
 
 def _both(definition: Definition, run: BenchmarkRun) -> tuple[Sampled, Sampled]:
@@ -136,8 +159,6 @@ def _value(time: Array, values: Array, at: float) -> float:
 def _closed(name: str, run: BenchmarkRun) -> dict[str, float]:
     """Return what is known without any integration."""
     kind = name.rpartition("_")[0]
-    if name == "slide_time":
-        return {SLIDING: _slide_time(run), INTEGRATED: _integrated_slide_time(run)}
     if kind == "revolutions":
         assert run.initial is not None
         rate = float(steady_wobble_rate(run.cylinder, run.initial.tilt, gravity=G))
@@ -162,55 +183,12 @@ def _after_impact(name: str, run: BenchmarkRun, trace: Sampled) -> dict[str, flo
     return {"closed form": maximum_after(top, run, int(digits) - 2) / alpha}
 
 
-def _sliding(run: BenchmarkRun) -> tuple[float, float]:
-    """Return when it begins to slide [s], and the rate of its acceleration against the ground [m/s^3]."""
-    assert run.motion is not None
-    ramp, _, vertical = run.motion.acceleration[-1] / run.motion.duration
-    # mu (g + az) is the friction, in kinetic as in static contact
-    rate = ramp - run.friction * vertical
-    return run.friction * G / rate, rate
-
-
-def _slide_time(run: BenchmarkRun) -> float:
-    begin, rate = _sliding(run)
-    shift = run.levels["slide_level"] * run.cylinder.base_radius
-    return begin + (6.0 * shift / rate) ** (1.0 / 3.0)
-
-
-def _integrated_slide_time(run: BenchmarkRun) -> float:
-    """Return the same by integrating Coulomb friction of a body that is pushed by the ground."""
-    from scipy.integrate import solve_ivp
-
-    assert run.motion is not None
-    push = run.motion.acceleration[-1] / run.motion.duration
-    shift = run.levels["slide_level"] * run.cylinder.base_radius
-
-    def surplus(time: float) -> float:
-        return float(abs(push[0] * time) - run.friction * (G + push[2] * time))
-
-    def moved(time: float, y: Array) -> float:
-        return float(abs(y[0]) - shift)
-
-    begin = float(brentq(surplus, 0.0, run.duration, xtol=1e-15, rtol=1e-15))
-    found = solve_ivp(
-        lambda time, y: [y[1], -surplus(time)],
-        (begin, run.duration),
-        [0.0, 0.0],
-        method="DOP853",
-        rtol=1e-13,
-        atol=1e-16,
-        events=moved,
-        max_step=0.02,
-    )
-    return float(found.t_events[0][0])
-
-
 def _quantity(name: str, run: str, by: dict[str, float]) -> dict[str, Any]:
     """Return the entry of reference.json; the first way that is known gives the value."""
     values = list(by.values())
     apart = max(values) - min(values)
     unit = {"turn": "rad", "maximum": "alpha", "kept": "share"}.get(name.rpartition("_")[0], "s")
-    unit = {"lean_azimuth": "rad", "peak_tilt": "alpha"}.get(name, unit)
+    unit = {"lean_azimuth": "rad", "peak_tilt": "alpha", "slide_end": "b"}.get(name, unit)
     bound = _rounded_up(10.0 * max(apart, 1e-14 * abs(values[0])))
     return {"name": name, "run": run, "value": values[0], "unit": unit, "bound": bound, "certified": by}
 
@@ -221,18 +199,21 @@ def _rounded_up(bound: float) -> float:
 
 
 def _columns(
-    definition: Definition, traces: dict[str, tuple[Sampled, Sampled]]
+    definition: Definition,
+    traces: dict[str, tuple[Sampled, Sampled]],
+    paths: dict[str, tuple[Array, Array, Array]],
 ) -> tuple[dict[str, Array], dict[str, float]]:
     """Return the table of reference.csv, and how well its columns are known."""
     named = definition.runs
     shared = any(run.turned for run in named) or any(run.time_unit != 1.0 for run in named)
-    sliding = [run for run in named if "slide_level" in run.levels]
     count = round(definition.end / definition.step) + 1 if definition.end else None
-    count = count or min(len(trace.time) for trace, _ in traces.values())
+    count = count or min(
+        len(times) for times in [*(one.time for one, _ in traces.values()), *(p[0] for p in paths.values())]
+    )
     columns: dict[str, Array] = {"time": definition.step * np.arange(count)}
-    bounds = {"tilt": 0.0, "azimuth": 0.0}
+    bounds = dict.fromkeys([*(("tilt", "azimuth") if traces else ()), *(("x", "y") if paths else ())], 0.0)
     for run in named:
-        if run in sliding:
+        if run.slides:
             continue
         one, two = ((t.tilt[:count], np.nan_to_num(t.azimuth[:count])) for t in traces[run.name])
         bounds["tilt"] = max(bounds["tilt"], float(np.abs(one[0] - two[0]).max()))
@@ -245,12 +226,12 @@ def _columns(
             continue
         columns[f"tilt{label}"] = one[0]
         columns[f"azimuth{label}"] = np.where(one[0] > 0.0, one[1] - run.turned, 0.0)
-    if sliding:
+    if paths:
         columns |= {"tilt": np.zeros(count), "azimuth": np.zeros(count)}
-    for run in sliding:
-        begin, rate = _sliding(run)
-        columns[f"x:{run.name}"] = -rate * np.maximum(columns["time"] - begin, 0.0) ** 3 / 6.0
-        columns[f"y:{run.name}"] = np.zeros(count)
+    for name, (_, model, other) in paths.items():
+        for axis, one, two in zip("xy", model[:count].T, other[:count].T, strict=True):
+            columns[f"{axis}:{name}"] = one
+            bounds[axis] = max(bounds[axis], float(np.abs(one - two).max()))
     return columns, {name: _rounded_up(10.0 * max(bound, 1e-15)) for name, bound in bounds.items()}
 
 

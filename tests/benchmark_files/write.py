@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rockwobble.reduced.body import body_of
 
 from .definitions import BenchmarkRun, Definition, G
-from .references import FIRST, SECOND, Reference
+from .references import FIRST, INTEGRATED, MODEL, SECOND, Reference
 
 PUBLISHED = Path(__file__).resolve().parents[2] / "reports" / "published" / "benchmark"
 _MANY = 100  # samples of a ground motion that has a file of its own
@@ -36,7 +36,11 @@ def write(definition: Definition, found: Reference, folder: Path) -> None:
         "schema": "reference/1",
         "case": definition.name,
         "traces": {
-            name: {"bound": bound, "unit": "rad", "certified_by": [FIRST, SECOND]}
+            name: {
+                "bound": bound,
+                "unit": "m" if name in "xy" else "rad",
+                "certified_by": [MODEL, INTEGRATED] if name in "xy" else [FIRST, SECOND],
+            }
             for name, bound in found.bounds.items()
         },
         "quantities": found.quantities,

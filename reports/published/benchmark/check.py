@@ -150,11 +150,12 @@ def measured(quantity: str, motion: Motion, run: Run, wanted: float) -> float:
     if quantity == "peak_tilt":
         peak = max([float(motion.tilt.max()), *(tilt for _, tilt, _ in maxima(motion))])
         return float(min(peak, 0.5 * math.pi) / run["alpha"])  # no more than the side on the ground
-    if quantity == "slide_time":
+    if name == "slide":
         if motion.path is None:
             return math.nan
-        moved = np.hypot(*(motion.path - motion.path[0]).T[:2])
-        return exceeds(motion.time, moved, run["slide_level"] * run["base_radius"], 3.0)
+        moved = np.hypot(*(motion.path - motion.path[0]).T[:2]) / run["base_radius"]
+        at_end = quantity == "slide_end"
+        return float(moved[-1]) if at_end else exceeds(motion.time, moved, run["slide_level"], 3.0)
     at = exceeds(motion.time, motion.tilt, run.get("lean_level", 0.0) * run["alpha"], 3.0)
     if quantity == "lean_time":
         return at
