@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -80,15 +79,8 @@ def trace_arguments(facts: Facts, samples: pd.DataFrame) -> JsonObject:
     """Return the arguments of a trace, but its case, of what `Trace.to_plain` and its samples hold."""
     import pandas as pd
 
-    if "rest_intervals" not in facts:  # of up to 0.2: "rest" is an outcome, and rests are the intervals
-        word = facts["outcome"]
-        facts = {
-            **facts,
-            "rests": word == "rest",
-            "rest_intervals": facts["rests"],
-            "followed_until": math.nan,
-        }
-        facts["outcome"] = "stands" if word in ("rest", "completed") else word
+    if "rest_intervals" not in facts:
+        raise ValueError("a trace of 0.2 or older must be run again: it does not say where it rests")
     # a file of another version lacks what it did not know
     found: dict[str, Array] = {name: samples[name].to_numpy() for name in samples.columns}
     for name, columns in VECTORS.items():

@@ -235,6 +235,14 @@ def show_and_save(found: Results, out: Path, *, details: bool = False) -> None:
     save_with_page(found, out, details=details)()
 
 
+def open_page(page: Path, wanted: bool | None) -> None:
+    """Open a page in the browser where that is wanted; None: in a terminal."""
+    if sys.stdout.isatty() if wanted is None else wanted:
+        import webbrowser
+
+        webbrowser.open(page.resolve().as_uri())
+
+
 def save_with_page(found: Results, out: Path, *, details: bool = False) -> Callable[[], None]:
     """Write results with their page, without the document of `report`, and return what prints the page."""
     from .pages import page_of

@@ -123,11 +123,6 @@ def compare(old: Iterable[Entry], new: Iterable[Sample]) -> FingerprintVerdict:
     return verdict
 
 
-def _outcome(one: Sample) -> str:
-    """The outcome; certificates of up to 0.2 tell a motion that ends at rest from one that does not."""
-    return "stands" if one["outcome"] in ("rest", "completed") else one["outcome"]
-
-
 def compare_entries(old: Entry, new: Sample) -> FingerprintVerdict:
     """Return the verdict on one case."""
     decided = partial(FingerprintVerdict, case=old["name"], claim=old["claim"], term=old["term"])
@@ -144,12 +139,12 @@ def compare_entries(old: Entry, new: Sample) -> FingerprintVerdict:
     apart = _difference(old["peak_tilt"], new["peak_tilt"])
     if end == math.inf:
         allowed = 10.0 * max(old["allowed"]["tilt"])
-        if _outcome(old) != _outcome(new):
+        if old["outcome"] != new["outcome"]:
             return decided(CHANGED, quantity=f"outcome {old['outcome']}, now {new['outcome']}")
         if apart > allowed:
             return decided(CHANGED, quantity="peak_tilt", difference=apart, allowed=allowed)
         return FingerprintVerdict(SAME)
-    if first is None and _outcome(old) == _outcome(new):
+    if first is None and old["outcome"] == new["outcome"]:
         return FingerprintVerdict(SAME)
     old_peaks, new_peaks = (late_peaks(one, end) for one in (old, new))
     if not len(new_peaks):

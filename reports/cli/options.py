@@ -240,3 +240,7 @@ Overwrite = Annotated[
         "--overwrite",
     ),
 ]
+Open = Annotated[
+    bool | None,
+    output("Open the page in the browser. Default: yes in a terminal.", "--open/--no-open"),
+]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
@@ -14,7 +13,7 @@ import typer
 import rockwobble as rw
 from rockwobble.compare.runs.plan import OptionsIn, Plan
 
-from ..console import echo, interruptible, user_input
+from ..console import echo, interruptible, open_page, user_input
 from ..pages.cases import record_lines
 from . import options
 from .command import takes_options
@@ -61,10 +60,6 @@ Plane = Annotated[
 ]
 Support = Annotated[str, options.method("Support at the start: recess (ideal recess) or flat (flat ground).")]
 Out = Annotated[Path, options.output("File of the page.")]
-Open = Annotated[
-    bool | None,
-    options.output("Open the page in the browser. Default: yes in a terminal.", "--open/--no-open"),
-]
 
 
 @takes_options
@@ -76,7 +71,7 @@ def explore(
     plane: Plane = None,
     out: Out = Path("explore.html"),
     overwrite: options.Overwrite = False,
-    opened: Open = None,
+    opened: options.Open = None,
 ) -> None:
     """Interactive page of the motion, with sliders for column, ground motion and support.
 
@@ -116,10 +111,7 @@ def explore(
         content = page.encode()
         replace_files(out.parent, {out.name: content})
     print(f"{out}: {len(content) / 1000:.0f} kB, {len(shakings)} ground motions")
-    if sys.stdout.isatty() if opened is None else opened:
-        import webbrowser
-
-        webbrowser.open(out.resolve().as_uri())
+    open_page(out, opened)
 
 
 def _shakings(context: typer.Context, problem: Problem, records: Path | None) -> Sequence[Any]:

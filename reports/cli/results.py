@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import sys
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -13,7 +12,16 @@ import typer
 
 import rockwobble as rw
 
-from ..console import complain, echo, interruptible, print_facts, show_and_save, shown_progress, user_input
+from ..console import (
+    complain,
+    echo,
+    interruptible,
+    open_page,
+    print_facts,
+    show_and_save,
+    shown_progress,
+    user_input,
+)
 from ..pages import stored_page
 from ..pages.cases import case_lines
 from ..pages.table import number
@@ -217,10 +225,6 @@ Stored = Annotated[
 ]
 CaseName = Annotated[str | None, typer.Option("--case", help="Name of the case, if the folder has several.")]
 Engine = Annotated[str | None, options.method(f"{options.ENGINES}. Default: mujoco.")]
-Open = Annotated[
-    bool | None,
-    options.output("Open the page in the browser. Default: yes in a terminal.", "--open/--no-open"),
-]
 
 
 @takes_options
@@ -235,7 +239,7 @@ def view(
     setting: options.Settings = None,
     out: options.Out = Path("rockwobble-view"),
     overwrite: options.Overwrite = False,
-    opened: Open = None,
+    opened: options.Open = None,
 ) -> None:
     """3D animation of one case: the cylinder of an engine, with the reduced model translucent over it.
 
@@ -275,10 +279,7 @@ def view(
         with user_input():
             require_motion(name, found.comparison.traces.values())
         show_and_save(found, out)
-    if sys.stdout.isatty() if opened is None else opened:
-        import webbrowser
-
-        webbrowser.open((out / "view.html").resolve().as_uri())
+    open_page(out / "view.html", opened)
 
 
 def _default_engine(support: str) -> str:

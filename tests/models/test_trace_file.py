@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import pandas as pd
@@ -33,16 +32,11 @@ def test_a_trace_comes_back_with_the_same_bits(trace: Trace, tmp_path: Path, che
     assert again.case == trace.case
 
 
-@pytest.mark.parametrize(("word", "rests"), [("rest", True), ("completed", False)])
-def test_outcomes_of_a_file_of_version_0_2_are_read(trace: Trace, word: str, rests: bool) -> None:
-    facts = plain_json.loads(plain_json.dumps(trace.to_plain())) | {
-        "outcome": word,
-        "rests": [[0.5, math.nan]],
-    }
+def test_a_trace_of_version_0_2_is_refused(trace: Trace) -> None:
+    facts = plain_json.loads(plain_json.dumps(trace.to_plain()))
     del facts["rest_intervals"]
-    again = Trace.from_plain(facts, trace.to_frame(), trace.case)
-    assert (again.outcome, again.rests) == ("stands", rests)
-    assert again.rest_intervals.tolist()[0][0] == 0.5
+    with pytest.raises(ValueError, match=r"a trace of 0\.2 or older must be run again"):
+        Trace.from_plain(facts, trace.to_frame(), trace.case)
 
 
 def test_a_file_that_is_none_or_damaged_is_refused(trace: Trace, tmp_path: Path) -> None:
