@@ -67,6 +67,25 @@ def scattered(scatter: float, most: int = 4) -> str:
     return f".{min(max(1 + math.ceil(-math.log10(scatter)), 2), most)}g"
 
 
+def interval_form(form: str, *numbers: object) -> str:
+    """Form of a number and the ends of its interval, of half the width of which two digits are shown.
+
+    Examples
+    --------
+    >>> interval_form(".3f", 0.529, 0.43, 0.709), interval_form(".3g", 10.42, 9.1, 12.3)
+    ('.2f', '.3g')
+    >>> interval_form(".3f", 0.252, 0.246, 0.27), interval_form(".3f", 2.6, 1.3, math.inf)
+    ('.3f', '.1f')
+    """
+    value, low, high = (each if isinstance(each, float) else math.nan for each in numbers)
+    half = 0.5 * (high - low) if math.isfinite(high) else value - low
+    if not re.fullmatch(r"\.\d[fg]", form) or not 0.0 < half < math.inf or value == 0.0:
+        return form
+    digits = 1 - math.floor(math.log10(half))
+    digits += 1 + math.floor(math.log10(abs(value))) if form.endswith("g") else 0
+    return f".{min(max(digits, 2 * form.endswith('g')), int(form[1:-1]))}{form[-1]}"
+
+
 def enumeration(words: Sequence[str]) -> str:
     """Return words with commas and, before the last, "and"."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
@@ -174,6 +193,11 @@ class Column:
         """Whether it holds words, which stand on the left."""
         return self.form in ("words", "tag")
 
+    def form_in(self, row: Row) -> str:
+        """Format in a row that may have an interval of the number, NAME_low and NAME_high."""
+        name = re.sub("_(low|high)$", "", self.key)
+        return interval_form(self.form, *(row.get(f"{name}{end}") for end in ("", "_low", "_high")))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Table:
@@ -203,8 +227,8 @@ class Table:
         return [(name, [self.cells(row) for row in rows]) for name, rows in found]
 
     def cells(self, row: Row) -> list[str]:
-        """Return the cells of one row."""
-        return [number(row.get(column.key), column.form) for column in self.columns]
+        """Cells of one row: a number with an interval has as many digits as that leaves."""
+        return [number(row.get(column.key), column.form_in(row)) for column in self.columns]
 
     def markdown(self) -> str:
         """Return the table in Markdown, which has no groups: they are a first column, or a table each."""
@@ -313,7 +337,7 @@ class Table:
         from rich.cells import cell_len
 
         def length(column: Column) -> int:
-            cells = [number(row.get(column.key), column.form) for row in self.rows]
+            cells = [number(row.get(column.key), column.form_in(row)) for row in self.rows]
             if wrapped and column.text:
                 cells = [word for cell in cells for word in cell.split(" ")]
             heading = column.heading.split(" " if stacked else " [")

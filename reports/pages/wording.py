@@ -1,7 +1,8 @@
 """Findings and diagnostics in English: every line of `words.toml`, and how its values are written.
 
 A line names values in braces. How a value looks follows its unit: an angle in degrees, a share in per cent,
-a time in s, a number with its 95 % interval behind it. `{runs:copy/copies}` adds the noun that fits the
+a time in s, a number with its 95 % interval behind it, to the digits that
+that leaves. `{runs:copy/copies}` adds the noun that fits the
 count; `{size:added|dissipated}` is the first word above zero, the second below; `{reason:word}` looks its
 value up in the table [word], `{names:diagnosed}` codes in [diagnostic]; `{peak:scattered}` has as many
 digits as the value share_scatter leaves; any other format is one of `number`, as `{bound:.1e}`. What stands
@@ -20,7 +21,7 @@ from importlib.resources import files
 
 from rockwobble.models.finding import Finding, Value
 
-from .table import NONE, enumeration, number, scattered
+from .table import NONE, enumeration, interval_form, number, scattered
 
 _FIELD = re.compile(r"\{(\w+)(?::([^}]*))?\}")
 _OPTIONAL = re.compile(r"\[([^\]]*)\]")
@@ -43,7 +44,7 @@ _BY_UNIT: Mapping[str, Callable[[float], str]] = {
     "p": lambda value: (
         "p < 0.001" if value < 1e-3 else f"p = {number(value, '.3f' if value < 0.1 else '.2f')}"
     ),
-    "a": lambda value: f"{number(value, ',.0f')} years",
+    "a": lambda value: f"{number(float(format(value, '.2g')), ',.0f')} years",
 }
 
 
@@ -143,6 +144,7 @@ def _value(value: Value, unit: str, form: str) -> str:
         if isinstance(value[0], str):
             each = [str(one) for one in value]
             return form.join(each) if form in _SEPARATORS else enumeration(each)
+        form = interval_form(form or ("" if unit else ".3g"), *value)
         middle, low, high = (_value(each, unit, form) for each in value)
         return f"{middle} ({low} to {high})"
     if math.isnan(value):

@@ -497,10 +497,12 @@ def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFram
         drawn = {m: samples[m].curves(some).dispersion for m in fitted}
         best = min(fitted, key=lambda m: float(found[m].dispersion[0]))
         for measure in fitted:
-            spread = float(found[measure].dispersion[0])
+            spread, least = (float(found[each].dispersion[0]) for each in (measure, best))
             with np.errstate(divide="ignore", invalid="ignore"):  # separated resamples have no dispersion
-                ratios = np.log(drawn[measure] / drawn[best]) if measure != best else np.zeros(len(some))
-            value = math.log(spread / float(found[best].dispersion[0]))
+                ratios = np.log(drawn[measure] / drawn[best])
+            over = interval(math.log(spread / least), ratios, motions).exponential()
+            if measure == best:  # its ratio to itself has none
+                over = Interval(value=1.0, low=math.nan, high=math.nan)
             rows.append(
                 {
                     "cylinder": cylinder,
@@ -508,7 +510,7 @@ def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFram
                     "measure": measure,
                     "median": float(np.exp(found[measure].centre[0])),
                     **spread_interval(spread, drawn[measure], motions).columns("dispersion"),
-                    **interval(value, ratios, motions).exponential().columns("over_best"),
+                    **over.columns("over_best"),
                     "best": measure == best,
                 }
             )
