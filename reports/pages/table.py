@@ -68,7 +68,7 @@ def scattered(scatter: float, most: int = 4) -> str:
 
 
 def interval_form(form: str, *numbers: object) -> str:
-    """Form of a number and the ends of its interval, of half the width of which two digits are shown.
+    """Form of a number and the ends of its interval, of half the width of which, or of itself, two digits show.
 
     Examples
     --------
@@ -78,12 +78,15 @@ def interval_form(form: str, *numbers: object) -> str:
     ('.3f', '.1f')
     """
     value, low, high = (each if isinstance(each, float) else math.nan for each in numbers)
-    half = 0.5 * (high - low) if math.isfinite(high) else value - low
-    if not re.fullmatch(r"\.\d[fg]", form) or not 0.0 < half < math.inf or value == 0.0:
+    half = min(0.5 * (high - low) if math.isfinite(high) else value - low, abs(value))
+    if not re.fullmatch(r"\.\d[fg]", form) or not 0.0 < half < math.inf:
         return form
-    digits = 1 - math.floor(math.log10(half))
-    digits += 1 + math.floor(math.log10(abs(value))) if form.endswith("g") else 0
-    return f".{min(max(digits, 2 * form.endswith('g')), int(form[1:-1]))}{form[-1]}"
+    places, shown = 1 - math.floor(math.log10(half)), int(form[1:-1])
+    if form.endswith("f"):
+        return f".{min(max(places, 0), shown)}f"
+    # two digits of a hundred would take a power of ten
+    whole = shown if 100.0 <= max(abs(low), abs(high)) < math.inf else 0
+    return f".{max(min(places + 1 + math.floor(math.log10(abs(value))), shown), whole)}g"
 
 
 def enumeration(words: Sequence[str]) -> str:
