@@ -68,7 +68,7 @@ def scattered(scatter: float, most: int = 4) -> str:
 
 
 def interval_form(form: str, *numbers: object) -> str:
-    """Form of a number and the ends of its interval, of half the width of which, or of itself, two digits show.
+    """Form of a number and the ends of its interval: two digits of half the width of that, or of itself.
 
     Examples
     --------
