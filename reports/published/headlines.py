@@ -110,7 +110,7 @@ def check_ensemble(folder: Path) -> None:
     assert bullets
     for method, against, ratio, higher, lower, compared, p, *fallen in bullets:
         own = ratios(wide, method, against)
-        assert ratio == f"{quantile(own, 0.5):.3f}"
+        assert ratio == f"{quantile(own, 0.5):.{len(ratio.partition('.')[2])}f}"
         assert [int(higher), int(lower), int(compared)] == [(own > 1).sum(), (own < 1).sum(), len(own)]
         over = np.isinf(wide[[method, against]])
         assert [int(each or 0) for each in fallen] == [*over.sum(), over.all(axis=1).sum()]
