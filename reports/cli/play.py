@@ -37,7 +37,8 @@ _several = OptionsIn("Many ground motions")
 # of a problem, what the page has; the rest is refused
 _OF_PAGE = {
     *(field.name for each in (Record, Release, Steel) for field in fields(each)),
-    *("semidiagonal", "tan_alpha", "diameter", "height", "slab_mass_ratio", "gravity", "rolling_resistance"),
+    *("semidiagonal", "tan_alpha", "diameter", "height", "slab_mass_ratio"),
+    *("gravity", "friction", "rolling_resistance"),
     *("tendon_prestress", "tendon_stiffness", "tendon_yield"),
 }
 _RECORD = {field.name for field in fields(Record)} - {"scale"}
@@ -175,6 +176,7 @@ def _state(problem: Problem, records: Path | None, support: str, plane: float | 
         initial=initial or rw.InitialState(tilt=0.5 * cylinder.alpha),
         duration=problem.duration or FREE_DURATION,
         gravity=problem.gravity,
+        friction=problem.friction,
         rolling_resistance=problem.rolling_resistance,
     )
     tendon = problem.tendon(cylinder, problem.gravity)
@@ -191,6 +193,7 @@ def _state(problem: Problem, records: Path | None, support: str, plane: float | 
         intensity=problem.scale,
         support=support if plane is None else "planar",
         plane=0.0 if plane is None else math.degrees(plane),
+        friction=problem.friction,
         loss=1e3 * problem.rolling_resistance,
         prestress=tendon.prestress if tendon else 0.0,
         stiffness=tendon.stiffness if tendon else 0.0,

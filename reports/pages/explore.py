@@ -64,6 +64,8 @@ class State:
     support : {"recess", "flat", "planar"}
     plane : float
         Azimuth of the plane of planar motion [deg].
+    friction : float
+        Friction coefficient on flat ground [-].
     loss : float
         Length of rolling resistance [mm].
     prestress, stiffness : float
@@ -82,6 +84,7 @@ class State:
     rate: float = 0.5
     support: str = RECESS
     plane: float = 0.0
+    friction: float = 1.0
     loss: float = 0.0
     prestress: float = 0.0
     stiffness: float = 0.0

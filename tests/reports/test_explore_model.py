@@ -37,6 +37,7 @@ AGREES_AT_CORNERS = 2e-5  # the same in a plane with rolling resistance, whose c
 AGREES_IN_PLACE = 1e-4  # of the radius: the rolling angle turns by pi within a pass, at an error of its time
 AGREES_IN_FORCE = 1e-3  # of the weight: the centrifugal force of a pass has its peak there
 PERTURBED = 1e-9  # of gravity: a copy so far off predicts when chance comes in; the page errs by less
+SLIDES_ALIKE = 3e-4  # of the peak displacement: stops within steps of 0.2 ms
 DECIDED = 1e-6  # of gravity: where copies so far off end alike, how it ends is no matter of chance
 ROWS = ("tilt", "angle", "x", "y", "outward", "across", "normal")
 
@@ -68,6 +69,7 @@ class Problem:
             "prestress": tendon.prestress if tendon else 0.0,
             "stiffness": tendon.stiffness if tendon else 0.0,
             "support": self.support,
+            "friction": case.friction,
             "azimuth": self.azimuth,
             "duration": case.length,
             "release": None,
@@ -127,7 +129,7 @@ def problems() -> list[Problem]:
 
 
 RUNS = """
-const NUMBERS = ["outcome", "relativePeak"], ROWS = ["time", "tilt", "angle", "x", "y", "outward", "across", "normal"];
+const NUMBERS = ["outcome", "relativePeak", "displacement"], ROWS = ["time", "tilt", "angle", "x", "y", "outward", "across", "normal"];
 const found = PROBLEMS.map((each) => {
   const run = simulateMotion(each, each.motion, { sampleStep: STEP });
   return Object.fromEntries([...NUMBERS.map((name) => [name, String(run[name])]), ...ROWS.map((name) => [name, Array.from(run[name])])]);
@@ -140,7 +142,7 @@ def on_the_page(
     solved: list[Problem], folder: Path, *, broken: tuple[str, str] | None = None
 ) -> list[dict[str, Any]]:
     """Return what the scripts of the page make of problems; `broken`: a text of theirs, and another."""
-    scripts = "\n".join((SCRIPTS / name).read_text() for name in ("model.js", "motion.js"))
+    scripts = "\n".join((SCRIPTS / name).read_text() for name in ("model.js", "motion.js", "slide.js"))
     if broken is not None:
         assert scripts.count(broken[0]) == 1
         scripts = scripts.replace(*broken)
@@ -283,6 +285,34 @@ def test_undecided_and_overturned_runs_have_no_peak(tmp_path: Path):
 def test_a_term_that_is_off_is_found(broken, solved, tmp_path: Path):
     runs = on_the_page([each for each, _, _ in solved], tmp_path, broken=broken)
     assert complaints_of(solved, runs) != []
+
+
+@needs_chromium
+def test_below_b_over_h_the_page_slides_as_the_sliding_model(tmp_path: Path):
+    cask = Cylinder(semidiagonal=3.0, tan_alpha=0.5)
+    records = [el_centro_1940(vertical=True), *synthetic_motions(2, peak=4.0, seed=SEED)]
+    cases = [
+        Case(cask, each.scaled(1.5), duration=12.0, friction=mu) for each in records for mu in (0.1, 0.2)
+    ]
+    problems = [Problem(case, "flat") for case in cases]
+    traces = [simulate(case, support="flat", sample_step=STEP) for case in cases]
+
+    def off(broken: tuple[str, str] | None = None) -> float:
+        """Largest difference of place and peak, over the peak."""
+        runs = on_the_page(problems, tmp_path, broken=broken)
+        worst = 0.0
+        for run, trace in zip(runs, traces, strict=True):
+            place = np.column_stack([run["x"], run["y"]])
+            apart_by = apart(place, trace.displacement).max() / trace.peak_displacement
+            worst = max(worst, apart_by, abs(float(run["displacement"]) / trace.peak_displacement - 1.0))
+        return worst
+
+    assert off() < SLIDES_ALIKE
+    assert off(("1 - friction * (g + az) * h", "1 - 1.01 * friction * (g + az) * h")) > SLIDES_ALIKE
+    (near,) = on_the_page(
+        [Problem(Case(cask, records[0].scaled(2.5), duration=4.0, friction=0.52), "flat")], tmp_path
+    )
+    assert (near["outcome"], near["relativePeak"]) == ("mixed", "NaN")
 
 
 @needs_chromium

@@ -50,7 +50,7 @@ function contactForce(o, flat, y, ax, ay, az, slopes) {
 
 // -- the run
 
-// In `problem`: what `bodyOf` takes; support "recess", "flat" or "planar" with an azimuth; release { tilt, azimuth, rate } or
+// In `problem`: what `bodyOf` takes; friction on flat ground (none: enough); support "recess", "flat" or "planar" with an azimuth; release { tilt, azimuth, rate } or
 // none; restitution of impacts in a plane; duration. `motion` has samples x, y, z (or none), dt and a scale of each, or is null.
 // Returns the outcome, the peak over alpha (infinite where it overturns, NaN where that is not decided) and, at each
 // `sampleStep`, the motion.
@@ -118,6 +118,11 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
   };
   const sitDown = () => { y.fill(0, 0, 2); y[3] = y[5] = 0; resting = true; };
 
+  const border = o.b / o.h, slips = flat && !release && problem.friction < border;
+  if (slips && !o.gamma) {
+    if (sampleStep) { run.slides = true; count = slideMotion(problem, run, pieceAfter, sampleStep, [times, tilts, angles, twists, xs, ys, outwards, acrosses, normals]); }
+    return finish();
+  }
   record(); nextSample = 1;
   for (;;) {
     if (now >= end) {
@@ -215,7 +220,9 @@ function simulateMotion(problem, motion, { rtol = 1e-10, sampleStep = 0.01 } = {
     run.body = o;
     // a tendon that yields leaves no answer, but of what overturns before
     if (run.peak > o.yieldTilt && !(run.outcome === "overturned" && o.yieldTilt >= Math.min(o.balance, HALF_PI))) run.outcome = "yielded";
-    run.relativePeak = { stands: run.peak / o.alpha, overturned: Infinity, undecided: NaN, yielded: NaN }[run.outcome];
+    // from b/h to 1.1 b/h it rocks and slides, and under a slab it slides as no model does
+    if (slips ? o.gamma : flat && !release && problem.friction < 1.1 * border && !Number.isNaN(run.upliftTime)) run.outcome = "mixed";
+    run.relativePeak = { stands: run.peak / o.alpha, overturned: Infinity }[run.outcome] ?? NaN;
     return run;
   }
 }

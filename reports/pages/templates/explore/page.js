@@ -34,7 +34,7 @@
       height: at.height, diameter: at.diameter, gamma: at.slab, delta: Math.min(at.loss / 1000, 0.05 * at.diameter), gravity: GRAVITY,
       prestress: tendon ? at.prestress : 0, stiffness: tendon ? at.stiffness : 0, yielding: tendon ? at.yielding : 0, support: at.support, azimuth: at.plane / DEG,
       release: released ? { tilt: at.tilt / DEG, azimuth: lean / DEG, rate: at.support === "planar" ? 0 : at.rate } : null,
-      record: at.record, intensity: at.intensity, factors: at.factors, duration: released ? given.free : given.duration || (motions[at.record].x.length - 1) * motions[at.record].dt,
+      friction: at.friction, record: at.record, intensity: at.intensity, factors: at.factors, duration: released ? given.free : given.duration || (motions[at.record].x.length - 1) * motions[at.record].dt,
     };
   };
 
@@ -105,7 +105,7 @@
   const changed = () => {
     const at = { ...state }, beside = besideOf(at), released = at.record < 0;
     for (const name of ["ground", "map"]) root.querySelector(`.graph.${name}`).hidden = released;
-    const hide = { intensity: released, tilt: !released, rate: !released || at.support === "planar", lean: !released || at.support === "planar", plane: at.support !== "planar" };
+    const hide = { intensity: released, tilt: !released, rate: !released || at.support === "planar", lean: !released || at.support === "planar", plane: at.support !== "planar", friction: at.support !== "flat" };
     for (const [name, hidden] of Object.entries(hide)) {
       fields[name].field.hidden = hidden;
       if (hidden) fields[name].show();
@@ -201,10 +201,13 @@
     outcome(main); results(main, motion); parting();
 
     const ends = [0, clock.length];
-    const tilts = (body, colour, name) => line(thinned(body.time, body.tilt.map((tilt) => tilt * DEG)), colour, name);
-    const top = Math.max(...bodies.map((body) => Math.min(body.peak, 1.6 * body.balance))), alpha = main.alpha * DEG, near = top > 0.25 * main.alpha;
-    graphs.tilt.panel.y.high = Math.max(1.08 * top * DEG, near ? 1.15 * alpha : 0) || 1;
-    redraw(graphs.tilt, [...(beside ? [tilts(beside, GREY, "beside it")] : []), tilts(main, main.colour, "tilt"), ...(near ? [rule("y", alpha, `α = ${number(alpha)}°`, RED)] : [])], ends);
+    const slides = main.slides, values = (body) => (slides ? body.x.map((x, i) => Math.hypot(x, body.y[i])) : body.tilt.map((tilt) => tilt * DEG));
+    const tilts = (body, colour, name) => line(thinned(body.time, values(body)), colour, name);
+    const top = Math.max(...bodies.map((body) => Math.min(body.peak, 1.6 * body.balance))), alpha = main.alpha * DEG, near = !slides && top > 0.25 * main.alpha;
+    graphs.tilt.place.previousElementSibling.textContent = `${slides ? "Displacement" : "Tilt"} over time`;
+    Object.assign(graphs.tilt.panel.y, slides ? { title: "displacement [m]", unit: " m" } : { title: "tilt [deg]", unit: " deg" });
+    graphs.tilt.panel.y.high = (slides ? 1.08 * Math.max(...bodies.map((body) => Math.max(...values(body)))) : Math.max(1.08 * top * DEG, near ? 1.15 * alpha : 0)) || 1;
+    redraw(graphs.tilt, [...(beside ? [tilts(beside, GREY, "beside it")] : []), tilts(main, main.colour, slides ? "displacement" : "tilt"), ...(near ? [rule("y", alpha, `α = ${number(alpha)}°`, RED)] : [])], ends);
     clearTimeout(laterTimer);
     laterTimer = setTimeout(() => showFurther(main, motion, ends), first ? 0 : 80);  // once the sliders rest
 
@@ -243,16 +246,17 @@
     if (find("outcome").textContent !== words) find("outcome").textContent = words;
     find("outcome").className = kind;
   };
-  const outcome = ({ outcome: end, endTime, upliftTime, peak, alpha, relativePeak, copies, body }) => {
+  const outcome = ({ outcome: end, endTime, upliftTime, peak, alpha, relativePeak, copies, body, slides, displacement }) => {
     const words = { overturned: `Overturns: on the ground at ${number(endTime, 4)} s`, undecided: `Not decided: followed for ${number(endTime || clock.length, 4)} s only`,
+      mixed: body.gamma ? "Not known: no model slides under a slab" : "Not known: so near to b/h it rocks and slides at once, which takes an engine",
       yielded: `Not known: the tendon yields at a tilt of ${number(body.yieldTilt * DEG)}°` }[end]
-      || (Number.isNaN(upliftTime) ? "Stands, and does not uplift" : peak > alpha ? "Stands, after a tilt beyond α" : "Stands");
-    const unknown = end === "undecided" || end === "yielded", otherwise = unknown ? 0 : copies.filter((each) => Number.isFinite(each) !== Number.isFinite(relativePeak)).length;
+      || (slides ? displacement ? `Slides up to ${number(displacement)} m, and cannot uplift` : "Stands, and does not slide" :Number.isNaN(upliftTime) ? "Stands, and does not uplift" : peak > alpha ? "Stands, after a tilt beyond α" : "Stands");
+    const unknown = ["undecided", "yielded", "mixed"].includes(end), otherwise = unknown ? 0 : copies.filter((each) => Number.isFinite(each) !== Number.isFinite(relativePeak)).length;
     say(words + (otherwise ? `; but ${otherwise} of ${copies.length} runs with a 1 % change end otherwise` : ""), otherwise ? "sensitive" : unknown ? "undecided" : end);
   };
   const results = (body, motion) => {
     const { at, peak, alpha, normal, outward, across } = body, o = body.body, fell = body.outcome === "overturned", moved = !Number.isNaN(body.upliftTime);
-    const end = { overturned: "overturns", undecided: "not decided", yielded: "not known, the tendon yields" }[body.outcome];
+    const end = { overturned: "overturns", undecided: "not decided", yielded: "not known, the tendon yields", mixed: "not known" }[body.outcome];
     let friction = 0, least = Infinity;
     for (let i = 0; i < normal.length; i++) if (body.tilt[i] > 1e-3 * alpha && !(fell && body.tilt[i] > 1.2 * body.balance)) {
       friction = Math.max(friction, normal[i] > 0 ? Math.hypot(outward[i], across[i]) / normal[i] : Infinity);
@@ -267,6 +271,10 @@
       ["friction demand", Number.isFinite(least) ? friction === Infinity ? "contact is lost" : number(friction) : "none"],
       ["least normal force", Number.isFinite(least) ? `${number(least)} weights` : "1 weight"],
     ];
+    if (body.slides) {
+      const moved = ["displacement", "residual"].map((name) => end || `${number(body[name])} m`);
+      rows.splice(0, Infinity, ["peak displacement", moved[0]], ["residual displacement", moved[1]], rows[3], ["acceleration that slides it", `${number(at.friction)} g`]);
+    }
     const { prestress, stiffness } = problemOf(at);
     if (prestress || stiffness) rows.push(["tendon force", `${number(prestress + stiffness * o.gaps * 2 * Math.sin(Math.min(peak, Math.PI / 2) / 2))} weights`]);
     find("results").innerHTML = rows.map(([name, value]) => `<div><dt>${name}</dt><dd>${value}</dd></div>`).join("");
@@ -279,7 +287,7 @@
     const n = Math.min(main.tilt.length, beside.tilt.length);
     let i = 0;
     while (i < n && Math.abs(main.tilt[i] - beside.tilt[i]) <= AGREEMENT * main.alpha) i++;
-    const end = { overturned: "overturns", stands: "stands", undecided: "is not decided", yielded: "is not known, its tendon yields" }[beside.outcome];
+    const end = { overturned: "overturns", stands: "stands", undecided: "is not decided", yielded: "is not known, its tendon yields", mixed: "is not known" }[beside.outcome];
     place.textContent = `The gray column ${end}${beside.outcome === "stands" ? `, peak ${number(beside.peak / beside.alpha)} α` : ""}; ${i < n ? `the tilts diverge at ${number(main.time[i], 4)} s` : "the tilts do not diverge"}.`;
   };
 
@@ -375,7 +383,7 @@
     else Object.assign(found, { "release-tilt-deg": at.tilt, duration: given.free }, planar ? {} : { "release-azimuth-deg": at.lean, "rolling-rate": at.rate });
     if (GRAVITY !== 9.81) found.gravity = GRAVITY;
     if (record && given.duration) found.duration = given.duration;
-    if (planar) found.plane = problem.azimuth; else if (at.support === "flat") found.support = "flat";
+    if (planar) found.plane = problem.azimuth; else if (at.support === "flat") Object.assign(found, { support: "flat", friction: at.friction });
     return found;
   };
   const commandOf = (at) => (at.record >= 0 && !records[at.record].options ? "# a synthetic motion is a matter of Python: copy that\n" : "")
@@ -387,6 +395,7 @@
     const more = [at.record >= 0 ? "motion" : "None"];
     if (problem.release) more.push(`initial=rw.InitialState(tilt=${problem.release.tilt}, rolling_angle=${problem.release.azimuth}, rolling_rate=${problem.release.rate})`);
     if (problem.release || given.duration) more.push(`duration=${problem.duration}`);
+    if (at.support === "flat") more.push(`friction=${at.friction}`);
     if (problem.delta) more.push(`rolling_resistance=${problem.delta}`);
     if (GRAVITY !== 9.81) more.push(`gravity=${GRAVITY}`);
     if (problem.prestress || problem.stiffness) more.push(`tendon=rw.Tendon(prestress=${problem.prestress}, stiffness=${problem.stiffness}${problem.yielding ? `, yield_force=${problem.yielding}` : ""})`);
