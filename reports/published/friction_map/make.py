@@ -129,7 +129,7 @@ def page_of(results: FrictionMap) -> Page:
         f"{COPIES} copies by a model, {ENGINE_COPIES} by each of two engines where no model answers.",
         panels=[panel(cells, each) for each in BODIES],
         columns=2,
-        shades=Shades(label="runs", unit="-", low=0.0, high=float(COPIES)),
+        shades=Shades(label="runs", unit="-", low=0.0, high=4.0 * COPIES),
     )
     sizes = {"least": ("displacement", "min"), "most": ("displacement", "max")}
     groups = cells.groupby(["tan_alpha", "mode", "by"], sort=False)
