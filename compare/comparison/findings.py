@@ -236,7 +236,9 @@ def _mistakes(row: SummaryRow) -> Iterator[Finding]:
         yield Finding(key="comparison.mistake_besides", level="caution", values=values)
     else:
         left = tuple(name for name in row.differs_without_mistake if name != "tilt")
-        until = row.reference_uplift_time + row.agreement_without_mistake
+        # without a divergence it is the end itself
+        start = row.reference_uplift_time if "tilt" in row.differs_without_mistake else 0.0
+        until = start + row.agreement_without_mistake
         yield Finding(
             key="comparison.loss" if loses else "comparison.mistake",
             level="caution",
