@@ -42,8 +42,14 @@ def pictures(results: Fragility) -> list[Picture]:
 
 def _ratios(results: Fragility) -> Picture | None:
     answers = main_contrasts(results)
-    cylinders = [*results.facts["cylinders"], ALL] if len(results.facts["cylinders"]) > 1 else [None]
-    rows = [row for part in answers.values() for row in part if math.isfinite(row["ratio"])]
+    # of several cylinders their mean; those of each stand in the table
+    cylinder = ALL if len(results.facts["cylinders"]) > 1 else None
+    rows = [
+        row
+        for part in answers.values()
+        for row in part
+        if math.isfinite(row["ratio"]) and cylinder in (None, row["cylinder"])
+    ]
     if not rows:
         return None
     pairs = list(dict.fromkeys((row["method"], row["against"]) for row in rows))
@@ -54,36 +60,25 @@ def _ratios(results: Fragility) -> Picture | None:
     low, high = math.exp(-reach), math.exp(reach)
     names = [f"{method}\n/ {against}" for method, against in pairs]
     x_axis, y_axis = ratio_axes("ratio of medians", low, high, _RATIOS, names)
-    panels = []
-    for cylinder in cylinders:
-        own = {
-            (row["method"], row["against"]): row
-            for row in rows
-            if cylinder is None or row["cylinder"] == cylinder
-        }
-        layers: list[Line | Rule] = [*margin_rules(margin)]
-        for place, pair in enumerate(pairs):
-            if pair not in own:
-                continue
-            row = own[pair]
-            x = np.clip([row["ratio_low"], row["ratio_high"]], low, high)
-            y = np.full(2, float(place))
-            layers.append(Line(x=x, y=y, name="95 % interval", style=Style(colour=ORDER[0]), width=3.0))
-            # beyond the axis a triangle at its end
-            side = "left" if row["ratio"] < low else "right" if row["ratio"] > high else ""
-            x = np.clip([row["ratio"]], low * _EDGE, high / _EDGE)
-            mark = Style(colour=ORDER[0], dash="none", symbol=f"triangle-{side}") if side else _MEDIAN
-            name = "beyond the axis" if side else "ratio of the medians"
-            layers.append(Line(x=x, y=y[:1], name=name, style=mark))
-        title = {None: "", ALL: "Mean of all cylinders"}.get(cylinder, str(cylinder))
-        height = _LINE * len(pairs) + 1.0
-        panels.append(Panel(x=x_axis, y=y_axis, layers=layers, title=title, height=height))
+    layers: list[Line | Rule] = [*margin_rules(margin)]
+    for row in rows:
+        place = pairs.index((row["method"], row["against"]))
+        x = np.clip([row["ratio_low"], row["ratio_high"]], low, high)
+        y = np.full(2, float(place))
+        layers.append(Line(x=x, y=y, name="95 % interval", style=Style(colour=ORDER[0]), width=3.0))
+        # beyond the axis a triangle at its end
+        side = "left" if row["ratio"] < low else "right" if row["ratio"] > high else ""
+        x = np.clip([row["ratio"]], low * _EDGE, high / _EDGE)
+        mark = Style(colour=ORDER[0], dash="none", symbol=f"triangle-{side}") if side else _MEDIAN
+        name = "beyond the axis" if side else "ratio of the medians"
+        layers.append(Line(x=x, y=y[:1], name=name, style=mark))
+    title = "Mean of all cylinders" if cylinder == ALL else ""
+    panel = Panel(x=x_axis, y=y_axis, layers=layers, title=title, height=_LINE * len(pairs) + 1.0)
     return Picture(
         name="fragility-ratios",
         title="Ratios of the median overturning intensities of two methods",
         caption=caption("fragility_ratios", share=margin),
-        panels=panels,
-        columns=2,
+        panels=[panel],
     )
 
 

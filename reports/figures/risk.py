@@ -13,6 +13,7 @@ from .picture import Axis, Line, Panel, Picture, Rule, caption
 
 _MOST = 4  # methods of a panel: more lines cannot be told apart
 _COLOURS = (DARK, *ORDER)
+_RETURN_PERIODS = (475, 2475)  # of codes [year]
 _LEAST = 0.01  # of the largest contribution: what is less is not looked for
 
 
@@ -40,21 +41,21 @@ def _picture(results: Fragility, cylinder: str, place: int) -> Picture:
         shares.append(Line(x=x, y=own["probability"].to_numpy(float), name=label, style=line, width=1.8))
         products.append(Line(x=x, y=_scaled(own, "contribution"), name=label, style=line, width=1.8))
         if index == 0:
-            name = "lognormal curve"
+            name = f"{label}, lognormal curve"
             shares.append(Line(x=x, y=own["probability_fit"].to_numpy(float), name=name, style=pale))
             products.append(Line(x=x, y=_scaled(own, "contribution_fit"), name=name, style=pale))
     words, _, unit = str(hazard["title"]).rpartition(" [")
     drawn = table[table["method"].isin(labels)].groupby("intensity")["contribution"].max()
     shown = drawn.index[drawn >= _LEAST * drawn.max()]
     low = max(float(shown.min()) / 3.0, float(x[0]))
-    axis = Axis(label=words, unit=unit.rstrip("]"), log=True, low=low, high=float(x[-1]))
+    axis = Axis(label=words.partition(",")[0], unit=unit.rstrip("]"), log=True, low=low, high=float(x[-1]))
     rate = first["annual_frequency"].to_numpy(float)
     curve = Line(x=x, y=rate, name="hazard", style=Style(colour=GREY, dash="solid"), width=1.8)
     panels = [
         Panel(
             x=axis,
             y=Axis(label="exceedance", unit="1/year", log=True),
-            layers=[curve],
+            layers=[curve, *(_period(years) for years in _RETURN_PERIODS)],
             title="Hazard",
             height=2.6,
         ),
@@ -67,9 +68,9 @@ def _picture(results: Fragility, cylinder: str, place: int) -> Picture:
         ),
         Panel(
             x=axis,
-            y=Axis(label="contribution", unit="1e-4/year", low=0.0),
+            y=Axis(label="contribution", unit="1e-4/a per ln unit", low=0.0),
             layers=products,
-            title="Contribution to the annual frequency",
+            title="Contribution",
             height=2.6,
         ),
     ]
@@ -78,9 +79,13 @@ def _picture(results: Fragility, cylinder: str, place: int) -> Picture:
         title=f"Hazard, fragility and their product: {cylinder}",
         caption=caption("risk", count=len(labels) if len(set(table["method"])) > _MOST else None),
         panels=panels,
-        columns=2,
+        columns=3,
         legend="panels",
     )
+
+
+def _period(years: int) -> Rule:
+    return Rule(at=1.0 / years, axis="y", text=f"{years} years")
 
 
 def _scaled(table: pd.DataFrame, column: str) -> NDArray[np.float64]:

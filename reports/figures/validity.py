@@ -80,7 +80,7 @@ _MAPS = (
         "Least normal force",
         FEWEST,
         "normal_10",
-        Shades(label="normal force / weight", unit="-", low=-1.0, high=1.0, centre=0.0, reverse=True),
+        Shades(label="normal force / weight", unit="-", low=0.0, high=1.0, reverse=True),
     ),
     (
         "need-moment",

@@ -21,8 +21,8 @@ import numpy as np
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, RockingBody, WobblingFrame, synthetic_motions
 from rockwobble.reduced.body import body_of
-from rockwobble.reports.figures.palette import run_styles
-from rockwobble.reports.figures.picture import Axis, Band, Line, Panel, Picture
+from rockwobble.reports.figures.palette import Style, run_styles
+from rockwobble.reports.figures.picture import Axis, Line, Panel, Picture, bar_ends
 from rockwobble.reports.figures.svg import svg
 from rockwobble.studies.fragility.fit import interval, resamples
 from rockwobble.studies.fragility.study import Fragility, fragility
@@ -133,14 +133,15 @@ def picture(table: pd.DataFrame, title: str) -> Picture:
     """Return medians over the mass ratio."""
     methods = list(dict.fromkeys(table["method"]))
     styles = run_styles(methods)
-    lines, bands = [], []
-    for method in methods:
+    layers = []
+    for place, method in enumerate(methods):
         own = table[table["method"] == method]
-        x = own["slab_mass_ratio"].to_numpy(float)
+        x = own["slab_mass_ratio"].to_numpy(float) + 0.03 * place  # beside each other
         columns = (own[name].to_numpy(float) for name in ("median", "median_low", "median_high"))
         y, low, high = columns
-        bands.append(Band(x=x, low=low, high=high, name="95 % intervals", colour="#e8e8e8"))
-        lines.append(Line(x=x, y=y, name=method, style=styles[method]))
+        layers.append(Line(x=x, y=y, name=method, style=styles[method]))
+        bar = Style(colour=styles[method].colour)
+        layers.append(Line(x=np.repeat(x, 3), y=bar_ends(low, high), style=bar, width=0.9))
     ticks = [(ratio, f"{ratio:g}") for ratio in RATIOS]
     panel = Panel(
         x=Axis(
@@ -151,7 +152,7 @@ def picture(table: pd.DataFrame, title: str) -> Picture:
             ticks=ticks,
         ),
         y=Axis(label="median overturning intensity", unit="g tan α", low=0.0),
-        layers=[*bands, *lines],
+        layers=layers,
         height=3.2,
     )
     return Picture(name="decks", title=title, panels=[panel], legend="below")

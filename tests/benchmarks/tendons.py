@@ -24,8 +24,8 @@ import numpy as np
 from rockwobble import multibody, reduced
 from rockwobble.compare.metrics.statistics import quantile_interval
 from rockwobble.models import Case, Cylinder, GroundMotion, RockingBody, Tendon, WobblingFrame
-from rockwobble.reports.figures.palette import run_styles
-from rockwobble.reports.figures.picture import Axis, Band, Line, Panel, Picture
+from rockwobble.reports.figures.palette import Style, run_styles
+from rockwobble.reports.figures.picture import Axis, Line, Panel, Picture, bar_ends
 from rockwobble.reports.figures.svg import svg
 from rockwobble.studies.fragility.fit import Curves, Sample, interval, resamples
 from rockwobble.studies.fragility.study import fragility
@@ -196,21 +196,21 @@ def on_flat_ground(motions: Sequence[GroundMotion], engine: str) -> Iterator[dic
 def picture(table: pd.DataFrame) -> Picture:
     """Return the medians of the pier in 3D over the prestress, by stiffness."""
     own = table[(table["body"] == "pier") & (table["method"] == "recess model")]
-    names = [f"stiffness {each:g} of the neutral" for each in STIFFNESS]
-    styles, lines = run_styles(names), []
-    bands: list[Band] = []  # of the intervals without stiffness
-    for name, stiffness in zip(names, STIFFNESS, strict=True):
+    names = [f"k/k_n = {each:g}" for each in STIFFNESS]
+    styles, layers = run_styles(names), []
+    for place, (name, stiffness) in enumerate(zip(names, STIFFNESS, strict=True)):
         rows = own[own["stiffness"] == stiffness]
         x, y, low, high = (
             rows[each].to_numpy(float) for each in ("prestress", "median", "median_low", "median_high")
         )
-        lines.append(Line(x=x, y=y, name=name, style=styles[name]))
-        if not bands:
-            bands.append(Band(x=x, low=low, high=high, colour="#e8e8e8"))
+        x = x + 0.01 * place  # beside each other
+        layers.append(Line(x=x, y=y, name=name, style=styles[name]))
+        bar = Style(colour=styles[name].colour)
+        layers.append(Line(x=np.repeat(x, 3), y=bar_ends(low, high), style=bar, width=0.9))
     panel = Panel(
         x=Axis(label="prestress", unit="weights of the pier", low=-0.05, high=1.05),
         y=Axis(label="median overturning intensity", unit="g tan α", low=0.0),
-        layers=[*bands, *lines],
+        layers=layers,
         height=3.2,
     )
     title = "Overturning of a pier with a tendon, in three dimensions"
