@@ -59,7 +59,7 @@ class DartSettings(EngineSettings):
         the poses.
     depth_gain : float
         Share of a change of depth that one step takes back. With little of it the rim is late by many steps,
-        and two steps do not extrapolate; 1 would make landing elastic.
+        and two steps do not extrapolate.
     friction_damping : float
         As for MuJoCo: share of the slip velocity that one step removes. DART knows no other than 1, which is
         made up for by a velocity of the ground.
