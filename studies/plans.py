@@ -12,6 +12,13 @@ from rockwobble.compare.runs.plan import Plan, option
 if TYPE_CHECKING:
     from rockwobble.models import Case, Tendon
 
+_COPIES = "Number of perturbed copies."
+_SEED = "Random seed of the perturbations."
+GRAVITY = "Gravitational acceleration g, in m/s2."
+_SIZES = "Semidiagonals R, in m: a list 1,2,6 or an even range FROM:TO:COUNT. Default: 0.5:30:100."
+_SLAB = "Mass of a rigid slab / total mass of the columns that carry it."
+PRESTRESS = "Prestress of a tendon along the axis / weight of one column."
+STIFFNESS = "Stiffness of the tendon, in weights of one column per base radius."
 _ROLLING = "Rolling resistance length, in m, below every base radius. 0: no loss."
 MASS = (
     "Mass of the cylinder, or of one column without its slab, in t. With it forces are in kN and moments in "
@@ -43,7 +50,7 @@ class ModelPlan(Plan):
 class Copies(Plan):
     """Perturbed copies of a case: how many, and how different."""
 
-    copies: int = option(20, "Number of perturbed copies.", group="Members", least=2)
+    copies: int = option(20, _COPIES, group="Members", least=2)
     perturbation: float = option(
         0.01,
         "Relative standard deviation of the perturbations: of both horizontal components, or of tilt "
@@ -52,7 +59,7 @@ class Copies(Plan):
         above=0.0,
         most=0.1,
     )
-    seed: int = option(0, "Random seed of the perturbations.", group="Members", least=0)
+    seed: int = option(0, _SEED, group="Members", least=0)
 
     def perturbed(self, case: Case, count: int | None = None) -> list[Case]:
         """Return perturbed copies of a case, as many as the plan says or `count`."""
@@ -66,8 +73,8 @@ class Copies(Plan):
 class AdvicePlan(Copies):
     """Advice on one case: its copies, of which 5 % have to be a run or more, and its support."""
 
-    copies: int = option(100, "Number of perturbed copies.", group="Members", least=20, most=10_000)
-    seed: int = option(1, "Random seed of the perturbations.", group="Members", least=0)
+    copies: int = option(100, _COPIES, group="Members", least=20, most=10_000)
+    seed: int = option(1, _SEED, group="Members", least=0)
     support: str = option(
         "recess",
         f"Support: {SUPPORT_WORDS}.",
@@ -110,13 +117,11 @@ class TendonPlan(Plan):
 
     tendon_prestress: float = option(
         0.0,
-        "Prestress of a tendon along the axis / weight of one column.",
+        PRESTRESS,
         group="Tendon",
         least=0.0,
     )
-    tendon_stiffness: float = option(
-        0.0, "Stiffness of the tendon, in weights of one column per base radius.", group="Tendon", least=0.0
-    )
+    tendon_stiffness: float = option(0.0, STIFFNESS, group="Tendon", least=0.0)
 
     @property
     def tendon(self) -> Tendon | None:
@@ -208,7 +213,7 @@ class FragilityPlan(YieldPlan):
         None, "Displacement on flat ground that the limit state slides asks for, in m.", least=0.0
     )
     rolling_resistance: float = option(0.0, _ROLLING, least=0.0)
-    gravity: float = option(9.81, "Gravitational acceleration g, in m/s2.", above=0.0)
+    gravity: float = option(9.81, GRAVITY, above=0.0)
 
     def __post_init__(self) -> None:
         # with numpy, which help can do without
@@ -248,7 +253,7 @@ class SpectrumPlan(YieldPlan):
 
     semidiagonals: Sequence[float] | None = option(
         None,
-        "Semidiagonals R, in m: a list 1,2,6 or an even range FROM:TO:COUNT. Default: 0.5:30:100.",
+        _SIZES,
         group="Grid",
         form="numbers",
         flag="--semidiagonal",
@@ -260,10 +265,8 @@ class SpectrumPlan(YieldPlan):
         form="numbers",
         flag="--intensity",
     )
-    slab_mass_ratio: float = option(
-        0.0, "Mass of a rigid slab / total mass of the columns that carry it.", group="Cylinder", least=0.0
-    )
-    gravity: float = option(9.81, "Gravitational acceleration g, in m/s2.", group="Ground motion", above=0.0)
+    slab_mass_ratio: float = option(0.0, _SLAB, group="Cylinder", least=0.0)
+    gravity: float = option(9.81, GRAVITY, group="Ground motion", above=0.0)
     rolling_resistance: float = option(0.0, _ROLLING, group="Ground motion", least=0.0)
     friction: float | None = option(
         None,
@@ -331,7 +334,7 @@ class GridPlan(TendonPlan):
 
     semidiagonals: Sequence[float] | None = option(
         None,
-        "Semidiagonals R, in m: a list 1,2,6 or an even range FROM:TO:COUNT. Default: 0.5:30:100.",
+        _SIZES,
         group="Grid",
         form="numbers",
         flag="--semidiagonal",
@@ -350,9 +353,7 @@ class GridPlan(TendonPlan):
         form="numbers",
         flag="--scale",
     )
-    gravity: float = option(9.81, "Gravitational acceleration g, in m/s2.", group="Ground motion", above=0.0)
-    slab_mass_ratio: float = option(
-        0.0, "Mass of a rigid slab / total mass of the columns that carry it.", group="Cylinder", least=0.0
-    )
+    gravity: float = option(9.81, GRAVITY, group="Ground motion", above=0.0)
+    slab_mass_ratio: float = option(0.0, _SLAB, group="Cylinder", least=0.0)
     plane: float | None = option(None, _PLANE, group="Reduced models", least=-math.tau, most=math.tau)
     restitution: float | str | None = option(None, _RESTITUTION, group="Reduced models", form="restitution")

@@ -64,6 +64,7 @@ _FIELDS = {
 _GUIDED_SWINGS, _SWINGS = (200.0, 5e3), (5.0, 5.0)
 RAMP = Case(PIER, GroundMotion(np.outer([0.0, 1.5], [0.6, 0.8]) * THRESHOLD, 1.5), name="ramp")
 RECORD = Case(Cylinder(semidiagonal=10.0, tan_alpha=0.1), el_centro_1940(), duration=8.0, name="El Centro")
+_CONTACT = "contact at its step"
 _LEVEL = 1e-3  # of alpha: tilt at which an uplift is seen
 _COPY = 1e-3  # by which record or release of the copy is off that ends a trajectory
 
@@ -77,9 +78,7 @@ def fields(subject: Subject, support: str) -> Iterator[Result]:
         return largest(getattr(found, name)[cut] - getattr(model, name)[cut]) if whole else math.nan
 
     for name, (unit, size, times) in _FIELDS.items():
-        yield at_most(
-            name, difference(name) / size, subject.tolerance_bound(times, "contact at its step", unit)
-        )
+        yield at_most(name, difference(name) / size, subject.tolerance_bound(times, _CONTACT, unit))
     swings = _GUIDED_SWINGS if support_named(support).guided else _SWINGS
     rate, force = (subject.tolerance_bound(times, "means over 60 steps") for times in swings)
     yield at_most("rolling_rate", difference("rolling_rate"), rate)
@@ -101,9 +100,7 @@ def release(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt, peak and passes of a release that passes the upright position."""
     found, model = _both(subject, RELEASE, support)
     apart = _difference(found, model, RELEASE.length)
-    yield at_most(
-        "tilt and azimuth of a release", apart, subject.tolerance_bound(1.0, "contact at its step", "alpha")
-    )
+    yield at_most("tilt and azimuth of a release", apart, subject.tolerance_bound(1.0, _CONTACT, "alpha"))
     if "passes" in subject.knows:
         columns = ["time", "minimum_tilt", "angle_of_turn"]
         own, other = (each.passes[columns].to_numpy(dtype=float) for each in (found, model))
@@ -115,9 +112,7 @@ def frame(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt of a release of a frame: one column under a slab that can only translate."""
     found, model = _both(subject, FRAME_RELEASE, support)
     apart = _difference(found, model, FRAME_RELEASE.length)
-    yield at_most(
-        "tilt and azimuth of a frame", apart, subject.tolerance_bound(1.0, "contact at its step", "alpha")
-    )
+    yield at_most("tilt and azimuth of a frame", apart, subject.tolerance_bound(1.0, _CONTACT, "alpha"))
 
 
 def tendon(subject: Subject, support: str) -> Iterator[Result]:
@@ -125,9 +120,7 @@ def tendon(subject: Subject, support: str) -> Iterator[Result]:
     case = dataclasses.replace(RELEASE, tendon=TENDON)
     found, model = _both(subject, case, support)
     apart = _difference(found, model, case.length)
-    yield at_most(
-        "tilt and azimuth with a tendon", apart, subject.tolerance_bound(1.0, "contact at its step", "alpha")
-    )
+    yield at_most("tilt and azimuth with a tendon", apart, subject.tolerance_bound(1.0, _CONTACT, "alpha"))
 
 
 def ramp(subject: Subject, support: str) -> Iterator[Result]:

@@ -366,11 +366,11 @@ def own_rows(summary: pd.DataFrame) -> pd.DataFrame:
 
 # of the agreement matrix, likewise
 MATRIX_COLUMNS: Mapping[str, tuple[str, str]] = {
-    "case": ("", "name of the case"),
+    "case": SUMMARY_COLUMNS["case"],
     "support": ("", "of both"),
     "run": ("", "label of an engine's run, or of the reduced model of the support"),
     "other": ("", "label of what it is compared with"),
-    "tilt_rms": ("alpha", "root mean square of the tilt difference"),
+    "tilt_rms": SUMMARY_COLUMNS["tilt_rms"],
     "tilt_rms_relative": ("", "the same over the root mean square of the other's tilt"),
     "peak_tilt_difference": ("alpha", "run minus other"),
     "agreement_time": ("s", "from uplift or release to the first tilt difference above 1 % of alpha"),

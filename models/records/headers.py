@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from .component import Direction
 
 # names of components; W, WE and EW are written for the one whose positive sense is east
+TURNED_UP = "positive is down in the file, turned to up"  # note on a vertical component
 _DIRECTIONS: dict[str, Direction] = {
     **dict.fromkeys(("E", "EW", "WE", "EAST", "EASTWEST", "WESTEAST"), "x"),
     **dict.fromkeys(("N", "NS", "SN", "NORTH", "NORTHSOUTH", "SOUTHNORTH"), "y"),

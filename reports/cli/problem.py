@@ -12,7 +12,7 @@ import typer
 
 import rockwobble as rw
 from rockwobble.compare.runs.plan import OptionsIn, Plan, option
-from rockwobble.studies.plans import MASS, TendonPlan, YieldPlan
+from rockwobble.studies.plans import GRAVITY, MASS, PRESTRESS, STIFFNESS, TendonPlan, YieldPlan
 
 from ..pages.command_line import command_line
 from . import options
@@ -321,12 +321,8 @@ def with_steel(
 class Restraint(Steel):
     """The options that state a tendon: by ratios, or by what a drawing gives."""
 
-    tendon_prestress: float | None = _tendon(
-        None, "Prestress of a tendon along the axis / weight of one column.", least=0.0
-    )
-    tendon_stiffness: float | None = _tendon(
-        None, "Stiffness of the tendon, in weights of one column per base radius.", least=0.0
-    )
+    tendon_prestress: float | None = _tendon(None, PRESTRESS, least=0.0)
+    tendon_stiffness: float | None = _tendon(None, STIFFNESS, least=0.0)
     tendon_yield: float | None = _tendon(
         None, "Yield force of the tendon / weight of one column. Default: no yielding.", above=0.0
     )
@@ -363,7 +359,7 @@ def _first_stated(plan: Plan, *names: str) -> str:
 class Problem(Release, Record, Restraint, Body):
     """The options that state a problem."""
 
-    gravity: float = _ground(9.81, "Gravitational acceleration g, in m/s2.")
+    gravity: float = _ground(9.81, GRAVITY)
     friction: float = _ground(
         1.0,
         "Friction coefficient between cylinder and ground. The reduced models assume no sliding and "

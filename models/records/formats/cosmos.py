@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from ..component import Component, Direction, RecordFile
 from ..fixed_width import fixed_width_block, stated_format
-from ..headers import azimuth_of, compare_peak, direction_at, direction_of
+from ..headers import TURNED_UP, azimuth_of, compare_peak, direction_at, direction_of
 from ..reading import Reading
 
 NAME = "COSMOS V1/V2"
@@ -118,7 +118,7 @@ def _component(
         label=" ".join([*label.split(), *([stream] if stream else [])]),
         direction=direction,
         azimuth=azimuth,
-        notes=("positive is down in the file, turned to up", *notes) if down else notes,
+        notes=(TURNED_UP, *notes) if down else notes,
     )
 
 

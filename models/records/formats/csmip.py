@@ -6,7 +6,7 @@ import re
 
 from ..component import Component, RecordFile
 from ..fixed_width import fixed_width_block, stated_format
-from ..headers import azimuth_of, compare_peak, direction_at, direction_of
+from ..headers import TURNED_UP, azimuth_of, compare_peak, direction_at, direction_of
 from ..reading import Reading
 from ..units import stated_unit
 
@@ -103,5 +103,5 @@ def _component(
         label=" ".join(channel.split()),
         direction="z" if down else direction_at(azimuth) or direction_of(name.split()[0] if name else ""),
         azimuth=azimuth,
-        notes=("positive is down in the file, turned to up", *notes) if down else notes,
+        notes=(TURNED_UP, *notes) if down else notes,
     )

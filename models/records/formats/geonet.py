@@ -6,7 +6,7 @@ import re
 
 from ..component import Component, RecordFile
 from ..fixed_width import fixed_width_block
-from ..headers import azimuth_of, compare_peak, direction_at, direction_of
+from ..headers import TURNED_UP, azimuth_of, compare_peak, direction_at, direction_of
 from ..reading import Reading
 
 NAME = "GeoNet V1A/V2A"
@@ -63,7 +63,7 @@ def _component(file: RecordFile, at: int) -> Component:
         label=name.capitalize() if azimuth is None else name,
         direction="z" if down else direction_at(azimuth) or direction_of(name),
         azimuth=azimuth,
-        notes=("positive is down in the file, turned to up", *notes) if down else notes,
+        notes=(TURNED_UP, *notes) if down else notes,
     )
 
 

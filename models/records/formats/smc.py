@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..component import Component, Direction, RecordFile
 from ..fixed_width import fixed_width_block
-from ..headers import compare_peak, direction_at
+from ..headers import TURNED_UP, compare_peak, direction_at
 from ..reading import Reading
 
 NAME = "SMC"
@@ -72,7 +72,7 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
             label="vertical" if direction == "z" else f"{azimuth:g} deg" if azimuth is not None else "",
             direction=direction,
             azimuth=azimuth,
-            notes=("positive is down in the file, turned to up", *notes) if down else notes,
+            notes=(TURNED_UP, *notes) if down else notes,
         )
     ]
 
