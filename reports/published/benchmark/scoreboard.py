@@ -46,9 +46,13 @@ def entries() -> list[dict[str, Any]]:
         found.append({**json.loads(about.read_text("utf-8")), "cases": cases})
     most: dict[str, int] = {}
     for entry in found:
-        passed = sum(one["verdict"] in ORDER[:3] for one in entry["cases"].values())
-        most[entry["code"]] = max(passed, most.get(entry["code"], 0))
+        most[entry["code"]] = max(passes(entry), most.get(entry["code"], 0))
     return sorted(found, key=lambda entry: (-most[entry["code"]], entry["code"], entry["settings"]))
+
+
+def passes(entry: dict[str, Any]) -> int:
+    """Return how many of the cases that were run it passes."""
+    return sum(one["verdict"] in ORDER[:3] for one in entry["cases"].values())
 
 
 def _share(one: dict[str, Any]) -> float:
@@ -67,17 +71,25 @@ def cell(entry: dict[str, Any], case: str) -> str:
         return str(one["verdict"])
     until = entry.get("extrapolated_until", {}).get(case)
     limit = "" if until is None else f"; extrapolated to {until:.2g} s" if until else "; not extrapolated"
-    return f"{one['verdict']} ({worst['name']} {worst['error']:.1e} {worst['unit']}{limit})"
+    name = worst["name"].replace("_", " ")
+    return f"{one['verdict']} ({name} {worst['error']:.1e} {worst['unit']}{limit})"
 
 
 def rows(found: list[dict[str, Any]]) -> list[list[str]]:
-    """Return the table: a line for each case, a column for each entry."""
+    """Return the table: a line for each entry, its share of passes first, and a column for each case."""
     titles = {
         path.parent.name: json.loads(path.read_text("utf-8"))["title"]
         for path in HERE.glob("cases/*/case.json")
     }
-    head = ["case", *(f"{entry['code']} {entry['version']}, {entry['settings']}" for entry in found)]
-    body = [[titles[case], *(cell(entry, case) for entry in found)] for case in sorted(titles)]
+    head = ["code", "passes", *(titles[case] for case in sorted(titles))]
+    body = [
+        [
+            f"{entry['code']} {entry['version']}, {entry['settings']}",
+            f"{passes(entry)} of {len(entry['cases'])}",
+            *(cell(entry, case) for case in sorted(titles)),
+        ]
+        for entry in found
+    ]
     return [head, *body]
 
 
@@ -123,6 +135,7 @@ def main() -> None:
     lines = ",\n ".join(map(json.dumps, found))
     (HERE / "scoreboard.json").write_text(f"[\n {lines}\n]\n", "utf-8")
     words = (
+        "Passes: of the cases that a code ran. "
         "Each cell has the verdict of check.py and, of all criteria of the case, the error that is largest "
         'against its bound. "cannot": the code says that it has no such support or start; "left out": its '
         'runs last too long; "not run": nobody has. "extrapolated to": in one of the runs of the case '
@@ -136,7 +149,7 @@ def main() -> None:
         "body{font:15px/1.45 sans-serif;margin:1.5em;color:#222;background:#fff}p{max-width:45em}"
         "div{overflow-x:auto}table{border-collapse:separate;border-spacing:0}"
         "td,th{border:solid #bbb;border-width:0 1px 1px 0;padding:.4em .6em;text-align:left;"
-        "vertical-align:top}td{min-width:6.5em}small{color:#444;white-space:nowrap}"
+        "vertical-align:top}td{min-width:6.5em}small{color:#444}"
         "tr:first-child>*{border-top-width:1px}tr>:first-child{border-left-width:1px;position:sticky;left:0;"
         "background:#f3f3f3;min-width:8em}.exact,.good{background:#e2f2e4}.pass{background:#f4f7dc}"
         ".fail,.rejected{background:#f9e0dc}"
