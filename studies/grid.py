@@ -175,14 +175,20 @@ class Grid(Brief, GridPlan):
 
     def doubts(self) -> list[dict[str, object]]:
         """Return the doubts about its motions, sizes and gravity, as `doubts_of_cases` does."""
-        cylinders = [
+        return doubts_about(
+            motions=self.motions,
+            cylinders=self.corners(),
+            gravities=[self.gravity],
+            tendons=[self.tendon],
+        )
+
+    def corners(self) -> list[Cylinder]:
+        """Return the smallest and the largest cylinders of the least and of the largest slenderness."""
+        return [
             Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
             for size in (min(self.semidiagonals), max(self.semidiagonals))
             for tan_alpha in (min(self.tan_alphas), max(self.tan_alphas))
         ]
-        return doubts_about(
-            motions=self.motions, cylinders=cylinders, gravities=[self.gravity], tendons=[self.tendon]
-        )
 
     @property
     def options(self) -> Mapping[str, object]:

@@ -297,9 +297,9 @@ class SpectrumPlan(YieldPlan):
                 raise ValueError(f"{name} must be at most {self._MOST} numbers, got {len(given)}")
 
 
-@dataclass(frozen=True, kw_only=True)  # no slots: two classes that have them are not inherited together
-class QuickPlan(Plan):
-    """Extent of a published study."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ValidityPlan(TendonPlan):
+    """Extent of the study of the limits, and the slab and the tendon of its cylinders."""
 
     quick: bool = option(
         False,
@@ -307,12 +307,6 @@ class QuickPlan(Plan):
         "idle cores).",
         flag="--quick",
     )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ValidityPlan(TendonPlan, QuickPlan):
-    """Extent of the study of the limits, and the slab and the tendon of its cylinders."""
-
     slab_mass_ratio: float = option(
         0.0,
         "Mass of a rigid slab that only translates / mass of the column under it. 0: no slab.",

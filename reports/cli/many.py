@@ -413,11 +413,7 @@ def _echo(plan: rw.Grid | rw.Suite) -> list[str]:
 
     if isinstance(plan, rw.Grid):
         doubts = plan.doubts()
-        ends: list[RockingBody] = [
-            rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
-            for size in (min(plan.semidiagonals), max(plan.semidiagonals))
-            for tan_alpha in (min(plan.tan_alphas), max(plan.tan_alphas))
-        ]
+        ends: list[RockingBody] = [*plan.corners()]
         runs = plan.rows
         what = (
             f"{len(plan.semidiagonals)} sizes, {len(plan.tan_alphas)} slendernesses, "
