@@ -76,27 +76,6 @@ def test_a_fault_whose_place_is_gone_is_an_error(change: Change, message: str) -
         pass
 
 
-@pytest.mark.parametrize(
-    ("change", "expected"),
-    [
-        (before_assignment("f.g", "y", "x += 1"), ["x += 1", "y = x"]),
-        (after_assignment("f.g", "y", "y += 1"), ["y = x", "y += 1"]),
-        (scaled_argument("f", "dict", "a", 2.0), ["dict(a=2.0 * x)"]),
-        (
-            wrapped("f", "def f(x): return -without_fault(x)"),
-            ["def without_fault", "def f", "-without_fault(x)"],
-        ),
-        (appended("f = abs"), ["return g(x)", "f = abs"]),
-    ],
-)
-def test_a_change_finds_its_place_by_names(change: Change, expected: list[str]) -> None:
-    source = "def f(x):\n    def g(x):\n        y = x\n        return dict(a=x), y\n    return g(x)\n"
-    changed = Fault(file="any.py", change=change).applied(source)
-    places = [changed.find(text) for text in expected]
-    assert -1 not in places, changed
-    assert places == sorted(places), changed
-
-
 def test_a_fault_that_nothing_finds_is_said(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -37,6 +37,7 @@ FILES = {
 }
 # of every command that runs a method of its own choice
 METHODS = {
+    "--time-step fast": 'must be a number [s], "auto" or "extrapolated", got \'fast\'',
     "--time-step 0.5": "time_step must be at most 0.001 s for contact at this size",
     "--set ring_facets": "--set must be NAME=VALUE, got 'ring_facets'",
     "--set =3": "--set must be NAME=VALUE, got '=3'",
