@@ -1,4 +1,4 @@
-"""What every result must show of itself; for the tests of each study."""
+"""What every result must show of itself, and a call of the command line; for the tests of each study."""
 
 from __future__ import annotations
 
@@ -11,7 +11,17 @@ import pytest
 from rockwobble.compare import Results
 from rockwobble.compare.storage.manifest import Manifest
 from rockwobble.models.shown import LONGEST, Shown
+from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages import page_of
+
+
+def call(*arguments: str) -> int:
+    """The exit code of a command."""
+    with pytest.raises(SystemExit) as ended:
+        main(list(arguments))
+    code = ended.value.code or 0
+    assert isinstance(code, int)
+    return code
 
 
 def shows_itself(result: Shown, *facts: str) -> None:

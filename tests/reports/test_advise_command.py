@@ -7,18 +7,19 @@ import io
 import itertools
 import math
 from collections.abc import Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
 import numpy as np
 import pytest
 from rich.console import Console
+from showing import call as command_line
 
 from rockwobble import advise
 from rockwobble.compare.comparison.prediction import UNTESTED, Prediction, verdict
 from rockwobble.models import Case, Cylinder, InitialState, WobblingFrame, el_centro_1940
 from rockwobble.models.records import p695
-from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.advice import pictures
 from rockwobble.reports.figures.picture import Line
 from rockwobble.reports.pages import stored_page
@@ -26,6 +27,8 @@ from rockwobble.reports.pages.advice import page_of
 from rockwobble.studies import Advice
 from rockwobble.studies.advice import scales
 from rockwobble.studies.advice.trust import Trust
+
+call = partial(command_line, "advise")
 
 PAGE_LIMIT = 2e6  # bytes, of every page
 # lines: an answer, its grades, its numbers, what the recess must carry, the record, and what to do next
@@ -36,13 +39,6 @@ TABLES = ("members", "groups", "demands", "weaker", "band", "scales", "as_strong
 TABLES += ("trace", "engine")
 DATA = {f"{name}.parquet" for name in TABLES}
 GOLDEN = Path(__file__).parent / "golden" / "advice.md"
-
-
-def call(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(["advise", *arguments])
-    assert isinstance(ended.value.code, int)
-    return ended.value.code
 
 
 @pytest.fixture(scope="module", autouse=True)

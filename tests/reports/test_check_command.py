@@ -8,12 +8,14 @@ import json
 import math
 import re
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import pytest
 from rich.console import Console
+from showing import call as command_line
 from showing import is_golden, loads_as_it_was
 
 from rockwobble.compare.check import FAILED, NOT_RUN, PASSED, Checks, Result, Subject, baseline, groups
@@ -22,6 +24,8 @@ from rockwobble.compare.storage.files import replace_files
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.check import as_junit, print_checks
 from rockwobble.reports.pages.wording import sentence
+
+run = partial(command_line, "check")
 
 FAST = ["--only", "rest", "--only", "equations"]
 MADE = (
@@ -42,12 +46,6 @@ def checks(*results: Result) -> Checks:
 
 def check_of(measure: Any) -> tuple[groups.Check, ...]:
     return (groups.Check(measure=measure, supports=("recess",)),)
-
-
-def run(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(["check", *arguments])
-    return int(ended.value.code or 0)
 
 
 def test_the_page_is_the_golden_one() -> None:

@@ -14,20 +14,13 @@ from typing import Any
 
 import pandas as pd
 import pytest
+from showing import call
 
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Trace
 from rockwobble.models.trace import lost_trace
 from rockwobble.multibody.engines.registry import engine_packages, standard_engines
-from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.page import Page
-
-
-def call(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(list(arguments))
-    assert isinstance(ended.value.code, int)
-    return ended.value.code
 
 
 @pytest.fixture

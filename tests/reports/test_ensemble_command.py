@@ -10,11 +10,11 @@ import numpy as np
 import pandas as pd
 import pytest
 from rich.console import Console
+from showing import call
 
 from rockwobble.compare.storage.manifest import Manifest, read_manifests
 from rockwobble.models import Run
 from rockwobble.models.records import p695
-from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.ensemble import pictures, ratio_span
 from rockwobble.reports.figures.picture import Line, Text, log_ticks
 from rockwobble.reports.pages import stored_page
@@ -37,13 +37,6 @@ cylinder = { semidiagonal = 6, tan_alpha = [0.1, 0.2] }
 release = { tilt_over_alpha = 0.5 }
 duration = 2
 """
-
-
-def call(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(list(arguments))
-    assert isinstance(ended.value.code, int)
-    return ended.value.code
 
 
 def made_up(factor: float = 1.1, model: str = "recess model", engine: str = "mujoco recess") -> Ensemble:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import re
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
 from browser import complaints, needs_chromium
+from showing import call as command_line
 
-from rockwobble.reports.cli.main import main
+call = partial(command_line, "explore", "--no-open")
 
 MOST = 400_000  # bytes with El Centro
 PEER = "example\nof a record\nACCELERATION IN G\nNPTS= 5, DT= .01 SEC\n 0.0 0.1 0.3 -.2 0.0\n"
@@ -118,12 +120,6 @@ window.lookFurther = (found) => {
   }
 };
 """  # noqa: E501
-
-
-def call(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(["explore", "--no-open", *arguments])
-    return int(ended.value.code or 0)
 
 
 def given(page: Path) -> dict[str, Any]:

@@ -11,12 +11,11 @@ import pandas as pd
 import pytest
 from browser import complaints, needs_chromium
 from fragility_example import LEVELS, MOTIONS, made_up
-from showing import loads_as_it_was, shows_itself
+from showing import call, loads_as_it_was, shows_itself
 
 from rockwobble import fragility
 from rockwobble.compare.storage.manifest import read_manifests
 from rockwobble.models import Cylinder, synthetic_motions
-from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.fragility import pictures
 from rockwobble.reports.figures.picture import Band, Line
 from rockwobble.reports.pages import page_of, stored_page
@@ -37,14 +36,6 @@ SMALL = [
     "--workers",
     "1",
 ]
-
-
-def call(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(list(arguments))
-    code = ended.value.code
-    assert isinstance(code, int)
-    return code
 
 
 @pytest.fixture(scope="module")

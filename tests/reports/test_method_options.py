@@ -6,22 +6,16 @@ import json
 from pathlib import Path
 
 import pytest
+from showing import call
 from typer.main import get_command
 
 from rockwobble.compare.runs.choice import with_settings
 from rockwobble.models import Case, Cylinder, InitialState, Run
-from rockwobble.reports.cli.main import app, main
+from rockwobble.reports.cli.main import app
 from rockwobble.reports.cli.options import settings
 from rockwobble.reports.cli.problem import BODY
 
 RELEASE = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "0.2"]
-
-
-def call(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(list(arguments))
-    assert isinstance(ended.value.code, int)
-    return ended.value.code
 
 
 @pytest.mark.parametrize("name", ["advise", "compare", "ensemble", "fragility", "simulate", "view"])

@@ -6,18 +6,12 @@ import json
 from pathlib import Path
 
 import pytest
+from showing import call
 from typer.main import get_command
 
-from rockwobble.reports.cli.main import app, main
+from rockwobble.reports.cli.main import app
 
 SHORT = ("--release-tilt-deg", "5", "--duration", "1")
-
-
-def call(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(list(arguments))
-    assert isinstance(ended.value.code, int)
-    return ended.value.code
 
 
 def contents(folder: Path) -> dict[str, bytes]:

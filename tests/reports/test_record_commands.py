@@ -6,9 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from showing import call as exit_code
 
 from rockwobble.models import read_record
-from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.page import Page
 
 GOOD = "Zeit [ms];Nord [mg];Ost [mg]\n" + "".join(
@@ -34,13 +34,6 @@ COMMANDS = {
     "ensemble": ["ensemble", "--engine", "none"],
     "view": ["view", "--engine", "mujoco"],
 }
-
-
-def exit_code(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(list(arguments))
-    assert isinstance(ended.value.code, int)
-    return ended.value.code
 
 
 @pytest.fixture

@@ -6,12 +6,12 @@ import shlex
 from pathlib import Path
 
 import pytest
+from showing import call
 
 from rockwobble import comparison
 from rockwobble.compare import Comparison
 from rockwobble.compare.storage.manifest import MANIFEST, read_manifests
 from rockwobble.models import Case, Cylinder, InitialState, Run, plain_json
-from rockwobble.reports.cli.main import main
 
 pytestmark = pytest.mark.checkout
 
@@ -19,13 +19,6 @@ PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 CASE = Case(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=0.5, name="release")
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
 RUNS = [Run("mujoco", "recess", 1e-3)]
-
-
-def call(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(list(arguments))
-    assert isinstance(ended.value.code, int)
-    return ended.value.code
 
 
 @pytest.fixture(scope="module")

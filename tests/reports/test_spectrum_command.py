@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
+from showing import call as command_line
 from showing import is_golden
 
 import rockwobble as rw
 from rockwobble import reduced
 from rockwobble.models import GroundMotion, el_centro_1940
-from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.heat import Heat
 from rockwobble.reports.figures.spectrum import picture_of
 from rockwobble.reports.figures.svg import svg
@@ -27,18 +28,13 @@ from rockwobble.studies.spectrum.parts import PLANAR_X, SERIES, SPATIAL
 from rockwobble.studies.spectrum.study import KIND, OverturningSpectrum
 from rockwobble.studies.spectrum.verification import planar_contrast
 
+call = partial(command_line, "spectrum")
+
 # the factors on the record differ by a rounding, grown by a few passes
 SAME_RUN = 1e-6
 SVG_LIMIT = 500_000  # bytes; the smallest page that a slow line still loads at once
 SMALL = ["--semidiagonal", "0.5:20:4", "--intensity", "1:9:8"]
 TABLES = {"spectrum", "record", "lowest", "gaps", "contrast", "checked"}
-
-
-def call(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(["spectrum", *arguments])
-    assert isinstance(ended.value.code, int)
-    return ended.value.code
 
 
 @pytest.mark.slow

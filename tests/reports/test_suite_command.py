@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from showing import call
 
 import rockwobble as rw
 from rockwobble import reduced
@@ -17,7 +18,6 @@ from rockwobble.compare.comparison.result import comparison_of
 from rockwobble.compare.comparison.summary import own_rows
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, WobblingFrame, read_suite
 from rockwobble.models.finding import Value
-from rockwobble.reports.cli.main import main
 from rockwobble.reports.cli.suite_choice import chosen_runs
 from rockwobble.reports.pages import comparison as report
 from rockwobble.reports.pages.cases import group_of
@@ -37,13 +37,6 @@ cylinder = { semidiagonal = 6, tan_alpha = [0.1, 0.2, 0.3, 0.4] }
 release = { tilt_over_alpha = 0.5, rolling_rate = 0.5 }
 duration = 2
 """
-
-
-def call(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(list(arguments))
-    assert isinstance(ended.value.code, int)
-    return ended.value.code
 
 
 @pytest.fixture

@@ -6,22 +6,15 @@ import errno
 from pathlib import Path
 
 import pytest
+from showing import call
 
 from rockwobble.compare.runs import scheduler
 from rockwobble.compare.runs.progress import Lost
 from rockwobble.compare.storage.manifest import file_state, read_manifests
-from rockwobble.reports.cli.main import main
 from rockwobble.studies import study
 from rockwobble.studies.sweep import SweepStudy
 
 GRID = ["--semidiagonal", "1:20:4", "--tan-alpha", "0.1,0.2", "--scale", "0.3,2", "--workers", "1"]
-
-
-def call(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(list(arguments))
-    assert isinstance(ended.value.code, int)
-    return ended.value.code
 
 
 @pytest.mark.slow

@@ -10,19 +10,13 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from showing import call
 
 import rockwobble as rw
-from rockwobble.reports.cli.main import main
 from rockwobble.studies.stated import case_findings
 
 PIER = ["--diameter", "1.6", "--height", "9", "--release-tilt-deg", "4", "--duration", "2"]
 STEEL = ["--tendon-force", "400e3", "--tendon-rigidity", "30e6", "--tendon-length", "10", "--mass", "45"]
-
-
-def call(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(list(arguments))
-    return int(ended.value.code or 0)
 
 
 @pytest.mark.slow
