@@ -172,6 +172,30 @@ def test_a_wrong_kind_is_one_line(name: str, argument: str) -> None:
                 assert inside not in text, (kind, text)
 
 
+BEYOND: dict[str, list[Any]] = {
+    "positive": [0.0, -1.0, math.nan, math.inf, "1"],
+    "not negative": [-1e-9, math.nan, math.inf, "1"],
+    "finite": [math.nan, -math.inf, "1", True],
+}
+RANGES = {
+    ("Case", "positive"): ("duration", "gravity"),
+    ("Case", "not negative"): ("friction",),
+    ("Cylinder", "positive"): ("semidiagonal", "tan_alpha", "height", "transverse_inertia", "axial_inertia"),
+    ("GroundMotion", "positive"): ("time_step",),
+    ("InitialState", "finite"): ("tilt", "tilt_rate", "rolling_angle", "rolling_rate"),
+    ("Run", "positive"): ("time_step",),
+    ("WobblingFrame", "not negative"): ("slab_mass_ratio",),
+}
+
+
+@pytest.mark.parametrize(("name", "kind"), RANGES)
+def test_a_number_out_of_its_range_is_refused_by_name(name: str, kind: str) -> None:
+    for argument in RANGES[name, kind]:
+        for value in BEYOND[kind]:
+            with pytest.raises(ValueError, match=f"^{argument} must "):
+                getattr(rw, name)(**VALID[name] | {argument: value})
+
+
 def test_a_decorated_function_names_argument_kind_and_value() -> None:
     @with_argument_kinds
     def study(case: Case, runs: list[Run] | None = None, *, share: float = 1.0, **more: object) -> int:

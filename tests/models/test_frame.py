@@ -46,9 +46,6 @@ def test_its_repr_makes_it_again() -> None:
 @pytest.mark.parametrize(
     ("given", "named"),
     [
-        ({"slab_mass_ratio": -0.1}, "slab_mass_ratio"),
-        ({"slab_mass_ratio": float("nan")}, "slab_mass_ratio"),
-        ({"slab_mass_ratio": float("inf")}, "slab_mass_ratio"),
         ({"slab_mass_ratio": 1e308}, "slab_mass_ratio must be from 0 to 1e"),
         ({"columns": 0}, "columns"),
         ({"columns": 2}, "columns"),

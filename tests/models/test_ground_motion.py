@@ -104,12 +104,6 @@ def test_names_the_first_sample_that_is_not_finite(value: float) -> None:
         GroundMotion(samples, 0.1)
 
 
-@pytest.mark.parametrize("bad", [0.0, -0.1, math.nan, math.inf, "0.1", None])
-def test_refuses_a_time_step_that_is_no_positive_number(bad: Any) -> None:
-    with pytest.raises(ValueError, match=r"^time_step must be .* \[s\], got "):
-        GroundMotion(SAMPLES, bad)
-
-
 @pytest.mark.parametrize("bad", [math.nan, math.inf, "2"])
 def test_refuses_a_factor_or_an_angle_that_is_no_number(bad: Any) -> None:
     motion = GroundMotion(SAMPLES, 0.1)
