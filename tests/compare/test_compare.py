@@ -10,7 +10,7 @@ from rockwobble import comparison
 from rockwobble.compare import SUMMARY_COLUMNS
 from rockwobble.compare.comparison import driver
 from rockwobble.compare.runs import execution
-from rockwobble.compare.runs.execution import Job, simulate_all, simulate_run
+from rockwobble.compare.runs.execution import Job, simulate_run
 from rockwobble.compare.storage.manifest import read_manifests
 from rockwobble.models import Case, Cylinder, Diagnostic, GroundMotion, InitialState, Run, Suite
 from rockwobble.models.trace import lost_trace
@@ -242,12 +242,3 @@ def test_no_run_is_held_against_itself(cylinder: Cylinder, run: Run, reference: 
     for label, wanted in ((row["run"], run), (row["reference"], reference or Run(None, "recess"))):
         assert found.traces["push", label].peak_tilt == simulate_run(pushed, wanted).peak_tilt
     assert row["peak_tilt_difference"] != 0.0
-
-
-@pytest.mark.slow
-def test_the_same_run_in_other_processes_is_the_same(cylinder):
-    release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.5)
-    job = Job(case=Case(cylinder, initial=release, duration=1.0, name="release"), run=Run(None, "recess"))
-    here, there = (simulate_all([job], workers=workers)[0] for workers in (1, 2))
-    assert np.array_equal(here.tilt, there.tilt)
-    assert np.array_equal(here.energy, there.energy)

@@ -200,15 +200,6 @@ def test_a_fall_that_outlasts_the_run_is_followed_to_the_ground(save, tilt, outc
         assert trajectory.peak_tilt == pytest.approx(largest, abs=3e-6)
 
 
-def test_a_trajectory_alone_is_held_against_the_model(in_recess, save, tmp_path):
-    found = comparison(
-        RELEASE, runs=[], external=[save(angles(in_recess["release"]))], workers=1, out=tmp_path / "out"
-    )
-    assert found.summary[["run", "reference"]].to_numpy().tolist() == [["table", "recess model"]]
-    kept = pd.read_parquet(tmp_path / "out" / "traces.parquet")
-    assert set(kept["run"]) == {"recess model", "table"}
-
-
 def test_labels_and_cases_must_be_clear(in_recess, save):
     path = save(angles(in_recess["release"]))
     with pytest.raises(ValueError, match="each run must have its own label, got 'table' twice"):

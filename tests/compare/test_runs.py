@@ -19,7 +19,6 @@ from rockwobble.compare.runs.choice import (
     runs_here,
 )
 from rockwobble.models import Case, Cylinder, InitialState, Run
-from rockwobble.models.support import SUPPORTS
 from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import engine_packages, standard_engines
 
@@ -135,13 +134,6 @@ def test_a_ring_that_is_not_touched_follows_the_model_of_open_ground():
     )
     assert "wall_contact" not in own["diagnostics"]
     assert own["tilt_rms"] < FOLLOWS * other["tilt_rms"]
-
-
-def test_a_support_that_no_engine_has_is_refused(case):
-    with pytest.raises(ValueError, match=f"support must be one of {', '.join(SUPPORTS)}, got 'glued'"):
-        default_runs(supports=["glued"])
-    with pytest.raises(ValueError, match=r"support must be one of .* in mujoco, got 'external'"):
-        require_runnable(case, Run("mujoco", "external"))
 
 
 def test_a_ring_runs_with_the_engines_that_have_it_unless_others_are_named(case):

@@ -23,7 +23,7 @@ from rockwobble.compare.runs.cache import open_table_cache, unfinished_results
 from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.progress import Lost, Progress
 from rockwobble.compare.runs.scheduler import run_tasks
-from rockwobble.compare.storage.claim import CACHE, claim_folder
+from rockwobble.compare.storage.claim import CACHE
 from rockwobble.models import cpus
 from rockwobble.models.cpus import usable_cpus
 
@@ -107,23 +107,6 @@ def test_ctrl_c_ends_the_processes_at_once_and_leaves_nothing(monkeypatch, tmp_p
         run_tasks(time.sleep, [60.0, 60.0, 60.0], workers=2, progress=interrupt)
     assert time.monotonic() - begun < 20.0
     assert list(tmp_path.iterdir()) == []  # the folders of the processes went with them
-
-
-def test_a_finished_task_does_not_run_again(tmp_path):
-    with table_cache(tmp_path) as cache:
-        first = run_tasks(counted, [1, 2, 3], workers=1, cache=cache)
-    RAN.clear()
-    told: list[Progress] = []
-    with table_cache(tmp_path) as cache:
-        again = run_tasks(counted, [3, 4, 2], workers=1, cache=cache, progress=told.append)
-    assert RAN == [4]
-    pd.testing.assert_frame_equal(first[2], again[0], check_exact=True)
-    assert [(event.found, event.done, event.total) for event in told] == [(2, 2, 3), (2, 3, 3)]
-    # the first may be of another study
-    assert len(list((tmp_path / CACHE / "study").glob("*.parquet"))) == 4
-    with claim_folder(tmp_path, plan="this", command="study", overwrite=True), table_cache(tmp_path) as cache:
-        run_tasks(counted, [3, 4, 2], workers=1, cache=cache)
-    assert len(list((tmp_path / CACHE / "study").glob("*.parquet"))) == 3
 
 
 def test_what_was_finished_before_an_interruption_is_kept_and_counted(tmp_path):

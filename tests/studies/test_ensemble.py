@@ -153,18 +153,6 @@ def test_bounds_hold_whatever_the_runs_that_failed_would_have_done(monkeypatch):
     assert {told[0][1]["ratio"], told[-1][1]["ratio"]} == {ratio["ratio_least"], ratio["ratio_most"]}
 
 
-def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monkeypatch, tmp_path):
-    first = ensemble(CASE, runs=[], copies=3, workers=1, resume=tmp_path)
-    monkeypatch.setattr(ENSEMBLE, "run_job", lambda job: pytest.fail("ran again"))
-    again = ensemble(CASE, runs=[], copies=3, workers=1, resume=tmp_path)
-    assert first.members.equals(again.members)
-    assert first.contrasts.equals(again.contrasts)
-    assert first.facts == again.facts
-    assert {
-        len(pd.read_parquet(path)) for path in (tmp_path / "finished" / "ensemble").glob("*.parquet")
-    } == {1}
-
-
 def test_every_input_is_in_the_hash_of_an_ensemble():
     hashes = [
         ensemble(CASE, runs=[], workers=1, **options).facts["inputs"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 
 import numpy as np
@@ -10,8 +9,6 @@ import pandas as pd
 import pytest
 
 from rockwobble import fragility, reduced
-from rockwobble.compare import IncompleteError
-from rockwobble.compare.runs import execution
 from rockwobble.models import Case, Cylinder, Run, synthetic_motions
 from rockwobble.studies import Fragility
 from rockwobble.studies.fragility.study import fragility_of
@@ -265,29 +262,6 @@ def test_of_too_few_motions_or_levels_there_are_counts_and_no_curve(
     fitted = made.fits[["median", "median_low", "median_high", "dispersion"]].notna().to_numpy().any()
     stated = [fitted, *(len(getattr(made, name)) > 0 for name in ("curves", "contrasts", "gaps"))]
     assert stated == [not few] * 4
-
-
-@pytest.mark.slow
-def test_a_dask_worker_with_another_version_of_an_engine_is_refused(monkeypatch):
-    distributed = pytest.importorskip("distributed")
-    versions = itertools.count()  # another at each look
-    monkeypatch.setattr(execution, "engine_makers", lambda name: {name: str(next(versions))})
-    words = r"a worker on .* must have what the caller has: mujoco is .* there .*; nothing is kept"
-    with (
-        distributed.LocalCluster(
-            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
-        ) as cluster,
-        pytest.raises(IncompleteError, match=words),
-    ):
-        fragility(
-            COLUMN,
-            MOTIONS[:2],
-            methods=[Run("mujoco", "recess")],
-            levels=[12.0],
-            step_factor=8.0,
-            resamples=5,
-            scheduler=cluster.scheduler_address,
-        )
 
 
 @pytest.mark.slow

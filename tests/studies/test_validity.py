@@ -15,13 +15,11 @@ from showing import loads_as_it_was, shows_itself
 from tiny_validity import TINY, kept_engine_runs, tiny_tables, tiny_validity
 
 from rockwobble.compare.runs.execution import simulate_run
-from rockwobble.compare.runs.progress import Progress
 from rockwobble.models import Cylinder, InitialState, Run, Tendon, WobblingFrame
 from rockwobble.models.support import RECESS
 from rockwobble.reduced import body, free_response, restoring, simulate, steady_wobble_rate
 from rockwobble.reduced.body import Body
 from rockwobble.studies.plans import ValidityPlan
-from rockwobble.studies.validity import study
 from rockwobble.studies.validity.limits import (
     ALIKE,
     FEWEST,
@@ -55,7 +53,6 @@ pytestmark = pytest.mark.slow
 Tables = Mapping[str, pd.DataFrame]
 # of the transverse inertia: far above every error of an engine, and no other body
 HEAVIER = 1.1
-FAST = {name: PARTS[name] for name in ("free_response", "peaks")}
 
 
 @pytest.fixture(scope="module")
@@ -256,28 +253,6 @@ def test_soft_contact_is_told_by_its_damping_and_failures_are_counted(tables: Ta
     assert by_damping["failed"].to_dict() == {0.1: 0, 0.3: 0, 1.0: 1}
     numbers = limits_of(found)["soft_contact"]
     assert (numbers["held_up_to"], numbers["left_from"], numbers["failed"]) == (0.002, 0.0098, 1.0)
-
-
-def test_an_ended_run_resumes_and_finds_the_same(
-    tables: Tables, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(study, "PARTS", FAST)
-
-    def stop(event: Progress) -> None:
-        if event.state == "finished" and event.done == 3:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        measure_all(TINY, tmp_path / "ended", workers=1, progress=stop)
-    events: list[Progress] = []
-    found = measure_all(TINY, tmp_path / "ended", workers=1, progress=events.append)
-    assert events[0].found == 3
-    events.clear()
-    again = measure_all(TINY, tmp_path / "ended", workers=1, progress=events.append)
-    assert not events  # nothing ran
-    for name in FAST:
-        csv = tables[name].to_csv()
-        assert csv == found[name].to_csv() == again[name].to_csv()
 
 
 def test_measures_of_limits() -> None:
