@@ -188,6 +188,7 @@ def test_drawings_are_those_that_their_scripts_make(monkeypatch: pytest.MonkeyPa
     assert {name for name in drawn if drawn[name] != kept[name]} == set()
 
 
+@pytest.mark.slow
 def test_plain_mujoco_in_a_recess_follows_the_recess_equations(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(SCENES))
     scene = importlib.import_module("mujoco_recess")

@@ -41,6 +41,7 @@ def test_an_impact_in_one_plane_is_of_momentum_at_any_step(tan_alpha: float) -> 
             assert largest_after(run) == pytest.approx(largest_after(exact), rel=0.01), (support, step)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sliding", [name for name in own_engines() if engine_named(name).uplifts])
 def test_a_slide_below_the_border_neither_tilts_nor_turns(sliding: str) -> None:
     case = Case(

@@ -100,6 +100,7 @@ def test_a_faint_opening_comes_before_a_motion_and_belongs_to_none() -> None:
     assert faint_openings(points[1:], 1e-4, rests) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speaks", [False, True])
 def test_an_opening_below_what_contact_resolves_leaves_the_next_start_to_chance(speaks: bool) -> None:
     # the first pulse passes the uplift threshold by a twentieth for some milliseconds, or stays below it

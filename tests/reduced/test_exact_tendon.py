@@ -92,6 +92,7 @@ def test_steady_wobble_balances_and_its_stability_is_the_slope_of_the_balance(
     assert True in signs
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("body", "tendon", "pier", "top"), BODIES)
 @pytest.mark.parametrize("spin", [1e-3, 0.3])
 def test_a_release_turns_as_it_is_solved(

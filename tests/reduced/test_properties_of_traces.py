@@ -32,6 +32,7 @@ def test_the_peak_is_no_less_than_any_sample_and_is_attained():
         assert response.peak_tilt == pytest.approx(attained, rel=SAME), seed
 
 
+@pytest.mark.slow
 def test_every_sampled_quantity_has_a_value_at_each_time():
     quantities = [name for name, kind in vars(Trace).items() if isinstance(kind, property | Late)]
     for body, tendon in itertools.product(

@@ -252,7 +252,6 @@ def test_the_verdict_at_a_balance_has_the_acceleration_of_the_model(
             assert free_acceleration(body, tilt, L) == pytest.approx(expected, rel=1e-13, abs=1e-14)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("slab", [0.0, 1.0])
 @pytest.mark.parametrize("tan_alpha", [1e-1, 1e-3])
 def test_a_slender_column_moves_as_a_larger_one_without_a_tendon(tan_alpha: float, slab: float) -> None:

@@ -72,7 +72,6 @@ def test_the_solution_does_not_depend_on_where_the_series_is_left(turning, jump)
     assert run.y[2, -1] == pytest.approx(phi, rel=0.0, abs=(3e-7 if jump else 2e-8) * turned)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("turning", [3.0, -30.0])
 @pytest.mark.parametrize("share", [0.02, 0.1])
 def test_a_jump_lifts_against_the_couple_wherever_the_series_is_left(turning, share):

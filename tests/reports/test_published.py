@@ -49,6 +49,7 @@ def page_of(folder: Path) -> Path:
     return next(path for path in folder.glob("*.md"))
 
 
+@pytest.mark.slow
 def test_what_is_published_is_sound(remake: dict[str, Any], copy: Path, tmp_path: Path) -> None:
     assert remake["faults"](tmp_path) == []
 
@@ -61,6 +62,7 @@ def test_a_damaged_table_is_a_fault(remake: dict[str, Any], copy: Path, tmp_path
     assert any(f"{table.name} is damaged" in row for row in remake["faults"](tmp_path))
 
 
+@pytest.mark.slow
 def test_only_numbers_that_tables_lack_are_faults(remake: dict[str, Any], copy: Path, tmp_path: Path) -> None:
     page = page_of(copy)
     page.write_text(page.read_text() + "\nA sentence of yesterday.\n")

@@ -14,7 +14,6 @@ from rockwobble.compare.check.measurement import not_run
 from rockwobble.reports.registry import COMMANDS, ENTRIES, HEADINGS, KINDS
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_kind_finds_its_class_and_its_page(kind: str) -> None:
     made = KINDS[kind].results_class()

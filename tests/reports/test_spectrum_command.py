@@ -118,7 +118,6 @@ def numbers(found: TiltMaps, checked: pd.DataFrame | None = None, **columns: obj
     }
 
 
-@pytest.mark.slow
 def test_the_answer_counts_what_is_missed_and_leaves_failed_cells_out(spectrum):
     falls = {name: spectrum.overturned(name) for name in SERIES}
     planar = falls["planar_x"] | falls["planar_y"]
@@ -176,7 +175,6 @@ def test_gaps_are_counted_and_the_widest_is_spanned(spectrum, cells, gaps, sizes
     assert [found[name] for name in stated] == [gaps, sizes, 12, 6.0, end]
 
 
-@pytest.mark.slow
 def test_the_search_says_what_it_missed_and_what_is_chance(spectrum):
     none = dataclasses.replace(spectrum, below={name: np.zeros(12) for name in SERIES})
     count = int(np.isfinite(spectrum.lowest[SPATIAL]).sum())

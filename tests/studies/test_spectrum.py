@@ -37,7 +37,6 @@ def alone(component: int) -> GroundMotion:
     return GroundMotion(acceleration, EL_CENTRO.time_step)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("series", "motion"), [(SPATIAL, EL_CENTRO), (PLANAR_X, alone(0)), (PLANAR_Y, alone(1))]
 )

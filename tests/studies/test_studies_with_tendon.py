@@ -98,6 +98,7 @@ def test_what_a_tendon_still_rights_has_not_overturned_in_a_ring(
     assert outcome_of(trace) == outcome
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("force", [1.1, 0.8, 0.55])
 def test_beyond_yield_before_the_balance_studies_know_only_what_came_before(force: float) -> None:
     column = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
