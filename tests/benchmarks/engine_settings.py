@@ -59,7 +59,7 @@ SETTINGS: Mapping[str, Mapping[str, Sequence[Any]]] = {
         "cone": ("elliptic", "pyramidal"),
         "tolerance": (1e-12, 1e-6),
         "points": (0, 8, 16, 64),
-        "points_damping_ratio": (1.0, 3.0, 10.0),
+        "points_softness": (1.0, 10.0, 40.0, 100.0),
         "points_inset": (1e-3, 0.01, 0.05),
     },
     "pybullet": {

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 from benchmarks import convergence, engine_settings
 from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
+from rockwobble.multibody import available_engines
+from rockwobble.multibody.engines.registry import find_engine
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = InitialState(0.8 * PIER.alpha, rolling_rate=0.5)
@@ -29,6 +33,16 @@ def test_a_convergence_row() -> None:
     # 3e-6 alpha over 8 s at the default step, first order
     assert (table["error_3"] < 1e-5).all()
     assert table["order"].to_numpy() == pytest.approx(np.ones(2), abs=SLOPE)
+
+
+def test_values_are_of_settings_that_the_engines_have_with_the_default_among_them() -> None:
+    for engine, values in engine_settings.SETTINGS.items():
+        if engine in available_engines():
+            kind = getattr(find_engine(engine), "settings_type")  # noqa: B009  # of an engine of this package
+            defaults = {field.name: field.default for field in dataclasses.fields(kind)}
+            assert {*values} <= {*defaults}
+            for name in {*values} - {*engine_settings.SCALED}:
+                assert defaults[name] in values[name], name
 
 
 def test_settings_are_judged_by_exact_solutions_that_a_damped_slip_misses(
