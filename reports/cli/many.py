@@ -81,7 +81,7 @@ def fragility(
     """
     with interruptible(out):
         with user_input():
-            from rockwobble.studies.fragility.runs import methods_of
+            from rockwobble.studies.fragility.runs import default_models, methods_of
             from rockwobble.studies.fragility.study import limits_of
 
             claim_folder(context)
@@ -90,8 +90,7 @@ def fragility(
                 refuse(context, of_body, "does not go with --cylinder, which states the cylinder")
             bodies = cylinders_of(cylinder, body)
             plan = with_steel(context, plan, steel, list(bodies.values()), plan.gravity)
-            tied = plan.tendon is not None
-            chosen = methods.methods(next(iter(bodies.values())), tendon=tied)
+            chosen = methods.methods(next(iter(bodies.values())), default_models(plan))
             methods_of(chosen, restitution=plan.restitution)  # before motions are read
             site = hazard.curve(plan.period, limits_of(plan))
             stripes = many.by_level()

@@ -111,7 +111,7 @@ class ManyMethods:
         list[str] | None,
         options.method(
             "Reduced model: recess, flat, planar-x, planar-y, worse-plane (larger of the two planar "
-            "peaks) or none; may be repeated. Default: all."
+            "peaks) or none; may be repeated. Default: all; for --limit slides alone flat."
         ),
     ] = None
     engine: Annotated[
@@ -122,15 +122,15 @@ class ManyMethods:
     setting: options.Settings = None
     time_step: options.TimeStep = None
 
-    def methods(self, body: RockingBody, *, tendon: bool = False) -> list[str | rw.Run]:
+    def methods(self, body: RockingBody, default: Sequence[str]) -> list[str | rw.Run]:
         """Return reduced models by name, and each engine with those of the supports that it has.
 
         Parameters
         ----------
         body : Cylinder
             On which the settings are tried.
-        tendon : bool, optional
-            Whether it has a tendon, which the default models on flat ground do not know.
+        default : sequence of str
+            Models where none is named.
 
         Raises
         ------
@@ -139,14 +139,9 @@ class ManyMethods:
         """
         from rockwobble.compare.runs.choice import with_settings
         from rockwobble.multibody.engines.registry import find_engine
-        from rockwobble.studies.fragility.runs import MODEL_LABELS, models_with_tendon
 
         given, supports = settings(self.setting), self.support
-        chosen: list[str | rw.Run] = (
-            []
-            if self.model == ["none"]
-            else list(self.model or (models_with_tendon() if tendon else MODEL_LABELS))
-        )
+        chosen: list[str | rw.Run] = [] if self.model == ["none"] else list(self.model or default)
         if not self.engine or self.engine == [options.NO_ENGINE]:
             if supports or given or self.time_step is not None:
                 raise ValueError("--support, --set and --time-step are for engines, give --engine as well")

@@ -28,7 +28,7 @@ from rockwobble.models import Case, GroundMotion, RockingBody, Run
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.case import REDUCED_MODELS
 from rockwobble.models.number_checks import quoted, require_each, require_increasing, require_one_of
-from rockwobble.models.support import MODELLED, RECESS, SUPPORTS
+from rockwobble.models.support import FLAT, MODELLED, RECESS, SUPPORTS
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.multibody.scene import default_step
 
@@ -49,9 +49,12 @@ MODEL_LABELS: Mapping[str, str] = {
 }
 
 
-def models_with_tendon() -> tuple[str, ...]:
-    """Return the names of the models with a tendon: on flat ground the base wanders from its anchor."""
-    return tuple(name for name in MODEL_LABELS if name not in MODELLED or SUPPORTS[name].guided)
+def default_models(asked: FragilityPlan) -> tuple[str, ...]:
+    """Names of the models where none is named: with a tendon, which has its anchor, and for a slide alone."""
+    if asked.limits is not None and {*asked.limits} == {SLIDES}:
+        return (str(FLAT),)
+    guided = asked.tendon is not None
+    return tuple(name for name in MODEL_LABELS if not guided or name not in MODELLED or SUPPORTS[name].guided)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -36,8 +36,8 @@ from .runs import (
     Method,
     RunPlan,
     default_levels,
+    default_models,
     methods_of,
-    models_with_tendon,
     motions_by_level,
     own_model,
 )
@@ -392,8 +392,9 @@ def fragility(
     methods : iterable of str or Run, optional
         Reduced models by name, "recess", "flat", "planar-x", "planar-y", "worse-plane" (of the two, motion
         by motion), and runs of engines with any support. Default: all five models, with a tendon all but
-        flat. The first is the one whose efficient measure is sought. In a ring, whose walls have no top, a
-        cylinder that leans on a wall beyond its balance at the end has overturned.
+        flat, for the limit "slides" alone flat. The first is the one whose efficient measure is sought. In a
+        ring, whose walls have no top, a cylinder that leans on a wall beyond its balance at the end has
+        overturned.
     measure : str, optional
         Intensity, one of `MEASURES`.
     levels : sequence of float, optional
@@ -483,8 +484,8 @@ def fragility(
         tendon_yield=tendon_yield,
         gravity=gravity,
     )
-    if methods is _ALL and asked.tendon is not None:
-        methods = models_with_tendon()
+    if methods is _ALL:
+        methods = default_models(asked)
     chosen = methods_of(methods, restitution=asked.restitution)
     if asked.levels is None and asked.scales is None and motions:  # without, the plan says what is missing
         asked = replace(asked, levels=default_levels(bodies, motions, asked))

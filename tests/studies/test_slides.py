@@ -65,6 +65,8 @@ def test_fragility_counts_the_slides_that_use_up_a_gap() -> None:
     motions = rw.synthetic_motions(6, peak=3.0, seed=1)
     options = {"friction": 0.2, "gap": 0.05, "measure": "pga", "resamples": 20, "workers": 1}
     found = rw.fragility(CASK, motions, methods=["recess", "flat"], levels=[0.3, 0.6], **options)
+    alone = rw.fragility(CASK, motions, levels=[0.3, 0.6], limits=["slides"], **options)
+    assert {*alone.runs["method"]} == {"flat-ground model"}
     flat = found.runs[found.runs["method"] == "flat-ground model"].set_index(["motion", "step"])
     assert (flat["peak_tilt"] == 0.0).all()
     for motion in motions:
