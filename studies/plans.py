@@ -229,10 +229,6 @@ class FragilityPlan(YieldPlan):
             raise ValueError("the limit slides needs a gap, got none")
         if self.limits is not None and not list(self.limits):
             raise ValueError("a fragility needs at least one limit, got none")
-        if self.tendon_yield is None and "tendon yields" in (self.limits or ()):
-            raise ValueError(
-                'the limit "tendon yields" needs the yield force (--tendon-yield, tendon_yield=)'
-            )
 
 
 # Finest step of a search, over the intensity at which the peak of the horizontal resultant is g tan(alpha):

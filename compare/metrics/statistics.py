@@ -48,8 +48,10 @@ class Interval:
         return Interval(value=math.exp(self.value), low=math.exp(self.low), high=math.exp(self.high))
 
     def columns(self, name: str) -> dict[str, float]:
-        """Return the numbers as columns NAME, NAME_low and NAME_high."""
-        return {name: self.value, f"{name}_low": self.low, f"{name}_high": self.high}
+        """Numbers as columns NAME, NAME_low and NAME_high; ends are NaN where no member differs."""
+        known = self.low != self.high or math.isinf(self.low)
+        low, high = (self.low, self.high) if known else (math.nan, math.nan)
+        return {name: self.value, f"{name}_low": low, f"{name}_high": high}
 
 
 def value_if_enough(value: float, count: int, *, ratio: bool = False) -> float:

@@ -146,7 +146,7 @@ def _value(value: Value, unit: str, form: str) -> str:
             return form.join(each) if form in _SEPARATORS else enumeration(each)
         form = interval_form(form or ("" if unit else ".3g"), *value)
         middle, low, high = (_value(each, unit, form) for each in value)
-        return f"{middle} ({low} to {high})"
+        return middle if low == high == NONE else f"{middle} ({low} to {high})"
     if math.isnan(value):
         return NONE
     if "/" in form:

@@ -525,7 +525,15 @@ def _facts(plan: RunPlan) -> dict[str, object]:
 
 
 def limits_of(asked: FragilityPlan) -> Sequence[str]:
-    """Return the limits of a plan; by default those that take no forces, "tendon yields" where it can."""
+    """Limits of a plan; by default those that take no forces, "tendon yields" where it can.
+
+    Raises
+    ------
+    ValueError
+        If a tendon without a yield force is to yield: a plan may get its tendon later, from a drawing.
+    """
+    if asked.tendon_yield is None and TENDON_YIELDS in (asked.limits or ()):
+        raise ValueError(f'the limit "{TENDON_YIELDS}" needs the yield force (--tendon-yield, tendon_yield=)')
     more = {TENDON_YIELDS: asked.tendon_yield, SLIDES: asked.gap}
     return asked.limits or (*DEFAULT_LIMITS, *(name for name, given in more.items() if given is not None))
 

@@ -499,10 +499,8 @@ def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFram
         for measure in fitted:
             spread, least = (float(found[each].dispersion[0]) for each in (measure, best))
             with np.errstate(divide="ignore", invalid="ignore"):  # separated resamples have no dispersion
-                ratios = np.log(drawn[measure] / drawn[best])
+                ratios = np.log(drawn[measure] / drawn[best]) if measure != best else np.zeros(len(some))
             over = interval(math.log(spread / least), ratios, motions).exponential()
-            if measure == best:  # its ratio to itself has none
-                over = Interval(value=1.0, low=math.nan, high=math.nan)
             rows.append(
                 {
                     "cylinder": cylinder,
