@@ -166,7 +166,6 @@ BAD = {
         "quick --tendon-length 3": "--tendon-length does not go with a suite, got quick",
     },
     "explore": {
-        "--friction 0.5": "--friction is not part of the model in the page",
         "--support ring": "--support must be one of recess, flat, got 'ring'",
         "--plane 0 --support flat": "--plane holds the motion on any support, got --support",
         "--tendon-prestress 1 --support flat": "the models have no tendon on --support flat",
