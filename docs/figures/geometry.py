@@ -188,14 +188,14 @@ def frame() -> list[str]:
     return found
 
 
-def drawing(title: str, parts: list[str], *, definitions: str = "") -> str:
+def drawing(title: str, parts: list[str], *, definitions: str = "", width: int = 760) -> str:
     """Return a whole drawing as SVG."""
     whole = [
-        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 460" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} 460" '
         'font-family="Georgia, serif" font-size="17">',
         f"<title>{title}</title>",
         f"<defs>{head('soft', SOFT)}{head('blue', BLUE)}{definitions}</defs>",
-        '<rect width="760" height="460" fill="#ffffff"/>',
+        f'<rect width="{width}" height="460" fill="#ffffff"/>',
         *parts,
         "</svg>",
     ]

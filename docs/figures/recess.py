@@ -110,23 +110,11 @@ def figure() -> str:
         line(moved[1], moved[0], width=2.0, arrow="ink"),
         line(moved[0], moved[1], width=2.0, arrow="ink"),
         label(moved[1], "ground motion", shift=(-58.0, 26.0), plain=True),
-        *_words(),
     ]
     clip = f'<clipPath id="hole">{area(hole, INK)}</clipPath>'
-    return drawing("A cylinder that wobbles in its recess", parts, definitions=head("ink", INK) + clip)
-
-
-def _words() -> list[str]:
-    lines = (
-        "A column stands in a shallow recess.",
-        "Shaking tilts it; it rolls on its rim",
-        "and comes back to its place, or overturns.",
-        "",
-        "Two unknowns: tilt θ and azimuth φ.",
-        "Size R (rim to mass centre),",
-        "slenderness tan α = radius / half height.",
+    return drawing(
+        "A cylinder that wobbles in its recess", parts, definitions=head("ink", INK) + clip, width=500
     )
-    return [label((470.0, 60.0 + 25.0 * i), words, plain=True) for i, words in enumerate(lines) if words]
 
 
 if __name__ == "__main__":
