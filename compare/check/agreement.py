@@ -106,6 +106,11 @@ def release(subject: Subject, support: str) -> Iterator[Result]:
         own, other = (each.passes[columns].to_numpy(dtype=float) for each in (found, model))
         off = largest(own - other) if own.shape == other.shape else math.nan
         yield at_most("passes of a release", off, subject.tolerance_bound(10.0, "as the model", "s, rad"))
+    if "extrema" in subject.knows:
+        own, other = found.extrema[:, :2], model.extrema[:, :2]
+        off = largest(own - other) if own.shape == other.shape else math.nan
+        bound = subject.tolerance_bound(10.0, "as the model", "s, rad")
+        yield at_most("turning points of a release", off, bound)
 
 
 def frame(subject: Subject, support: str) -> Iterator[Result]:
