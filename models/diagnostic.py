@@ -43,6 +43,7 @@ CODES: Mapping[str, str] = MappingProxyType(
         "mode": "",
         "unresolved_slide": "",
         "turning_slide": "rad",
+        "impact_loss": "",
         "early_uplift": "",
         "unresolved_pass": "passes",
         "settled": "alpha",

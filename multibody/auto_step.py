@@ -24,6 +24,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rockwobble.models import AGREEMENT, Diagnostic, Trace
+from rockwobble.models.mode import ROCKS_IN_PLANE
 
 from .guard import LARGEST_STEP
 from .halving import common_count, error_left, order_between
@@ -74,12 +75,19 @@ def unknown_from(trace: Trace) -> tuple[float, str]:
 
     A pass nearer to upright than contact resolves is left to chance; a base that comes down to less lands,
     with every step alike, where the motion may go on: after the last maximum before that the runs agree, and
-    all may be wrong. Or contact drives the motion.
+    all may be wrong. Or contact drives the motion. What rocks in one plane closes, which is known where every
+    impact is of momentum: see `impact`.
     """
     time, tilt, _, kind = trace.extrema.T
     low = np.flatnonzero((kind < 0.0) & (tilt < trace.contact_resolution))[:1]
-    landing = time[max(int(low[0]) - 1, 0)] if len(low) else math.inf
+    landing = time[max(int(low[0]) - 1, 0)] if len(low) and not _closes(trace) else math.inf
     return min((float(landing), "unresolved_pass"), (trace.first("energy"), "energy"))
+
+
+def _closes(trace: Trace) -> bool:
+    """Whether a trace goes through upright in one plane, each time by an impact of momentum."""
+    passes = trace.passes
+    return trace.mode == ROCKS_IN_PLANE and len(passes) > 0 and bool(passes["resolved"].all())
 
 
 def shares(steps: Sequence[float]) -> list[float]:

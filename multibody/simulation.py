@@ -25,6 +25,7 @@ from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, engine_fa
 from .excitation import StepMeans
 from .extrapolated_step import EXTRAPOLATED, FINEST, extrapolate, require_finest
 from .guard import check_time_step
+from .impact import compare_impacts
 from .passes import STEPS_OF_A_PASS, TurningPoint, faint_openings, passes_between, true_swings
 from .protocol import Engine, Settings, Stepper
 from .reaction import EARLY
@@ -178,7 +179,7 @@ def _simulate(
         wall_time=clock.perf_counter() - started,
     )
     facts = tuple(mode_facts(trace))
-    return replace(trace, facts=trace.facts + facts) if facts else trace
+    return replace(trace, facts=trace.facts + facts) if facts else compare_impacts(trace)
 
 
 def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Trace:

@@ -42,6 +42,16 @@ def test_an_impact_in_one_plane_is_of_momentum_at_any_step(tan_alpha: float) -> 
 
 
 @pytest.mark.slow
+def test_an_impact_of_momentum_needs_no_word_and_another_says_so() -> None:
+    case = one_sine(0.5)
+    assert multibody.simulate(case, support="flat").facts == ()
+    (settled,) = multibody.simulate(case, support="flat", time_step="auto").facts
+    assert settled.code == "settled"
+    hops = multibody.simulate(case, support="flat", time_step=1e-4, contact_damping_ratio=1.0)
+    assert hops.first("impact_loss") == pytest.approx(0.48, abs=0.01)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("sliding", [name for name in own_engines() if engine_named(name).uplifts])
 def test_a_slide_below_the_border_neither_tilts_nor_turns(sliding: str) -> None:
     case = Case(

@@ -1,0 +1,78 @@
+"""What a base that closes in one plane keeps of its energy, compared with the moment of momentum (Housner).
+
+About the corner over which the body goes on, the tilt rate is r times what it was, and the energy r^2 times:
+r = (I1 + k (h^2 - b^2))/(I1 + k (h^2 + b^2)), with k the mass that a slab adds to. An engine has no such law;
+where its contact arrives at it, that energy is not lost by error, and upright is no pass left to chance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from rockwobble.models import Diagnostic, Trace
+from rockwobble.models.mode import ROCKS_IN_PLANE, expected_mode
+
+from .guard import DRIFT
+from .scene import Array, scaled_body
+
+TOLERANCE = 0.01  # of the energy with which the base closes
+_LEAST = 0.01  # of the largest energy: what closes with less decides no motion
+_STEPS = 3.0  # of the engine that an impact takes at most, to either side
+
+
+def compare_impacts(trace: Trace) -> Trace:
+    """The run with its diagnostics of impacts, if it is to rock in one plane.
+
+    "impact_loss" names the first that keeps another share than momentum says. Where none does, upright is a
+    resolved pass, and "energy" is what contact took besides.
+    """
+    case, largest = trace.case, float(trace.energy.max())
+    if expected_mode(case, trace.run.support) != ROCKS_IN_PLANE or case.rolling_resistance > 0.0:
+        return trace
+    body = scaled_body(case.cylinder, 1.0)
+    b2, h2 = body.base_radius**2, body.mass_centre_height**2
+    inertia, mass = body.transverse_inertia, body.moved_mass
+    share = max((inertia + mass * (h2 - b2)) / (inertia + mass * (h2 + b2)), 0.0) ** 2
+    impacts, left = _impacts(trace, largest)
+    for time, arrives, kept in impacts:
+        if abs(kept - share * arrives) > TOLERANCE * arrives:
+            fact = Diagnostic(code="impact_loss", time=time, size=1.0 - kept / arrives, bound=1.0 - share)
+            return replace(trace, facts=(*trace.facts, fact))
+    if not impacts or trace.mode != ROCKS_IN_PLANE:
+        return trace
+    facts = [fact for fact in trace.facts if fact.code not in ("energy", "unresolved_pass")]
+    drifts = np.abs(left) > DRIFT * largest
+    if drifts.any():
+        time, size = float(trace.time[int(drifts.argmax()) + 1]), float(left[np.abs(left).argmax()]) / largest
+        facts.append(Diagnostic(code="energy", time=time, size=size, bound=DRIFT))
+    return replace(trace, facts=tuple(facts), passes=trace.passes.assign(resolved=True))
+
+
+def _impacts(trace: Trace, largest: float) -> tuple[list[tuple[float, float, float]], Array]:
+    """Time [s] and energy before and after of each impact that decides a motion, and the error without them.
+
+    None where two of them lie between two samples.
+    """
+    time, error = trace.time, trace.energy_error
+    supplied = trace.energy - error  # by the start and the ground: a kink at an impact, and no jump
+    change = np.diff(error)
+    impacts: list[tuple[float, float, float]] = []
+    end = 0
+    for at in trace.extrema[trace.extrema[:, 3] < 0.0, 0].tolist():
+        before = int(np.searchsorted(time, at - _STEPS * trace.time_step)) - 1
+        after = int(np.searchsorted(time, at + _STEPS * trace.time_step))
+        if before < 1 or after >= len(time):
+            continue
+        change[before:after] = 0.0
+        slope = (supplied[before] - supplied[before - 1]) / (time[before] - time[before - 1])
+        drive = supplied[before] + slope * (at - time[before])
+        arrives, kept = float(drive + error[before]), float(drive + error[after])
+        if arrives < _LEAST * largest:
+            continue
+        if before < end:
+            return [], change
+        impacts.append((at, arrives, kept))
+        end = after
+    return impacts, np.cumsum(change)
