@@ -126,6 +126,8 @@ def simulator(engine: str, name: str = "", value: Any = None, used: list[Used] |
         trace = multibody.simulate(case, engine=engine, support=support, time_step=step, **given)
         if used is not None:
             used.append((step, trace.settings))
+        if trace.outcome == "failed":
+            raise ArithmeticError(f"the run fails: {trace.diagnostics}")
         return trace
 
     return simulate
@@ -197,6 +199,8 @@ def error_of(solution: str, simulate: Simulate) -> float:
         return SOLUTIONS[solution](simulate)
     except ValueError:
         return math.nan
+    except ArithmeticError:
+        return math.inf
 
 
 def settings_table(engine: str, names: Sequence[str] = ()) -> Iterator[dict[str, str]]:
