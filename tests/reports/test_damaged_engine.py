@@ -50,10 +50,14 @@ def install(folder: Path, monkeypatch: pytest.MonkeyPatch, files: dict[str, str]
 
 @pytest.fixture
 def fresh() -> Iterator[None]:
-    """Forget what loaded, before and after."""
+    """Forget what loaded, before and after, with the packages that only stand for it."""
     registry._load_failure.cache_clear()
+    before = {name: module for name, module in sys.modules.items() if name.partition(".")[0] == "mujoco"}
     yield
     registry._load_failure.cache_clear()
+    for name in [each for each in sys.modules if each.partition(".")[0] == "mujoco"]:
+        del sys.modules[name]
+    sys.modules.update(before)
 
 
 @pytest.fixture
