@@ -250,6 +250,7 @@ def test_the_scoreboard_tells_what_cannot_be_run_from_what_was_not() -> None:
     assert extrapolated["Energy over 100 passes"] == "left out"
     until = about["extrapolated_until"]["near-upright-pass"]
     assert f"extrapolated to {until:.2g} s" in extrapolated["Passes near the upright position at three spins"]
+    assert "not run" not in extrapolated.values()
 
 
 def test_one_size_of_five_does_not_make_scale_invariance(judge: Judge) -> None:
