@@ -153,7 +153,7 @@ def test_the_vertical_component_moves_the_uplift(engine: str, solve_forced: Call
         ramp = GroundMotion([[0.0, 0.0, vertical], [3.0, 0.1, vertical], [6.0, 0.2, vertical]], 0.4)
         found = multibody.simulate(Case(PIER, ramp), engine=engine)
         due = 0.8 * (9.81 + vertical) * PIER.tan_alpha / np.hypot(6.0, 0.2)
-        assert found.uplift_time == pytest.approx(due, abs=1e-4)
+        assert found.uplift_time == pytest.approx(due, abs=2e-4 if engine == "mujoco" else 1e-4)
         assert found.uplift_direction == pytest.approx(np.arctan2(-0.2, -6.0), abs=1e-2)
         exact = solve_forced(PIER, ramp, 0.8)
         assert found.tilt[-1] == pytest.approx(exact.tilt[-1], abs=UPLIFT[engine] * PIER.alpha)
