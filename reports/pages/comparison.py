@@ -103,6 +103,7 @@ def _case(view: CaseView, results: Comparison, *, many: bool) -> dict[str, objec
         "findings": [statement(each) for each in findings if each.key not in (*_HEADLINE, *_SUPPORTS)],
         "unusual": [statement(each) for each in findings if each.key not in _USUAL],
         "supports": [statement(each) for each in findings if each.key in _SUPPORTS],
+        "supports_short": [statement(each, short=True) for each in findings if each.key in _SUPPORTS],
         "diagnostics": run_diagnostics(view),
         "first": first_rows(rows),
         "rows": main_rows(view, results.causes[name]),

@@ -13,7 +13,7 @@ from rockwobble.reports.cli.main import main
 @pytest.mark.parametrize(
     ("command", "most"),
     [
-        ("compare --duration 4 --engine mujoco", 22),
+        ("compare --duration 4 --engine mujoco", 20),
         ("simulate --diameter 1.6 --height 9", 20),
         ("advise --diameter 1.6 --height 9 --friction 0.5 --copies 20 --engine none --duration 6", 33),
         ("fragility --synthetic 4 --levels 1,4,8", 18),
