@@ -156,10 +156,10 @@ class FragilityPlan(YieldPlan):
 
     measure: str = option(
         "peak_acceleration",
-        "Intensity measure: peak_acceleration (/ g tan alpha), peak_velocity (times p / g tan alpha), "
-        "pga, pgv, sa or sa_mean.",
+        "Intensity measure: peak_acceleration (/ g tan alpha), peak_over_friction (the same / g friction), "
+        "peak_velocity (times p / g tan alpha), pga, pgv, sa or sa_mean.",
         group="Intensity",
-        choices=("peak_acceleration", "peak_velocity", "pga", "pgv", "sa", "sa_mean"),
+        choices=("peak_acceleration", "peak_over_friction", "peak_velocity", "pga", "pgv", "sa", "sa_mean"),
     )
     levels: Sequence[float] | None = option(
         None,

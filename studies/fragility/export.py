@@ -20,6 +20,7 @@ from xml.etree import ElementTree as Tree
 import numpy as np
 
 from .fit import FITTED, Array
+from .intensity import OVER_FRICTION
 from .tables import LIMITS, OVERTURNED
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ _NAMES = {
 # measure of a fragility: intensity measure type and words
 _TYPES = {
     "peak_acceleration": ("PGA", "peak of the horizontal resultant"),
+    OVER_FRICTION: ("PGA", "peak of the horizontal resultant"),
     "peak_velocity": ("PGV", "peak of the horizontal resultant"),
     "pga": ("PGA", "geometric mean of both components"),
     "pgv": ("PGV", "geometric mean of both components"),
@@ -85,9 +87,11 @@ def limits_by_function(results: Fragility) -> Iterator[tuple[str, list[Limit]]]:
     names = [name for name in _NESTED if name in facts["limits"]]
     for (cylinder, method), of_limit in results.fits.groupby(["cylinder", "method"], sort=False):
         body = facts["cylinders"][cylinder]
-        unit = {"peak_acceleration": body["tan_alpha"], "peak_velocity": body["velocity_unit"]}.get(
-            measure, 1.0
-        )
+        unit = {
+            "peak_acceleration": body["tan_alpha"],
+            OVER_FRICTION: float(facts["friction"]),
+            "peak_velocity": body["velocity_unit"],
+        }.get(measure, 1.0)
         points = results.points[results.points["cylinder"] == cylinder]
         uplift = unit * float((points[measure] / points["scale"] * points["uplift_scale"]).min())
         limits = []

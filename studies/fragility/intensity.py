@@ -41,8 +41,11 @@ class Measure:
     unit: str
 
 
+# the peak acceleration in the unit of what slides: as efficient, and only where it is asked for
+OVER_FRICTION = "peak_over_friction"
 MEASURES: Mapping[str, Measure] = {
     "peak_acceleration": Measure(title="peak acceleration / g tan α", unit="-"),
+    OVER_FRICTION: Measure(title="peak acceleration / g μ", unit="-"),
     "peak_velocity": Measure(title="p × peak velocity / g tan α", unit="-"),
     "pga": Measure(title="PGA", unit="g"),
     "pgv": Measure(title="PGV", unit="m/s"),
@@ -52,7 +55,13 @@ MEASURES: Mapping[str, Measure] = {
 
 
 def intensity(
-    name: str, motion: GroundMotion, cylinder: RockingBody, *, gravity: float = 9.81, period: float = 1.0
+    name: str,
+    motion: GroundMotion,
+    cylinder: RockingBody,
+    *,
+    gravity: float = 9.81,
+    period: float = 1.0,
+    friction: float = 1.0,
 ) -> float:
     """Return the intensity of a ground motion for a cylinder.
 
@@ -67,6 +76,8 @@ def intensity(
         g [m/s^2].
     period : float, optional
         Period of the oscillator of "sa" and "sa_mean" [s].
+    friction : float, optional
+        Coefficient of cylinder and ground, of "peak_over_friction".
 
     Raises
     ------
@@ -85,6 +96,9 @@ def intensity(
     require_one_of("an intensity", name, MEASURES)
     require_positive("gravity", gravity, "m/s^2")
     require_positive("period", period, "s")
+    if name == OVER_FRICTION:
+        require_positive("friction of peak_over_friction", friction)
+        return motion.peak / (gravity * friction)
     found = _value(name, motion, cylinder, gravity, period)
     if not found > 0.0:
         raise ValueError(f"the motion {motion.name!r} has no {name}: a component is zero throughout")
@@ -172,7 +186,7 @@ def uplift_scale(
 def measures_of(
     motions: Sequence[GroundMotion], cylinder: RockingBody, *, gravity: float = 9.81, period: float = 1.0
 ) -> dict[str, list[float]]:
-    """Return every intensity of every motion, NaN where it has none."""
+    """Every intensity of every motion but `OVER_FRICTION`, NaN where it has none."""
 
     def value_or_nan(name: str, motion: GroundMotion) -> float:
         try:
@@ -180,7 +194,9 @@ def measures_of(
         except ValueError:
             return math.nan
 
-    return {name: [value_or_nan(name, motion) for motion in motions] for name in MEASURES}
+    return {
+        name: [value_or_nan(name, motion) for motion in motions] for name in MEASURES if name != OVER_FRICTION
+    }
 
 
 def largest_resultant(components: Array) -> float:

@@ -365,7 +365,7 @@ class RunPlan(Study[Task, pd.DataFrame]):
         asked = self.options
         if asked.levels is None:
             return dict(enumerate(self.scales))
-        own = intensity(asked.measure, motion, cylinder, gravity=asked.gravity, period=asked.period)
+        own = _intensity_of(asked, motion, cylinder)
         steps = range(len(asked.levels)) if self.stripes is None else self.stripes[motion.name]
         return {step: float(asked.levels[step]) / own for step in steps}
 
@@ -391,6 +391,7 @@ class RunPlan(Study[Task, pd.DataFrame]):
         rows, asked = [], self.options
         for name, cylinder in self.cylinders.items():
             own = measures_of(self.motions, cylinder, gravity=asked.gravity, period=asked.period)
+            own.setdefault(asked.measure, [_intensity_of(asked, motion, cylinder) for motion in self.motions])
             lifts = [uplift_scale(motion, cylinder, asked.gravity, asked.tendon) for motion in self.motions]
             for index, motion in enumerate(self.motions):
                 for step, scale in self.factors(cylinder, motion).items():
@@ -504,7 +505,7 @@ def default_levels(
     another measure than the peak acceleration: what the median motion has at these levels.
     """
     over = [
-        intensity(asked.measure, motion, cylinder, gravity=asked.gravity, period=asked.period)
+        _intensity_of(asked, motion, cylinder)
         / intensity("peak_acceleration", motion, cylinder, gravity=asked.gravity)
         for cylinder in cylinders.values()
         for motion in motions
@@ -516,6 +517,18 @@ def default_levels(
     low, high = _LOWEST * min(of for of, _ in held), _HIGHEST * max(of * barrier for of, barrier in held)
     middle = float(np.median(over))
     return tuple(float(f"{middle * level:.3g}") for level in np.geomspace(low, high, LEVELS))
+
+
+def _intensity_of(asked: FragilityPlan, motion: GroundMotion, cylinder: RockingBody) -> float:
+    """Intensity of a motion by the measure of a plan."""
+    return intensity(
+        asked.measure,
+        motion,
+        cylinder,
+        gravity=asked.gravity,
+        period=asked.period,
+        friction=asked.friction,
+    )
 
 
 def _hold_of(body: RockingBody, asked: FragilityPlan) -> tuple[float, float]:

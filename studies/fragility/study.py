@@ -73,7 +73,8 @@ class Fragility(Results, kind=KIND):
         One row for each cylinder, motion, step (place of the level) and method: peak_tilt [alpha], outcome,
         contact_lost and slides (1, 0, NaN where nobody asked).
     points : DataFrame
-        One row for each cylinder, motion and step: scale, and every intensity of `MEASURES`.
+        One row for each cylinder, motion and step: scale, and every intensity of `MEASURES`,
+        "peak_over_friction" where it is the measure.
     counts : DataFrame
         n runs and k that exceed a limit, by cylinder, method, limit and intensity.
     fits : DataFrame
@@ -416,7 +417,7 @@ def fragility(
     step_factor : float, optional
         On the default time step of engines.
     friction : float, optional
-        Coefficient of cylinder and ground.
+        Coefficient of cylinder and ground, also of the measure "peak_over_friction".
     gap : float, optional
         Displacement on flat ground that the limit "slides" asks for [m].
     rolling_resistance : float, optional

@@ -150,7 +150,8 @@ class Blocks:
 
     def has_measure(self, cylinder: str, measure: str) -> bool:
         """Whether every motion has an intensity of this measure."""
-        return bool(np.isfinite(self.intensities[cylinder, measure]).all())
+        intensities = self.intensities.get((cylinder, measure))
+        return intensities is not None and bool(np.isfinite(intensities).all())
 
 
 def _grid(table: pd.DataFrame, motions: Sequence[str], steps: int) -> pd.DataFrame:
@@ -172,6 +173,7 @@ def blocks_of(runs: pd.DataFrame, points: pd.DataFrame, limits: Sequence[str], m
             (str(name), measure): _whole(np.log(part[measure].to_numpy(float)).reshape(shape))
             for name, part in own.items()
             for measure in MEASURES
+            if measure in part
         }
     made = np.isfinite(next(iter(own.values()))["scale"].to_numpy(float)).reshape(shape)
     grouped = runs.groupby(["cylinder", "method"], sort=False)

@@ -19,7 +19,7 @@ NRML = "{http://openquake.org/xmlns/nrml/0.5}"
 AT = np.geomspace(0.2, 1.5, 7)  # [g], within the levels
 
 
-def study(limits: list[str], measure: str = "peak_acceleration") -> Fragility:
+def study(limits: list[str], measure: str = "peak_acceleration", friction: float = 1.0) -> Fragility:
     bodies = {
         "pier": rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2),
         "column": rw.Cylinder(semidiagonal=3.0, tan_alpha=0.15),
@@ -31,6 +31,7 @@ def study(limits: list[str], measure: str = "peak_acceleration") -> Fragility:
         motions,
         methods=["recess"],
         measure=measure,
+        friction=friction,
         levels=levels,
         limits=limits,
         resamples=20,
@@ -144,3 +145,9 @@ def test_a_limit_with_neither_curve_nor_levels_is_refused() -> None:
     cloud = rw.fragility(pier, motions, methods=["recess"], scales=[2.0, 6.0], resamples=2, workers=1)
     with pytest.raises(ValueError, match="no levels"):
         exported(cloud, "nrml")
+
+
+def test_a_peak_over_friction_is_exported_in_g() -> None:
+    levels = exported(study(["overturned"], "peak_over_friction", friction=0.5), "nrml")[1].decode()
+    assert 'imt="PGA"' in levels
+    assert float(levels.partition("</imls>")[0].rpartition(">")[2].split()[-1]) == pytest.approx(1.2)

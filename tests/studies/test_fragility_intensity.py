@@ -30,6 +30,7 @@ def test_peaks_of_a_sine_in_closed_form():
     # hundredths of a period are 3e-4 off
     swing = 2.0 / (2.0 * math.pi)
     assert intensity("peak_acceleration", motion, PIER) == pytest.approx(5.0 / (9.81 * 0.2))
+    assert intensity("peak_over_friction", motion, PIER, friction=0.1) == pytest.approx(5.0 / (9.81 * 0.1))
     assert intensity("pga", motion, PIER) == pytest.approx(math.sqrt(12.0) / 9.81)
     assert intensity("pgv", motion, PIER) == pytest.approx(math.sqrt(12.0) * swing, rel=4e-4)
     # the slender rod: p^2 = 3 g/(4 R), and 15 + cos^2(alpha) in the place of 16
@@ -91,10 +92,13 @@ def test_the_velocity_of_a_constant_acceleration_is_a_ramp():
     np.testing.assert_allclose(velocity(motion), np.arange(5)[:, None] * 0.5 * np.array([1.0, -2.0]))
 
 
-def test_uplift_begins_at_a_peak_acceleration_of_one():
+def test_uplift_and_slide_begin_at_an_intensity_of_one():
     motion = sine()
     scale = 1.0 / intensity("peak_acceleration", motion, PIER)
     below, above = reduced.peak_tilts([6.0], 0.2, motion, [0.999 * scale, 1.001 * scale])[0]
+    assert below == 0.0 < above
+    scale = 1.0 / intensity("peak_over_friction", motion, PIER, friction=0.1)
+    below, above = reduced.peak_displacements([0.1], motion, [0.999 * scale, 1.001 * scale])[0]
     assert below == 0.0 < above
 
 
@@ -103,6 +107,8 @@ def test_bad_input_and_what_has_no_measure():
         intensity("pgd", sine(), PIER)
     with pytest.raises(ValueError, match="period must be positive"):
         intensity("sa", sine(), PIER, period=0.0)
+    with pytest.raises(ValueError, match="friction of peak_over_friction must be positive"):
+        intensity("peak_over_friction", sine(), PIER, friction=0.0)
     with pytest.raises(ValueError, match="has no pga: a component is zero throughout"):
         intensity("pga", sine(y=0.0), PIER)
     known = measures_of([sine(y=0.0)], PIER)
@@ -113,17 +119,18 @@ def test_bad_input_and_what_has_no_measure():
 @pytest.mark.parametrize("measure", MEASURES)
 def test_a_motion_scaled_to_a_level_has_that_intensity_at_any_period(measure: str, period: float) -> None:
     motions = [el_centro_1940(), sine(3.0, 1.0)]
-    asked = FragilityPlan(measure=measure, levels=[0.7, 1.9], period=period)
+    asked = FragilityPlan(measure=measure, levels=[0.7, 1.9], period=period, friction=0.3)
     plan = RunPlan(cylinders={"pier": PIER}, motions=motions, methods=methods_of(["recess"]), options=asked)
     for motion in motions:
         for level, factor in zip((0.7, 1.9), plan.factors(PIER, motion).values(), strict=True):
-            own = intensity(measure, motion.scaled(factor), PIER, period=period)
+            own = intensity(measure, motion.scaled(factor), PIER, period=period, friction=0.3)
             assert own == pytest.approx(level, rel=1e-12)  # rounding
     for name, over in measures_of(motions, PIER, period=period).items():
         scaled = plan.points["scale"].to_numpy() * np.repeat(over, 2)
         assert plan.points[name].to_numpy() == pytest.approx(scaled, rel=1e-12)
+    assert ("peak_over_friction" in plan.points) == (measure == "peak_over_friction")
     alone = default_levels({"pier": PIER}, motions[:1], asked)
-    first = intensity(measure, motions[0], PIER, period=period) / intensity(
+    first = intensity(measure, motions[0], PIER, period=period, friction=0.3) / intensity(
         "peak_acceleration", motions[0], PIER
     )
     assert alone[0] == pytest.approx(1.25 * first, rel=5e-3)  # of three digits
