@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, fields
 
 from .number_checks import require_one_of, require_positive
-from .shown import Brief
+from .shown import CompactRepr
 from .support import MODELLED
 
 # tilt difference that ends an agreement [alpha]
@@ -20,7 +20,7 @@ REFERENCES = ("own", *MODELLED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Bounds(Brief):
+class Bounds(CompactRepr):
     """Bounds on columns of the summary of a comparison; None asks nothing.
 
     Parameters

@@ -16,7 +16,7 @@ from .bounds import OVERTURNED_TILT, Bounds
 from .cylinder import RockingBody
 from .ground_motion import GroundMotion
 from .number_checks import quoted, require_finite, require_not_negative, require_positive
-from .shown import Brief, brief, line
+from .shown import CompactRepr, brief, line
 from .support import EXTERNAL, FLAT, MODELLED, RECESS, Support, support_named
 from .tendon import Tendon
 
@@ -25,7 +25,7 @@ _UNITS = {"tilt": "rad", "tilt_rate": "rad/s", "rolling_angle": "rad", "rolling_
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class InitialState(Brief):
+class InitialState(CompactRepr):
     """Tilt, rolling angle and their rates at time zero; psi' = -phi' in every model and engine.
 
     Parameters
@@ -384,7 +384,7 @@ REDUCED_MODELS = tuple(Run(None, support) for support in MODELLED)
 
 @with_argument_kinds
 @dataclass(frozen=True, slots=True, repr=False)
-class Suite(Brief):
+class Suite(CompactRepr):
     """Cases times runs.
 
     Parameters

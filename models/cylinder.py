@@ -10,7 +10,7 @@ from numbers import Real
 
 from .number_checks import quoted, require_finite, require_positive
 from .plain_json import Facts
-from .shown import Brief, brief, line
+from .shown import CompactRepr, brief, line
 
 _UNITS = {
     "semidiagonal": "m",
@@ -24,7 +24,7 @@ _SMALLEST, _LARGEST = 1e-70, 1e70  # [m]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class RockingBody(Brief, ABC):
+class RockingBody(CompactRepr, ABC):
     """What models and engines ask of a body: the dimensions of one column, and what it carries."""
 
     semidiagonal: float

@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from .argument_kinds import with_argument_kinds
 from .finding import Finding, Findings
-from .shown import Brief
+from .shown import CompactRepr
 
 # code: unit of size and bound; why a run failed
 FAILURES: Mapping[str, str] = MappingProxyType(
@@ -117,7 +117,7 @@ def codes_in(cell: str) -> list[str]:
 
 @with_argument_kinds
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Diagnostic(Brief):
+class Diagnostic(CompactRepr):
     """A fact about a motion; programs decide by code, time and size, never by words.
 
     Attributes
@@ -178,7 +178,7 @@ class Diagnostic(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Assumptions(Brief):
+class Assumptions(CompactRepr):
     """The demands of a solution on ground and recess, as extrema of the continuous motion.
 
     They are taken from a tilt of `CLOSED_TILT` (a thousandth) of alpha on, below which the base is closed.

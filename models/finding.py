@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 from . import plain_json
 from .plain_json import JsonObject
-from .shown import Brief
+from .shown import CompactRepr
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -86,7 +86,7 @@ def unit_of(name: str) -> str:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Finding(Brief):
+class Finding(CompactRepr):
     """A sentence as data; programs read key, level and values, one file of words says it.
 
     Attributes

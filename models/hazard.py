@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from .argument_kinds import with_argument_kinds
 from .diagnostic import Diagnostic
 from .number_checks import require_increasing, require_numbers, require_one_of, require_positive
-from .shown import Brief
+from .shown import CompactRepr
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ LARGEST_MIDDLE = 3.0
 
 @with_argument_kinds
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class HazardCurve(Brief):
+class HazardCurve(CompactRepr):
     """Hazard curve of a site: annual frequency of exceedance against intensity.
 
     Between its points it is a straight line in logarithms of both. Beyond its ends nothing is known.

@@ -28,7 +28,7 @@ def line(name: str, facts: Iterable[str]) -> str:
     return whole
 
 
-class Brief:
+class CompactRepr:
     """A dataclass whose repr is one line: long values by their size, defaults left out."""
 
     __slots__ = ()

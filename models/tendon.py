@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from .bounds import OVERTURNED_TILT
 from .cylinder import RockingBody
 from .number_checks import require_finite, require_not_negative, require_positive
-from .shown import Brief
+from .shown import CompactRepr
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Tendon(Brief):
+class Tendon(CompactRepr):
     """An unbonded elastic tendon along the axis, anchored in the foundation and at the top or in the slab.
 
     Its duct guides it, so it bends only at the gaps: one at the base of a column alone, two under a slab in

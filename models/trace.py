@@ -18,7 +18,7 @@ from .case import Case, Run
 from .diagnostic import Assumptions, Diagnostic, cell_of
 from .mode import REST, ROCKS, ROCKS_AND_SLIDES, ROCKS_IN_PLANE, SLIDES
 from .shown import Shown, line
-from .trace_source import Array, Known, Source, friction_of, no_passes
+from .trace_source import Array, EagerSource, Source, friction_of, no_passes
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,7 +28,7 @@ _SLIP, _CREEP = 0.01, 1e-3
 NO_PEAK = ("failed", "undecided")  # outcomes of runs of which nobody knows whether they stand
 
 
-class Late:
+class LazySample:
     """A sampled quantity that the source computes when it is first asked for."""
 
     def __init__(self, width: int) -> None:
@@ -38,10 +38,10 @@ class Late:
         self._name = name
 
     @overload
-    def __get__(self, trace: None, owner: type) -> Late: ...
+    def __get__(self, trace: None, owner: type) -> LazySample: ...
     @overload
     def __get__(self, trace: Trace, owner: type) -> Array: ...
-    def __get__(self, trace: Trace | None, owner: type) -> Array | Late:
+    def __get__(self, trace: Trace | None, owner: type) -> Array | LazySample:
         if trace is None:
             return self
         found = trace.late.get(self._name)
@@ -236,16 +236,16 @@ class Trace(Shown):
     error_estimate: float = math.nan
     settled_until: float = math.nan
 
-    rolling_rate = Late(1)
-    energy = Late(1)
-    contact_force = Late(3)
-    top_contact_force = Late(3)
-    restraining_moment = Late(1)
-    energy_lost = Late(1)
-    energy_error = Late(1)
-    slip = Late(1)
-    wall_contact = Late(1)
-    wall_impulse = Late(1)
+    rolling_rate = LazySample(1)
+    energy = LazySample(1)
+    contact_force = LazySample(3)
+    top_contact_force = LazySample(3)
+    restraining_moment = LazySample(1)
+    energy_lost = LazySample(1)
+    energy_error = LazySample(1)
+    slip = LazySample(1)
+    wall_contact = LazySample(1)
+    wall_impulse = LazySample(1)
 
     @property
     def displacement(self) -> Array:
@@ -526,6 +526,6 @@ def lost_trace(case: Case, run: Run, why: str) -> Trace:
         outcome="failed",
         uplift_time=math.nan,
         uplift_direction=math.nan,
-        source=Known({}),
+        source=EagerSource({}),
         facts=(Diagnostic(code="died", detail=why),),
     )

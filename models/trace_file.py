@@ -16,7 +16,7 @@ from .parquet_file import pack, read
 from .plain_json import Facts, JsonObject, fields_of
 from .record_source import source_from_plain
 from .tendon import Tendon
-from .trace_source import Array, Known
+from .trace_source import Array, EagerSource
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -99,7 +99,7 @@ def trace_arguments(facts: Facts, samples: pd.DataFrame) -> JsonObject:
         "rest_intervals": np.array(facts["rest_intervals"], dtype=float).reshape(-1, 2),
         "extrema": np.array(facts["extrema"], dtype=float).reshape(-1, 4),
         "passes": pd.DataFrame(passes),
-        "source": Known(
+        "source": EagerSource(
             found,
             None if held is None else Assumptions(**held | {"breaches": _diagnostics(held["breaches"])}),
         ),

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .diagnostic import Assumptions
-from .shown import Brief
+from .shown import CompactRepr
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -32,7 +32,7 @@ class Source(Protocol):
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Known(Brief):
+class EagerSource(CompactRepr):
     """A source that has everything at hand, such as an engine or a stored file."""
 
     values: Mapping[str, Array]

@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Diagnostic, Trace
-from rockwobble.models.trace_source import Known
+from rockwobble.models.trace_source import EagerSource
 
 from .auto_step import Attempt, Progress, closeness, part_of, shares, unknown_from
 from .guard import LARGEST_STEP
@@ -142,7 +142,7 @@ def _merge(pair: Sequence[Trace], order: int, good: int) -> Trace:
     return replace(
         fine,
         **sampled,
-        source=Known({**fine.late, **late}, fine.assumptions),
+        source=EagerSource({**fine.late, **late}, fine.assumptions),
         passes=_passes([run.passes for run in pair], order, end),
         extrema=np.vstack([_rows(extrema, order), fine.extrema[len(extrema[-1]) :]]),
         peak_tilt=_number(pair, "peak_tilt", order) if peaks_alike else fine.peak_tilt,

@@ -60,7 +60,7 @@ def to_zero_step(values: Sequence[Array], order: int) -> Array:
     return np.asarray(fine + error_left(fine - coarse, order))
 
 
-def line_to_zero_step(values: Sequence[Array]) -> Array:
+def linear_extrapolation(values: Sequence[Array]) -> Array:
     """Return the limit at step zero of a straight line through all of `values`, by least squares.
 
     Scatter goes with the step, and one that is off by chance weighs little.

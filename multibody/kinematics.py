@@ -74,7 +74,7 @@ def kinematics(
     energy = body.moved_mass * (vx * vx + vy * vy + vz * vz)
     energy += transverse * (wx * wx + wy * wy + wz * wz)
     energy += (axial - transverse) * along * along
-    if restraint.holds:
+    if restraint.is_active:
         energy += 2.0 * restraint.energy(poses.position, axis, h)
     return Kinematics(
         # atan2 of both, because the cosine alone loses a tilt below 1e-8
@@ -82,7 +82,7 @@ def kinematics(
         tilt_rate=wy * out_x - wx * out_y,
         azimuth=np.arctan2(ay, ax),
         twist=2.0 * np.arctan2(poses.quaternion[:, 3], poses.quaternion[:, 0]),
-        energy=0.5 * energy / body.driven_mass + gravity * (z - h),
+        energy=0.5 * energy / body.effective_mass + gravity * (z - h),
         depth=-height,
         slip_rate=np.sqrt(slip_x * slip_x + slip_y * slip_y),
     )

@@ -52,7 +52,7 @@ def turning_points(time: Array, tilt: Array, rolling_angle: Array) -> list[Turni
     return entries
 
 
-def true_swings(points: list[TurningPoint], threshold: float) -> list[TurningPoint]:
+def filter_noise_swings(points: list[TurningPoint], threshold: float) -> list[TurningPoint]:
     """Leave out swings smaller than `threshold` [rad]: those are contact noise."""
     kept: list[TurningPoint] = []
     for point in points:
@@ -92,14 +92,14 @@ def passes_between(
             motions[number].append(point)
     rows = [
         (low.time, low.tilt, after.rolling_angle - before.rolling_angle)
-        for kept in (true_swings(motion, threshold) for motion in motions)
+        for kept in (filter_noise_swings(motion, threshold) for motion in motions)
         for before, low, after in zip(kept, kept[1:], kept[2:], strict=False)
         if before.is_maximum and not low.is_maximum
     ]
     return pd.DataFrame(rows, columns=["time", "minimum_tilt", "angle_of_turn"], dtype=float)
 
 
-def faint_openings(
+def negligible_uplifts(
     points: Sequence[TurningPoint], threshold: float, rests: Sequence[tuple[float, float]]
 ) -> list[float]:
     """Return when the base opened between two rests by less than `threshold` [rad], before it moved by more.

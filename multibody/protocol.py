@@ -47,7 +47,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models.shown import Brief
+from rockwobble.models.shown import CompactRepr
 
 from .scene import Array, Scene
 
@@ -57,7 +57,7 @@ _NOTHING: Settings = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class EngineFacts(Brief):
+class EngineFacts(CompactRepr):
     """Measured facts of one engine, for plans and predictions; the defaults are those of an unknown one.
 
     Attributes

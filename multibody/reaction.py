@@ -51,7 +51,7 @@ def force_of_steps(
     return force
 
 
-def first_pull(time: Array, force: Array) -> float:
+def contact_tension_time(time: Array, force: Array) -> float:
     """Return when the ground first pulled at the cylinder [s], from `force` (3, n) [weights]; NaN if never.
 
     Contact does not pull, but a joint in its place does.
@@ -59,7 +59,7 @@ def first_pull(time: Array, force: Array) -> float:
     return _first(time, force, lambda part: part[2] < -_PULL)
 
 
-def first_grip(time: Array, force: Array, friction: float) -> float:
+def slip_onset_time(time: Array, force: Array, friction: float) -> float:
     """Return when `force` (3, n) [weights] on the rim first exceeded friction [s]; NaN if never.
 
     Contact slides there, but a joint in its place does not.
@@ -212,11 +212,11 @@ class UpliftWatch:
         """Where the ground's reaction acts on the base, relative to its centre, shape (n, 2) [m]."""
         body = self._body
         # per unit of the driven mass; in a frame the forces at base and top act on opposite sides of it
-        moved = body.moved_mass / body.driven_mass
+        moved = body.moved_mass / body.effective_mass
         force = moved * (after.velocity - poses.velocity) / self._step + acceleration
         load = np.maximum(force[:, 2] + self._gravity, _MINIMUM_LOAD * self._gravity)
         # upright, the moment about the mass centre is that of the transverse inertia
-        inertia = body.transverse_inertia / body.driven_mass
+        inertia = body.transverse_inertia / body.effective_mass
         change = inertia * (after.angular_velocity - poses.angular_velocity) / self._step
         height = body.mass_centre_height
         return np.column_stack(

@@ -31,7 +31,15 @@ from .kinematics import (
 )
 from .passes import RestWatch, TurningPoint, turning_points
 from .protocol import Steps, Wall
-from .reaction import ForceSamples, UpliftWatch, begun_at, first_grip, first_pull, force_of_steps, sure_tilt
+from .reaction import (
+    ForceSamples,
+    UpliftWatch,
+    begun_at,
+    contact_tension_time,
+    force_of_steps,
+    slip_onset_time,
+    sure_tilt,
+)
 from .scene import Array, Scene, Start
 
 Indices = NDArray[np.intp]
@@ -80,7 +88,7 @@ class Recorder:
         joined: bool = False,
     ) -> None:
         body, start = scene.body, scene.start
-        self._gains = body.gains if joined else body.gains[:1]
+        self._gains = body.velocity_ratios if joined else body.velocity_ratios[:1]
         self._scene, self._samples = scene, samples
         self.mode = scene.mode
         self.asked = float(samples[-1])  # end of the run that was asked for, before it was extended [s]
@@ -230,10 +238,10 @@ class Recorder:
         self.forces.add(ends[0])
         # a wall may well push the cylinder down, by its friction or where the rim is below it
         if math.isnan(self.pull_time) and wall is None:
-            self.pull_time = float(np.fmin.reduce([first_pull(time, force) for force in ends]))
+            self.pull_time = float(np.fmin.reduce([contact_tension_time(time, force) for force in ends]))
         if math.isnan(self.grip_time) and wall is None:
             friction = self._scene.friction
-            self.grip_time = float(np.fmin.reduce([first_grip(time, force, friction) for force in ends]))
+            self.grip_time = float(np.fmin.reduce([slip_onset_time(time, force, friction) for force in ends]))
         self._angle, self._twist, self._leans = float(angle[-1]), float(state.twist[-1]), bool(leans[-1])
         self._count += stop
 
@@ -282,10 +290,10 @@ class Recorder:
         """Force of contact (3, n) on each end that has a gain, over the weight that it carries."""
         scene = self._scene
         ends = [force_of_steps(poses, after, ground, scene.time_step, scene.gravity, gain) for gain in gains]
-        if scene.restraint.holds:
+        if scene.restraint.is_active:
             # of what the base carries, and of the slab, it takes hold as well as contact does
             height = scene.body.mass_centre_height
-            pulls = scene.restraint.pulls(poses.position, axis_of(poses.quaternion), height) / scene.gravity
+            pulls = scene.restraint.forces(poses.position, axis_of(poses.quaternion), height) / scene.gravity
             for end, mass in zip(ends, self._carried_shares, strict=False):
                 end -= pulls / mass
         return ends
@@ -295,8 +303,8 @@ class Recorder:
         scene, body = self._scene, self._scene.body
         if scene.rolling_resistance == 0.0:
             return np.zeros(len(poses.position))
-        masses = (mass * scene.gravity / body.driven_mass for mass in self._carried_shares)
-        ends = self._contact_forces(poses, after, ground, body.gains)
+        masses = (mass * scene.gravity / body.effective_mass for mass in self._carried_shares)
+        ends = self._contact_forces(poses, after, ground, body.velocity_ratios)
         forces = list(zip(masses, ends, strict=False))
         power = couple_power(poses, after, forces, scene.rolling_resistance)
         return self.energy.loss(power)

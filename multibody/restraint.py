@@ -33,7 +33,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case
-from rockwobble.models.shown import Brief
+from rockwobble.models.shown import CompactRepr
 from rockwobble.models.tendon import Tendon
 
 Array = NDArray[np.float64]
@@ -47,7 +47,7 @@ _ROUNDINGS = 2.0**14
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class SceneTendon(Brief):
+class SceneTendon(CompactRepr):
     """A tendon at the size of a scene, whose column has unit mass.
 
     Attributes
@@ -69,7 +69,7 @@ class SceneTendon(Brief):
     depth: float
     yield_elongation: float = math.inf
 
-    def pull(self, x: float, y: float, z: float) -> tuple[float, float, float]:
+    def force(self, x: float, y: float, z: float) -> tuple[float, float, float]:
         """Return the force on the base whose centre is at (x, y, z) [m], and on the slab [m/s^2]."""
         z += self.depth
         length = math.sqrt(x * x + y * y + z * z)
@@ -86,7 +86,7 @@ class SceneTendon(Brief):
         """
         x, y, z = place
         axis_x, axis_y, axis_z = axis
-        a, b, c = self.pull(x - height * axis_x, y - height * axis_y, z - height * axis_z)
+        a, b, c = self.force(x - height * axis_x, y - height * axis_y, z - height * axis_z)
         arm = self.gaps * height
         return (a, b, c), (
             arm * (b * axis_z - c * axis_y),
@@ -114,7 +114,7 @@ class SceneTendon(Brief):
         slope = self.gaps**2 * self.stiffness * base_radius * base_radius * math.cos(tilt)
         return slope - 0.5 * self.gaps * self.prestress * base_radius * math.sin(0.5 * tilt)
 
-    def pulls(self, base_centre: Array, elongation: Array) -> Array:
+    def forces(self, base_centre: Array, elongation: Array) -> Array:
         """Return the forces (3, n) on the base at places (n, 3) [m], and on the slab [m/s^2]."""
         way = base_centre.T + np.array([[0.0], [0.0], [self.depth]])
         tension = self.prestress + self.stiffness * elongation
@@ -142,7 +142,7 @@ def scaled_tendon(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Restraint(Brief):
+class Restraint(CompactRepr):
     """Restraint that holds the body of a scene down besides its weight, per unit mass of the column.
 
     Where an answer takes poses, they are n places of the mass centre (n, 3) [m], axes (n, 3), and the height
@@ -157,7 +157,7 @@ class Restraint(Brief):
     tendon: SceneTendon | None = None
 
     @property
-    def holds(self) -> bool:
+    def is_active(self) -> bool:
         """Whether anything but the weight holds the body down."""
         return self.tendon is not None
 
@@ -185,12 +185,12 @@ class Restraint(Brief):
             return np.zeros(len(place))
         return self.tendon.energy(self.tendon.elongation(place - height * axis))
 
-    def pulls(self, place: Array, axis: Array, height: float) -> Array:
+    def forces(self, place: Array, axis: Array, height: float) -> Array:
         """Return the force (3, n) on the base at poses, and on a slab [m/s^2]; a couple is none."""
         if self.tendon is None:
             return np.zeros((3, len(place)))
         base_centre = place - height * axis
-        return self.tendon.pulls(base_centre, self.tendon.elongation(base_centre))
+        return self.tendon.forces(base_centre, self.tendon.elongation(base_centre))
 
     def elongation(self, place: Array, axis: Array, height: float) -> Array:
         """Return the elongation of the tendon at poses, shape (n,) [m]; zero without one."""

@@ -47,7 +47,7 @@ class Body:
     slab_mass_ratio: float = 0.0
 
     @property
-    def driven_mass(self) -> float:
+    def effective_mass(self) -> float:
         """Mass that gravity and the ground move at the mass centre: the slab goes twice as far [-]."""
         return 1.0 + 2.0 * self.slab_mass_ratio
 
@@ -57,10 +57,10 @@ class Body:
         return 1.0 + 4.0 * self.slab_mass_ratio
 
     @property
-    def gains(self) -> tuple[float, ...]:
+    def velocity_ratios(self) -> tuple[float, ...]:
         """Velocity of what each end carries, the base first, over that of the mass centre [-]."""
         slab = self.slab_mass_ratio
-        return (1.0,) if slab == 0.0 else (self.driven_mass / (1.0 + slab), 2.0)
+        return (1.0,) if slab == 0.0 else (self.effective_mass / (1.0 + slab), 2.0)
 
     @property
     def tan_alpha(self) -> float:
@@ -235,7 +235,7 @@ class Scene:
         Without vertical motion the base opens at b/h of it; what tips a frame are twice the forces of its
         slab.
         """
-        return self.gravity + self.restraint.closing_force / self.body.driven_mass
+        return self.gravity + self.restraint.closing_force / self.body.effective_mass
 
     @property
     def pressing_gravity(self) -> float:
@@ -246,7 +246,7 @@ class Scene:
     def balance_tilt(self) -> float:
         """Tilt beyond which the base does not close by itself [rad]; infinite where there is none to pi/2."""
         alpha = math.atan(self.body.tan_alpha)
-        if not self.restraint.holds:
+        if not self.restraint.is_active:
             return alpha
         low, high = alpha, OVERTURNED_TILT
         if self._couple(high) >= 0.0:
@@ -259,18 +259,18 @@ class Scene:
     def growth_time(self) -> float:
         """Time in which a small distance from the balance grows by e [s]; where there is none, 1/p."""
         body, b, h = self.body, self.body.base_radius, self.body.mass_centre_height
-        inertia = (body.transverse_inertia + body.moved_mass * (h * h + b * b)) / body.driven_mass
+        inertia = (body.transverse_inertia + body.moved_mass * (h * h + b * b)) / body.effective_mass
         weight = growth = self.gravity * math.hypot(b, h)
         tilt = self.balance_tilt
-        if self.restraint.holds and math.isfinite(tilt):
+        if self.restraint.is_active and math.isfinite(tilt):
             # the slope of the couple there, without its sign
             growth = self.gravity * (b * math.sin(tilt) + h * math.cos(tilt))
-            growth -= self.restraint.couple_slope(tilt, b) / body.driven_mass
+            growth -= self.restraint.couple_slope(tilt, b) / body.effective_mass
         return math.sqrt(inertia / max(growth, _LEAST_GROWTH * weight))
 
     def _couple(self, tilt: float) -> float:
         """Couple of weight and restraint at a tilt [rad], towards upright, in a plane [m^2/s^2]."""
         body = self.body
         b, h = body.base_radius, body.mass_centre_height
-        weight = body.driven_mass * self.gravity * (b * math.cos(tilt) - h * math.sin(tilt))
+        weight = body.effective_mass * self.gravity * (b * math.cos(tilt) - h * math.sin(tilt))
         return weight + self.restraint.couple(tilt, b)

@@ -18,7 +18,7 @@ from rockwobble.models.mode import SLIDES, expected_mode
 from rockwobble.models.number_checks import require_positive, require_sample_step
 from rockwobble.models.support import RECESS, support_named
 from rockwobble.models.trace import NO_PEAK
-from rockwobble.models.trace_source import Known
+from rockwobble.models.trace_source import EagerSource
 
 from .auto_step import AUTO, STEP_TOLERANCE, Progress, find_step
 from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, engine_fault, engine_for
@@ -26,7 +26,7 @@ from .excitation import StepMeans
 from .extrapolated_step import EXTRAPOLATED, FINEST, extrapolate, require_finest
 from .guard import check_time_step
 from .impact import compare_impacts
-from .passes import STEPS_OF_A_PASS, TurningPoint, faint_openings, passes_between, true_swings
+from .passes import STEPS_OF_A_PASS, TurningPoint, filter_noise_swings, negligible_uplifts, passes_between
 from .protocol import Engine, Settings, Stepper
 from .reaction import EARLY
 from .recorder import COLUMNS, Recorder
@@ -226,7 +226,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         followed_until=recorder.followed_until * scale.time,
         uplift_time=uplift_time * scale.time,
         uplift_direction=uplift_direction,
-        source=Known(sampled),
+        source=EagerSource(sampled),
         passes=passes,
         facts=(
             *diagnostics(recorder, passes, resolution, scale.time),
@@ -262,7 +262,7 @@ def _yield(case: Case, recorder: Recorder, scale: Scale) -> Iterator[Diagnostic]
 
 def _extrema(recorder: Recorder, scene: Scene, scale: Scale) -> Array:
     """Turning points (k, 4): time [s], tilt, rolling angle [rad], 1 for a maximum and -1 for a minimum."""
-    points = true_swings([point for point in recorder.points if point.time <= recorder.end], _SWING)
+    points = filter_noise_swings([point for point in recorder.points if point.time <= recorder.end], _SWING)
     if scene.start.standing and points and not points[0].is_maximum:
         del points[0]  # where it lifted off: the tilt of one that stands turns nowhere
     rows = [
@@ -424,6 +424,6 @@ def diagnostics(
         return
     # a motion that only grows has no turning point before the last step
     last = TurningPoint(float(recorder.last_row[0]), recorder.last_value("tilt"), 0.0, is_maximum=True)
-    faint = faint_openings([*recorder.points, last], resolution, recorder.rests.rests())
+    faint = negligible_uplifts([*recorder.points, last], resolution, recorder.rests.rests())
     if unresolved := sorted([*close["time"], *(unit_time * opened for opened in faint)]):
         yield Diagnostic(code="unresolved_pass", time=unresolved[0], size=len(unresolved), bound=resolution)

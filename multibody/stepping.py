@@ -16,7 +16,7 @@ import numpy as np
 
 from .auto_step import Progress
 from .excitation import StepMeans
-from .passes import TurningPoint, true_swings
+from .passes import TurningPoint, filter_noise_swings
 from .protocol import Engine, Stepper
 from .recorder import Recorder
 from .scene import Array, Scene
@@ -116,14 +116,16 @@ def _advance(stepper: Stepper, recorder: Recorder, acceleration: Array, at_pose:
 
 def _has_turned(recorder: Recorder, since: float) -> bool:
     """Return whether the tilt has had a maximum since a time [s]."""
-    return any(point.is_maximum and point.time >= since for point in true_swings(recorder.points, _TURN))
+    return any(
+        point.is_maximum and point.time >= since for point in filter_noise_swings(recorder.points, _TURN)
+    )
 
 
 def _maximum(start: TurningPoint, recorder: Recorder) -> TurningPoint | None:
     """Return the first maximum after `start` from which the tilt has fallen."""
     later = [point for point in recorder.points if point.time > start.time]
     tilt = recorder.last_value("tilt")
-    for point in true_swings([start, *later], _TURN):
+    for point in filter_noise_swings([start, *later], _TURN):
         if point.is_maximum and point.time > start.time and tilt < point.tilt - _TURN:
             return point
     return None

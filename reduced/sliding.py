@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockwobble.models import Assumptions, Case, Diagnostic, GroundMotion, Run, Trace
 from rockwobble.models.cpus import grid_in_threads
 from rockwobble.models.number_checks import require_axis, require_positive
-from rockwobble.models.shown import Brief
+from rockwobble.models.shown import CompactRepr
 from rockwobble.models.support import FLAT
 from rockwobble.models.trace_source import Array
 
@@ -34,7 +34,7 @@ _NONE = np.empty(0)  # of the times of samples
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class _Sliding(Brief):
+class _Sliding(CompactRepr):
     """Source of the quantities of a slide."""
 
     case: Case

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import CLOSED_TILT, Assumptions, Diagnostic
-from rockwobble.models.shown import Brief
+from rockwobble.models.shown import CompactRepr
 from rockwobble.models.trace_source import Array, friction_of
 
 from . import forces, kernels
@@ -49,7 +49,7 @@ def _pass_columns() -> pd.Index:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class Solution(Brief):
+class Solution(CompactRepr):
     """States of a reduced model at n samples, and the problem that they solve.
 
     Attributes

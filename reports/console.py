@@ -88,7 +88,7 @@ def interruptible(kept: Path | None = None) -> Iterator[None]:
         raise typer.Exit(INTERRUPTED) from None
 
 
-def forgive_output() -> None:
+def replace_unencodable_output() -> None:
     """Let no poor encoding of the output stop a command."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):

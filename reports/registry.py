@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 # heading in the help of the command line for each module of commands, in the order of the headings
 HEADINGS: Mapping[str, str] = {
-    "single": "One problem",
-    "play": "One problem",
-    "many": "Many problems",
+    "case": "One problem",
+    "explore": "One problem",
+    "batch": "Many problems",
     "results": "Results",
-    "trust": "Trust",
+    "verification": "Trust",
     "published": "Published studies",
 }
 
@@ -77,27 +77,25 @@ def _named(path: str) -> Any:
 
 # in the order of the help
 ENTRIES = (
-    Entry(
-        name="comparison", command="compare", group="single", results="compare.comparison.result.Comparison"
-    ),
-    Entry(name="advice", command="advise", group="single", results="studies.advice.advice.Advice"),
-    Entry(name="run", command="simulate", group="single", results="studies.single_run.SingleRun"),
-    Entry(name="explore", group="play"),
+    Entry(name="comparison", command="compare", group="case", results="compare.comparison.result.Comparison"),
+    Entry(name="advice", command="advise", group="case", results="studies.advice.advice.Advice"),
+    Entry(name="run", command="simulate", group="case", results="studies.single_run.SingleRun"),
+    Entry(name="explore", group="explore"),
     Entry(
         name="spectrum",
         kind="overturning spectrum",
-        group="many",
+        group="batch",
         results="studies.spectrum.study.OverturningSpectrum",
     ),
-    Entry(name="sweep", group="many", results="studies.sweep.Sweep"),
-    Entry(name="ensemble", group="many", results="studies.ensemble.Ensemble"),
-    Entry(name="fragility", group="many", results="studies.fragility.study.Fragility"),
+    Entry(name="sweep", group="batch", results="studies.sweep.Sweep"),
+    Entry(name="ensemble", group="batch", results="studies.ensemble.Ensemble"),
+    Entry(name="fragility", group="batch", results="studies.fragility.study.Fragility"),
     Entry(name="show", group="results"),
     Entry(name="report", group="results"),
     Entry(name="view", group="results", results="compare.comparison.result.View"),
-    Entry(name="check", group="trust", results="compare.check.groups.Checks"),
-    Entry(name="certify", group="trust"),
-    Entry(name="verify", group="trust"),
+    Entry(name="check", group="verification", results="compare.check.groups.Checks"),
+    Entry(name="certify", group="verification"),
+    Entry(name="verify", group="verification"),
     Entry(name="validity", group="published", results="studies.validity.study.Validity"),
 )
 COMMANDS: Mapping[str, Entry] = {entry.command: entry for entry in ENTRIES if entry.group}

@@ -19,7 +19,7 @@ from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import TERMS
 from rockwobble.models.doubts import doubts_about
 from rockwobble.models.number_checks import require_one_of
-from rockwobble.models.shown import Brief
+from rockwobble.models.shown import CompactRepr
 from rockwobble.models.support import RECESS
 from rockwobble.models.trace_file import motion_facts
 
@@ -113,7 +113,7 @@ class GridChunk:
 
 @with_argument_kinds
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Grid(Brief, GridPlan):
+class Grid(CompactRepr, GridPlan):
     """Every size with every slenderness, scale, motion and model, each run from rest for its peak tilt.
 
     Parameters

@@ -24,8 +24,8 @@ from rockwobble.models.plain_json import plain
 from rockwobble.models.support import RECESS, SUPPORTS
 from rockwobble.models.trace_file import COLUMNS, PASS_COLUMNS, case_facts, to_parquet
 
-from .advice.demands import fall_of
-from .advice.trust import BAND_STEP, copies_part_at, scatter_of, with_time_to_fall
+from .advice.demands import overturning_time
+from .advice.trust import BAND_STEP, copies_divergence_time, scatter_of, with_time_to_fall
 from .plans import AdvicePlan
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ class SingleRun(Results, kind="run"):
         trace, single = self.trace, self.facts.get("single_trace", {})
         part, falls = (
             single.get("copies_part", math.inf),
-            fall_of(trace),
+            overturning_time(trace),
         )  # of earlier versions nothing is known
         if not math.isfinite(part):
             return
@@ -128,7 +128,7 @@ class SingleRun(Results, kind="run"):
 
 def _outcome(trace: Trace, scatter: float) -> Finding:
     """What becomes of the cylinder; scatter of the peaks of its copies over its own."""
-    falls, peak, alpha = fall_of(trace), trace.peak_tilt, trace.case.cylinder.alpha
+    falls, peak, alpha = overturning_time(trace), trace.peak_tilt, trace.case.cylinder.alpha
     if math.isfinite(falls):
         balance = balance_of(trace.case)
         values: dict[str, Value] = {
@@ -195,7 +195,7 @@ def _quantities(trace: Trace, error: PeakError) -> Iterator[Finding]:
 
 def _demands(trace: Trace, quantity: Callable[..., Finding]) -> Iterator[Finding]:
     """What a model asks of friction and recess, and up to when: a fall asks nothing."""
-    falls = fall_of(trace)
+    falls = overturning_time(trace)
     held = trace.assumptions_until(falls)
     if held is None:
         return
@@ -245,7 +245,7 @@ def single_run(
             if trace.mode == SLIDES == own.mode and model == run:
                 slid = [[each.peak_displacement, each.residual_displacement] for each in copies]
             elif own.mode != SLIDES:
-                part = copies_part_at(case, own, copies)
+                part = copies_divergence_time(case, own, copies)
                 scatter = scatter_of(own.peak_tilt, (copy.peak_tilt for copy in copies))
                 other = _other_model(case, own)
                 error = peak_error(case, trace, own, other, copies=copies, simulate=simulate_run)

@@ -13,7 +13,7 @@ import pandas as pd
 from rockwobble.compare.runs.cache import open_table_cache
 from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.plan import options_of
-from rockwobble.compare.runs.progress import IncompleteError, Lost, ProgressCallback
+from rockwobble.compare.runs.progress import FailedTask, IncompleteError, ProgressCallback
 from rockwobble.compare.runs.scheduler import run_tasks
 from rockwobble.compare.storage.provenance import fingerprint, reduced_makers, result_fingerprint
 from rockwobble.compare.storage.results import Results
@@ -145,14 +145,14 @@ class Study(Generic[T, R]):
                 save(results)
         return results
 
-    def _tables(self, tasks: Sequence[T], found: Sequence[pd.DataFrame | Lost]) -> list[pd.DataFrame]:
+    def _tables(self, tasks: Sequence[T], found: Sequence[pd.DataFrame | FailedTask]) -> list[pd.DataFrame]:
         tables: list[pd.DataFrame] = []
         died: list[str] = []
         for task, each in zip(tasks, found, strict=True):
-            table = self.lost(task, each.why) if isinstance(each, Lost) else each
+            table = self.lost(task, each.why) if isinstance(each, FailedTask) else each
             if table is not None:
                 tables.append(table)
-            elif isinstance(each, Lost):
+            elif isinstance(each, FailedTask):
                 died.append(f"{self.name(task)}: {each.why}")
         if died:
             times = f" {self.tries} times" if self.tries > 1 else ""

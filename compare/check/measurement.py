@@ -23,8 +23,8 @@ from rockwobble.models import (
 )
 from rockwobble.models.cylinder import PIER
 from rockwobble.models.finding import Finding, Value
-from rockwobble.models.shown import Brief
-from rockwobble.models.trace_source import Known
+from rockwobble.models.shown import CompactRepr
+from rockwobble.models.trace_source import EagerSource
 
 Outcome = Literal["passed", "FAILED", "no baseline", "not run"]
 PASSED: Outcome = "passed"
@@ -52,7 +52,7 @@ class Bound:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Result(Brief):
+class Result(CompactRepr):
     """Result of one check of one subject.
 
     Parameters
@@ -283,7 +283,7 @@ def trace_of(result: object, case: Case, support: str) -> Trace:
         outcome="",
         uplift_time=math.nan,
         uplift_direction=math.nan,
-        source=Known({} if energy is None else {"energy": energy}),
+        source=EagerSource({} if energy is None else {"energy": energy}),
     )
 
 

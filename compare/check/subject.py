@@ -15,7 +15,7 @@ from rockwobble import reduced
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_in_range
-from rockwobble.models.shown import Brief
+from rockwobble.models.shown import CompactRepr
 from rockwobble.models.support import MODELLED, RECESS
 from rockwobble.multibody.engines.registry import engine_facts, find_engine
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP
@@ -47,7 +47,7 @@ TOLERANCE = 1e-3  # of a model or trajectory of somebody else, where nothing els
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Subject(Brief):
+class Subject(CompactRepr):
     """One source of motions, as every check sees it.
 
     Parameters

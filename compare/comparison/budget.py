@@ -26,11 +26,11 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, RockingBody, Run, Trace
 from rockwobble.models.frames import pd
-from rockwobble.models.shown import Brief
+from rockwobble.models.shown import CompactRepr
 from rockwobble.models.support import RECESS
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.extrapolated_step import EXTRAPOLATED
-from rockwobble.multibody.halving import common_count, line_to_zero_step, measured_order, to_zero_step
+from rockwobble.multibody.halving import common_count, linear_extrapolation, measured_order, to_zero_step
 
 from ..metrics.pair import (
     Agreement,
@@ -85,7 +85,7 @@ Key = tuple[str, str]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Limit(Brief):
+class Limit(CompactRepr):
     """An engine extrapolated in its time step.
 
     Parameters
@@ -110,7 +110,7 @@ class Limit(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ErrorBudget(Brief):
+class ErrorBudget(CompactRepr):
     """Signed parts of a tilt difference, in units of alpha.
 
     Parameters
@@ -263,7 +263,7 @@ def _intercept(tilts: Sequence[Array], *, smooth: bool) -> Array:
         return to_zero_step([to_zero_step(tilts[-3:-1], 1), to_zero_step(tilts[-2:], 1)], 2)
     if smooth or len(tilts) == 2:
         return to_zero_step(tilts[-2:], 1)
-    return line_to_zero_step(tilts)
+    return linear_extrapolation(tilts)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -17,7 +17,7 @@ from rockwobble.models import AGREEMENT, Case, Run, Trace
 from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.frames import pd
 
-from ..external.verdict import JudgedRow, Row, judge
+from ..external.verdict import ExternalSummaryRow, Row, judge
 from ..metrics.pair import (
     Agreement,
     Pair,
@@ -297,7 +297,7 @@ def lost_row(case: Case, name: str, reference: Trace, label: str, trial: Trace) 
     }
 
 
-class SummaryRow(JudgedRow, Protocol):
+class SummaryRow(ExternalSummaryRow, Protocol):
     """A row of the summary, a table beside it, or the agreement matrix: what findings and pages read."""
 
     case: str

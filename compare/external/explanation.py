@@ -219,12 +219,12 @@ def _origin(reference: Reference, motion: Motion, end: float) -> Change:
     assert own.path is not None
     origin = np.median((own.path - wanted.path)[wanted.time <= end + SAME_TIME], axis=0)
 
-    def taken_back(given: Motion) -> Motion:
+    def corrected(given: Motion) -> Motion:
         assert given.path is not None
         return replace(given, path=given.path - origin)
 
     mistake = Mistake(code="origin", concerns="path", value=float(np.linalg.norm(origin)))
-    return Change(mistake=mistake, motion=taken_back)
+    return Change(mistake=mistake, motion=corrected)
 
 
 def _with_lean_of_path(motion: Motion) -> Motion:

@@ -14,7 +14,7 @@ from rockwobble.models import Case, Diagnostic, RockingBody, Run, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.frames import pd
-from rockwobble.models.shown import Brief
+from rockwobble.models.shown import CompactRepr
 from rockwobble.models.support import EXTERNAL
 from rockwobble.multibody.passes import TurningPoint, passes_between, turning_points
 
@@ -32,7 +32,7 @@ _SAME_START = 0.1
 
 @with_argument_kinds
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class External(Brief):
+class External(CompactRepr):
     """A file of a trajectory, and how to read it; `rockwobble.compare.external.table` says what it may hold.
 
     Parameters
@@ -81,7 +81,7 @@ class External(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Measurement(Brief):
+class Measurement(CompactRepr):
     """Quantities that a file of an external trajectory gave: the source of its trace.
 
     The trace is at the sample times of the reduced models. What the file does not give is NaN: energy,

@@ -178,7 +178,7 @@ def first_passage(trace: Trace, tilt: float) -> float:
     return exceeds(time, trace.tilt, tilt, 3.0)
 
 
-class JudgedRow(Protocol):
+class ExternalSummaryRow(Protocol):
     """A row of the verdicts: the columns that say what explains the differences."""
 
     likely_mistake: Sequence[str]
@@ -186,7 +186,7 @@ class JudgedRow(Protocol):
     likely_mistake_value: Sequence[float]
 
 
-def mistakes_of(row: JudgedRow) -> tuple[Mistake, ...]:
+def mistakes_of(row: ExternalSummaryRow) -> tuple[Mistake, ...]:
     """Likely mistakes of a verdict."""
     columns = zip(row.likely_mistake, row.likely_mistake_in, row.likely_mistake_value, strict=True)
     return tuple(

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockwobble.models import AGREEMENT, Case, GroundMotion, RockingBody, Trace
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.mode import SLIDES
-from rockwobble.models.shown import Brief
+from rockwobble.models.shown import CompactRepr
 
 FloatArray = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ _SAME_TIME = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Pair(Brief):
+class Pair(CompactRepr):
     """A trial compared with a reference, sample by sample.
 
     The samples are those of the reference, up to the earliest of: the end of either trace, the

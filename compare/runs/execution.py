@@ -15,7 +15,7 @@ from rockwobble.models import Case, Run, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import TimeStep
 from rockwobble.models.parquet_file import pack, read
-from rockwobble.models.shown import Brief
+from rockwobble.models.shown import CompactRepr
 from rockwobble.models.support import RECESS
 from rockwobble.models.trace import lost_trace
 from rockwobble.multibody.engines.registry import engine_facts
@@ -24,7 +24,7 @@ from rockwobble.multibody.scene import REFERENCE_TIME_STEP, froude_scale
 
 from ..storage.provenance import engine_makers, fingerprint, reduced_makers, result_fingerprint
 from .cache import Cache, open_cache
-from .progress import Lost, ProgressCallback
+from .progress import FailedTask, ProgressCallback
 from .scheduler import run_tasks
 
 SAMPLE_STEP = 0.01
@@ -36,7 +36,7 @@ _FEW = 16  # runs of reduced models that take less than to start a process
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Job(Brief):
+class Job(CompactRepr):
     """One run of one case.
 
     Parameters
@@ -203,7 +203,7 @@ def simulate_all(
         here=brief_among(jobs),
     )
     return [
-        lost_trace(job.case, job.run, result.why) if isinstance(result, Lost) else result
+        lost_trace(job.case, job.run, result.why) if isinstance(result, FailedTask) else result
         for job, result in zip(jobs, found, strict=True)
     ]
 

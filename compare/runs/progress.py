@@ -9,11 +9,11 @@ from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import Literal
 
-from rockwobble.models.shown import Brief
+from rockwobble.models.shown import CompactRepr
 
 
 @dataclass(frozen=True, slots=True)
-class Lost:
+class FailedTask:
     """A task whose process died, with its last words; it stands in the place of the result."""
 
     why: str
@@ -24,7 +24,7 @@ class IncompleteError(RuntimeError):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Progress(Brief):
+class Progress(CompactRepr):
     """Progress of tasks.
 
     Parameters

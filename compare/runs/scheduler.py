@@ -28,7 +28,7 @@ from rockwobble.models.cpus import usable_cpus
 from ..storage.provenance import reduced_makers
 from .cache import Cache
 from .dask_backend import Backend, on_cluster
-from .progress import Clock, Lost, ProgressCallback
+from .progress import Clock, FailedTask, ProgressCallback
 
 T = TypeVar("T")
 Call = tuple[Callable[..., object], tuple[object, ...]]
@@ -160,7 +160,7 @@ def run_tasks(
     tries: int = 1,
     makers: Callable[[], Mapping[str, str]] = reduced_makers,
     here: Callable[[T], bool] = lambda task: False,
-) -> list[R | Lost]:
+) -> list[R | FailedTask]:
     """Run a function on each task, and return the results in the order of the tasks.
 
     Parameters
@@ -195,7 +195,7 @@ def run_tasks(
     Returns
     -------
     list
-        `Lost` for a task whose process died.
+        `FailedTask` for a task whose process died.
 
     Raises
     ------
@@ -207,7 +207,7 @@ def run_tasks(
     >>> run_tasks(abs, [-1, 2, -3], workers=1)
     [1, 2, 3]
     """
-    results: dict[int, R | Lost] = {}
+    results: dict[int, R | FailedTask] = {}
     damaged: list[str] = []
     if cache is not None:
         cache.expect(len(tasks))
@@ -254,7 +254,7 @@ def run_tasks(
                     if tried[index] < tries:
                         waiting.append(index)
                         continue
-                    results[index] = Lost(str(error).partition("\n")[0] or type(error).__name__)
+                    results[index] = FailedTask(str(error).partition("\n")[0] or type(error).__name__)
                 else:
                     if cache is not None:
                         cache.keep(tasks[index], future.result())

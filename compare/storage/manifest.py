@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockwobble.models import plain_json
 from rockwobble.models.parquet_file import pack
-from rockwobble.models.shown import Brief
+from rockwobble.models.shown import CompactRepr
 
 from .files import replace_files, require_folder
 from .provenance import code_digests, commit, package_versions, processor
@@ -29,7 +29,7 @@ Number = float | int | str | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Manifest(Brief):
+class Manifest(CompactRepr):
     """Record of what results are and what made them.
 
     Attributes

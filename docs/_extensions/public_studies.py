@@ -6,7 +6,7 @@ import rockwobble
 from rockwobble import studies
 from rockwobble.reports.registry import COMMANDS
 
-GROUP = "many"
+GROUP = "batch"
 
 
 def public_studies() -> dict[str, tuple[str, str]]:

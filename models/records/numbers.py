@@ -178,7 +178,7 @@ def _only_numbers(text: str) -> bool:
     return all(math.isfinite(float(re.sub("[Dd]", "E", token))) for token in re.findall(NUMBER, text))
 
 
-def _foreign_line(text: str) -> int | None:
+def _first_non_numeric_line(text: str) -> int | None:
     """The place of the first line with a character that stands in no number; None without one."""
     foreign = _FOREIGN.search(text)
     return None if foreign is None else text.count("\n", 0, foreign.start())
@@ -192,7 +192,7 @@ def _damaged_line(lines: Sequence[str]) -> int | None:
 
     Numbers may touch; of more such text than is parted no more is looked at.
     """
-    at = _foreign_line("\n".join(lines))
+    at = _first_non_numeric_line("\n".join(lines))
     if at is not None:
         return at
     touched = 0

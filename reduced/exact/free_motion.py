@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rockwobble.models import InitialState, RockingBody, Tendon
-from rockwobble.models.shown import Brief
+from rockwobble.models.shown import CompactRepr
 
 from ..body import Body
 from ..restoring import TiedBody, constants_of, potential
@@ -28,7 +28,7 @@ from .quadrature import half_cycle
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class FreeResponse(Brief):
+class FreeResponse(CompactRepr):
     """Free response to a release on still ground, recess model, undamped.
 
     Attributes

@@ -42,7 +42,7 @@ def longest_stay(body: Body) -> float:
 
 
 @inlined
-def may_rise_above(
+def can_exceed_peak(
     body: Body, momenta: Callable[[State], tuple[float, float]], y: State, peak: float
 ) -> bool:
     """Return whether over still ground the energy of a state lets the tilt rise above `peak` later."""

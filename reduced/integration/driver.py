@@ -27,9 +27,9 @@ import numpy as np
 
 from .._compile import borrowed, once
 from ..body import Body
-from .balance import departs, is_undecided, longest_stay, may_rise_above, turn_since, turns_back
+from .balance import can_exceed_peak, departs, is_undecided, longest_stay, turn_since, turns_back
 from .events import NO_TURN
-from .progress import Stage, make_progress, time_in
+from .progress import Stage, absolute_time, make_progress
 from .record import piece_of_record, still_from
 from .result import (
     COMPLETED,
@@ -62,7 +62,7 @@ _LONGEST = 15.0
 
 def make_driver(system: System, stepper: Stepper) -> Driver:
     """Return the compiled time integration of one model by one method."""
-    lifted, lift_in, at_beginning, at_rest, stood, moved = make_progress(system, stepper)
+    lifted, detect_uplift, at_beginning, at_rest, stood, moved = make_progress(system, stepper)
     workspace, derivative = stepper.workspace, system.derivative
     momenta, creeps, grows = system.momenta, system.creeps, system.grows
 
@@ -95,7 +95,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                 if not stays:
                     if following or run.resting:
                         break
-                    rises = grows and may_rise_above(body, momenta, run.y, run.peak)
+                    rises = grows and can_exceed_peak(body, momenta, run.y, run.peak)
                     if has_turned(log, still) and not rises:
                         break
                     if creeps(body, run.y):
@@ -111,7 +111,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
             run = at_beginning(run, jumps or index == 0 or index == len(record) - 1)
             while now < piece.finish and run.status == COMPLETED:
                 if run.resting:
-                    lift = lift_in(body, options.rtol, time_step, piece, run.elapsed, run.y)
+                    lift = detect_uplift(body, options.rtol, time_step, piece, run.elapsed, run.y)
                     last = run.y
                     run = stood(body, time_step, piece, lift, wanted, run)
                     if not run.resting:
@@ -120,11 +120,11 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                             uplift = begin, lifted(body, time_step, piece, lift.at, 0.0, last)[2]
                         if len(log.rests) > 0:
                             log.rests[-1] = (log.rests[-1][0], begin)
-                    now = time_in(piece, run.elapsed)
+                    now = absolute_time(piece, run.elapsed)
                     continue
                 begin = now
                 run, turn, landing = moved(body, options, piece, bounds, index, following, work, wanted, run)
-                now = time_in(piece, run.elapsed)
+                now = absolute_time(piece, run.elapsed)
                 if turn.kind != NO_TURN:
                     turned = begin + turn.at
                     log.extrema.append((turned, turn.tilt, turn.angle, turn.kind))

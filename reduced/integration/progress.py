@@ -19,7 +19,7 @@ from ..equations import base_inertia, energy
 from ..restoring import standing_force, surely_overturns
 from ..rolling import rolling_momentum
 from ..trigonometry import sin_cos
-from .balance import may_rise_above
+from .balance import can_exceed_peak
 from .events import NONE, REPEATED, Turn, make_events
 from .record import Piece, Vector, ground
 from .result import (
@@ -41,7 +41,7 @@ from .uplift import excess, nearest_branch, start, start_length, uplift_in
 
 
 @inlined
-def may_sit_down(
+def may_come_to_rest(
     body: Body, rest_tilt: float, theta: float, omega: float, L: float, S: float, a: Vector
 ) -> bool:
     """Return whether the cylinder comes to rest: f < 0 and too little energy left to matter.
@@ -182,7 +182,7 @@ class Step(NamedTuple):
 
 
 @inlined
-def time_in(piece: Piece, elapsed: float) -> float:
+def absolute_time(piece: Piece, elapsed: float) -> float:
     """Return the time `elapsed` after the beginning of a piece, exactly its end where it is over [s]."""
     return piece.finish if elapsed >= piece.length else piece.begin + elapsed
 
@@ -191,7 +191,7 @@ class Progress(NamedTuple):
     """The compiled functions that carry a run on."""
 
     lifted: Callable[..., State]  # (body, time_step, piece, at, time, last)
-    lift_in: Callable[..., Lift]  # (body, rtol, time_step, piece, elapsed, y)
+    detect_uplift: Callable[..., Lift]  # (body, rtol, time_step, piece, elapsed, y)
     at_beginning: Callable[..., Stage]  # (run, jumps)
     at_rest: Callable[..., Stage]  # (body, run)
     stood: Callable[..., Stage]  # (body, time_step, piece, lift, wanted, run)
@@ -216,7 +216,9 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         return placed(body, last, theta, omega, angle, spin_momentum(body, theta, rate))
 
     @inlined
-    def lift_in(body: Body, rtol: float, time_step: float, piece: Piece, elapsed: float, y: State) -> Lift:
+    def detect_uplift(
+        body: Body, rtol: float, time_step: float, piece: Piece, elapsed: float, y: State
+    ) -> Lift:
         """Return the uplift of a cylinder at rest after `elapsed` of a piece, if it does.
 
         An uplift within a hair of the next sample is taken up there, already above the threshold,
@@ -257,7 +259,9 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         return Stage(elapsed, y, k, h_next, restart, True, peak, sample, step_count, status)
 
     @inlined
-    def stand(body: Body, time_step: float, piece: Piece, lift: Lift, wanted: Wanted, run: Stage) -> Stage:
+    def advance_at_rest(
+        body: Body, time_step: float, piece: Piece, lift: Lift, wanted: Wanted, run: Stage
+    ) -> Stage:
         """Carry a cylinder at rest to the end of a piece, or as far as the series of its uplift reaches."""
         _, y, k, h_next, restart, _, peak, sample, step_count, status = run
         begin = piece.finish if lift.stays else piece.begin + lift.at
@@ -306,16 +310,16 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
             peak, status = OVERTURNED_TILT, OVERTURNED
         else:
             ending = ending_of(body, work, y, trial)
-            begin = time_in(piece, elapsed)
+            begin = absolute_time(piece, elapsed)
             elapsed = min(elapsed + ending.h, piece.length)
-            until = time_in(piece, elapsed)
+            until = absolute_time(piece, elapsed)
             sample = sample_step(wanted, sample, until, body, work, trial.path, begin, ending.y)
             if ending.turns:
                 turn = trial.turn
                 peak = max(peak, turn.tilt)
                 status = TURNED if following and turn.kind == MAXIMUM else COMPLETED
             y, peak = ending.y, max(peak, ending.y[0])
-            if grows and status == TURNED and may_rise_above(body, momenta, y, peak):
+            if grows and status == TURNED and can_exceed_peak(body, momenta, y, peak):
                 status = COMPLETED
             if ending.overturns:
                 status = OVERTURNED
@@ -327,8 +331,8 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
                 a = ground(piece.a, piece.slope, elapsed)
                 if options.rest_tilt > 0.0:
                     L, S = momenta(y)
-                    resting = resting or may_sit_down(body, options.rest_tilt, y[0], y[1], L, S, a)
+                    resting = resting or may_come_to_rest(body, options.rest_tilt, y[0], y[1], L, S, a)
         after = Stage(elapsed, y, k, h_next, restart, resting, peak, sample, step_count, status)
         return Step(after, turn, landing)
 
-    return Progress(uplift_state, lift_in, at_beginning, at_rest, stand, move)
+    return Progress(uplift_state, detect_uplift, at_beginning, at_rest, advance_at_rest, move)

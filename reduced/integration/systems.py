@@ -32,7 +32,7 @@ Weights = tuple[float, ...]
 
 
 @jit
-def as_it_was(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> State:
+def identity(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> State:
     """Return the state."""
     return y
 
@@ -50,7 +50,7 @@ class System(NamedTuple):
     momenta: Callable[[State], tuple[float, float]]  # y -> (L or Lambda, S)
     placed: Callable[..., State]  # (body, y, theta, omega, phi, L) -> y with these, and without twist rate
     prepares: bool = False  # a state before each step, by what follows
-    ready: Callable[..., State] = as_it_was  # (body, rtol, y, a, slope) -> y before a step
+    ready: Callable[..., State] = identity  # (body, rtol, y, a, slope) -> y before a step
     creeps: Callable[[Body, State], bool] = in_motion  # is it held, tilted, by rolling resistance?
     grows: bool = False  # over still ground a later maximum of the tilt may be larger than the first
 

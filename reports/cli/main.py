@@ -15,7 +15,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
-from ..console import BAD_INPUT, FAILED, INTERRUPTED, complain, forgive_output
+from ..console import BAD_INPUT, FAILED, INTERRUPTED, complain, replace_unencodable_output
 from ..registry import COMMANDS, HEADINGS
 from .command import ShownCommand
 
@@ -93,7 +93,7 @@ def _root(
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line; exit code 0 done, 1 a check failed, 2 bad input, 130 interrupted."""
-    forgive_output()
+    replace_unencodable_output()
     os.environ["MPLBACKEND"] = "svg"  # pictures are files here, whatever a notebook has set
     try:
         code = get_command(app)(arguments, prog_name="rockwobble", standalone_mode=False)

@@ -77,7 +77,7 @@ def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list
     return kept
 
 
-def say_what_is_left_out(supports: Sequence[str] = ()) -> None:
+def report_skipped_engines(supports: Sequence[str] = ()) -> None:
     """Say which engines a default run leaves out, and why: those that do not run here or lack a support."""
     from rockwobble.compare.runs.choice import left_out, missing_engines, omissions
 

@@ -9,7 +9,7 @@ import numpy as np
 from rockwobble.compare.metrics.pair import balance_of
 from rockwobble.models import Trace
 from rockwobble.models.bounds import OVERTURNED_TILT
-from rockwobble.studies.advice.demands import fall_of
+from rockwobble.studies.advice.demands import overturning_time
 
 from .palette import GREY, ORDER, Style
 from .picture import TIME, Array, Axis, Layer, Line, Panel, Picture, Rule, caption, tilt_axis
@@ -29,7 +29,7 @@ def pictures(trace: Trace) -> list[Picture]:
     tilt: list[Layer] = [Line(x=trace.time, y=tilts, style=_PATH)]
     if trace.uplift_time > 0.0:
         tilt.append(Rule(at=trace.uplift_time, axis="x", text="uplift", side="right"))
-    falls, balance = fall_of(trace), balance_of(trace.case)
+    falls, balance = overturning_time(trace), balance_of(trace.case)
     if math.isfinite(falls) and balance < OVERTURNED_TILT:
         name = "α" if balance == cylinder.alpha else "its balance"
         tilt.append(Rule(at=falls, axis="x", text=f"passes {name} for good", side="left"))

@@ -18,7 +18,7 @@ from rockwobble.studies.validity.limits import (
     cells,
     column,
     contrasts,
-    models_apart,
+    model_difference,
 )
 from rockwobble.studies.validity.measurements import FREE, INTENSITY, PERTURBED, STRONG
 from rockwobble.studies.validity.study import Validity
@@ -278,7 +278,7 @@ def _agreement(table: pd.DataFrame) -> Picture:
 
 def _verification(table: pd.DataFrame) -> Picture:
     off = np.degrees((table["engine_turn"] - table["turn"]).abs())
-    table = table.assign(apart=np.degrees(models_apart(table)), off=np.maximum(off, _LEAST))
+    table = table.assign(apart=np.degrees(model_difference(table)), off=np.maximum(off, _LEAST))
     groups = {f"engine, {name}": rows for name, rows in table.groupby("support", sort=False)}
     layers = group_lines(groups, "apart", "off", lines=False, filled="resolved")
     ends = table["apart"].agg(["min", "max"]).to_numpy(dtype=np.float64)

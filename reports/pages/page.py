@@ -43,14 +43,14 @@ _HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
 _LEAST_WIDTH = 80  # of what is not a terminal, such as a file
 
 
-class Safe(str):
+class MarkdownText(str):
     """Text that is Markdown already."""
 
     __slots__ = ()
 
 
 @dataclass(frozen=True, slots=True)
-class Fold:
+class Details:
     """Beginning of the details under a title, or their end, which has none."""
 
     title: str
@@ -63,7 +63,7 @@ class Command:
     line: str
 
 
-Part = str | Picture | Table | Safe | Fold
+Part = str | Picture | Table | MarkdownText | Details
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -145,7 +145,7 @@ class Page:
         """Return the document."""
 
         def as_text(thing: Part) -> str:
-            if isinstance(thing, Fold):
+            if isinstance(thing, Details):
                 return thing.title and f"## {thing.title}"
             if isinstance(thing, Picture):
                 caption = f"*{thing.title}.* {_caption(thing)}".strip()
@@ -206,16 +206,16 @@ class Page:
         keys: set[str] = set()
         pictures = {picture.name: picture for picture in self.pictures}
 
-        def place(thing: Part) -> Safe:
+        def place(thing: Part) -> MarkdownText:
             things.append(thing)
-            return Safe(f"@@{len(things) - 1}@@")
+            return MarkdownText(f"@@{len(things) - 1}@@")
 
         def table(
             rows: Iterable[Row], columns: Sequence[Sequence[str]], group: str = "", **look: bool
-        ) -> Safe:
+        ) -> MarkdownText:
             made = Table(columns=columns_of(columns), rows=list(rows), group=group, **look)
             if not made.rows:
-                return Safe("")
+                return MarkdownText("")
             keys.update(column.key for column in (made.fitting_columns(width) if width else made.columns))
             return place(made)
 
@@ -229,9 +229,9 @@ class Page:
                 **self.values,
                 "output": output,
                 "picture": lambda name: place(pictures[name]),
-                "block": lambda name: place(Safe(self.blocks[name])) if output == "html" else "",
+                "block": lambda name: place(MarkdownText(self.blocks[name])) if output == "html" else "",
                 "table": table,
-                "fold": lambda title="": place(Fold(title)),
+                "fold": lambda title="": place(Details(title)),
                 "shows": keys.__contains__,
             }
         )
@@ -248,9 +248,9 @@ def _unfold(parts: Iterable[Part], details: bool) -> Iterator[str | Table]:
     """Yield the words and tables of a terminal, those of a fold only with `details`."""
     folded = False
     for part in parts:
-        if isinstance(part, Fold):
+        if isinstance(part, Details):
             folded = bool(part.title) and not details
-        elif not folded and isinstance(part, str | Table) and not isinstance(part, Safe):
+        elif not folded and isinstance(part, str | Table) and not isinstance(part, MarkdownText):
             yield part
 
 
@@ -276,7 +276,7 @@ def _caption(picture: Picture) -> str:
 
 
 def _html(part: Part) -> str:
-    if isinstance(part, Fold):
+    if isinstance(part, Details):
         summary = f'<details class="fold"><summary>{html.escape(part.title)}</summary>'
         return summary if part.title else "</details>"
     if isinstance(part, Picture):
@@ -291,7 +291,7 @@ def _html(part: Part) -> str:
         return f'<figure id="{html.escape(part.name)}">{words}<div{several}>{panels}</div>{scale}</figure>'
     if isinstance(part, Table):
         return part.html()
-    return str(part) if isinstance(part, Safe) else to_html(part)
+    return str(part) if isinstance(part, MarkdownText) else to_html(part)
 
 
 def to_html(text: str) -> str:
@@ -308,12 +308,12 @@ def to_html(text: str) -> str:
 def _environment() -> Environment:
     found = environment(autoescape=lambda name: str(name).endswith(".html.j2"))
     found.finalize = _escape
-    found.filters |= {"number": number, "code": lambda text: Safe(f"`{text}`"), "md": Safe}
+    found.filters |= {"number": number, "code": lambda text: MarkdownText(f"`{text}`"), "md": MarkdownText}
     return found
 
 
 def _escape(value: object) -> object:
     """Return a text without what Markdown would take for markup; what is Markdown already stays."""
-    if isinstance(value, str) and not isinstance(value, Safe) and not hasattr(value, "__html__"):
+    if isinstance(value, str) and not isinstance(value, MarkdownText) and not hasattr(value, "__html__"):
         return _MARKUP.sub(lambda found: f"\\{found[0]}", value)
     return value

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rockwobble.models import Diagnostic, Trace
-from rockwobble.studies.advice.demands import fall_of
+from rockwobble.studies.advice.demands import overturning_time
 from rockwobble.studies.single_run import SingleRun
 
 from ..figures.trace import pictures
@@ -35,5 +35,5 @@ def page_of(found: SingleRun) -> Page:
 
 def _limits(trace: Trace) -> list[Diagnostic]:
     """Return the diagnostics of a run up to its fall, in which contact is lost and the rim slips."""
-    held = trace.assumptions_until(fall_of(trace))
+    held = trace.assumptions_until(overturning_time(trace))
     return [*trace.facts, *(held.breaches if held else ())]

@@ -43,7 +43,7 @@ from rockwobble.models.trace_file import motion_facts
 
 from ..plans import AdvicePlan
 from ..spectrum.parts import SPATIAL
-from .demands import demand_table, demands_of, fall_of, weaker_factors
+from .demands import demand_table, demands_of, overturning_time, weaker_factors
 from .findings import findings_of
 from .grades import (
     EVENLY_LOADED,
@@ -300,7 +300,7 @@ class Advice(Results, kind=KIND):
         return _differ(self.groups)
 
     @property
-    def copies_part(self) -> float:
+    def divergence_time(self) -> float:
         """Time from which on copies are spread over half of the peak tilt [s]; inf where they never are."""
         return spread_from(self.band, self.peak)
 
@@ -756,7 +756,7 @@ def _problem(case: Case) -> dict[str, object]:
 
 def _response(trace: Trace) -> Response:
     moves = _moves(trace.outcome, trace.uplift_time)
-    assumed = trace.assumptions_until(fall_of(trace)) if moves else None
+    assumed = trace.assumptions_until(overturning_time(trace)) if moves else None
     own = demands_of(trace)
     return {
         "outcome": trace.outcome,

@@ -60,7 +60,7 @@ _TOGETHER = ("shear", "force", "moment")
 _NOT_PLANE = "all runs stay in one plane, in which no moment arises: a real motion leaves it"
 
 
-def fall_of(trace: Trace) -> float:
+def overturning_time(trace: Trace) -> float:
     """Return when a run that overturns last passes its balance [s], inf where it does not.
 
     A fall asks nothing.
@@ -93,7 +93,7 @@ def demands_of(trace: Trace) -> dict[str, float]:
         zero, and a force of one weight, where nothing moves.
     """
     cylinder = trace.case.cylinder
-    moving = trace.open_base & (trace.time <= fall_of(trace))
+    moving = trace.open_base & (trace.time <= overturning_time(trace))
     ends = [(_BASE, trace.contact_force, trace.friction_needed)]
     if cylinder.slab_mass_ratio > 0.0:
         ends.append((_TOP, trace.top_contact_force, trace.top_friction_needed))

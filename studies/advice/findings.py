@@ -247,7 +247,7 @@ def _trace(advice: Advice) -> Reason:
         return "trace.whole", {"names": ("model", *(["engine"] if ran else []), "copies")}
     if advice.peak <= CLOSED_TILT:
         return "trace.hardly", {"peak": advice.peak}
-    methods, copies = trust.because == "methods", math.isfinite(advice.copies_part)
+    methods, copies = trust.because == "methods", math.isfinite(advice.divergence_time)
     return "trace.statistics" if trust.kind == "statistics" else "trace.peak", {
         "reason": "it_falls" if advice.overturned else "largest_tilt",
         "time": advice.response["peak_time"],
@@ -256,7 +256,7 @@ def _trace(advice: Advice) -> Reason:
         "time_engine": trust.until if methods and ran else math.nan,
         "time_predicted": trust.until if methods and not ran else math.nan,
         "share": advice.facts["perturbation"],
-        "time_copies": advice.copies_part if copies else math.nan,
+        "time_copies": advice.divergence_time if copies else math.nan,
     }
 
 

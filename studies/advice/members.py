@@ -146,7 +146,7 @@ def run_rows(
     return [at_rest | {"member": each.name} if id(each) in names else next(moving) for each in cases]
 
 
-def held_by(case: Case) -> float:
+def tendon_uplift_factor(case: Case) -> float:
     """Return the factor by which a tendon raises the threshold of uplift [-]."""
     return 1.0 if case.tendon is None else case.tendon.uplift_factor(case.cylinder)
 
@@ -156,7 +156,9 @@ def uplift_of(case: Case, motion: GroundMotion | None = None) -> float:
     motion = motion or case.motion
     if motion is None:
         return math.inf
-    return held_by(case) * uplift_factor(motion, case.cylinder.tan_alpha, case.gravity, until=case.length)
+    return tendon_uplift_factor(case) * uplift_factor(
+        motion, case.cylinder.tan_alpha, case.gravity, until=case.length
+    )
 
 
 def scaled(case: Case, factor: float) -> Case:

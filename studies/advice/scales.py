@@ -20,7 +20,7 @@ from ..spectrum.maps import intensity_unit, uplift_of_series
 from ..spectrum.parts import RTOL, SERIES, SPATIAL, series_options
 from ..spectrum.search import Array, lowest_on_grid, run_searches, search_lowest
 from ..spectrum.verification import CHECK_RTOL, CONFIRMING
-from .members import held_by
+from .members import tendon_uplift_factor
 
 # twelve scales for each factor of two, from a quarter to sixteen times the record as it is given
 FACTORS: Array = 2.0 ** (np.arange(-24, 49) / 12.0)
@@ -69,7 +69,9 @@ def scan_scales(case: Case, support: str = RECESS) -> tuple[pd.DataFrame, pd.Dat
         peaks = run(FACTORS)
         start = 0.0
         if not case.is_release:
-            start = uplift_of_series(name, motion, tan_alpha, gravity, until=case.length) * held_by(case)
+            start = uplift_of_series(
+                name, motion, tan_alpha, gravity, until=case.length
+            ) * tendon_uplift_factor(case)
         alpha, stands = case.cylinder.alpha, not case.is_release
         search = search_lowest(FACTORS, peaks, start=start, step=step, alpha=alpha, stands=stands)
         found = run_searches([search], at)[0]

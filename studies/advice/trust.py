@@ -120,7 +120,7 @@ def spread_from(band: pd.DataFrame, peak: float) -> float:
     return float(band["time"].iloc[wide[0]]) if len(wide) else math.inf
 
 
-def copies_part_at(case: Case, trace: Trace, copies: Sequence[Trace]) -> float:
+def copies_divergence_time(case: Case, trace: Trace, copies: Sequence[Trace]) -> float:
     """Return the time from which on copies are spread over half of the peak tilt of a run [s]; inf: never."""
     if trace.outcome in NO_PEAK:
         return math.inf

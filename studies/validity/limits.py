@@ -348,7 +348,7 @@ def _confirmations(table: pd.DataFrame) -> Numbers:
     does not contradict it.
     """
     decides = table["resolved"].astype(bool) & ~table["outcome"].isin(NO_PEAK)
-    resolved = table.assign(apart=models_apart(table))[decides]
+    resolved = table.assign(apart=model_difference(table))[decides]
     error = np.abs(column(resolved, "engine_turn") - column(resolved, "turn"))
     turn_off = error / np.abs(column(resolved, "turn"))
     period_off = np.abs(quotient(resolved, "engine_half_period", "half_period") - 1.0)
@@ -363,7 +363,7 @@ def _confirmations(table: pd.DataFrame) -> Numbers:
     }
 
 
-def models_apart(table: pd.DataFrame) -> Array:
+def model_difference(table: pd.DataFrame) -> Array:
     """Return how far the turns of the recess and of the flat model are apart in the release of each row.
 
     NaN where there is one of them alone.

@@ -332,7 +332,7 @@ _COLUMNS = (
 )
 
 
-def measure_following(
+def measure_record_agreement(
     tan_alpha: float,
     semidiagonal: float,
     intensity: float,
@@ -370,7 +370,7 @@ FOLLOWING = Part(
         for point in inputs_at(POINT, extent.trace_points, duration=extent.trace_length)
         for support in modelled(extent.structure)
     ],
-    measure=measure_following,
+    measure=measure_record_agreement,
     keys=(*POINT, "duration"),
     cost=lambda duration, **_: 0.04 * duration,
 )

@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 from rockwobble.models import Case, Cylinder, Run, Trace
-from rockwobble.models.trace_source import Array, Known
+from rockwobble.models.trace_source import Array, EagerSource
 
 
 @pytest.fixture
@@ -52,7 +52,7 @@ def make_trace(cylinder: Cylinder) -> Callable[..., Trace]:
             "wall_time": 1.0,
             "contact_resolution": 0.0,
             "residual_displacement": 0.0,
-            "source": Known({"energy": np.zeros_like(time) if energy is None else energy}),
+            "source": EagerSource({"energy": np.zeros_like(time) if energy is None else energy}),
         }
         return Trace(time=time, tilt=tilt, **(values | fields))
 

@@ -42,7 +42,7 @@ from rockwobble.compare.check.cause import CANDIDATES, likely_cause
 from rockwobble.compare.check.invariance import _holds
 from rockwobble.compare.check.measurement import RELEASE as MEASURED_RELEASE
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Tendon, Trace, WobblingFrame
-from rockwobble.models.trace_source import Known
+from rockwobble.models.trace_source import EagerSource
 from rockwobble.reduced.body import body_of
 
 CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.4, transverse_inertia=9.0, axial_inertia=2.0)
@@ -92,7 +92,7 @@ def field(name: str, change: Callable[[Any], Any]) -> Callable[[Subject], Subjec
     def other(found: Trace) -> Trace:
         value = change(getattr(found, name))
         if name in found.late:
-            return dataclasses.replace(found, source=Known({**found.late, name: value}))
+            return dataclasses.replace(found, source=EagerSource({**found.late, name: value}))
         return dataclasses.replace(found, **{name: value})
 
     return answered(other)

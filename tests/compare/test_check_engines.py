@@ -12,7 +12,7 @@ from declared_engines import Install, installer
 
 from rockwobble.compare.check import GROUPS, Subject, agreement, engine, invariance, lagrange, laws
 from rockwobble.models import Trace
-from rockwobble.models.trace_source import Known
+from rockwobble.models.trace_source import EagerSource
 from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import engine_facts, standard_engines
 
@@ -93,7 +93,7 @@ def changed(field: str, change: Any) -> Subject:
         found = right.source(*given, **options)
         value = change(getattr(found, field))
         if field in found.late:
-            return dataclasses.replace(found, source=Known({**found.late, field: value}))
+            return dataclasses.replace(found, source=EagerSource({**found.late, field: value}))
         return dataclasses.replace(found, **{field: value})
 
     return dataclasses.replace(right, source=source)

@@ -21,7 +21,7 @@ from scheduled import die_once, killed, multiples, never_the_same, process_of, r
 from rockwobble.compare.runs import dask_backend, scheduler
 from rockwobble.compare.runs.cache import open_table_cache, unfinished_results
 from rockwobble.compare.runs.dask_backend import ClusterError
-from rockwobble.compare.runs.progress import Lost, Progress
+from rockwobble.compare.runs.progress import FailedTask, Progress
 from rockwobble.compare.runs.scheduler import run_tasks
 from rockwobble.compare.storage.claim import CACHE
 from rockwobble.models import cpus
@@ -86,14 +86,14 @@ def test_bad_input_is_raised_here_with_where_it_came_from():
 def test_a_process_that_dies_loses_only_its_own_task():
     found = run_tasks(signalled, [0, int(signal.SIGABRT), 0], workers=2)
     assert (found[0], found[2]) == (None, None)
-    assert found[1] == Lost(f"the process ended with status -{signal.SIGABRT.value}")
+    assert found[1] == FailedTask(f"the process ended with status -{signal.SIGABRT.value}")
 
 
 @pytest.mark.slow
 def test_a_task_whose_process_was_ended_from_outside_begins_again(tmp_path):
     again, once = (str(tmp_path / name) for name in ("a", "b"))
     assert run_tasks(die_once, [again], workers=2, tries=2) == [again]
-    assert [type(each) for each in run_tasks(die_once, [once], workers=2)] == [Lost]
+    assert [type(each) for each in run_tasks(die_once, [once], workers=2)] == [FailedTask]
 
 
 def test_ctrl_c_ends_the_processes_at_once_and_leaves_nothing(monkeypatch, tmp_path):
@@ -150,7 +150,7 @@ def test_a_single_task_has_a_process_of_its_own_where_it_is_asked_for():
 def test_a_lost_task_is_not_kept(tmp_path):
     with table_cache(tmp_path) as cache:
         found = run_tasks(killed, [1], workers=2, cache=cache)
-        assert [type(each) for each in found] == [Lost]
+        assert [type(each) for each in found] == [FailedTask]
         assert cache.find(1) is None
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from rockwobble.models import Case, Cylinder, Diagnostic, Run, Tendon, Trace, WobblingFrame, plain_json
 from rockwobble.models.diagnostic import Assumptions
-from rockwobble.models.trace import Known, lost_trace
+from rockwobble.models.trace import EagerSource, lost_trace
 
 SEEDS = range(8)
 
@@ -50,7 +50,7 @@ def any_trace(seed: int, **given: Any) -> Trace:
         "outcome": "stands",
         "uplift_time": 0.125,
         "uplift_direction": 0.5,
-        "source": Known(late),
+        "source": EagerSource(late),
     }
     return Trace(**{**values, **given})
 
@@ -110,7 +110,7 @@ def test_lengths_follow_from_tilt_and_place(seed: int) -> None:
     assert trace.tendon_force == pytest.approx(0.3 + tendon.stiffness * gaps * chord / b, rel=1e-9)
     assert trace.peak_tendon_force == pytest.approx(trace.tendon_force.max(), rel=1e-9)
     wandered = np.random.default_rng(seed).uniform(0.1, 0.2, len(trace.time))
-    other = any_trace(seed, source=Known({"elongation": wandered}))
+    other = any_trace(seed, source=EagerSource({"elongation": wandered}))
     assert other.elongation.tolist() == wandered.tolist()
     assert other.peak_tendon_force == pytest.approx(0.3 + tendon.stiffness * wandered.max() / b, rel=1e-12)
 
@@ -188,7 +188,7 @@ def test_the_first_of_several_diagnostics_is_the_earliest_of_its_codes() -> None
         Diagnostic(code=code, time=at) for code, at in (("slip", 0.5), ("energy", 0.2), ("slip", 0.3))
     )
     held = Assumptions(breaches=(Diagnostic(code="tension", time=0.1),), friction=1.0)
-    trace = any_trace(0, facts=facts, source=Known({}, held))
+    trace = any_trace(0, facts=facts, source=EagerSource({}, held))
     assert [trace.first("slip"), trace.first("slip", "energy"), trace.first("slip", "tension")] == [
         0.3,
         0.2,

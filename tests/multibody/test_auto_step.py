@@ -11,7 +11,7 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace
-from rockwobble.models.trace_source import Known
+from rockwobble.models.trace_source import EagerSource
 from rockwobble.multibody.auto_step import COARSEST, SMALLEST, Closeness, closeness, find_step
 from rockwobble.multibody.halving import common_count
 
@@ -74,7 +74,7 @@ def made(tilt: Any, *, passes: tuple[float, ...] = (), outcome: str = "stands") 
         passes=pd.DataFrame({"time": passes}),
         contact_resolution=1e-6,
         wall_time=1.0,
-        source=Known({}),
+        source=EagerSource({}),
     )
 
 

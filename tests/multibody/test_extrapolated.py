@@ -21,7 +21,7 @@ from rockwobble.models import (
     Trace,
     el_centro_1940,
 )
-from rockwobble.models.trace_source import Known
+from rockwobble.models.trace_source import EagerSource
 from rockwobble.multibody.extrapolated_step import extrapolation
 from rockwobble.multibody.guard import LARGEST_STEP
 from rockwobble.multibody.halving import to_zero_step
@@ -93,7 +93,7 @@ def made(tilt: Any, *, angle: Any = None, outcome: str = "stands", **more: Any) 
         uplift_direction=0.0,
         contact_resolution=1e-6,
         wall_time=1.0,
-        source=Known({"energy": np.asarray(tilt, dtype=float), "slip": zeros}),
+        source=EagerSource({"energy": np.asarray(tilt, dtype=float), "slip": zeros}),
         **more,
     )
 

@@ -11,7 +11,7 @@ from rockwobble.multibody.passes import (
     SHORTEST,
     RestWatch,
     TurningPoint,
-    faint_openings,
+    negligible_uplifts,
     passes_between,
 )
 
@@ -92,12 +92,12 @@ def test_between_a_release_that_lands_and_a_later_pulse_there_is_no_pass(engine:
 def test_a_faint_opening_comes_before_a_motion_and_belongs_to_none() -> None:
     points = [TurningPoint(1.0, 2e-5, 0.0, True), TurningPoint(3.0, 0.01, 0.0, True)]
     rests = [(0.0, 0.9), (1.1, 2.5), (3.5, 4.0)]
-    assert faint_openings(points, 1e-4, rests) == [0.9]
+    assert negligible_uplifts(points, 1e-4, rests) == [0.9]
     # contact resolves it, no motion follows, it never stood still in between, or none opened there
-    assert faint_openings(points, 1e-5, rests) == []
-    assert faint_openings(points[:1], 1e-4, rests) == []
-    assert faint_openings(points, 1e-4, [(0.0, 0.9), (3.5, 4.0)]) == []
-    assert faint_openings(points[1:], 1e-4, rests) == []
+    assert negligible_uplifts(points, 1e-5, rests) == []
+    assert negligible_uplifts(points[:1], 1e-4, rests) == []
+    assert negligible_uplifts(points, 1e-4, [(0.0, 0.9), (3.5, 4.0)]) == []
+    assert negligible_uplifts(points[1:], 1e-4, rests) == []
 
 
 @pytest.mark.slow

@@ -277,9 +277,9 @@ def test_the_pull_is_the_gradient_of_the_energy() -> None:
     energy = tendon.energy(tendon.elongation(shifts))
     slope = (energy[:3] - energy[3:]) / (2.0 * d)
     # base and slab are pulled alike, so both gaps take their part of the energy
-    assert 2.0 * np.array(tendon.pull(*place)) == pytest.approx(-slope, rel=1e-8)
+    assert 2.0 * np.array(tendon.force(*place)) == pytest.approx(-slope, rel=1e-8)
     elongation = tendon.elongation(place[None])
-    assert tendon.pulls(place[None], elongation)[:, 0] == pytest.approx(tendon.pull(*place), rel=1e-14)
+    assert tendon.forces(place[None], elongation)[:, 0] == pytest.approx(tendon.force(*place), rel=1e-14)
 
 
 def test_the_couple_of_a_restraint_is_the_slope_of_its_energy() -> None:

@@ -10,7 +10,7 @@ from shaken_problems import problem
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Tendon, Trace, WobblingFrame
-from rockwobble.models.trace import Late
+from rockwobble.models.trace import LazySample
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 SAME = 1e-8  # of the peak: another end of the last step, at an rtol of 1e-9
@@ -34,7 +34,7 @@ def test_the_peak_is_no_less_than_any_sample_and_is_attained():
 
 @pytest.mark.slow
 def test_every_sampled_quantity_has_a_value_at_each_time():
-    quantities = [name for name, kind in vars(Trace).items() if isinstance(kind, property | Late)]
+    quantities = [name for name, kind in vars(Trace).items() if isinstance(kind, property | LazySample)]
     for body, tendon in itertools.product(
         (PIER, WobblingFrame(PIER)), (None, Tendon(prestress=0.1, stiffness=2.0))
     ):

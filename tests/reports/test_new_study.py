@@ -66,7 +66,7 @@ class ThresholdStudy(Plan, Study[tuple[float, float], Thresholds]):
         return pd.DataFrame([{"tan_alpha": tan_alpha, "acceleration": gravity * tan_alpha}])
 ''',
     "reports/registry.py": """
-    Entry(name="thresholds", group="many", study="studies.thresholds.ThresholdStudy"),
+    Entry(name="thresholds", group="batch", study="studies.thresholds.ThresholdStudy"),
 """,
     "tests/studies/test_NAME.py": """from __future__ import annotations
 

@@ -14,7 +14,7 @@ from rockwobble.compare.comparison.result import View
 from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Bounds
-from rockwobble.models.shown import LONGEST, Brief
+from rockwobble.models.shown import LONGEST, CompactRepr
 from rockwobble.multibody.engines.registry import engine_facts, engine_names
 from rockwobble.studies.single_run import single_run
 
@@ -128,7 +128,7 @@ def test_a_line_says_of_what_is_long_how_much_there_is():
     import dataclasses
 
     @dataclasses.dataclass(repr=False)
-    class Made(Brief):
+    class Made(CompactRepr):
         share: float
         few: tuple[int, ...]
         many: list[int]

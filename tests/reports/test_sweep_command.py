@@ -9,7 +9,7 @@ import pytest
 from showing import call
 
 from rockwobble.compare.runs import scheduler
-from rockwobble.compare.runs.progress import Lost
+from rockwobble.compare.runs.progress import FailedTask
 from rockwobble.compare.storage.manifest import file_state, read_manifests
 from rockwobble.studies import study
 from rockwobble.studies.sweep import SweepStudy
@@ -51,7 +51,7 @@ def test_a_dead_scheduler_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.M
 
 
 def test_a_sweep_that_cannot_be_finished_says_so_in_one_line(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(study, "run_tasks", lambda _, tasks, **__: [Lost("killed") for _ in tasks])
+    monkeypatch.setattr(study, "run_tasks", lambda _, tasks, **__: [FailedTask("killed") for _ in tasks])
     assert call("sweep", *GRID, "--chunk", "8", "--out", str(tmp_path)) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("rockwobble: 2 of 2 chunks ended their processes 3 times, all others are")

@@ -638,7 +638,7 @@ def test_a_single_run_is_one_of_many_from_where_an_advice_says_so(no_records):
     single = single_run(chaotic, RECESS).facts["single_trace"]
     advised = advise(chaotic, copies=20)
     assert single["perturbation"] == advised.facts["perturbation"] == 0.01
-    assert single["copies_part"] == pytest.approx(advised.copies_part)
+    assert single["copies_part"] == pytest.approx(advised.divergence_time)
     assert single["copies_part"] < advised.response["peak_time"]
     # without passes nothing is magnified
     swing = Case(slender, initial=InitialState(0.5 * slender.alpha, rolling_rate=1.0), duration=5.0)

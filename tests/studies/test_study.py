@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from rockwobble.compare import IncompleteError
-from rockwobble.compare.runs.progress import Lost
+from rockwobble.compare.runs.progress import FailedTask
 from rockwobble.compare.runs.scheduler import run_tasks
 from rockwobble.compare.storage.claim import CACHE, claim_folder
 from rockwobble.studies import study
@@ -47,7 +47,10 @@ class Multiples(Study[int, list[int]]):
 def second_dies(monkeypatch: pytest.MonkeyPatch) -> None:
     def losing(function, tasks, **options):
         found = run_tasks(function, tasks, **options)
-        return [Lost("out of memory") if task == 2 else each for task, each in zip(tasks, found, strict=True)]
+        return [
+            FailedTask("out of memory") if task == 2 else each
+            for task, each in zip(tasks, found, strict=True)
+        ]
 
     monkeypatch.setattr(study, "run_tasks", losing)
 

@@ -9,7 +9,7 @@ import pytest
 from rockwobble import reduced, sweep
 from rockwobble.compare import IncompleteError, Progress
 from rockwobble.compare.runs.dask_backend import ClusterError
-from rockwobble.compare.runs.progress import Lost
+from rockwobble.compare.runs.progress import FailedTask
 from rockwobble.compare.storage.claim import CACHE, claim_folder
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
@@ -92,7 +92,7 @@ def test_a_sweep_whose_chunks_die_says_so_and_keeps_the_others(tmp_path, monkeyp
     def losing(*args, **options):
         assert options["tries"] == 3
         found = run_tasks(*args, **options)
-        return [Lost("killed"), *found[1:]]
+        return [FailedTask("killed"), *found[1:]]
 
     monkeypatch.setattr(study, "run_tasks", losing)
     with pytest.raises(IncompleteError, match=r"1 of 8 chunks ended their processes 3 times.*killed"):

@@ -26,7 +26,7 @@ from .problem import Problem, given_options, next_command, refuse_options_of_eng
 from .suite_choice import (
     chosen_runs,
     refuse_problem_options,
-    say_what_is_left_out,
+    report_skipped_engines,
     suite_lines,
     without_missing,
 )
@@ -159,7 +159,7 @@ def compare(
             for reason in unable_engines(cases):
                 complain(reason)
         elif not engine and suite is None:
-            say_what_is_left_out(support or [])
+            report_skipped_engines(support or [])
         with user_input(), shown_progress() as progress:
             results = rw.comparison(
                 rw.Suite(cases, runs),

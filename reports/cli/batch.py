@@ -32,8 +32,8 @@ from .problem import (
     unread,
     with_steel,
 )
-from .several import GridOptions, Hazard, ManyMethods, ManyMotions, cylinders_of
-from .suite_choice import chosen_runs, refuse_problem_options, say_what_is_left_out, without_missing
+from .shared_options import GridOptions, Hazard, ManyMethods, ManyMotions, cylinders_of
+from .suite_choice import chosen_runs, refuse_problem_options, report_skipped_engines, without_missing
 
 if TYPE_CHECKING:
     from rockwobble.models import RockingBody
@@ -307,7 +307,7 @@ def _runs(
     if suite is not None:
         return without_missing(chosen_runs(suite, engines, supports, time_step), engines)
     if not engines:
-        say_what_is_left_out(supports or ())
+        report_skipped_engines(supports or ())
     chosen = rc.default_runs(engines or None, supports or None, cases=cases)
     return [rw.Run(run.engine, run.support, time_step) for run in chosen]
 
@@ -399,7 +399,7 @@ def _suite(name: str, models: list[str] | None) -> rw.Suite:
     chosen = [rw.Run(None, **{"support": RECESS, **rw.reduced.MODELS[model]}) for model in models or ()]
     added = suite.runs
     if not added and not models:
-        say_what_is_left_out()
+        report_skipped_engines()
         added = rc.default_runs(cases=suite.cases)
     runs = (*chosen, *added)
     return runnable_suite(rw.Suite(suite.cases, runs))
