@@ -315,10 +315,6 @@ def _table(given: _Given, text: str) -> _Columns:
     frequency, words = _frequency(given, other, values[:, 1 - at])
     unit = given.unit(intensity.unit)
     source = f"columns {intensity.title!r} in {unit} and {other.title!r}, {words}"
-    if comments := [
-        line.lstrip("# ") for line in lines if line.startswith("#") and line.lstrip("# ") != header
-    ]:
-        source += f"; not read: {'; '.join(comments)[:80]!r}"
     return _Columns(x=values[:, at], frequency=frequency, unit=unit, source=source)
 
 

@@ -36,8 +36,7 @@ def pictures(results: Advice) -> list[Picture]:
         panels.append(_friction(results))
     picture = Picture(
         name="advice",
-        title=f"{results.facts['case']}: largest tilts, the trace, other scales and friction demand",
-        caption=caption("advice"),
+        caption=caption("advice", name=results.facts["case"]),
         panels=panels,
         columns=2,
         legend="panels",

@@ -86,9 +86,7 @@ def _stack(bars: Sequence[Bar], name: str) -> Picture | None:
         layers=layers,
         height=0.9 + 0.27 * len(bars),
     )
-    return Picture(
-        name=name, title="What the difference is made of", caption=caption("budget"), panels=[panel]
-    )
+    return Picture(name=name, caption=caption("budget"), panels=[panel])
 
 
 def parts_picture(view: CaseView, name: str, *, above: float = 0.0) -> Picture | None:
@@ -112,6 +110,4 @@ def parts_picture(view: CaseView, name: str, *, above: float = 0.0) -> Picture |
         panels.append(Panel(x=TIME, y=y, layers=layers, title=f"{run} − {model}"))
     if not panels:
         return None
-    return Picture(
-        name=name, title="The parts against time", caption=caption("budget_parts"), panels=panels, link_x=True
-    )
+    return Picture(name=name, caption=caption("budget_parts"), panels=panels, link_x=True)

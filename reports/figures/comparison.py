@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -38,8 +39,7 @@ def tilt_picture(view: CaseView, name: str = "figure") -> Picture:
     ]
     return Picture(
         name=name,
-        title=f"Tilt: {view.case.name}, R = {cylinder.semidiagonal:g} m, tan α = {cylinder.tan_alpha:g}",
-        caption=caption("tilt"),
+        caption=caption("tilt", name=view.case.name, length=cylinder.semidiagonal, ratio=cylinder.tan_alpha),
         panels=[
             *(_tilts(view, group, support) for group, support in zip(groups, view.supports, strict=True)),
             *(_differences(view, reference) for reference in view.rows["reference"].unique()),
@@ -102,7 +102,6 @@ def contact_picture(view: CaseView, name: str) -> Picture:
     """Return the unwrapped azimuth of the contact point, and by support its distance from the circle."""
     return Picture(
         name=name,
-        title="Where the rim touches",
         caption=caption("contact_point"),
         panels=[_azimuth(view), *(_drift(view, support) for support in view.supports)],
         link_x=True,
@@ -112,7 +111,7 @@ def contact_picture(view: CaseView, name: str) -> Picture:
 def azimuth_picture(view: CaseView, name: str) -> Picture:
     """Return the azimuth alone."""
     whole = contact_picture(view, name)
-    return Picture(name=name, title=whole.title, caption=whole.caption, panels=whole.panels[:1], link_x=True)
+    return replace(whole, panels=whole.panels[:1])
 
 
 def _azimuth(view: CaseView) -> Panel:
@@ -164,7 +163,6 @@ def turn_picture(view: CaseView, name: str, *, notes: bool = True) -> Picture:
     x = Axis(label=TIME.label, unit=TIME.unit, low=0.0, high=view.case.length)
     return Picture(
         name=name,
-        title="Angle of turn of each pass",
         caption=caption("turns"),
         panels=[Panel(x=x, y=_ANGLE, layers=layers)],
         link_x=True,
@@ -196,7 +194,6 @@ def orbit_picture(view: CaseView, name: str) -> Picture:
         panels.append(Panel(x=east, y=north, layers=layers, title=title, equal=True, height=3.4))
     return Picture(
         name=name,
-        title="Paths of the centre of mass, seen from above",
         caption=caption("orbits"),
         panels=panels,
         columns=2,
@@ -236,7 +233,6 @@ def residual_picture(view: CaseView, name: str) -> Picture:
     colours = [view.styles[run].colour if run in view.styles else GREY for run in runs]
     return Picture(
         name=name,
-        title="How the cylinder stands at the end",
         caption=caption("residuals"),
         panels=[
             _bars(runs, moved, colours, Axis(label="displacement / b", unit="-", low=0.0), "b"),
@@ -284,7 +280,6 @@ def excitation_picture(view: CaseView, name: str) -> Picture | None:
     y = Axis(label="ground acceleration / g", unit="-", low=-peak, high=peak)
     return Picture(
         name=name,
-        title="Excitation",
         caption=caption("excitation"),
         panels=[Panel(x=TIME, y=y, layers=layers)],
         link_x=True,

@@ -33,7 +33,6 @@ def pictures(found: Ensemble) -> list[Picture]:
     panels = [distributions(found.members, list(models)), *([_ratios(found, rows)] if rows else [])]
     picture = Picture(
         name="ensemble",
-        title="Distributions of peak tilt by method, and ratios of the peaks of each member",
         caption=caption("ensemble", share=MARGIN),
         panels=panels,
         legend="panels",

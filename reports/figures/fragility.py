@@ -76,7 +76,6 @@ def _ratios(results: Fragility) -> Picture | None:
     panel = Panel(x=x_axis, y=y_axis, layers=layers, title=title, height=_LINE * len(pairs) + 1.0)
     return Picture(
         name="fragility-ratios",
-        title="Ratios of the median overturning intensities of two methods",
         caption=caption("fragility_ratios", share=margin),
         panels=[panel],
     )
@@ -96,8 +95,9 @@ def _curves(results: Fragility, cylinder: str, place: int) -> Picture:
     drawn = (results.curves["cylinder"] == cylinder) & (results.curves["limit"] == OVERTURNED)
     return Picture(
         name=f"fragility-{place}",
-        title=f"Fragility of {cylinder}: probability of overturning",
-        caption=caption("fragility_curves" if drawn.any() else "fragility_marks", name=measure.title),
+        caption=caption(
+            "fragility_curves" if drawn.any() else "fragility_marks", name=cylinder, detail=measure.title
+        ),
         panels=panels,
         columns=2,
         legend="panels",

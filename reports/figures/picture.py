@@ -236,9 +236,10 @@ class Picture:
     ----------
     name : str
         Name of its file.
-    title : str
     caption : str or Finding
         A finding, see `caption`, is worded where the picture stands on a page.
+    title : str
+        Default: the short form of the caption.
     panels : sequence of Panel
     columns : int
         Columns of panels, in a document; a page has as many as fit.
@@ -253,9 +254,9 @@ class Picture:
     """
 
     name: str
-    title: str
     panels: Sequence[Panel]
     caption: str | Finding = ""
+    title: str = ""
     columns: int = 1
     shades: Shades | None = None
     legend: Literal["below", "panels"] = "below"

@@ -76,8 +76,9 @@ def _picture(results: Fragility, cylinder: str, place: int) -> Picture:
     ]
     return Picture(
         name=f"risk-{place}",
-        title=f"Hazard, fragility and their product: {cylinder}",
-        caption=caption("risk", count=len(labels) if len(set(table["method"])) > _MOST else None),
+        caption=caption(
+            "risk", name=cylinder, count=len(labels) if len(set(table["method"])) > _MOST else None
+        ),
         panels=panels,
         columns=3,
         legend="panels",

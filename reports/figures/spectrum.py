@@ -58,9 +58,7 @@ def picture_of(spectrum: TiltMaps) -> Picture:
     )
     return Picture(
         name="spectrum",
-        title=f"Peak tilt of sizes under intensities, {spectrum.motion.name or 'record'}, "
-        f"tan α = {spectrum.tan_alpha:g}",
-        caption=caption("spectrum"),
+        caption=caption("spectrum", name=spectrum.motion.name or "record", ratio=spectrum.tan_alpha),
         panels=[*maps, curves],
         columns=2,
         shades=PEAKS,

@@ -13,7 +13,7 @@ from rockwobble.studies import Sweep
 
 from .ensemble import distributions
 from .heat import PEAKS, names, peak_map
-from .picture import Array, Axis, Panel, Picture
+from .picture import Array, Axis, Panel, Picture, caption
 
 # maps of a picture, cells of a map: more are not to be seen, and a page holds them
 _MOST_MAPS, _MOST_CELLS = 6, 20_000
@@ -30,14 +30,14 @@ def _maps(results: Sweep) -> Picture:
     sizes, scales = (results.table[name].nunique() for name in ("semidiagonal", "scale"))
     steps = _step(sizes, scales), _step(scales, sizes)
     panels = [_map(own, *steps) for _, own in islice(parts, _MOST_MAPS)]
-    thinned = zip(("sizes", "scales"), steps, strict=True)
-    left_out = "".join(f" Of the {what} one in {step} is shown." for what, step in thinned if step > 1)
-    left_out += f" The first {_MOST_MAPS} of {len(parts)} maps." if len(parts) > _MOST_MAPS else ""
+    one_in = {
+        f"count_{name}": step if step > 1 else None
+        for name, step in zip(("sizes", "scales"), steps, strict=True)
+    }
+    maps = len(parts) if len(parts) > _MOST_MAPS else None
     return Picture(
         name="sweep",
-        title="Peak tilt of sizes under scaled records",
-        caption="Each cell is a run. What overturns has a colour of its own, what does not uplift none."
-        + left_out,
+        caption=caption("sweep_maps", count=_MOST_MAPS, count_all=maps, **one_in),
         panels=panels,
         columns=min(2, len(panels)),
         shades=PEAKS,
@@ -82,12 +82,9 @@ def _distributions(table: pd.DataFrame) -> Picture:
     members = table.drop(columns="peak_tilt").rename(
         columns={"run": "method", "case": "member", "peak_tilt_over_alpha": "peak_tilt"}
     )
-    overturned = (members["outcome"] == "overturned").any()
     models = members.loc[members["engine"] == REDUCED, "method"].unique()
     return Picture(
         name="sweep",
-        title="Distributions of peak tilt over the cases, by run",
-        caption="Share of the cases whose peak tilt is at most that of the axis"
-        + ("; curves end below 1 where runs overturn (triangle)." if overturned else "."),
+        caption=caption("sweep_shares"),
         panels=[distributions(members, list(models), "cases")],
     )

@@ -45,46 +45,41 @@ _LINES = (
 )
 
 
-# name, title, fewest records of a cell that is not gray, column of the cells, shades
+_RATIO_90 = Shades(label="90th percentile of the ratio", unit="-", low=1.0, high=10.0, log=True)
+# name, fewest records of a cell that is not gray, column of the cells, shades
 _MAPS = (
     (
         "bias",
-        "Where rolling out changes the peak: bias",
         FEWEST_OF_A_QUANTILE,
         "flat_percent",
         Shades(label="flat ground / recess − 1, median", unit="%", low=-50.0, high=50.0, centre=0.0),
     ),
     (
         "spread",
-        "Where rolling out changes the peak: spread",
         1,
         "flat_90",
-        Shades(label="90th percentile of the ratio", unit="-", low=1.0, high=10.0, log=True),
+        _RATIO_90,
     ),
     (
         "sensitivity",
-        "Sensitivity: the recess model under a record 1 % stronger",
         1,
         "copy_90",
-        Shades(label="90th percentile of the ratio", unit="-", low=1.0, high=10.0, log=True),
+        _RATIO_90,
     ),
     (
         "need-friction",
-        "Friction demand of the recess model",
         FEWEST,
         "friction_90",
         Shades(label="friction demand / tan α", unit="-", low=1.0, high=3.0),
     ),
     (
         "need-contact",
-        "Least normal force",
         FEWEST,
         "normal_10",
         Shades(label="normal force / weight", unit="-", low=0.0, high=1.0, reverse=True),
     ),
     (
         "need-moment",
-        "Restraining moment of the recess",
         FEWEST,
         "moment_90",
         Shades(label="κ / (weight × b)", unit="-", low=0.01, high=1.0, log=True),
@@ -96,7 +91,7 @@ def map_pictures(tables: Tables) -> list[Picture]:
     """Return the maps in which anything is known: of peaks over records, of needs, and of free response."""
     table, free = cells(tables), tables["free_response"]
     table = table.assign(flat_percent=100.0 * (table["flat_ratio"] - 1.0))
-    found = [_shaken(table, *given) for given in _MAPS if table[given[3]].notna().any()]
+    found = [_shaken(table, *given) for given in _MAPS if table[given[2]].notna().any()]
     two = free["flat_turn"].notna().any()  # models of free response, which are compared
     for name, what in (("turn", "Azimuth change"), ("period", "Period")) if two else ():
         off = 100.0 * (free[f"flat_{name}"] / free[name] - 1.0)
@@ -104,7 +99,7 @@ def map_pictures(tables: Tables) -> list[Picture]:
     return found
 
 
-def _shaken(table: pd.DataFrame, name: str, title: str, fewest: int, column: str, shades: Shades) -> Picture:
+def _shaken(table: pd.DataFrame, name: str, fewest: int, column: str, shades: Shades) -> Picture:
     panels = []
     for tan_alpha, own in table.groupby("tan_alpha"):
         (x, x_ticks), (y, y_ticks) = (
@@ -131,7 +126,6 @@ def _shaken(table: pd.DataFrame, name: str, title: str, fewest: int, column: str
         )
     return Picture(
         name=name,
-        title=title,
         caption=caption(name.replace("-", "_"), count=int(table["members"].max()), count_fewest=fewest),
         panels=panels,
         columns=len(panels) if len(panels) < 4 else 2,
@@ -167,8 +161,7 @@ def _free(name: str, what: str, table: pd.DataFrame) -> Picture:
     reach = float(f"{max(float(np.nanquantile(table['off'].abs(), 0.99)), 1e-3):.0e}")
     return Picture(
         name=name,
-        title=f"{what} from tilt maximum to next maximum",
-        caption=caption("free"),
+        caption=caption("free", name=what),
         panels=panels,
         columns=2,
         shades=Shades(label="flat ground / recess − 1", unit="%", low=-reach, high=reach, centre=0.0),
@@ -201,6 +194,7 @@ _OTHER_MEDIAN = "cross"
 _APART = 0.16  # rows of one point
 _RATIO_ENDS = (0.2, 5.0)  # a ratio beyond is drawn at the end
 _LEAST = 1e-9  # what a logarithmic axis shows of nothing
+_PEAK_RATIO = "peak / recess model's peak"
 _ONE = Rule(at=1.0, axis="y", colour=GREY, dash="solid")
 
 
@@ -226,8 +220,7 @@ def pictures(results: Validity) -> list[Picture]:
 def _records(table: pd.DataFrame) -> Picture:
     low, high = _RATIO_ENDS
     ticks = [(value, f"{value:g}") for value in (0.2, 0.5, 1.0, 2.0, 5.0)]
-    label = "peak / recess model's peak"
-    ratio = Axis(label=label, unit="-", log=True, low=low, high=high, ticks=ticks)
+    ratio = Axis(label=_PEAK_RATIO, unit="-", log=True, low=low, high=high, ticks=ticks)
     methods = [method for method, against in CONTRASTS if against == RECESS.model]
     panels = []
     for tan_alpha, points in table[table["against"] == RECESS.model].groupby("tan_alpha", sort=False):
@@ -249,7 +242,6 @@ def _records(table: pd.DataFrame) -> Picture:
         panels.append(Panel(x=ratio, y=y_axis, layers=layers, title=title, height=height))
     return Picture(
         name="records",
-        title="Peak tilt over records, compared with the recess model",
         caption=caption("records"),
         panels=panels,
         columns=min(2, len(panels)),
@@ -270,7 +262,6 @@ def _agreement(table: pd.DataFrame) -> Picture:
     ]
     return Picture(
         name="agreement",
-        title="Agreement time of traces, measured against predicted",
         caption=caption("agreement"),
         panels=[Panel(x=predicted, y=measured, layers=layers, height=3.2)],
     )
@@ -285,7 +276,6 @@ def _verification(table: pd.DataFrame) -> Picture:
     layers.append(Line(x=ends, y=CONFIRMS * ends, name="half of the difference", width=0.8))
     return Picture(
         name="verification",
-        title="The engine distinguishes the models of recess and flat ground",
         caption=caption("verification", reason=None if table["resolved"].all() else "open_marks"),
         panels=[
             Panel(
@@ -310,7 +300,6 @@ def _slip(table: pd.DataFrame) -> Picture:
     ]
     return Picture(
         name="slip",
-        title="Slip in the engine where friction is insufficient",
         caption=caption("slip"),
         panels=[
             Panel(
@@ -343,12 +332,11 @@ def _rings(table: pd.DataFrame, uplift: float) -> Picture:
     shaken, touched = plain[plain["motion"] != FREE], plain[plain["contact_time"] > 0.0]
     return Picture(
         name="rings",
-        title="A recess with clearance, compared with the ideal recess",
         caption=caption("rings", intensity=INTENSITY * uplift),
         panels=[
             Panel(
                 x=clearance,
-                y=Axis(label="peak / recess model's peak", unit="-"),
+                y=Axis(label=_PEAK_RATIO, unit="-"),
                 layers=[_ONE, *lines("ratio", shaken, 1e-3)],
                 title="peak tilt",
             ),
@@ -389,12 +377,11 @@ def _contact(table: pd.DataFrame, uplift: float) -> Picture:
     )
     return Picture(
         name="contact",
-        title="Compliant contact",
         caption=caption("contact", intensity=STRONG * uplift),
         panels=[
             Panel(
                 x=softness,
-                y=Axis(label="peak / recess model's peak", unit="-"),
+                y=Axis(label=_PEAK_RATIO, unit="-"),
                 layers=[_ONE, *group_lines(groups, "softness", "ratio", lines=False), crosses],
             ),
             Panel(

@@ -15,7 +15,7 @@ import html
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -110,7 +110,7 @@ class Page:
         return {
             **{name: text.encode() for name, text in texts.items()},
             **{
-                f"{picture.name}.svg": svg(picture, titled=titled)
+                f"{picture.name}.svg": svg(_worded(picture), titled=titled)
                 for picture in self.pictures
                 if self.alone is None or picture.name in self.alone
             },
@@ -148,7 +148,7 @@ class Page:
             if isinstance(thing, Details):
                 return thing.title and f"## {thing.title}"
             if isinstance(thing, Picture):
-                caption = f"*{thing.title}.* {_caption(thing)}".strip()
+                caption = f"*{thing.title}.* {thing.caption}".strip()
                 return f"![{thing.title}]({thing.name}.svg)\n\n{caption}"
             return thing.markdown() if isinstance(thing, Table) else ""
 
@@ -204,7 +204,7 @@ class Page:
         """Return the rendered template, cut where a picture, a table, a block or a fold stands."""
         things: list[Part] = []
         keys: set[str] = set()
-        pictures = {picture.name: picture for picture in self.pictures}
+        pictures = {picture.name: _worded(picture) for picture in self.pictures}
 
         def place(thing: Part) -> MarkdownText:
             things.append(thing)
@@ -271,8 +271,11 @@ def _with_commands(parts: Iterable[str | Table]) -> Iterator[str | Table | Comma
             yield last
 
 
-def _caption(picture: Picture) -> str:
-    return picture.caption if isinstance(picture.caption, str) else sentence(picture.caption)
+def _worded(picture: Picture) -> Picture:
+    words = picture.caption
+    if isinstance(words, str):
+        return picture
+    return replace(picture, title=picture.title or sentence(words, short=True), caption=sentence(words))
 
 
 def _html(part: Part) -> str:
@@ -286,7 +289,7 @@ def _html(part: Part) -> str:
         )
         columns = f' class="panels" style="--columns: {part.columns}"'
         several = columns if len(part.panels) > 1 and not part.link_x else ""
-        words = f"<h3>{html.escape(part.title)}</h3><p>{html.escape(_caption(part))}</p>"
+        words = f"<h3>{html.escape(part.title)}</h3><p>{html.escape(str(part.caption))}</p>"
         scale = colour_bar(part.shades) if part.shades else ""
         return f'<figure id="{html.escape(part.name)}">{words}<div{several}>{panels}</div>{scale}</figure>'
     if isinstance(part, Table):

@@ -224,7 +224,9 @@ def test_a_curve_is_its_highest_levels_or_refused_in_a_line(tmp_path: Path) -> N
 
 def test_a_header_may_be_the_last_comment_above_the_numbers(tmp_path: Path) -> None:
     rows = "".join(f"{x} {y}\n" for x, y in zip(X, RATE, strict=True))
-    assert read(tmp_path, "# site\n# PGA(g) AFE\n" + rows).intensity == pytest.approx(X)
+    curve = read(tmp_path, "# site, a = 1\n# PGA(g) AFE\n" + rows)
+    assert curve.intensity == pytest.approx(X)
+    assert "site" not in curve.source
     with pytest.raises(ValueError, match="two columns"):
         read(tmp_path, rows)
 

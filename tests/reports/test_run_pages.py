@@ -16,7 +16,7 @@ import rockwobble.studies as rs
 from rockwobble.compare.comparison.peak_error import PeakError
 from rockwobble.compare.metrics.pair import balance_of
 from rockwobble.compare.runs import execution
-from rockwobble.models.finding import Value
+from rockwobble.models.finding import Finding, Value
 from rockwobble.reports import pages as registry
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures import sweep as figure
@@ -192,9 +192,9 @@ def test_a_map_has_a_cell_for_each_run_or_says_of_how_many(monkeypatch):
     monkeypatch.setattr(figure, "_MOST_MAPS", 1)
     (picture,) = figure.pictures(found)
     assert picture.panels[0].layers[0].values.shape == (2, 2)
-    assert picture.caption.endswith(
-        "Of the sizes one in 2 is shown. Of the scales one in 2 is shown. The first 1 of 2 maps."
-    )
+    left_out = {"count_sizes": 2, "count_scales": 2, "count": 1, "count_all": 2}
+    assert isinstance(picture.caption, Finding)
+    assert picture.caption.values == left_out
 
 
 def test_a_short_axis_keeps_its_values_beside_a_long_one():

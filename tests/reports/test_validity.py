@@ -12,9 +12,11 @@ import pytest
 from tiny_validity import TINY, tiny_validity
 from typer.testing import CliRunner
 
+from rockwobble.models.finding import Finding
 from rockwobble.reports.cli.main import app
 from rockwobble.reports.pages import page_of, stored_page
 from rockwobble.reports.pages.page import Page
+from rockwobble.reports.pages.wording import lines_of
 from rockwobble.studies.validity import study
 from rockwobble.studies.validity.study import Validity, validity_of
 
@@ -42,8 +44,9 @@ def test_the_document_shows_every_picture_and_its_tables_are_whole(found: Validi
 def test_every_figure_can_be_read(found: Validity) -> None:
     for picture in page_of(found).pictures:
         assert len(picture.entries()) <= 8
-        assert picture.title
-        assert picture.caption
+        assert isinstance(picture.caption, Finding)
+        title, words = lines_of(picture.caption.key)
+        assert title != words
 
 
 def test_with_a_slab_it_is_named_and_no_clearance_is(found: Validity) -> None:
