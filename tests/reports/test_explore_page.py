@@ -137,6 +137,30 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+# of a column with less friction than it needs the page knows no result
+SLIPS = """
+window.lookFurther = (found) => {
+  const part = (name) => document.querySelector(`[data-part="${name}"]`), said = part("outcome");
+  if (said.className !== "undecided" || !said.textContent.includes("it slips")) found.push(`${said.className}: ${said.textContent}`);
+  if (part("results").textContent.includes("α")) found.push(part("results").textContent);
+};
+"""  # noqa: E501
+
+
+@pytest.mark.slow
+@needs_chromium
+def test_too_little_friction_leaves_the_page_no_result(folder: Path) -> None:
+    released = ["--release-tilt-deg", "5", "--support", "flat", "--overwrite"]
+    wrong = {}
+    for friction in (0.05, 1.4):
+        assert call(*released, "--friction", f"{friction}") == 0
+        page = (folder / "explore.html").read_text(encoding="utf-8")
+        page = page.replace("<body>", f"<body><script>{WORKER}</script>")
+        wrong[friction] = complaints(page, folder, figures=2, further=SLIPS, widths=["screen"])
+    assert wrong[0.05] == []
+    assert len(wrong[1.4]) == 2
+
+
 @pytest.mark.slow
 @needs_chromium
 def test_the_page_is_drawn_and_says_what_it_shows(folder: Path) -> None:

@@ -5,7 +5,7 @@
   const doubles = (text) => text && new Float64Array(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
   const motions = records.map(({ x, y, z, dt }) => ({ x: doubles(x), y: doubles(y), z: doubles(z), dt }));
   const peaks = motions.map(({ x, y }) => x.reduce((most, value, i) => Math.max(most, Math.hypot(value, y[i])), 0) / GRAVITY);
-  const BLUE = "#0072B2", RED = "#B00020", ORANGE = "#D55E00", GREY = "#8a8a8a", AGREEMENT = 0.01;  // of alpha
+  const BLUE = "#0072B2", RED = "#B00020", ORANGE = "#D55E00", GREY = "#8a8a8a", AGREEMENT = 0.01, SLIPS = 0.05;  // of alpha; of the time in motion
 
   // -- the problem: what each slider states, between the bounds of its number; out of them nothing is computed
 
@@ -198,7 +198,8 @@
     drawn = true;
     clock.length = Math.max(...bodies.map((body) => body.time[body.time.length - 1]), 0.01);
     clock.start = Math.max(0, (main.upliftTime || 0) - 0.2);
-    outcome(main); results(main, motion); parting();
+    const demand = demandOf(main);
+    outcome(main, demand); results(main, motion, demand); parting();
 
     const ends = [0, clock.length];
     const slides = main.slides, values = (body) => (slides ? body.x.map((x, i) => Math.hypot(x, body.y[i])) : body.tilt.map((tilt) => tilt * DEG));
@@ -246,29 +247,37 @@
     if (find("outcome").textContent !== words) find("outcome").textContent = words;
     find("outcome").className = kind;
   };
-  const outcome = ({ outcome: end, endTime, upliftTime, peak, alpha, relativePeak, copies, body, slides, displacement }) => {
+  // most friction and least normal force of a run in motion, and the share of that time in which it needs more than there is
+  const demandOf = ({ at, tilt, alpha, balance, outcome: end, normal, outward, across }) => {
+    let friction = 0, least = Infinity, moving = 0, slipping = 0;
+    for (let i = 0; i < normal.length; i++) if (tilt[i] > 1e-3 * alpha && !(end === "overturned" && tilt[i] > 1.2 * balance)) {
+      const needed = normal[i] > 0 ? Math.hypot(outward[i], across[i]) / normal[i] : Infinity;
+      friction = Math.max(friction, needed);
+      least = Math.min(least, normal[i] / GRAVITY);
+      moving++; slipping += at.support === "flat" && needed > at.friction;
+    }
+    return { friction, least, slips: slipping / Math.max(moving, 1) };
+  };
+  const outcome = (run, { friction, slips }) => {
+    const { at, endTime, upliftTime, peak, alpha, relativePeak, copies, body, slides, displacement } = run, end = slips > SLIPS ? "slips" : run.outcome;
     const words = { overturned: `Overturns: on the ground at ${number(endTime, 4)} s`, undecided: `Not decided: followed for ${number(endTime || clock.length, 4)} s only`,
       mixed: body.gamma ? "Not known: no model slides under a slab" : "Not known: so near to b/h it rocks and slides at once, which takes an engine",
+      slips: `Not known: it slips, which takes an engine (friction ${number(at.friction)}, up to ${friction === Infinity ? "no contact" : number(friction)} needed)`,
       yielded: `Not known: the tendon yields at a tilt of ${number(body.yieldTilt * DEG)}°` }[end]
       || (slides ? displacement ? `Slides up to ${number(displacement)} m, and cannot uplift` : "Stands, and does not slide" :Number.isNaN(upliftTime) ? "Stands, and does not uplift" : peak > alpha ? "Stands, after a tilt beyond α" : "Stands");
-    const unknown = ["undecided", "yielded", "mixed"].includes(end), otherwise = unknown ? 0 : copies.filter((each) => Number.isFinite(each) !== Number.isFinite(relativePeak)).length;
+    const unknown = ["undecided", "yielded", "mixed", "slips"].includes(end), otherwise = unknown ? 0 : copies.filter((each) => Number.isFinite(each) !== Number.isFinite(relativePeak)).length;
     say(words + (otherwise ? `; but ${otherwise} of ${copies.length} runs with a 1 % change end otherwise` : ""), otherwise ? "sensitive" : unknown ? "undecided" : end);
   };
-  const results = (body, motion) => {
-    const { at, peak, alpha, normal, outward, across } = body, o = body.body, fell = body.outcome === "overturned", moved = !Number.isNaN(body.upliftTime);
-    const end = { overturned: "overturns", undecided: "not decided", yielded: "not known, the tendon yields", mixed: "not known" }[body.outcome];
-    let friction = 0, least = Infinity;
-    for (let i = 0; i < normal.length; i++) if (body.tilt[i] > 1e-3 * alpha && !(fell && body.tilt[i] > 1.2 * body.balance)) {
-      friction = Math.max(friction, normal[i] > 0 ? Math.hypot(outward[i], across[i]) / normal[i] : Infinity);
-      least = Math.min(least, normal[i] / GRAVITY);
-    }
+  const results = (body, motion, { friction, least, slips }) => {
+    const { at, peak, alpha } = body, o = body.body, moved = !Number.isNaN(body.upliftTime);
+    const end = { overturned: "overturns", undecided: "not decided", yielded: "not known, the tendon yields", mixed: "not known", slips: "not known" }[slips > SLIPS ? "slips" : body.outcome];
     const ends = o.gaps, topShift = ends * at.diameter / 2 * (1 - Math.cos(peak)) + at.height * Math.sin(peak), rows = [
       ["peak tilt", end || (moved ? `${number(peak * DEG)}° = ${number(peak / alpha)} α` : "0")],
       [ends > 1 ? "displacement of the slab" : "displacement of the top", end || (moved ? `${number(topShift)} m` : "0 m")],
       [motion ? "time of uplift" : "released", moved ? motion ? `${number(body.upliftTime, 4)} s` : "at 0 s" : "none"],
       ["peak ground acceleration", motion ? `${number(at.intensity * peaks[at.record])} g` : "still"],
       ["acceleration at uplift", `${number(o.slope * (1 + o.q / GRAVITY))} g`],
-      ["friction demand", Number.isFinite(least) ? friction === Infinity ? "contact is lost" : number(friction) : "none"],
+      ["friction demand", Number.isFinite(least) ? (friction === Infinity ? "contact is lost" : number(friction)) + (slips ? `, over ${number(at.friction)} for ${number(100 * slips, 2)} % of the motion` : "") : "none"],
       ["least normal force", Number.isFinite(least) ? `${number(least)} weights` : "1 weight"],
     ];
     if (body.slides) {
