@@ -68,7 +68,7 @@ class _Names(dict[str, Any]):
         if known in (Literal, Iterable):
             return _AnyText if known is Literal else Sequence
         if hasattr(known, "__array_function__"):
-            return _AnyKind  # what an array may be made of is checked where it is read
+            return _AnyKind  # elements of an array are checked where it is read
         if known in (Any, object) or isinstance(known, TypeVar):
             return Any
         return _instance_of(known) if getattr(known, "__module__", "").startswith("rockwobble") else known
@@ -94,7 +94,7 @@ def _check(parameter: inspect.Parameter, function: Callable[..., Any]) -> Callab
         return lambda value: value
     from pydantic import TypeAdapter, ValidationError
 
-    from .number_checks import quoted  # with numpy, which help can do without
+    from .number_checks import quoted  # imports numpy, which help can do without
 
     kind = eval(stated, {}, _Names(inspect.unwrap(function).__globals__))
     if kind is _AnyKind:

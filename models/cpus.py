@@ -13,9 +13,10 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
-_TASKS = 8  # of a grid for each thread, so that all end at about the same time
+_TASKS = 8  # tasks of a grid for each thread, so that all end at about the same time
 
-_QUOTA = Path("/sys/fs/cgroup/cpu.max")  # of a container: microseconds of computing in a period, or "max"
+# quota of a container: microseconds of computing in a period, or "max"
+_QUOTA = Path("/sys/fs/cgroup/cpu.max")
 
 
 def usable_cpus() -> int:

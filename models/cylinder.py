@@ -19,7 +19,7 @@ _UNITS = {
     "transverse_inertia": "m^2",
     "axial_inertia": "m^2",
 }
-# what is in m^2 and in m^4 stays a number
+# quantities in m^2 and m^4 are shown as plain numbers
 _SMALLEST, _LARGEST = 1e-70, 1e70  # [m]
 
 

@@ -30,7 +30,7 @@ FAILURES: Mapping[str, str] = MappingProxyType(
 CODES: Mapping[str, str] = MappingProxyType(
     {
         **FAILURES,
-        # what limits a run
+        # diagnostics that limit a run
         "slip": "",
         "lift_off": "",
         "tension": "weights",
@@ -53,7 +53,7 @@ CODES: Mapping[str, str] = MappingProxyType(
         "one_column": "columns",
         "side": "",
         "tendon_yield": "weights",
-        # what makes a record of the ground improbable
+        # doubts about a record of the ground
         "large_peak": "g",
         "unlike_components": "",
         "same_components": "",
@@ -68,7 +68,7 @@ CODES: Mapping[str, str] = MappingProxyType(
         "unlikely_step": "s",
         "ends_in_strong_motion": "",
         "other_direction": "",
-        # what an external trajectory leaves open
+        # doubts about an external trajectory
         "note": "",
         "missed_pass": "passes",
     }

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .shown import brief
 
-MOST_SAMPLES = 10_000_000  # of one trace: some gigabytes
+MOST_SAMPLES = 10_000_000  # limit for one trace: some gigabytes
 _MOST = 70  # characters of a value that is quoted
 
 

@@ -126,7 +126,7 @@ EXTERNAL = Support(
     compared_with=("recess",),
 )
 SUPPORTS: Mapping[str, Support] = MappingProxyType({each: each for each in (RECESS, FLAT, RING)})
-MODELLED = tuple(each for each in SUPPORTS.values() if each.has_model)  # those with a reduced model
+MODELLED = tuple(each for each in SUPPORTS.values() if each.has_model)  # supports with a reduced model
 RECESSES_FIRST = tuple(sorted(SUPPORTS.values(), key=lambda each: not each.is_recess))
 
 

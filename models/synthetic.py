@@ -81,12 +81,12 @@ def pulse(
     return GroundMotion(samples, step, f"{kind} pulse", source_of_samples(PULSE, samples, step))
 
 
-# of the Kanai-Tajimi filter, firm soil: K. Kanai 1957, H. Tajimi 1960
+# Kanai-Tajimi filter, firm soil: K. Kanai 1957, H. Tajimi 1960
 _GROUND_FREQUENCY, _GROUND_DAMPING = 5.0 * math.pi, 0.6
 # a second, high-pass filter (R. W. Clough, J. Penzien) takes what a ground cannot do: drift away
 _CORNER_FREQUENCY, _CORNER_DAMPING = 0.5 * math.pi, 0.6
 _TIME_STEP = 0.01
-# of the duration: rise and strong part of the envelope, followed by an exponential decay
+# shares of the duration: rise and strong part of the envelope, followed by an exponential decay
 _RISE, _STRONG, _DECAY = 0.15, 0.4, 4.0
 
 

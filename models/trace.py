@@ -23,7 +23,7 @@ from .trace_source import Array, EagerSource, Source, friction_of, no_passes
 if TYPE_CHECKING:
     import pandas as pd
 
-# of b: slip, and displacement with a closed base, that is more than the creep of an engine's contact
+# slip, and displacement with a closed base, over b: more than the creep of an engine's contact
 _SLIP, _CREEP = 0.01, 1e-3
 NO_PEAK = ("failed", "undecided")  # outcomes of runs of which nobody knows whether they stand
 

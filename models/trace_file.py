@@ -71,7 +71,7 @@ VECTORS = {
 }
 OF_FRAMES = VECTORS["top_contact_force"]  # columns that only the trace of a frame has
 OF_TENDONS = ("elongation", "tendon_force")  # and of a body with a tendon
-# of a trace, which samples hold; what else they hold is of its source
+# columns of the trace itself; the others in a table of samples belong to its source
 FIELDS = ("time", "tilt", "tilt_rate", "rolling_angle", "twist", "contact_point", "centre_of_mass")
 
 

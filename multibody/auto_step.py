@@ -109,7 +109,7 @@ def part_of(progress: Progress | None, start: float, end: float) -> Progress:
 AUTO = "auto"
 COARSEST = 4e-4  # [s] at the reference size: four times the default, so that easy cases cost a fourth
 SMALLEST = 6.25e-6  # [s] at the reference size: six halvings; below it rounding and cost grow, not accuracy
-STEP_TOLERANCE = 1e-3  # of alpha; the default, a tenth of the difference at which traces diverge
+STEP_TOLERANCE = 1e-3  # tilt change over alpha; a tenth of the difference at which traces diverge
 _PUT_OFF = 1.05  # a divergence later by less is no gain
 _CLOSER = 0.9  # a difference reduced by less is no gain
 _ORDERS = 0.5, 1.0  # least and largest order that an estimate relies on
@@ -140,7 +140,7 @@ def find_step(
         steps.append(0.5 * steps[-1])
     parts = shares(steps)
     best, coarser = None, None  # the run to keep, and the last one
-    entries: list[Closeness] = []  # of the run to keep and all before it
+    entries: list[Closeness] = []  # one for the run to keep and each before it
     verdict, spent = "still_changes", 0.0
     for index, step in enumerate(steps):
         run = attempt(step, part_of(progress, parts[index], parts[index + 1]))

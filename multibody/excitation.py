@@ -42,7 +42,7 @@ class StepMeans:
         areas = 0.5 * self._spacing * (self._samples[1:] + self._samples[:-1])
         self._velocity: Array = np.vstack([np.zeros(3), np.cumsum(areas, axis=0)])
         self._slopes: Array = np.diff(self._samples, axis=0, append=self._samples[-1:]) / self._spacing
-        # from the last sample on the ground keeps still, as if zeros followed
+        # the ground keeps still after the last sample, as if zeros followed
         self._samples[-1] = 0.0
         self._still = motion is None
 

@@ -40,10 +40,10 @@ if TYPE_CHECKING:
 EXTRAPOLATED = "extrapolated"
 FINEST = 1.75e-4  # [s] at the reference size: all three together cost one run at the default step
 _RUNS = 3
-_FIRST_OR_SECOND = 1.5  # order between the two
+_FIRST_OR_SECOND = 1.5  # order between first and second
 _SAMPLED = ("tilt", "tilt_rate", "rolling_angle", "twist", "contact_point", "centre_of_mass")
 _LATE = ("rolling_rate", "energy", "energy_error", "energy_lost")
-_OF_NO_ACCOUNT = 1e-6  # of alpha: where runs are that close, their orders mix, and it makes no difference
+_OF_NO_ACCOUNT = 1e-6  # difference over alpha at which orders mix and do not matter
 _ONE_TURN = math.pi  # [rad] two rolling angles further apart went past upright on different sides
 
 
@@ -148,7 +148,7 @@ def _merge(pair: Sequence[Trace], order: int, good: int) -> Trace:
         peak_tilt=_number(pair, "peak_tilt", order) if peaks_alike else fine.peak_tilt,
         uplift_time=_number(pair, "uplift_time", order),
         uplift_direction=_limit(_one_branch([np.array(run.uplift_direction) for run in pair]), order),
-        peak_displacement=math.nan,  # those of the samples
+        peak_displacement=math.nan,  # set by the samples
         residual_displacement=math.nan,
     )
 

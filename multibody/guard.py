@@ -33,8 +33,8 @@ from .kinematics import Kinematics, mean_spin, mean_velocity
 from .protocol import Steps, Wall
 from .scene import Array, Body
 
-ENERGY_GAIN = 0.02  # of the largest energy of the motion so far
-# of the energy at which the cylinder stands on its rim in balance: a base that is just about to open has no
+ENERGY_GAIN = 0.02  # share of the largest energy of the motion so far
+# least energy, over that at balance: a base that is just about to open has no
 # energy yet, and what its contact gains or loses there is noise
 _LEAST_ENERGY = 0.05
 PENETRATION = 0.01  # of b
@@ -131,7 +131,7 @@ def couple_power(poses: Steps, after: Steps, forces: Sequence[tuple[float, Array
     return np.asarray(length * np.hypot(spin[:, 0], spin[:, 1]) * normal)
 
 
-DRIFT = 1e-3  # of the largest energy, either way: above the reporting threshold; sound runs stay below 5e-4
+DRIFT = 1e-3  # share of the largest energy gained or lost that is reported; sound runs stay below 5e-4
 _BLOCK = 100  # steps for which one largest error is kept: the time of a remark is as fine
 
 

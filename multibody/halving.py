@@ -18,7 +18,7 @@ import numpy as np
 
 from .scene import Array
 
-_SAME_TIME = 1e-9  # of the length of a run
+_SAME_TIME = 1e-9  # share of the length of a run
 Difference = TypeVar("Difference", float, Array)
 
 

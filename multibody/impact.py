@@ -17,9 +17,9 @@ from rockwobble.models.mode import ROCKS_IN_PLANE, expected_mode
 from .guard import DRIFT
 from .scene import Array, scaled_body
 
-TOLERANCE = 0.01  # of the energy with which the base closes
-_LEAST = 0.01  # of the largest energy: what closes with less decides no motion
-_STEPS = 3.0  # of the engine that an impact takes at most, to either side
+TOLERANCE = 0.01  # share of the energy with which the base closes
+_LEAST = 0.01  # share of the largest energy: a closing with less decides no motion
+_STEPS = 3.0  # steps of the engine that an impact takes at most, to either side
 
 
 def compare_impacts(trace: Trace) -> Trace:
@@ -56,7 +56,8 @@ def _impacts(trace: Trace, largest: float) -> tuple[list[tuple[float, float, flo
     None where two of them lie between two samples.
     """
     time, error = trace.time, trace.energy_error
-    supplied = trace.energy - error  # by the start and the ground: a kink at an impact, and no jump
+    # energy supplied by the start and the ground: a kink at an impact, and no jump
+    supplied = trace.energy - error
     change = np.diff(error)
     impacts: list[tuple[float, float, float]] = []
     end = 0

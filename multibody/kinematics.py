@@ -62,8 +62,8 @@ def kinematics(
     b, h = body.base_radius, body.mass_centre_height
     sine = np.sqrt(ax * ax + ay * ay)
     safe = np.where(sine > 0.0, sine, 1.0)
-    height = z - h * az - b * sine  # of the lowest point
-    # from the mass centre to the lowest point of the rim, horizontally along the lean
+    height = z - h * az - b * sine  # height of the lowest point
+    # horizontal distance from the mass centre to the lowest point of the rim, along the lean
     out_x, out_y = ax / safe, ay / safe
     reach = b * az - h * sine
     down = height - z

@@ -87,7 +87,7 @@ def passes_between(
     ends = [end for _, end in rests]
     for point in points:
         number = bisect_right(ends, point.time)
-        # what happens in a rest is no swing of either motion
+        # events in a rest are no swing of either motion
         if number == len(rests) or point.time < rests[number][0]:
             motions[number].append(point)
     rows = [

@@ -105,7 +105,7 @@ class EngineFacts(CompactRepr):
     standing_alternatives: Mapping[str, Settings] = field(default_factory=lambda: _NOTHING)
 
 
-MEMBERS = ("supports", "uplifts", "facts", "version", "settings", "open")  # of an Engine
+MEMBERS = ("supports", "uplifts", "facts", "version", "settings", "open")  # members of an Engine
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -31,7 +31,7 @@ from .scene import Array, Body
 HALF_WINDOW = 32
 _GRIP = 0.02  # share of the friction, and weights, that rounding and the window leave in doubt
 _PULL = 1e-3  # weights; far above rounding
-_WEIGHTS: Array = np.hanning(2 * HALF_WINDOW + 3)[1:-1] / (HALF_WINDOW + 1.0)  # of a Hann window; sum 1
+_WEIGHTS: Array = np.hanning(2 * HALF_WINDOW + 3)[1:-1] / (HALF_WINDOW + 1.0)  # Hann window; sum 1
 
 
 def force_of_steps(
@@ -109,7 +109,7 @@ class ForceSamples:
     def add(self, force: Array) -> None:
         """Take the next steps, shape (3, n)."""
         if self._first == 0 and not self._known.size and force.shape[1] > 1:
-            # in its first step an engine has yet to load its contact: a percent of the weight
+            # an engine has yet to load its contact in the first step: a percent of the weight
             force, self._first = force[:, 1:], 1
         self._known = np.hstack([self._known, force])
         settled = (self._first + self._known.shape[1] - HALF_WINDOW - 2) * self._step
@@ -142,7 +142,7 @@ class ForceSamples:
         return np.asarray(np.einsum("imj,mj->mi", windows, weights) / total[:, None])
 
 
-SURE_TILT = 5e-6  # of alpha; a standing cylinder leans by 1e-9 rad in MuJoCo, 1e-8 rad in Bullet
+SURE_TILT = 5e-6  # tilt over alpha; a standing cylinder leans by 1e-9 rad in MuJoCo, 1e-8 rad in Bullet
 # Rounding errors; at 0.98 of the load that uplifts it a standing cylinder leans by up to 120 of them in
 # Rapier, as single precision knows the height of its corners
 _SURE_ROUNDINGS = 150.0
@@ -152,10 +152,11 @@ _MEMORY = 4000  # steps kept before that tilt: it takes a few hundred from the u
 _LEVELS = (0.97, 0.94, 0.9, 0.8)
 _FIT = 20  # steps that must follow
 _STEADY = 2e-3  # largest deviation of their ratio
-_AT_RIM = 0.99  # of b; a polygon of 48 corners carries the reaction at 0.998 b or more
+_AT_RIM = 0.99  # eccentricity over b; a polygon of 48 corners carries the reaction at 0.998 b or more
 _SPIKE = 9  # steps; a single step that loses contact, or carries twice the load, says nothing
-_DEPARTURE = 0.015  # of b; a reaction that lags so far behind has left the excitation: the base tips early
-# of the load that uplifts: engines in double precision open within 3e-4 of it, and Rapier up to a tenth early
+# eccentricity over b; a reaction that lags so far behind has left the excitation: the base tips early
+_DEPARTURE = 0.015
+# share of the uplift load: engines in double precision open within 3e-4 of it, Rapier up to a tenth early
 EARLY = 5e-3
 _MINIMUM_LOAD = 0.1  # weights; a smaller reaction, in the step that loses contact, has no eccentricity
 

@@ -47,11 +47,11 @@ T = TypeVar("T", Steps, Kinematics, Wall)
 
 _SIDE_TOUCHES = OVERTURNED_TILT - 1e-3  # [rad] contact of the side may stop the fall a little before
 
-FLIGHT = 1e-3  # of b, height that is flight: a rim that slides may hover below it in MuJoCo
-SLIP = 0.01  # of b, slip that is more than the creep of a rim that rolls
-# of the energy scale: a base that opens by less than 1e-4 alpha has not moved
+FLIGHT = 1e-3  # height over b that counts as flight: a sliding rim may hover below it in MuJoCo
+SLIP = 0.01  # slip over b that is more than the creep of a rolling rim
+# share of the energy scale: a base that opens by less than 1e-4 alpha has not moved
 _LEAST_ENERGY = 2e-4
-_ROUNDING = 1e-6  # of a step
+_ROUNDING = 1e-6  # share of a step
 COLUMNS = (
     "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_x", "contact_y",
     "x", "y", "z", "energy", "energy_error", "energy_lost", "slip",
@@ -100,9 +100,9 @@ class Recorder:
         self._last: Steps | None = None  # the pose whose next velocity is still to come
         self._count = 0  # poses analysed
         self._angle, self._twist = rolling_angle, 0.0
-        self._leans = not start.standing  # at the last pose analysed
+        self._leans = not start.standing  # state at the last pose analysed
         self._tail: Array = np.empty((3, 0))  # time, tilt and rolling angle of the last steps
-        # of the last step analysed: time and the fields of `COLUMNS`
+        # last step analysed: time and the fields of `COLUMNS`
         self.last_row: Array = np.empty(len(COLUMNS) + 1)
         self._rows: list[Array] = []
         self._taken = 0
@@ -118,7 +118,7 @@ class Recorder:
             _LEAST_ENERGY * balance if start.standing else 0.0,
             balance if lean > scene.balance_tilt else 0.0,
         )
-        self.looks = 0  # at the solver, and how often it had not converged
+        self.looks = 0  # checks of the solver, and those in which it had not converged
         self.unsolved = 0
         # when more than friction held an end, and when it was held down, which only a joint does [s]
         self.grip_time = self.pull_time = math.nan
@@ -233,7 +233,7 @@ class Recorder:
         within = state.tilt < self._balance
         self.fastest = max(self.fastest, float(np.abs(state.tilt_rate[within]).max(initial=0.0)))
         self._sample(time, rows)
-        # on the base, and on a slab that keeps to the top
+        # forces on the base, and on a slab that keeps to the top
         ends = self._contact_forces(poses, after, acceleration, self._gains)
         self.forces.add(ends[0])
         # a wall may well push the cylinder down, by its friction or where the rim is below it
@@ -291,7 +291,7 @@ class Recorder:
         scene = self._scene
         ends = [force_of_steps(poses, after, ground, scene.time_step, scene.gravity, gain) for gain in gains]
         if scene.restraint.is_active:
-            # of what the base carries, and of the slab, it takes hold as well as contact does
+            # the tendon acts on the column and its slab as contact does
             height = scene.body.mass_centre_height
             pulls = scene.restraint.forces(poses.position, axis_of(poses.quaternion), height) / scene.gravity
             for end, mass in zip(ends, self._carried_shares, strict=False):

@@ -183,8 +183,8 @@ def default_step(semidiagonal: float, gravity: float) -> float:
     return REFERENCE_TIME_STEP * froude_scale(semidiagonal, gravity).time
 
 
-# of the slope of the couple of the weight: at a balance where that of a restraint takes nearly all of it,
-# nobody waits longer than ten times as long
+# least slope of the restoring couple, over that of the weight alone: at a balance where that of a restraint
+# takes nearly all of it, nobody waits longer than ten times as long
 _LEAST_GROWTH = 0.01
 
 

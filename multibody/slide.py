@@ -19,7 +19,7 @@ from rockwobble.models.trace import NO_PEAK
 from .excitation import StepMeans
 from .scene import Array, Scale, default_step
 
-TOLERANCE = 0.05  # of the peak displacement
+TOLERANCE = 0.05  # share of the peak displacement
 TURN = 0.01  # [rad] of a slide, whose friction has no moment about the axis
 
 

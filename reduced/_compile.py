@@ -116,11 +116,11 @@ def _keep_by_content(kept: Any, digest: str) -> None:
     # a name holds the line of the function
     for path in folder.glob(re.sub(r"-\d+\.", "-*.", base) + ".*nb[ic]"):
         if not path.name.startswith(name):
-            with suppress(OSError):  # of another user, or removed meanwhile
+            with suppress(OSError):  # a file of another user, or removed meanwhile
                 path.unlink()
 
 
-@cache  # entry points of one file have the same
+@cache  # shared by the entry points of one file
 def _digest(source: Path) -> str:
     """Return a digest of a source and of all that it imports from this folder."""
     entries: dict[Path, bytes] = {}

@@ -144,7 +144,7 @@ def flat_rhs(
     inertial = (b * s + h * c) * a_r
     theta_acceleration = (centrifugal + twisting - held - inertial) / body.A
     Lambda_rate = -body.mu * b * (b * s + h * c) * omega * tau_rate - s * (h + b * t) * a_t
-    # without spin the coupling is none, also at theta = 0 where its coefficient is infinite
+    # the coupling vanishes without spin, also at theta = 0 where its coefficient is infinite
     coupling = twist_coupling(body, t, H) * omega * Lambda if Lambda != 0.0 else 0.0
     S_rate = coupling + (b * body.I1 - h * body.I2 * t) / H * a_t
     return omega, theta_acceleration, L_over_B + roll_ratio * tau_rate, Lambda_rate, tau_rate, S_rate

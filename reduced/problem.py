@@ -57,7 +57,7 @@ class SetUp(NamedTuple):
 
     integrate: Driver
     task: Task
-    azimuth: float  # from which the angles of the result count [rad]
+    azimuth: float  # zero of the angles of the result [rad]
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +120,7 @@ class Problem:
             )
 
     def __getstate__(self) -> dict[str, Any]:
-        # what is derived stays behind: compiled code that travels is compiled again where it arrives
+        # derived values are not pickled: compiled code is compiled again where it arrives
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @property

@@ -190,7 +190,7 @@ def surely_overturns(body: Body, theta: float, strongest: float, lightest: float
     return lightest > 0.0 and falling >= 0.0 and outward > strongest * cos(beyond)
 
 
-# of the time integration by Taylor series, with u u = 1 - v/2
+# time integration by Taylor series, with u u = 1 - v/2
 
 
 @inlined
@@ -321,7 +321,8 @@ def balance_tilt(body: TiedBody) -> float:
     return low
 
 
-TERMS = frozenset({"rolling_resistance", "tendon"})  # of a case that the models have, see `constants_of`
+# terms of a case that the models have, see `constants_of`
+TERMS = frozenset({"rolling_resistance", "tendon"})
 
 
 def constants_of(

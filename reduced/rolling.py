@@ -42,7 +42,7 @@ from .equations import base_inertia
 from .restoring import tendon_couple
 
 CREEP = 1e-6  # eps over p: errors of 1e-6 alpha, and explicit steps that a creeping body still allows
-# of alpha: below this tilt eps falls with it, so that an uplift, whose first rates are below eps, meets the
+# tilt over alpha below which eps falls with it, so that an uplift, whose first rates are below eps, meets the
 # couple; and the share of eps that is left upright
 _SMALL, _LEAST = 1e-6, 1e-6
 

@@ -193,7 +193,7 @@ def _facts(problem: Problem, result: IntegrationResult) -> Iterator[Diagnostic]:
         yield Diagnostic(code="side", time=float(straight[0]))
 
 
-_DIVISIONS, _ROUNDS = 64, 5  # of the time in which a tendon yields: to 1e-9 of a swing
+_DIVISIONS, _ROUNDS = 64, 5  # search for the time at which a tendon yields: to 1e-9 of a swing
 
 
 def _yield(problem: Problem, result: IntegrationResult) -> Iterator[Diagnostic]:

@@ -28,9 +28,9 @@ from .columns import ground_at, sample_times, three_columns
 from .integration.sliding import Slide, slide
 from .kernels import interrupted_after
 
-_TOLERANCE = 1e-13  # of the speed, in a step: the displacement to 1e-10 of its peak
-_COARSE = 1e-8  # of many at once: to 1e-7 of it, in two thirds of the time
-_NONE = np.empty(0)  # of the times of samples
+_TOLERANCE = 1e-13  # error of the speed in a step: the displacement to 1e-10 of its peak
+_COARSE = 1e-8  # tolerance of many at once: to 1e-7 of the peak, in two thirds of the time
+_NONE = np.empty(0)  # no sample times
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)

@@ -158,7 +158,7 @@ def _bar(what: str) -> Iterator[ProgressCallback]:
                 running[event.label] = None
             else:
                 running.pop(event.label, None)
-            # of one task that tells how far it is, the share says more than the count
+            # a single task that reports its progress is shown by its share, not by the count
             done = event.share * event.total if event.found == 0 else event.done
             far = sentence(event, what)
             bars.update(

@@ -75,7 +75,7 @@ def _named(path: str) -> Any:
     return getattr(importlib.import_module(f"rockwobble.{module}"), name)
 
 
-# in the order of the help
+# entries in the order of the help
 ENTRIES = (
     Entry(name="comparison", command="compare", group="case", results="compare.comparison.result.Comparison"),
     Entry(name="advice", command="advise", group="case", results="studies.advice.advice.Advice"),

@@ -25,11 +25,11 @@ from rockwobble.models.trace_file import motion_facts
 
 from .plans import GridPlan
 
-MOST_RUNS = 100_000_000  # whose table takes 10 GB
+MOST_RUNS = 100_000_000  # limit: the table of so many takes 10 GB
 # The runs of a chunk take about a second together: little is lost with it, and keeping it takes a few
 # thousandths of that.
 _CHUNK_SIZE = 1000
-_OPTIONS: Mapping[str, float | None] = {  # of `reduced.peak_tilts`, and their defaults
+_OPTIONS: Mapping[str, float | None] = {  # options of `reduced.peak_tilts`, and their defaults
     "rtol": None,
     "rest_tilt": None,
     "gravity": 9.81,
@@ -46,12 +46,12 @@ class GridChunk:
 
     motion: GroundMotion
     motion_key: str  # hash of its samples, the same for many chunks
-    label: str  # of the motion
+    label: str  # label of the motion
     model: str
     tan_alpha: float
     semidiagonals: Sequence[float]
     scales: Sequence[float]
-    options: Mapping[str, object]  # of `reduced.peak_tilts`
+    options: Mapping[str, object]  # options of `reduced.peak_tilts`
 
     @property
     def name(self) -> str:
@@ -94,7 +94,7 @@ class GridChunk:
                 "peak_tilt": peaks,
                 "peak_tilt_over_alpha": peaks / math.atan(self.tan_alpha),
                 "outcome": [
-                    # of one without a peak its run says why
+                    # a run without a peak gives its reason
                     self._outcome(size, scale) if math.isnan(peak) else outcome_of_peak(peak)
                     for peak, size, scale in zip(peaks.tolist(), sizes.ravel(), scales.ravel(), strict=True)
                 ],

@@ -24,7 +24,7 @@ MASS = (
     "Mass of the cylinder, or of one column without its slab, in t. With it forces are in kN and moments in "
     "kNm."
 )
-# of each support that an engine may have, the name and the words; written out, as help loads no models
+# name and words of each support that an engine may have; written out, as help loads no models
 SUPPORT_WORDS = "recess (ideal recess), flat (flat ground) or ring (recess with clearance)"
 _PLANE = "Azimuth of the plane of a planar motion, in rad. Default: motion in three dimensions."
 _RESTITUTION = (
@@ -94,7 +94,7 @@ class AdvicePlan(Copies):
     )
 
     def __post_init__(self) -> None:
-        from rockwobble.models.support import support_named  # with numpy, which help can do without
+        from rockwobble.models.support import support_named  # imports numpy, which help can do without
 
         Plan.__post_init__(self)
         support_named(self.support)
@@ -102,7 +102,7 @@ class AdvicePlan(Copies):
 
 def tendon_of(prestress: float, stiffness: float, yield_force: float | None = None) -> Tendon | None:
     """Return the tendon of such values, as of `Tendon`; None where it does not pull."""
-    from rockwobble.models import Tendon  # with numpy, which help can do without
+    from rockwobble.models import Tendon  # imports numpy, which help can do without
 
     if not prestress and not stiffness:
         if yield_force is not None:
@@ -216,7 +216,7 @@ class FragilityPlan(YieldPlan):
     gravity: float = option(9.81, GRAVITY, above=0.0)
 
     def __post_init__(self) -> None:
-        # with numpy, which help can do without
+        # imports numpy, which help can do without
         from rockwobble.models.number_checks import require_increasing
 
         YieldPlan.__post_init__(self)

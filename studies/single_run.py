@@ -71,7 +71,7 @@ class SingleRun(Results, kind="run"):
         part, falls = (
             single.get("copies_part", math.inf),
             overturning_time(trace),
-        )  # of earlier versions nothing is known
+        )  # unknown for results of earlier versions
         if not math.isfinite(part):
             return
         late = falls if math.isfinite(falls) else trace.peak_time
@@ -202,7 +202,7 @@ def _demands(trace: Trace, quantity: Callable[..., Finding]) -> Iterator[Finding
     # the swing that is followed past the end has no samples
     covered = "until_the_end" if trace.followed_until > float(trace.time[-1]) else None
     covered = "until_it_falls" if math.isfinite(falls) else covered
-    # of a base that stays closed, as a reduced model knows it; 0 of what moves
+    # friction of a base that stays closed, known to reduced models; 0 where it moves
     at_rest = trace.case.friction_at_rest if trace.run.is_model and not trace.peak_tilt else 0.0
     lost = min((fact.time for fact in held.breaches if fact.code == "tension"), default=math.nan)
     friction = max(at_rest, held.largest_friction_needed)

@@ -65,8 +65,8 @@ _GUIDED_SWINGS, _SWINGS = (200.0, 5e3), (5.0, 5.0)
 RAMP = Case(PIER, GroundMotion(np.outer([0.0, 1.5], [0.6, 0.8]) * THRESHOLD, 1.5), name="ramp")
 RECORD = Case(Cylinder(semidiagonal=10.0, tan_alpha=0.1), el_centro_1940(), duration=8.0, name="El Centro")
 _CONTACT = "contact at its step"
-_LEVEL = 1e-3  # of alpha: tilt at which an uplift is seen
-_COPY = 1e-3  # by which record or release of the copy is off that ends a trajectory
+_LEVEL = 1e-3  # tilt over alpha at which an uplift is seen
+_COPY = 1e-3  # relative change of record or release in the copy whose divergence ends a comparison
 
 
 def fields(subject: Subject, support: str) -> Iterator[Result]:
@@ -82,7 +82,7 @@ def fields(subject: Subject, support: str) -> Iterator[Result]:
     swings = _GUIDED_SWINGS if support_named(support).guided else _SWINGS
     rate, force = (subject.tolerance_bound(times, "means over 60 steps") for times in swings)
     yield at_most("rolling_rate", difference("rolling_rate"), rate)
-    # without the half window at either end
+    # the half window at either end is left out
     yield at_most("contact force", difference("contact_force", slice(2, -2)), force)
     if "energy_error" in subject.knows:
         work = -(found.centre_of_mass - found.centre_of_mass[0]) @ GROUND

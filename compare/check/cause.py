@@ -25,10 +25,10 @@ from .measurement import Array, lean_difference
 from .subject import Subject
 
 _WIDEST = 0.3  # logarithm of a scale
-_EXPLAINED = 0.1  # of the difference that a cause leaves, at most
+_EXPLAINED = 0.1  # largest share of the difference that an accepted cause may leave
 # times as much as the best leaves, or so much of the difference: cannot be told from it
 _ALIKE, _SAME = 3.0, 0.01
-_LEAST = 0.05  # of the tolerance of a subject: a smaller difference may be its method's
+_LEAST = 0.05  # share of the tolerance of a subject: a smaller difference may be its method's
 _RTOL = 1e-10
 _LARGEST_LOSS = 0.2  # of the base radius
 Change = Callable[[Case, float], Case]

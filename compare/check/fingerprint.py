@@ -40,8 +40,8 @@ from .subject import Subject
 from .verdict import SAME, Entry, Sample, compare_entries
 
 Array = NDArray[np.float64]
-_SAMPLES = 40  # of each motion
-_BEYOND = 10.0  # what counts is so many times larger than the difference of the copies
+_SAMPLES = 40  # samples kept of each motion
+_BEYOND = 10.0  # a difference counts if it exceeds that of the copies by this factor
 _MEMBERS = 16
 _REPEATS = 10.0  # times the tolerance of a subject: how closely a number repeats
 _SLENDER = Cylinder(semidiagonal=1.0, tan_alpha=0.2)
@@ -77,7 +77,7 @@ class ShortCase:
 
 def short_cases() -> tuple[ShortCase, ...]:
     """Return the cases, the simplest first."""
-    # so strong and long that an engine with a slab 1 % heavier is off by more than it repeats
+    # strong and long enough that a slab 1 % heavier exceeds the repeatability of an engine
     pushes = [[0.0, 0.0, 0.0], [2.6, 0.6, -1.2], [1.2, 2.2, 1.2]]
     frame = _shaken("frame", "mass of the slab, in (18) and in the forces", pushes, 1.0, 3.5, body=FRAME)
     return (
@@ -192,7 +192,7 @@ def entry_of(short: ShortCase, subject: Subject) -> Entry:
     spread = _BEYOND * np.array([_difference(copy, values) for copy in copies]).max(axis=0)
     lost = np.flatnonzero(spread[:, SIGNALS.index("tilt")] > AGREEMENT)
     allowed = _REPEATS * subject.tolerance * np.maximum(1.0, np.abs(np.nan_to_num(values))) + spread
-    if len(lost):  # from there on copies are no measure
+    if len(lost):  # copies are no measure from there on
         allowed[lost[0] :] = allowed[max(lost[0] - 1, 0)]
     whole: Entry = {
         **found,

@@ -103,7 +103,7 @@ class Check:
                     yield dataclasses.replace(result, name=f"{result.name}, {support}")
             except Exception as error:  # whatever a model or engine raises is said in its place
                 words = f"{type(error).__name__}: {' '.join(str(error).split())}"
-                if subject.options or subject.cases:  # ours, or read here: it must not
+                if subject.options or subject.cases:  # a reduced model or a file read here must not fail
                     yield at_most(f"{name}, {support}", math.nan, ENDS, note=words)
                 else:
                     yield not_run(f"{name}, {support}", words)
@@ -188,8 +188,8 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
 }
 # groups whose results become the claims of a certificate
 CLAIMING = tuple(group for group in GROUPS if group not in baseline.NOT_CLAIMING)
-# of an engine that nobody has named, what a version of it may change: whether it follows the model, which the
-# checks before hold to the laws, and whether short motions are those of its baseline
+# an engine that nobody has named is checked for what a new version may change: whether it follows the model,
+# which the checks before hold to the laws, and whether short motions are those of its baseline
 _OF_ENGINES = {
     "agreement": tuple(
         each
@@ -198,7 +198,7 @@ _OF_ENGINES = {
     ),
     "baseline": GROUPS["baseline"],
 }
-# of one that is an extra: every field, on its first support
+# an engine that is an extra is checked in every field, on its first support
 _OF_EXTRAS = {"agreement": (dataclasses.replace(GROUPS["agreement"][0], supports=()),)}
 TITLES = {
     "equations": "equations of motion",

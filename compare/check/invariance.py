@@ -56,7 +56,7 @@ _PULSE = GroundMotion([[0.5, -0.3], [1.5, 0.4], [-1.0, 0.8], [0.3, -1.2], [0.0, 
 ROCKING = Case(
     PIER, _PULSE, initial=InitialState(0.5 * PIER.alpha, 0.0, 0.3, 0.5), duration=1.3, name="rocking"
 )
-# without its vertical component, which only some models have
+# the vertical component is left out: only some models have it
 STANDING = Case(PIER, polyline(SHOCK_TIMES, SHOCK[:, :2], 0.5), duration=4.0, name="from rest")
 _SAMPLE = 0.05  # [s]
 _TURN = 1.234  # [rad]
@@ -162,7 +162,7 @@ _ALL = Bound(0.0, "the protocol of an engine")
 _CHUNKS = Bound(1e-9, "what is carried from one call to the next, and no more", "m")
 _START = Bound(1e-6, "of rates: a central difference over two steps")
 _FREE_FALL = Bound(2.0, "no acceleration of the mass centre is larger", "g")
-# with less energy than that of its balance, or the run would go on until it turns back
+# below the energy at balance, or the run would go on until it turns back
 _STATE = InitialState(0.12, tilt_rate=0.05, rolling_angle=-2.0, rolling_rate=0.5)
 _FIELDS = ("tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "energy", "centre_of_mass")
 _QUIET = """

@@ -53,10 +53,10 @@ from ..metrics.pair import energy_loss
 from .measurement import GRAVITY, RELEASE, Result, at_most, largest, release_case, why, worst_of
 from .subject import Subject
 
-Array = NDArray[Any]  # of float, or of complex within a complex step
+Array = NDArray[Any]  # float, or complex within a complex step
 
 REACH = 6  # samples on either side of a difference: order 12, which leaves (step/time scale)^12
-_STEP = 1e-100  # of a complex step: no difference is taken, so none is too small
+_STEP = 1e-100  # complex step: no difference is taken, so none is too small
 _ALONG = 1e-2  # [s] of the steps along a motion, where sines and cosines are all that changes
 
 
@@ -69,7 +69,7 @@ class Shape:
     I1: float
     I2: float
     slab: float
-    prestress: float = 0.0  # of a tendon, over the mass of one column [m/s^2]
+    prestress: float = 0.0  # tendon force at rest, over the mass of one column [m/s^2]
     stiffness: float = 0.0  # [1/s^2]
 
 
@@ -259,12 +259,12 @@ _TERMS: Mapping[str, Mapping[str, Any]] = {
     "": {},
     ", with a tendon": {"tendon": Tendon(prestress=0.1, stiffness=0.5)},
 }
-# in 1/p: the fastest of these motions changes in about 1/(3 p), and 0.06^12 is below rounding
+# step in units of 1/p: the fastest of these motions changes in about 1/(3 p), and 0.06^12 is below rounding
 _SAMPLE = 0.02
 _PIECE = 16  # samples of the run in one of the record
 _PIECES = 3
 RUNS = 9
-_SEED = 18  # of the states: any other serves
+_SEED = 18  # seed of the random states (arbitrary)
 # 1e-16/0.02^2 of the angles, 1e-11 of p^2 at the worst, and what rtol 1e-13 leaves in a dozen steps
 _REASON = "differences of positions that are known to rounding"
 NAMES = (
@@ -327,7 +327,7 @@ def _residuals(
             # a slab goes twice as far, and the base carries both
             carried = (1.0 + 2.0 * shape.slab) / (1.0 + shape.slab)
             force = carried * curve(trace.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
-            # of the column on its share of the slab
+            # force of the column on its share of the slab
             on_slab = 2.0 * curve(trace.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
             if "tendon" in terms:
                 away = base_centre(shape, *place)

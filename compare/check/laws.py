@@ -83,7 +83,7 @@ def returns(subject: Subject, support: str, case: Case, of: str) -> Iterator[Res
 
 def steady_wobble(subject: Subject, support: str) -> Iterator[Result]:
     """At the rate at which (18) balances, phi'^2 = 2 V'/B', the tilt stays, on any support."""
-    tilt = 0.3 * PIER.alpha  # with less energy than that of the balance
+    tilt = 0.3 * PIER.alpha  # below the energy at balance
     case = release_case(0.3, steady_rate(shape_of(PIER), tilt), 1.0)
     trace = subject.simulate(case, support)
     bound = subject.tolerance_bound(10.0, "an error of the balance makes the tilt oscillate by as much")
@@ -190,7 +190,7 @@ def steady_rate(shape: Shape, tilt: float) -> float:
 LIFTING = GroundMotion(
     GRAVITY * np.array([[0.0, 0.0, 0.0], [0.12, 0.06, 0.1], [0.20, 0.20, -0.1], [0.20, 0.22, -0.12]]), 0.2
 )
-DIRECTIONS, SLENDERNESS = 24, (0.1, 0.2, 0.5, 1.0)  # of the sweep of static loads
+DIRECTIONS, SLENDERNESS = 24, (0.1, 0.2, 0.5, 1.0)  # directions and tan(alpha) of the static loads
 # what the mean of a force over 65 steps has of velocities that are off at random: root of the sum of squares
 # of the differences of the weights of its Hann window, pi/(2 33^1.5)
 _MEAN = 1.0 / 120.0
@@ -230,7 +230,7 @@ def force_at_rest(subject: Subject, support: str) -> Iterator[Result]:
     off = trace.contact_force[1:4] - (ground + np.array([0.0, 0.0, GRAVITY])) / GRAVITY
     bound = subject.tolerance_bound(1.0, "Newton's law", "weights")
     if math.isfinite(trace.time_step):
-        # of a contact point that is known to rounding and put right in a step, in the mean of a sample
+        # error, in the mean of a sample, of a contact point known to rounding and corrected within a step
         most = subject.rounding * PIER.base_radius * _MEAN / (GRAVITY * trace.time_step**2)
         bound = dataclasses.replace(bound, most=bound.most + most)
     yield at_most("contact force at rest", largest(off), bound)

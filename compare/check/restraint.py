@@ -31,7 +31,7 @@ from .subject import Subject
 
 _HELD = dataclasses.replace(RELEASE, tendon=TENDON)
 _HELD_FRAME = dataclasses.replace(FRAME_RELEASE, tendon=TENDON)
-_NEAR = 0.005  # of the balance: releases on both sides of it
+_NEAR = 0.005  # relative distance of the releases from the balance, on both sides
 
 
 def _releases(subject: Subject) -> dict[str, Case]:

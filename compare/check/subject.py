@@ -41,9 +41,10 @@ ENGINE_TOLERANCE = 1e-5
 # are more than what the finest steps leave, and the order shows at coarse ones, in multiples of the default
 _ROUNDINGS = 1e4
 _STEPS, _COARSE_STEPS = (4.0, 2.0, 1.0), (10.0, 7.0, 4.0)
-# of the same motion, turned or mirrored: solvers stop at a tolerance, and a pass magnifies what is left
+# tolerance for the same motion, rotated or mirrored: solvers stop at a tolerance, and a pass magnifies the
+# rest
 ENGINE_REPEATABILITY = 1e-5
-TOLERANCE = 1e-3  # of a model or trajectory of somebody else, where nothing else is said
+TOLERANCE = 1e-3  # default for a model or trajectory of somebody else
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -275,7 +276,7 @@ def trajectories(traces: Sequence[Trace], *, support: str = RECESS, tolerance: f
         poses = measurement(trace).poses
         if "tilt" not in poses.given:
             raise ValueError(f"{trace.run.engine} must have tilt, or qw, qx, qy and qz")
-        # at the samples of its file: between them nothing is as exact
+        # compare at the samples of its file: interpolation between them is less exact
         azimuth = poses.rolling_angle if "azimuth" in poses.given else None
         columns = {"time": poses.time, "tilt": poses.tilt, "azimuth": azimuth}
         answers[fingerprint(trace.case)] = trace_of(columns, trace.case, support)

@@ -46,10 +46,10 @@ LEAST = 1e-5  # [alpha] of contact, whatever the step
 # of the cylinder that the motion meets: tilt over alpha, rolling rate and length in units of its time scale,
 # and strength of the motion over what uplifts
 _LEAN, _SPIN, _LENGTH, _STRENGTH = 0.4, 0.5, 2.0, 0.5
-# what a trace holds after these is not what its model describes
+# diagnostics after which the trace is outside its model's assumptions
 _LIMITS = ("slip", "lift_off", "tension", "friction_needed", "wall_contact", "unresolved_pass", "side")
 ENDS = Bound(AGREEMENT, "the run must reach its end", "alpha")
-# which engine is nearer to a second one than this share of what engine and model differ by agrees with it
+# two engines agree if they differ by less than this share of their difference from the model
 _SIDES = 0.3
 
 
@@ -179,7 +179,7 @@ def in_motion(case: Case) -> Case | None:
 def other_step(job: Job, trace: Trace) -> tuple[Job, float]:
     """Return the run at twice or half its step, and the factor from the difference of both to the error."""
     case, step = job.case, trace.time_step
-    if not math.isfinite(step):  # of several steps: that of the engine by default
+    if not math.isfinite(step):  # several steps: use the default of the engine
         step = default_step(case.cylinder.semidiagonal, case.gravity)
     for times, factor in ((2.0, 1.0), (0.5, 2.0)):
         run = at_step(job.run, times * step)

@@ -74,7 +74,7 @@ def case_findings(
         )
 
 
-# of a tilt and of a slide, each until it leaves its tolerance and to the end
+# keys for tilt and slide: diverging, and in tolerance to the end
 AGREE = (
     ("comparison.agree", "comparison.agree_to_end"),
     ("comparison.agree_slide", "comparison.agree_slide_to_end"),
@@ -236,7 +236,7 @@ def _mistakes(row: SummaryRow) -> Iterator[Finding]:
         yield Finding(key="comparison.mistake_besides", level="caution", values=values)
     else:
         left = tuple(name for name in row.differs_without_mistake if name != "tilt")
-        # without a divergence it is the end itself
+        # a run that never diverges agrees until its end
         start = row.reference_uplift_time if "tilt" in row.differs_without_mistake else 0.0
         until = start + row.agreement_without_mistake
         yield Finding(

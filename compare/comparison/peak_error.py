@@ -19,7 +19,7 @@ from .prediction import Simulate
 
 PERTURBATION = 0.01  # of the input
 RTOL = 1e-8  # default of `reduced.simulate`
-COARSER = 10.0  # of the tolerance of the run by which integration is judged
+COARSER = 10.0  # tolerance of the coarser run, over that of the run, that estimates the integration error
 # the estimates of a run at several time steps, in `rockwobble.models.diagnostic`
 _OF_STEPS = ("settled", "unsettled", "extrapolated")
 

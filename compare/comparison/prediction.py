@@ -40,7 +40,7 @@ from .budget import ErrorBudget
 IN_TIME = 2.0
 # one that is beaten by more than this factor predicted nothing, and a run that beats it proves nothing
 BEATEN = 10.0
-# of `verdict` and of an agreement without motion: the run has not tested the model
+# verdict, and reason of an agreement without motion, of a run that has not tested the model
 UNTESTED = ("much later", "too little motion")
 # [s] at a semidiagonal of 6 m and 9.81 m/s^2, and in proportion to the time scale of the cylinder
 FIRST_STRETCH = 1.0
@@ -193,7 +193,7 @@ def _close_pass(own: Trace, contact_resolution: float, length: float) -> float:
 
 def _divergence_of_copy(case: Case, own: Trace, error: float, simulate: Simulate, tolerance: float) -> float:
     for copy in copies_off_by(case, own, error, simulate)[:1]:
-        # what is perturbed by less than the reduced model's own tolerance is no copy
+        # a perturbation below the reduced model's tolerance makes no copy
         return _divergence(case, own, simulate(copy, own.run), tolerance)
     return case.length
 

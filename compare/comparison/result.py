@@ -30,7 +30,7 @@ from .findings import case_findings, causes_of, overview, parts_finding
 from .summary import KEYS, SUMMARY_COLUMNS, agreement_matrix
 
 _FACTS = "comparison.json"
-_SEPARATOR = "\n"  # in no name of a case or a run: these are single lines
+_SEPARATOR = "\n"  # names of cases and runs are single lines, so none contains it
 Key = tuple[str, str]
 BudgetKey = tuple[str, str, str]
 
@@ -227,7 +227,8 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
                 facts={"inputs": stored.manifest.inputs} | plain_json.loads(stored.content(_FACTS)),
                 manifest=stored.manifest,
             )
-            _ = found.budgets if found.facts["budgets"] else found.traces  # each is whole
+            # loading them shows that each is undamaged
+            _ = found.budgets if found.facts["budgets"] else found.traces
         except (ValueError, KeyError) as error:
             why = str(error).partition("\n")[0]
             raise ValueError(f"{stored.folder} holds a comparison that cannot be read: {why}") from None

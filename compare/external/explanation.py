@@ -38,18 +38,19 @@ from .table import POSITION, Array, Values
 MORE_MOTION, LEANING = 4.0, 5.0
 # how long it must agree, over the time scale of rocking, or up to the end
 LONG = 3.0
-# windows in which the clock is fitted, over that scale: the first motion agrees best, and may be too little
+# lengths of the windows in which the clock is fitted, over the time scale of rocking
 WINDOWS = (3.0, 6.0, 12.0)
 SHORTEST_DELAY = 0.01  # an offset of the clock that is named, over the time scale
 SAME_OFFSET = 0.1  # difference of the offsets in several windows, over the largest: a clock has one
 LARGEST_DELAY = 0.5  # the largest that is tried, over the length of the run
 FINE = 40.0  # samples of the time scale in the first search of an offset
 ALIKE = 1.5  # rocking repeats itself: of offsets whose misfit is at most this times the least, the smallest
-SMALLEST_RATE, LARGEST_RATE = 2.5e-3, 0.15  # by which a rate that is named differs from 1
-# what is left of the tilt difference in the right time scale: another tilt or spin at release leaves a fifth
+# smallest and largest relative difference of a clock rate that is reported
+SMALLEST_RATE, LARGEST_RATE = 2.5e-3, 0.15
+# share of the tilt difference left in the right time scale: another tilt or spin at release leaves a fifth
 SAME_MOTION = 0.1
 FEWEST_FITTED = 3  # samples of a window
-NO_MISFIT = 10.0  # of what is not there: more than any tilt [rad]
+NO_MISFIT = 10.0  # misfit of a missing quantity: more than any tilt [rad]
 # an axis is meant where the fit comes so close to it, and the rest is another difference [rad]
 NAMED_WITHIN = math.radians(1.5)
 # a turn of the axes is the same all the time: that of each part of the motion may differ by this angle [rad],
@@ -129,7 +130,7 @@ class _Search:
                 if after.azimuth is None or not after.azimuth.differs or first or frame != Frame():
                     yield changes, motion
             elif by_rate:
-                # whose motion is another one, and no offset makes it the same
+                # no offset makes another motion the same
                 return
 
     def _follows(self, before: Difference, after: Difference, motion: Motion, *, by_rate: bool) -> bool:
@@ -261,7 +262,7 @@ def fitted_offsets(reference: Reference, motion: Motion) -> list[float]:
         model = _beginning(reference, window)
         misfits = np.array([_misfit(model, motion, float(offset)) for offset in tried])
         inner = np.flatnonzero((misfits[1:-1] <= misfits[:-2]) & (misfits[1:-1] <= misfits[2:])) + 1
-        # what leaves half of the motion is no fit
+        # a fit that leaves half of the motion is none
         if not len(inner) or misfits[inner].min() > 0.5 * math.sqrt(float(np.mean(model.tilt**2))):
             continue
         highest = float(model.tilt.max())

@@ -20,10 +20,10 @@ from .mistakes import Mistake
 from .motion import Difference, Motion, Reference, motion_at
 from .table import Array
 
-LEAST_LOSS = 5e-3  # of a maximum from swing to swing, that is named
+LEAST_LOSS = 5e-3  # smallest relative loss of a maximum from swing to swing that is reported
 FEWEST_MAXIMA = 3
-LESS_DIFFERENCE = 0.25  # what is left of the difference of the tilts with the resistance that explains it
-LEAST = 1e-4  # of b, smallest resistance that is tried
+LESS_DIFFERENCE = 0.25  # largest share of the tilt difference left by a resistance that explains it
+LEAST = 1e-4  # smallest resistance tried, over b
 _COARSE, _FINE, _ROUNDS = 17, 7, 4
 ENERGY_LOSS, ROLLING_RESISTANCE = "energy_loss", "rolling_resistance"
 CODES = (ENERGY_LOSS, ROLLING_RESISTANCE)

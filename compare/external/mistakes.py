@@ -15,7 +15,7 @@ from .table import POSITION, QUATERNION, Values
 DEGREES = math.degrees(1.0)
 CLOCK_FACTORS = tuple(factor**sign for factor in (2.0, 3.0, 4.0, 5.0, 8.0, 10.0) for sign in (1, -1))
 LENGTH_FACTORS = (1e3, 1e2, 1e-2, 1e-3)
-# what stands where qw, qx, qy and qz should; where z is reversed the axis of the body points down
+# order and signs in place of qw, qx, qy, qz; where z is reversed the axis of the body points down
 QUATERNION_ORDERS = {
     "quaternion_scalar_last": ("qz", "qw", "qx", "qy"),
     "quaternion_inverse": ("qw", "-qx", "-qy", "-qz"),

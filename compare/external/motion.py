@@ -23,7 +23,7 @@ from .table import POSITION, QUATERNION, Array, Mask, Values
 
 Complex = NDArray[np.complex128]
 
-# of a normal distribution: median of the absolute value over the standard deviation
+# normal distribution: median of the absolute value over the standard deviation
 MEDIAN_OF_NORMAL = 0.6745
 FEWEST_SCATTERED = 12  # samples without which their scatter is not known
 SAME_TIME = 1e-9  # samples at one time up to rounding [s]
@@ -193,7 +193,7 @@ def scatter(time: Array, values: Array) -> float:
         guess += weight[:, None] * values[at : len(time) - 4 + at]
         gain += weight * weight
     apart = np.abs(values[2:-2] - guess) / np.sqrt(gain)[:, None]
-    # samples that are exactly those of their neighbours stand, and say nothing of the noise in motion
+    # samples equal to their neighbours are at rest, and say nothing of the noise in motion
     moving = apart[np.isfinite(apart).all(axis=1) & (apart > 0.0).any(axis=1)]
     if len(moving) < FEWEST_SCATTERED:
         return 0.0
@@ -209,19 +209,19 @@ def exceeds(time: Array, value: Array, level: float, power: float) -> float:
     return float(time[i - 1] + (time[i] - time[i - 1]) * (level ** (1.0 / power) - low) / (high - low))
 
 
-# of the length of the agreement, where the tilts diverge: towards its end the azimuths do already
+# share of the agreement time that is compared: towards its end the azimuths diverge before the tilts
 BEFORE_DIVERGENCE = 0.8
-# of the azimuth [rad]
+# largest difference of the azimuth [rad]
 AZIMUTH_BOUND = math.radians(3.0)
-# of the path, over b, besides what that makes of it: R times 1 % of alpha is about as much
+# largest difference of the path over b, besides that of the azimuth: about R times 1 % of alpha
 PATH_BOUND = 0.01
-# of a difference, in standard deviations of the noise
+# smallest significant difference, in standard deviations of the noise
 ABOVE_NOISE = 5.0
 # noise along the lean against that across it: that of a mass centre is larger across, by R/h at tan alpha 1
 BOTH_DIRECTIONS = 1.4
 # samples without which azimuth and path are not compared
 FEWEST_COMPARED = 5
-# what is left of a difference that is explained, of the difference
+# largest share of a difference that its explanation may leave
 LEFT_OVER = 1.0 / 3.0
 
 
@@ -336,7 +336,7 @@ class Reference:
         start = max(self.start, float(model.time[0]))
         tilt, end = self._tilt(model, trial)
         covered = start + BEFORE_DIVERGENCE * (end - start) if tilt.differs else end
-        # to the sample: rounding must not take the last one away
+        # compared to a sample: rounding must not take the last one away
         within, agreed = model.time <= covered + SAME_TIME, model.time <= end + SAME_TIME
         return Difference(
             start=start,
@@ -394,7 +394,7 @@ class Reference:
         apart = np.linalg.norm(trial.path[within] - model.path[within], axis=1) / self.base_radius
         size = float(np.sqrt(np.mean(apart**2)))
         beside = float(np.sqrt(np.mean(np.sum(model.path[within, :2] ** 2, axis=1)))) / self.base_radius
-        # of three coordinates, and of samples that are few
+        # factor on the noise for few samples of three coordinates
         few = 1.0 + 3.0 / math.sqrt(6.0 * len(apart))
         noise = trial.path_noise / self.base_radius
         bound = math.hypot(PATH_BOUND, self.azimuth_bound * beside, math.sqrt(3.0) * noise * few)

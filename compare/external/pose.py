@@ -26,7 +26,7 @@ _IN_2001 = 1e9
 _COARSE = 0.5
 # shortest trajectory, over the length of the run
 _SHORTEST = 2e-3
-# of the length of a quaternion; digits printed, not another convention
+# tolerance of the length of a quaternion: printed digits, not another convention
 _UNIT_LENGTH = 1e-2
 # tilts of both kinds that differ by more come from two conventions, not from rounding [rad]
 _SAME_TILT = 0.01

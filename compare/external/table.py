@@ -42,7 +42,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Rows = Iterator[tuple[int, list[str]]]  # number and cells of each line
 Stated = dict[str, tuple[int, str | None]]  # place and unit of each known column, by name
-Values = dict[str, Array]  # of the columns of one run, in SI units and radians, by name
+Values = dict[str, Array]  # columns of one run by name, in SI units and radians
 
 QUATERNION = ("qw", "qx", "qy", "qz")
 POSITION = ("x", "y", "z")
@@ -55,7 +55,7 @@ COLUMN_UNITS = {
     **{name: {"m": 1.0, "cm": 1e-2, "mm": 1e-3} for name in POSITION},
 }
 SILENT_UNITS = {"time": "s", **dict.fromkeys(QUATERNION, ""), **dict.fromkeys(POSITION, "m")}
-# what stands in the header of the table of a run of rockwobble, and what it is here
+# header names of a run table of rockwobble, and the columns they are here
 OWN_TITLES = {
     "time": "time [s]",
     "tilt": "tilt [rad]",
@@ -88,7 +88,7 @@ IN_ORDER = {
         ("time", *QUATERNION, *POSITION),
     )
 }
-# what programs write that is not read: in the first lines; what to do
+# formats that are not read: text in the first lines, and what to do instead
 PROGRAMS = {
     "an export of OptiTrack Motive": (
         r"^Format Version",
@@ -312,7 +312,7 @@ def _named(path: Path, lines: Sequence[str]) -> tuple[list[str], Stated, Rows]:
     for at, (title, _) in enumerate(titles):
         ends = (name for name, end in ENDS.items() if re.fullmatch(rf"(?:.*[\W_])?(?:{end})", title, re.I))
         named += [(name, at) for name in ends if name not in exact]
-    # of a quaternion or a place some ends alone are other quantities
+    # some components of a quaternion or place without the others are other quantities
     partial = {
         name
         for group in (QUATERNION, POSITION)

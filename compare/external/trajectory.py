@@ -318,7 +318,7 @@ def _resampled(poses: Poses, time: Array) -> tuple[Array, Array, Array]:
     axis /= np.linalg.norm(axis, axis=1)[:, None]
     tilt = np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2])
     azimuth = np.arctan2(axis[:, 1], axis[:, 0])
-    # the branch that was followed from sample to sample
+    # branch of the angle that was followed from sample to sample
     branch = np.round((np.interp(time, own, poses.rolling_angle) - azimuth) / (2.0 * np.pi))
     return tilt, azimuth + 2.0 * np.pi * branch, axis
 

@@ -25,7 +25,7 @@ from .trajectory import external_motion, measurement, trajectory_of, twist_since
 CONFIDENCE = 4.0
 
 Row = dict[str, Any]  # of a summary
-# of an external trajectory, beside case, run and reference: unit, meaning
+# columns of an external trajectory besides case, run and reference: unit, meaning
 VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = {
     "differs_in": ("", "tilt, azimuth, path, twist, uplift_time, uplift_direction"),
     "not_compared": (
@@ -52,12 +52,12 @@ VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = {
     "differs_without_mistake": ("", "what still differs, of tilt, azimuth, path and twist"),
     "agreement_without_mistake": ("s", "from uplift or release, as it would be without them"),
 }
-# those of them that hold a tuple
+# columns that hold a tuple
 LISTS = (
     *("differs_in", "not_compared", "not_given", "differs_without_mistake"),
     *("likely_mistake", "likely_mistake_in", "likely_mistake_value"),
 )
-# of one that differs in nothing
+# values of a trajectory without differences
 NO_VERDICT: Row = {name: () if name in LISTS else math.nan for name in VERDICT_COLUMNS}
 
 
@@ -173,7 +173,7 @@ def first_passage(trace: Trace, tilt: float) -> float:
     time = trace.time.copy()
     before = int(np.argmax(trace.tilt > tilt)) - 1
     if before >= 0 and trace.tilt[before] == 0.0:
-        # from rest the growth begins at the uplift, not at the sample before it
+        # growth from rest begins at the uplift, not at the sample before it
         time[before] = max(time[before], trace.uplift_time)
     return exceeds(time, trace.tilt, tilt, 3.0)
 

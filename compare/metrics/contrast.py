@@ -145,7 +145,7 @@ def log_ratios(peaks: Array, against: Array, overturned: Flags, against_overturn
     ours = np.where(overturned, math.inf, peaks)
     theirs = np.where(against_overturned, math.inf, against)
     ours[np.isnan(peaks) | np.isnan(against)] = math.nan
-    # at rest the logarithm is infinite; twice at rest and twice overturned there is no ratio
+    # the logarithm of a run at rest is infinite; two at rest, or two overturned, have no ratio
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(np.log(ours) - np.log(theirs), dtype=np.float64)
 

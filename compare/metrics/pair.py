@@ -381,7 +381,7 @@ def tolerance_of(reference: Trace, trial: Trace | None = None) -> float:
     The peak is that of the reference, or of the trial where the reference stays at rest.
     """
     if reference.mode == SLIDES:
-        return AGREEMENT  # of the peak displacement as well
+        return AGREEMENT  # the tolerance of the peak displacement as well
     for trace in (reference, trial):
         if trace is not None and math.isfinite(trace.uplift_time) and trace.peak_tilt > 0.0:
             return min(AGREEMENT, PEAK_SHARE * trace.peak_tilt / trace.case.cylinder.alpha)

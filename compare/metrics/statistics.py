@@ -23,9 +23,9 @@ Array = NDArray[np.float64]
 
 # probability with which an interval contains what it is for
 CONFIDENCE = 0.95
-# of fewer no two values have the median between them with that probability: 1 - 2/2^5 is 94 %
+# fewer values have no interval of the median of that probability: 1 - 2/2^5 is 94 %
 FEWEST = 6
-_HALVINGS = 60  # of an interval of indices: to rounding
+_HALVINGS = 60  # halvings of an interval of indices, to rounding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -177,7 +177,7 @@ def _between(ordered: Array, index: float) -> float:
     low, high = float(ordered[below - 1]), float(ordered[min(below, len(ordered) - 1)])
     if fraction == 0.0 or low == high:
         return low
-    # of an infinite neighbour any fraction is infinite; between both infinities there is no value
+    # any fraction of an infinite neighbour is infinite; between both infinities there is no value
     between = (1.0 - fraction) * low + fraction * high
     return between if math.isnan(between) else min(max(between, low), high)  # rounding may step over one
 
@@ -187,7 +187,7 @@ Flags = NDArray[np.bool_]
 # two methods are the same for the median member where it is known to differ by less: no engineer knows a
 # peak tilt to 5 %, and an ensemble of some twenty members can show it
 MARGIN = 0.05
-# with which a difference is to be found that is said to be within reach
+# probability of detecting a difference that is called detectable
 POWER = 0.8
 # probability of a difference as large by chance, below which two methods are told apart
 SIGNIFICANCE = 0.05

@@ -20,7 +20,7 @@ from rockwobble.multibody.engines.registry import (
 from rockwobble.multibody.scene import default_step
 from rockwobble.multibody.simulation import STEP_SETTINGS, resolved_settings
 
-_LEAN = 1e-3  # of alpha: a tilt that fits into any ring
+_LEAN = 1e-3  # tilt over alpha that fits into any ring
 
 
 def with_settings(case: Case, runs: Sequence[Run], settings: Mapping[str, object]) -> tuple[Run, ...]:
@@ -89,7 +89,7 @@ def at_step(run: Run, step: TimeStep) -> Run:
 
 
 def _setting_names(case: Case, run: Run) -> tuple[str, ...]:
-    # from a release that every engine and every ring can start: what is to be set may be what the case needs
+    # try a release that every engine and ring can start, as the settings may be needed by the case
     start = Case(
         case.cylinder, initial=InitialState(_LEAN * case.cylinder.alpha), duration=1.0, name=case.name
     )
@@ -209,7 +209,7 @@ def _reservation(name: str) -> str:
     try:
         engine = engine_named(name)
     except BrokenEngineError as error:
-        # of another package: what is broken there stops nobody here
+        # a broken engine of another package stops nobody here
         return str(error)
     lacks = [f"no {support} support" for support in MODELLED if support not in engine.supports]
     lacks += [] if engine.uplifts else ["no uplift"]

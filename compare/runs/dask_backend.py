@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 T = TypeVar("T")
 R = TypeVar("R")
 
-# what submits a call, how many calls it takes at a time, and what a call raises whose process died
+# submit function, number of calls at a time, and the exception of a call whose process died
 Backend = tuple[Callable[..., Future[Any]], Callable[[], int], tuple[type[BaseException], ...]]
 # seconds to wait for the scheduler: a machine that is there answers in a fraction of one
 _PATIENCE = 15.0
@@ -51,7 +51,7 @@ def on_cluster(address: str, makers: Callable[[], Mapping[str, str]]) -> Iterato
         nonlocal seen
         try:
             threads: int = sum(client.nthreads().values())
-        except (OSError, ValueError, RuntimeError) as error:  # what a client without a scheduler raises
+        except (OSError, ValueError, RuntimeError) as error:  # raised by a client without a scheduler
             raise ClusterError(f"the Dask scheduler at {address} does not answer any more: {error}") from None
         seen = time.monotonic() if threads else seen
         if time.monotonic() - seen > _PATIENCE:

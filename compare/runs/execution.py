@@ -28,7 +28,7 @@ from .progress import FailedTask, ProgressCallback
 from .scheduler import run_tasks
 
 SAMPLE_STEP = 0.01
-# [s] at the reference size: the usual search ends at half of the default step
+# steps [s] at the reference size: the usual search ends at half of the default step
 _EQUAL_STEPS: dict[str | None, float] = {"auto": 2.5e-5, "extrapolated": FINEST / 1.75}
 
 
@@ -145,7 +145,7 @@ def simulate_run(case: Case, run: Run, *, sample_step: float = SAMPLE_STEP) -> T
     )
 
 
-@cache  # of a run of a millisecond the signature takes a twentieth
+@cache  # the signature takes a twentieth of a run of a millisecond
 def _model_settings() -> frozenset[str]:
     from rockwobble import reduced
 
@@ -281,7 +281,7 @@ def jobs_fingerprint(jobs: Iterable[Job]) -> str:
 def case_inputs(case: Case) -> dict[str, object]:
     """Return the inputs that runs of a case depend on, without the names of it and its motion."""
     motion = case.motion
-    # without a term a run is the one that it was before there was any
+    # runs without extra terms keep the identity they had before terms existed
     return case.terms | {
         "cylinder": case.cylinder,
         "motion": None if motion is None else (motion.acceleration, motion.time_step),

@@ -93,7 +93,7 @@ class Plan:
     """
 
     def __post_init__(self) -> None:
-        # with numpy, which help can do without
+        # imports numpy, which help can do without
         from rockwobble.models.number_checks import require_in_range, require_one_of
 
         kinds = get_type_hints(type(self))

@@ -109,7 +109,7 @@ class Worker:
 def serve() -> None:
     """Answer calls from the standard input until it closes; the body of the process."""
     answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what an engine prints must not mix with the answers
+    os.dup2(2, 1)  # output of an engine must not mix with the answers
     calls: queue.SimpleQueue[Call] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(sys.stdin.buffer, calls), daemon=True).start()
     while True:
@@ -295,7 +295,7 @@ def _in_processes(count: int) -> Iterator[Backend]:
     pool = ThreadPoolExecutor(count)
     try:
         yield lambda *task: pool.submit(call, *task), lambda: count, (WorkerDiedError,)
-    except BaseException:  # by an error or Ctrl-C: no process outlives its tasks
+    except BaseException:  # on an error or Ctrl-C: no process outlives its tasks
         with lock:
             stopped.set()
             for worker in opened:

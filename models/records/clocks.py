@@ -12,7 +12,7 @@ from .component import Component, RecordFile
 
 # over a whole record two components may drift apart by this part of a step, the rounding of printed times
 _DRIFT = 0.05
-_MOST_PARTS = 20  # of the smallest step: a record of more samples by that is a mistake, not a common step
+_MOST_PARTS = 20  # samples per smallest step; a longer resampled record indicates a mistake in the time steps
 # components may differ in length by this part, and by more where what is left out is below this part of
 # the peak
 _LEFT_OUT, _STILL = 0.01, 0.05

@@ -22,7 +22,7 @@ from .plausibility import doubts_as_read
 from .reading import Reading
 from .units import factor
 
-ZERO = "zero"  # in the place of a file: planar motion
+ZERO = "zero"  # stands for a file: planar motion
 _G = METRES_PER_SECOND_SQUARED["g"]
 
 
@@ -221,7 +221,7 @@ def _read_all(path: Path, reading: Reading) -> tuple[list[Component], tuple[str,
     return _read_folder(path, reading)
 
 
-_MOST_FILES = 60  # of the folder of a station; more are those of many stations
+_MOST_FILES = 60  # limit for the folder of a station; more are those of many stations
 
 
 def _read_folder(folder: Path, reading: Reading) -> tuple[list[Component], tuple[str, ...]]:
@@ -253,7 +253,7 @@ def _read_station(
         components, notes = at_the_surface(components)
         placed = in_order(components, name)
     except ValueError:
-        if refusals:  # what is missing is probably what was refused
+        if refusals:  # a missing component is probably a refused file
             raise refusals[0][1] from None
         raise
     left = ", ".join(each for each, _ in refusals)

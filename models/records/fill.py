@@ -13,7 +13,7 @@ from .component import Component
 _FILL = re.compile(r"-?9{3,}(?:\.(?:9+|0))?|-12345\.0")
 _FAR = 5.0  # times the largest of all other samples
 _BEYOND = 1e6  # times the largest of all other samples: no record has such a spike, whatever its digits
-_LEAST = 999.0  # of a number that fills a place
+_LEAST = 999.0  # least size of a number that fills a place
 
 
 def without_fill(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], tuple[str, ...]]:

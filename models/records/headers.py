@@ -18,7 +18,7 @@ _DIRECTIONS: dict[str, Direction] = {
 }
 _QUADRANT = re.compile(r"([NS])\s*(\d{1,3})\s*([EW])")
 _DEGREES = re.compile(r"(\d{1,3})(?:\.\d*)?\s*(?:DEG|$)")
-_AGREEMENT = 0.02  # of the peak: printed peaks are rounded, some are those of finer samples
+_AGREEMENT = 0.02  # relative: printed peaks are rounded, some are those of finer samples
 _CONTRADICTION = 2.0  # a peak that is off by this factor is that of another motion
 
 

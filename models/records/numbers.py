@@ -63,7 +63,7 @@ def plain_numbers(text: str) -> NDArray[np.float64] | None:
     count = int(_begins(content).sum())
     try:
         values = np.fromstring(content, dtype=np.float64, sep=" ")
-    except ValueError:  # of a text that is no number from somewhere on
+    except ValueError:  # the rest of the text holds no numbers
         return None
     # touching numbers are read as several: more than blanks part
     return values if len(values) == count and np.isfinite(values).all() else None
@@ -111,7 +111,7 @@ def separate(text: str) -> str | None:
     answer, count = re.subn(rf"[-+]?\d*\.\d{{{decimals}}}{exponent}", r" \g<0> ", text)
     if len(answer.split()) != count:
         return None
-    # without exponents the zero before the point stands in all numbers above zero, or in none
+    # numbers without exponents have the zero before the point all or none
     mixed = not digits and all(re.search(style, answer) for style in (r"(?<![\d-])\.\d", r"(?<![\d-])0\.\d"))
     return None if mixed else answer
 

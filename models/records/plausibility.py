@@ -16,14 +16,14 @@ LARGEST_PEAK = 2.0  # [g]; few records of any earthquake have more, numbers in m
 LARGEST_SCALED_PEAK = (
     5.0  # [g], of a record that was scaled; the largest that was ever recorded has about 4 g
 )
-LARGEST_RATIO = 30.0  # of the peaks of two components; gal taken for m/s^2 makes 100, for g 981
+LARGEST_RATIO = 30.0  # ratio of the peaks of two components; gal taken for m/s^2 makes 100, for g 981
 LONGEST_STEP, SHORTEST_STEP = 0.1, 1e-4  # [s]; recorders take 50 to 1000 samples in a second
 _USUAL = 0.4  # [g], peak of a strong motion: among the units the one that comes next to it makes sense
 # a planar motion that was turned has components in proportion, the small one by its azimuth
 _PROPORTIONAL = 1e-9
-_GRAVITY = (0.8, 1.2)  # [g], of a mean that is the weight of the sensor
-_END, _FEWEST_AT_END = 0.02, 3  # part of the duration, and samples
-_STRONG = 0.3  # of the peak, at the end
+_GRAVITY = (0.8, 1.2)  # [g], range of a mean that is the weight of the sensor
+_END, _FEWEST_AT_END = 0.02, 3  # end of a record: share of its duration, and least number of samples
+_STRONG = 0.3  # share of the peak that is improbable at the end
 
 
 def likely_unit(peak: float, used: str | None = None) -> tuple[str, float]:

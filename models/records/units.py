@@ -12,7 +12,7 @@ from ..number_checks import quoted
 from .component import ALLOWED_UNITS, METRES_PER_SECOND_SQUARED, USUAL_UNITS
 from .plausibility import LARGEST_SCALED_PEAK, peak_doubts
 
-_SPELLINGS = {  # without blanks, signs of powers and of products, "sec" as "s"
+_SPELLINGS = {  # units without blanks and signs of powers and products, "sec" as "s"
     "g": "g g's gs",
     "m/s2": "m/s2 m/s/s ms-2 m/ss",
     "cm/s2": "cm/s2 cm/s/s cms-2 cm/ss gal gals",

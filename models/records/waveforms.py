@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .component import RecordFile
 
-_STEP_AGREEMENT = 0.05  # of a step: a sample that is off by more leaves a gap, or lies over another
+_STEP_AGREEMENT = 0.05  # share of a step: a sample further off leaves a gap, or lies over another
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-# what pydantic says, in the words of the other messages
+# messages of pydantic, in the words of the other messages
 _WORDS: Mapping[str, str] = MappingProxyType(
     {
         "missing": "must be given",

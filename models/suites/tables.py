@@ -414,7 +414,7 @@ class SuiteTable(_Table):
     bounds: Annotated[Bounds | None, BeforeValidator(_bounds)] = None
 
 
-# by their keys, "" for the whole file
+# tables by their keys, "" for the whole file
 TABLES: Mapping[str, type[BaseModel]] = MappingProxyType(
     {
         "": SuiteTable,

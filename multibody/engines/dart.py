@@ -101,11 +101,11 @@ _OPEN = 5e-8  # [rad] lean at which the base is open; standing it stays below 5e
 _LOADED, _OPENING = 0.5, 0.999
 # [rad] between the scene and the load of a base that slides: to turn the scene costs more than a step
 _OFF_LOAD = 0.02
-_SLIDING_TOLERANCE, _SLIDING_SWEEPS = 1e-5, 100  # at 1e-8 it slides as far, at four times the cost
+_SLIDING_TOLERANCE, _SLIDING_SWEEPS = 1e-5, 100  # tolerance 1e-8 gives the same slide at four times the cost
 _REDUCTION, _FASTEST_REDUCTION = 0.01, 1e-3  # [-], [m/s] by which DART itself reduces a depth
-_SLOWING = 0.1  # of gravity, by which the ground slows down that takes a landed base back
+_SLOWING = 0.1  # deceleration over gravity of the ground that takes a landed base back
 _LANDED = 2.0  # depths of the rim by which a closed base is deeper than it was kept where it has landed
-_FAR = 1e3  # of the height: ODE ends the process where something is too far away
+_FAR = 1e3  # distance over the height: ODE ends the process where something is too far away
 _SIDE = 1e-3  # cosine of the tilt up to which the cylinder lies on its side
 _SPIN = 1.0  # [rad] about the axis of the cylinder
 
@@ -263,9 +263,9 @@ class _DartStepper(Leapfrog):
             kept = max(kept - back * time_step, target)
             slip_x = slip_y = 0.0
             if closed:
-                # of a base that slides, friction is all the load
+                # friction is the whole load of a sliding base
                 load = min(math.hypot(ax, ay) / (tipping + az), friction) * arm
-                # what lies after its landing leans by what it has sunk, and does not open
+                # a landed base leans as far as it has sunk, and does not open
                 self._use_for(opening=opens and (load > _OPENING or (lean > _OPEN and not lies)))
                 # a load pushes against the acceleration
                 along = math.atan2(axis_y, axis_x) + heading if lean > _LEANS else math.atan2(-ay, -ax)
@@ -278,7 +278,7 @@ class _DartStepper(Leapfrog):
                     axis_x, axis_y = 2.0 * (i * k + w * j), 2.0 * (j * k - w * i)
             else:
                 axis_z = 1.0 - 2.0 * (i * i + j * j)
-                # on its side it is held by two points
+                # a cylinder on its side is held by two points
                 if self._open != (axis_z > _SIDE):
                     self._use_for(opening=axis_z > _SIDE)
                 # friction takes the rim to the velocity of the ground, here beyond zero by the overshoot

@@ -64,7 +64,7 @@ class Declared:
         yield self.stepper_type(scene, self.settings_type(**settings))
 
 
-@cache  # to read it takes as long as a hundred steps
+@cache  # reading it takes as long as a hundred steps
 def _version(package: str) -> str:
     return version(package)
 
@@ -85,7 +85,7 @@ class Leapfrog:
 
     def __init__(self, scene: Scene, guide_stiffness: float, depth: float = 0.0) -> None:
         self._scene, self._step, self._depth = scene, scene.time_step, depth
-        # of both halves of the guide, torque for each twist
+        # torque per twist of both halves of the guide
         stiffness = guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
         self._stiffness = stiffness if scene.support.guided else 0.0
         self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]

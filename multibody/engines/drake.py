@@ -82,9 +82,9 @@ class DrakeSettings(EngineSettings):
     friction_damping: Annotated[float, positive(most=2.0)] = 1.8
 
 
-POINTS = 4  # of the rim, which carry a flat base
-SLIDING_POINTS = 32  # of a base that slides: a polygon of 0.995 b that needs no turning
-_POINT_SIZE = 1e-9  # of b: a sphere this small reaches out of the rim by 1e-9 theta^2/2
+POINTS = 4  # points of the rim that carry a flat base
+SLIDING_POINTS = 32  # points of a sliding base: a polygon of 0.995 b that needs no turning
+_POINT_SIZE = 1e-9  # radius over b; a sphere this small reaches out of the rim by 1e-9 theta^2/2
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -243,7 +243,7 @@ def _quiet() -> Iterator[None]:
 
 _FLAT = 2e-3  # [rad] lean up to which a point carries the rim: the cylinder itself is not found below 1e-3
 _LEANS = 1e-8  # [rad] from which a lean has a direction; what stands leans by 1e-9
-_LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
+_LOADED = 0.5  # eccentricity of the load over b from which the scene follows it
 
 _FACTS = EngineFacts(
     title="Drake",
@@ -262,7 +262,7 @@ class _DrakeStepper(Leapfrog):
         self._slides = scene.mode == SLIDES
         points = SLIDING_POINTS if self._slides else POINTS
         self._standing, self._rolling = make_scene(scene, settings, points), make_scene(scene, settings, 0)
-        self._last = self._standing  # what took the last step
+        self._last = self._standing  # plant that took the last step
         self._overshoot = settings.friction_damping - 1.0
         self._warning = ""
         self._spun = 0.0  # angle about its axis that has been taken off the cylinder [rad]
@@ -274,7 +274,7 @@ class _DrakeStepper(Leapfrog):
         if self._share > 0.0:
             place += [0.0, 0.0, 2.0 * place[6]]
             velocity = np.append(velocity, 2.0 * start.velocity)
-        self._left = np.zeros_like(velocity)  # what the solver left of the last step, torque and force
+        self._left = np.zeros_like(velocity)  # residual torque and force of the solver in the last step
         self._place, self._velocity = place, velocity
         self._rim = _Rim.of(place, scene.body)
         self._sinks = math.nan
@@ -366,7 +366,7 @@ class _DrakeStepper(Leapfrog):
             axis = rim.axis_x, rim.axis_y, 1.0 - 2.0 * (x * x + y * y)
             pull, couple = tendon.loads(place, axis, self._scene.body.mass_centre_height)
             force[:3] += couple
-            force[-3:] += pull  # of the slab, or the cylinder alone
+            force[-3:] += pull  # force on the slab, or on the cylinder alone
         return force
 
     def _advance_once(self, force: Array) -> None:

@@ -50,7 +50,7 @@ _SLIDING: Settings = {
 }
 # A standing cylinder that runs into a wall, or hops while it slides, leans too and then stands on: only
 # under a load on its rim does a lean mean that it has uplifted, or if it is far larger.
-_ON_RIM, _RISEN_ANYHOW = 0.9, 1e-3  # of b, [rad]
+_ON_RIM, _RISEN_ANYHOW = 0.9, 1e-3  # eccentricity over b, and tilt [rad]
 
 _FACTS = EngineFacts(
     title="MuJoCo",
@@ -144,10 +144,11 @@ class _MujocoStepper:
         self._data = mujoco.MjData(self._model)
         names = [self._model.geom(index).name for index in range(self._model.ngeom)]
         self._prisms = np.array([index for index, name in enumerate(names) if name.startswith("prism")], int)
-        # of a prism from the first [rad]
+        # angle of a prism from the first [rad]
         self._turns = 0.5 * np.pi / max(len(self._prisms), 1) * np.arange(len(self._prisms))
         self._model.geom_sameframe[self._prisms] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE  # they will turn
-        self._middle = 0.5 * scene.body.height - scene.body.mass_centre_height  # of the outline [m]
+        # height of the middle of the outline [m]
+        self._middle = 0.5 * scene.body.height - scene.body.mass_centre_height
         self._warned: list[str] = []
         set_start(self._model, self._data, scene, self._staggered)
         kind = mujoco.mjtState.mjSTATE_FULLPHYSICS
@@ -221,7 +222,7 @@ class _MujocoStepper:
             skip_checks=True,  # they take as long as four steps, and what stands takes single ones
         )
         if self._data.warning.number.any():
-            # from there on the engine repeats the last state that it could compute
+            # an engine that fails repeats the last state that it could compute
             frozen = (np.diff(rows[:, 1:8], axis=0, prepend=self._state[None, 1:8]) == 0.0).all(axis=1)
             rows[frozen & (np.cumsum(~frozen[::-1])[::-1] == 0), 1:] = np.nan
         self._state = rows[-1].copy()

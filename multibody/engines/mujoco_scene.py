@@ -115,12 +115,12 @@ class MujocoSettings(EngineSettings):
 
 # friction over load in hardness where friction is found afterwards: too soft to matter at first
 _FRICTION_AFTER = 1e-6
-_PRISMS = 12  # in the scene file; four corners each
+_PRISMS = 12  # prisms in the scene file; four corners each
 # sagitta of the ellipsoid, over that at which a base rolls under its load by two radians a step. Flatter,
 # what uplifts in a plane at tan alpha 1 shakes out of it by 1e-7; above 1 no points are needed, but
 # the heel yields
 _CROWN = 0.1
-_POINT = 1e-6  # of b, radius of a point
+_POINT = 1e-6  # radius of a point over b
 _SLAB_WIDTH, _SLAB_THICKNESS = 4.0, 0.5  # half of them, of the height and in m: wider than a column can fall
 
 
@@ -163,7 +163,7 @@ def _set_options(spec: mujoco.MjSpec, scene: Scene, settings: MujocoSettings) ->
     option = spec.option
     option.timestep = scene.time_step
     option.gravity = [0.0, 0.0, -scene.gravity]
-    # by name: not every version has each
+    # set by name: not every version has each
     option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{settings.integrator.upper()}")
     option.cone = getattr(mujoco.mjtCone, f"mjCONE_{settings.cone.upper()}")
     option.tolerance = settings.tolerance
@@ -180,7 +180,7 @@ def _set_options(spec: mujoco.MjSpec, scene: Scene, settings: MujocoSettings) ->
 def _set_body(spec: mujoco.MjSpec, scene: Scene) -> None:
     shape = scene.body
     radius, half = shape.base_radius, 0.5 * shape.height
-    above = half - shape.mass_centre_height  # of the middle of the outline over the mass centre
+    above = half - shape.mass_centre_height  # height of the middle of the outline above the mass centre
     body = spec.body("cylinder")
     body.pos = [0.0, 0.0, shape.mass_centre_height]
     body.inertia = [shape.transverse_inertia, shape.transverse_inertia, shape.axial_inertia]
@@ -276,7 +276,7 @@ def _set_contact(
     if count:
         # the rounding of the rim's depth would make it hop
         spec.delete(next(pair for pair in spec.pairs if pair.geomname2 == "cylinder" and _bears(pair)))
-        # without its pair it would meet the ground as any two geometries do, with a friction of its own
+        # a geometry without its pair would meet the ground with a friction of its own
         spec.geom("cylinder").contype = spec.geom("cylinder").conaffinity = 0
     for index in range(_PRISMS):
         name = f"prism{index}"

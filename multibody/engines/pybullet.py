@@ -93,10 +93,10 @@ def quiet() -> Iterator[None]:
 
 
 _LEANS = 1e-7  # [rad] a cylinder that leans less has no lowest point to speak of
-_RESIDUAL = 1e-10  # of an iteration, squared [m^2/s^2]; what a standing cylinder leaves is far below
+_RESIDUAL = 1e-10  # squared residual of an iteration [m^2/s^2]; that of a standing cylinder is far below
 _RISEN = 1e-7  # [rad] lean from which the rim carries the cylinder as well as the point does
 _HAS_DIRECTION = 1e-9  # [rad]
-_LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
+_LOADED = 0.5  # eccentricity of the load over b from which the scene follows it
 # steps between two looks at where a base slides to; [rad] off an axis and [m/s] from which the scene follows
 _SLIDING_BLOCK, _OFF_SLIP, _SLIPS = 20, 0.02, 1e-4
 _POSE = 7  # numbers of a pose: position, and quaternion with the scalar last
@@ -142,7 +142,7 @@ class _PybulletStepper(Leapfrog):
         self._standing = self._held = scene.start.standing
         self._ground, self._body = self._add_ground(), self._add_cylinder()
         self._slab = self._add_slab() if scene.body.slab_mass_ratio else None
-        self._slab_velocity = 2.0 * scene.start.velocity  # in the axes of the scene [m/s]
+        self._slab_velocity = 2.0 * scene.start.velocity  # slab velocity in the axes of the scene [m/s]
         self._lengths = scene.body.base_radius, scene.body.mass_centre_height
         self._unsolved = False
         start = scene.start
@@ -355,7 +355,7 @@ class _PybulletStepper(Leapfrog):
         return contact_counts(len(self._bullet.getContactPoints(self._body, physicsClientId=self._client)))
 
     def _analyse(self, wanted: bool) -> None:
-        # of every step it would cost a tenth
+        # done in every step it would cost a tenth
         self._bullet.setPhysicsEngineParameter(
             reportSolverAnalytics=int(wanted), physicsClientId=self._client
         )

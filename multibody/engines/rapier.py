@@ -33,7 +33,8 @@ _SLOP = 10.0  # depths of the rim that Rapier does not correct: of what lands, i
 # well, and one that sets in at once gives a twist its energy
 _OPEN = 2e-4
 _FASTEST_RISE = 1e-3  # [m/s] of a base that has landed deeper: taken back at once, it would be thrown back
-_HALF_DISC = 0.125  # of b: a disc whose far edge is clear of the ground until the side is down
+# half length of the disc over b: its far edge is clear of the ground until the side is down
+_HALF_DISC = 0.125
 _GUIDE = 0.05  # 2 h sqrt(stiffness of the guide); see `settings.GUIDE`: stiffer, it acts on a rounded twist
 _FACTS = EngineFacts(
     title="Rapier (single precision)",
@@ -209,7 +210,7 @@ def _build(rapier: ModuleType, scene: Scene, settings: RapierSettings) -> tuple[
     world, body = rapier.PhysicsWorld(gravity=(0.0, 0.0, -scene.gravity)), scene.body
     how = world.integration_parameters
     how.dt, how.max_ccd_substeps = scene.time_step, 0
-    how.num_solver_iterations = settings.substeps  # which is what Rapier calls its substeps
+    how.num_solver_iterations = settings.substeps  # Rapier's name for its substeps
     how.num_internal_pgs_iterations = settings.iterations
     how.normalized_allowed_linear_error = _SLOP * settings.depth
     how.friction_model = getattr(rapier.FrictionModel, settings.friction_model.upper())

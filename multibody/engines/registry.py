@@ -44,16 +44,16 @@ class _Entry:
     package: str
     remedy: str
     module: str = ""  # where it is not called as the package
-    part: str = ""  # of the module, which loads only where all of it is there
+    part: str = ""  # part of the module that loads only where all of it is there
     standard: bool = True  # comes with every installation of this package, where it has a wheel
 
 
-_UNITS = {"rolling_resistance": " m"}  # of terms of a case, where a refusal says them
-# of PyBullet; elsewhere DART takes its place in a default run
+_UNITS = {"rolling_resistance": " m"}  # units of terms of a case, for refusals
+# platforms of PyBullet; elsewhere DART takes its place in a default run
 _WHEEL = sys.version_info < (3, 12) and sys.platform == "linux" and platform.machine() == "x86_64"
 _ENGINES: Mapping[str, _Entry] = MappingProxyType(
     {
-        # without mujoco-core a folder of that name is left, which can be imported and holds nothing
+        # an uninstalled mujoco-core leaves an empty folder that can be imported
         "mujoco": _Entry("MujocoEngine", "mujoco", "pip install 'mujoco>=4.0,<5'", part="rollout"),
         "pybullet": _Entry(
             "PybulletEngine",
@@ -126,7 +126,7 @@ def available_engines() -> tuple[str, ...]:
 def engine_lack(name: str) -> str:
     """Missing packages of an engine and how to get them, to follow its name; empty if none."""
     entry = _ENGINES.get(name)
-    if entry is None:  # what another package declares is installed
+    if entry is None:  # an engine declared by another package is installed
         return ""
     if importlib.util.find_spec(entry.module or entry.package) is None:
         return f"is not installed here: {entry.remedy}"
@@ -143,10 +143,10 @@ def engine_fault(name: str) -> str:
 
 @cache
 def _load_failure(name: str) -> str:
-    from .pybullet import quiet  # which prints as it loads
+    from .pybullet import quiet  # it prints as it loads
 
     entry = _ENGINES.get(name)
-    if entry is None:  # what another package declares is loaded by that
+    if entry is None:  # an engine declared by another package is loaded by that package
         return ""
     module = entry.module or entry.package
     try:

@@ -30,7 +30,7 @@ from ._shape import T, base_inertia, beta, inertia_growth
 
 _SMALLEST = 2.0**-1022  # absolute tolerance of the root finder: none, so that small tilts keep their digits
 _RTOL = 4.0 * 2.0**-52  # the least that the root finder allows
-_STRIDE = 4.0  # of the search for a bracket; a few strides, wherever the root lies
+_STRIDE = 4.0  # growth of the bracket in the search; a few strides, wherever the root lies
 
 
 class Turning(NamedTuple):

@@ -162,7 +162,7 @@ def quarter_period(body: Body, R: float, theta: Array, gap: Array) -> Array:
     from scipy.special import elliprf
 
     if isinstance(body, TiedBody):
-        # that of a narrow pass, in the limit
+        # limit of a narrow pass
         return np.vectorize(lambda t2, gap2: half_period(body, R, t2, gap2))(np.tan(0.5 * theta), gap)
     k, k1 = np.sin(0.5 * gap), np.cos(0.5 * gap)
     K, K1 = np.sin(0.5 * body.alpha), np.cos(0.5 * body.alpha)

@@ -23,10 +23,10 @@ from ..restoring import sigma
 from ._shape import base_inertia, beta, deflate
 from ._turning import Turning
 
-_NODES = 64  # on each side; measured: 40 leave 1e-10 at the narrowest passes, 48 1e-12, 64 rounding
+_NODES = 64  # nodes on each side; measured: 40 leave 1e-10 at the narrowest passes, 48 1e-12, 64 rounding
 _NARROWEST = 1e-20  # t1/t2: narrower passes differ from this one by less than rounding
 _WIDEST = 2.0  # eps: a pole farther away needs no clustering
-_ROUNDING = 8.0 * 2.0**-52  # of the difference of the two terms of q
+_ROUNDING = 8.0 * 2.0**-52  # rounding of the difference of the two terms of q
 
 
 class HalfCycle(NamedTuple):
@@ -47,7 +47,7 @@ def half_cycle(body: Body, R: float, turning: Turning) -> HalfCycle | None:
     # a pole at distance d behind an end of the span lies at u = 2i sqrt(d/span) from it
     u_min, du_min = _clustered_nodes(t1, span)
     u_max, du_max = _clustered_nodes(behind, span)
-    u = np.concatenate([u_min, u_max])  # from the nearer end
+    u = np.concatenate([u_min, u_max])  # distance from the nearer end
     near, far = span * np.sin(0.5 * u) ** 2, span * np.cos(0.5 * u) ** 2
     at_minimum = np.arange(u.size) < u_min.size
     t = t1 + np.where(at_minimum, near, far)

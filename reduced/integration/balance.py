@@ -17,11 +17,12 @@ from ..equations import energy
 from ..restoring import acceleration_back
 from .result import COMPLETED, MAXIMUM, OVERTURNED_TILT, UNDECIDED, IntegrationResult, Log, State
 
-LONGEST = 34.0  # of 1/p, between the balance and the tilt alpha on either side of it: log(2e14) and a little
-# of p^2 alpha, tilt acceleration of a release at rest that is rounding: it neither falls nor turns back
+# time in 1/p between the balance and the tilt alpha on either side of it: log(2e14) and a little
+LONGEST = 34.0
+# tilt acceleration over p^2 alpha of a release at rest that is rounding: it neither falls nor turns back
 _ROUNDING = 3e-15
-_NEARBY = 1e-6  # of a tilt, by which the derivative is taken
-_ABOVE = 1e-6  # of a maximum, more than rounding of the tilt there
+_NEARBY = 1e-6  # relative step of the numerical derivative by the tilt
+_ABOVE = 1e-6  # relative margin over a maximum, more than rounding of the tilt there
 
 
 def decide(body: Body, result: IntegrationResult) -> IntegrationResult:

@@ -52,11 +52,11 @@ from .result import (
 from .stepping import Stepper
 from .systems import System
 
-_FIRST_STEP = 1e-3  # of 1/p, where a run begins in motion
+_FIRST_STEP = 1e-3  # first step in 1/p of a run that begins in motion
 # a literal 0 has a type of its own, for which its users would be compiled too
 _FIRST_SAMPLE = cast("int", np.int64(0))
-# of 1/p; in this time all motion turns or falls but stable steady wobble and what is nearer than 3e-7 to the
-# balance, which is followed on
+# time in 1/p within which all motion turns or falls but stable steady wobble and what is nearer than 3e-7 to
+# the balance, which is followed on
 _LONGEST = 15.0
 
 

@@ -18,12 +18,12 @@ from .result import MAXIMUM, MINIMUM, OVERTURNED_TILT, State
 from .stepping import Stepper
 from .systems import System, make_is_flat
 
-TAKEN, REPEATED = range(2)  # what becomes of a step
+TAKEN, REPEATED = range(2)  # fate of a step
 NO_TURN = 0.0  # beside MAXIMUM and MINIMUM
 # evaluations before the last, which moves a turning point by so little of the step
 _FEWEST, _CLOSE = 2, 1e-7
 _TANGENTS = 20  # evaluations in search of a reversal
-_RETRY = 1.0 / 32.0  # of a step that went wrong; the next may be four times as long
+_RETRY = 1.0 / 32.0  # factor on a step that went wrong; the next may be four times as long
 
 
 class Turn(NamedTuple):
@@ -45,8 +45,8 @@ class Trial(NamedTuple):
     h: float  # its length [s]
     h_next: float  # length proposed for the next one [s]
     trials: int  # how often its method tried
-    y: State  # at its end
-    k: State  # what the method leaves to the next one, with ``path``
+    y: State  # state at its end
+    k: State  # values kept for the next step, with ``path``
     path: object
     turn: Turn
     flat: bool  # motion without spin and twist rate: exactly planar
@@ -207,7 +207,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
         # a body without a balance may turn back just beyond, within the step
         beyond = turn.kind == MAXIMUM and turn.tilt >= OVERTURNED_TILT
         overturns = beyond or y_new[0] >= OVERTURNED_TILT
-        # with spin the tilt stays positive; without it the base meets the ground
+        # the tilt stays positive with spin; without it the base meets the ground
         lands = trial.flat and not beyond and (y_new[0] <= 0.0 or (turns and turn.tilt <= 0.0))
         if not (lands or overturns):
             return Ending(h, y_new, lands, overturns, turns)

@@ -139,7 +139,7 @@ def make_sampling(lifted: Callable[..., State], partial: Callable[..., tuple[Sta
 
 
 _LEAST_STEP = 1e-200  # a step that must be shorter fails whatever its length [s]
-_HAIR = 1e-6  # of 1/p; an uplift so near to the next sample leaves no more than its square
+_HAIR = 1e-6  # time in 1/p; an uplift so near to the next sample leaves no more than its square
 
 
 @jit
@@ -163,7 +163,7 @@ class Stage(NamedTuple):
 
     elapsed: float  # since the beginning of the piece [s]
     y: State
-    k: State  # what the method of the steps left
+    k: State  # values kept for the next step
     h_next: float  # length proposed for the next step [s]
     restart: bool  # the state or the forcing jumps here, so that `k` is made anew
     resting: bool
@@ -178,7 +178,7 @@ class Step(NamedTuple):
 
     run: Stage  # after it
     turn: Turn  # the turning point inside it
-    landing: Turn  # at its end
+    landing: Turn  # state at its end
 
 
 @inlined

@@ -20,7 +20,7 @@ from .result import State
 from .stepping import runge_kutta
 from .systems import FLAT, RECESS, System, Weights, flat_combine, flat_ratio, scales
 
-# of the tolerance: least spin over still ground, over that of steady wobble. The couple takes spin by orders
+# least spin over still ground, over that of steady wobble, in tolerances. The couple takes spin by orders
 # of magnitude in a pass, but never its sense, which a step of its error could turn
 _LEAST_SPIN = 10.0
 

@@ -18,7 +18,8 @@ REST, COMPLETED, OVERTURNED, OVER_BUDGET, STALLED = range(5)  # how a time integ
 UNDECIDED = 6  # rounding decides whether it falls (`balance`)
 TURNED = 5  # while it runs: the tilt has reached its first maximum after the duration
 MAXIMUM, MINIMUM = 1.0, -1.0
-# that of `models.bounds`: machine code is kept by the content of this folder, which must hold all its numbers
+# copy of the bound in `models.bounds`: machine code is kept by the content of this folder, which must hold
+# all its numbers
 OVERTURNED_TILT = 0.5 * pi
 
 
@@ -27,7 +28,7 @@ class Options(NamedTuple):
 
     rtol: float  # tolerance of one step, relative
     rest_tilt: float  # tilt of the rest rule over alpha; 0 leaves the rule out
-    restitution: float  # of the tilt rate where the base meets the ground in planar motion
+    restitution: float  # ratio of tilt rates where the base meets the ground in planar motion
     duration: float  # [s]
     step_budget: int
     record_steps: bool
@@ -38,7 +39,7 @@ class Task(NamedTuple):
 
     record: NDArray[np.float64]  # (m, 3) samples of the ground acceleration [m/s^2]; m = 0 for still ground
     time_step: float  # their spacing [s]
-    initial: State  # at time zero; zero tilt stands at rest
+    initial: State  # state at time zero; zero tilt stands at rest
     times: NDArray[np.float64]  # (n,) increasing, at which states are wanted [s]; they influence no step
     # (m, 2) from each sample on, the largest |a| and the least az of the record [m/s^2], by which a fall that
     # nothing can stop ends the integration early; m = 0 goes on until the side is down

@@ -41,7 +41,7 @@ _SOON = 0.25  # share of |f| by which f may change in a short time, as a power o
 # over the root of the share above; and by how much the direction may be off that lag [rad], to which it is
 # drawn within |v|/|f|.
 _LOW, _LEVEL, _ALIGNED = 1e-3, 0.4, 1e-5
-VALUES = 7  # of a sample: x, y, x', y', path, energy lost per unit mass, whether it slides
+VALUES = 7  # numbers of a sample: x, y, x', y', path, energy lost per unit mass, whether it slides
 
 
 class Slide(NamedTuple):
@@ -210,7 +210,7 @@ def _creep(f: Force, n0: float, n1: float, time: float, left: float, v0: float,
     fx, fy, gx, gy = f
     fx, fy, n = fx + gx * time, fy + gy * time, n0 + n1 * time
     force, slope = hypot(fx, fy), hypot(gx, gy)
-    if force == 0.0:  # without friction, from a root of f
+    if force == 0.0:  # frictionless: from a root of f
         e = left
         speed = 0.5 * slope * e * e
         return e, gx * e**3 / 6.0, gy * e**3 / 6.0, speed, atan2(gy, gx), slope * e**3 / 6.0
@@ -225,7 +225,7 @@ def _creep(f: Force, n0: float, n1: float, time: float, left: float, v0: float,
         e = min(left, soon * force / steepest)
     c1 = -K * W / (K + force)
     c2 = -(0.5 * q * (W + c1) + f1 * c1 + K * W1) / (force + 2.0 * K)
-    # what the lag takes, at its leading term
+    # reduction by the lag, at its leading term
     middle = v0 + 0.5 * e * (K + 0.25 * q * e)
     slower = 0.5 * middle * middle * W * W / force if v0 > 0.0 else 0.0
     fourth = force * c1 * c1 if v0 == 0.0 else 0.0

@@ -112,7 +112,7 @@ _GROWTH, _SHRINK = 5.0, 0.2  # bounds on the change of the step from one to the 
 _SMALL = (_SAFETY / _GROWTH) ** 5  # error ratio below which the step grows by _GROWTH
 _MOST_TRIALS = 200  # each shortens the step: enough to come down from any length to none
 
-_Path = tuple[State, State, Vector, Vector]  # of a Runge-Kutta step: its start, and how the ground moves
+_Path = tuple[State, State, Vector, Vector]  # Runge-Kutta step: its start, and the motion of the ground
 
 
 class Stepper(NamedTuple):

@@ -52,7 +52,7 @@ STEPS_LEFT = TRIG + 4  # for so many steps these may still be taken over
 U = STEPS_LEFT + 1  # cos(theta/2), with a tendon
 _SIZE = U + _WIDTH
 
-Path = tuple[float, int]  # of the last series: unit of time [s], order
+Path = tuple[float, int]  # last series: unit of time [s], order
 
 
 @jit
@@ -127,7 +127,7 @@ class Origin(NamedTuple):
     per_A: float  # 1/A
     factor: float  # p^2/g
     ground: Vector  # ax, ay, g + az [m/s^2]
-    change: Vector  # of these in the unit of time
+    change: Vector  # change of these in the unit of time
     per_allowed: State  # inverse of the error allowed of tilt, rate, rolling angle, momentum
 
 
@@ -187,12 +187,12 @@ def expand(
     Y0 = body.sin_alpha * (1.0 - v0) - body.cos_alpha * s0
     D0 = body.h * s0 + body.b * v0
     r0, t0 = ax * cos0 + ay * sin0, ay * cos0 - ax * sin0
-    # without spin, now and later, the motion is planar and may reach theta = 0, where L/B is 0/0
+    # motion without spin is planar and may reach theta = 0, where L/B is 0/0
     flat = False
     if L == 0.0:
         least = in_plane_below(body, ax, ay)
         flat = abs(t0) <= least and abs(day * cos0 - dax * sin0) <= least
-    if flat:  # in the axes of its plane nothing across it is left to rounding
+    if flat:  # axes of its plane leave nothing across it to rounding
         ax, ay, t0 = r0, 0.0, 0.0
         dax, day = dax * cos0 + day * sin0, 0.0
         cos0, sin0 = 1.0, 0.0
@@ -334,9 +334,9 @@ def fits(last: float, before: float) -> bool:
     return last * last <= _AIM * (before - last) and before <= _LAST_BUT_ONE
 
 
-_SAFETY = 0.9  # on the length of a step that the order limits
+_SAFETY = 0.9  # safety factor on the length of a step that the order limits
 _GROWTH = 4.0  # bound on the growth of the step from one to the next
-_SHRINK = 1.0 / 32.0  # of a step not taken; the next trial is _GROWTH times as long
+_SHRINK = 1.0 / 32.0  # factor on a step not taken; the next trial is _GROWTH times as long
 
 
 @jit

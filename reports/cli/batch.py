@@ -168,7 +168,7 @@ def spectrum(
 
             tan_alpha = _slenderness(tan_alpha, diameter, height)
             motion = record.motion()
-            assert motion is not None  # without a release there always is one
+            assert motion is not None  # a case without a release has a motion
             intensity_unit(tan_alpha, motion, plan.gravity)
             require_cases(tan_alpha, motion, plan)
             sizes = np.linspace(*plan.SIZES) if plan.semidiagonals is None else plan.semidiagonals
@@ -258,7 +258,7 @@ def ensemble(
                 lines = [f"Suite {suite}: {len(members)} members"]
             else:
                 stated, source = _members(context, problem, copies, motions, peak)
-                # what describes one case holds of copies, but only its first line of motions that differ
+                # the words on one case apply to its copies; of different motions only the first line does
                 members = [] if isinstance(stated, rw.Case) else stated
                 lines = case_lines(stated) if isinstance(stated, rw.Case) else case_lines(members[0])[:1]
                 lines += [f"Members: {len(members) or copies.copies}, {source}"]

@@ -322,7 +322,7 @@ def advise(
             require_judged(case, plan.support, plan.gap)
             run = _run(case, engine, plan.support, time_step)
             claim_folder(context)
-        # what else is understood stands in the advice
+        # the advice lists the rest of the input
         records = record_lines([case.motion]) if problem.names_record else []
         echo([*records, *case_warnings([case], plan.mass)])
         with shown_progress("stages") as progress:

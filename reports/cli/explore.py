@@ -34,7 +34,7 @@ from .problem import (
 
 _several = OptionsIn("Many ground motions")
 
-# of a problem, what the page has; the rest is refused
+# options of a problem that the page has; the rest is refused
 _OF_PAGE = {
     *(field.name for each in (Record, Release, Steel) for field in fields(each)),
     *("semidiagonal", "tan_alpha", "diameter", "height", "slab_mass_ratio"),
@@ -170,7 +170,7 @@ def _state(problem: Problem, records: Path | None, support: str, plane: float | 
         given := first_given(problem, "record", "record_x") or ("--records" if records else "")
     ):
         raise ValueError(f"--release-tilt-deg takes the place of a record here, got {given} beside it")
-    # what the models refuse is refused here, too
+    # refuse here, too, what the models refuse
     rw.Case(
         cylinder,
         initial=initial or rw.InitialState(tilt=0.5 * cylinder.alpha),

@@ -157,7 +157,7 @@ ROTATE = (
 RESAMPLE = (
     "Resample components to a common time step by linear interpolation (all original samples are kept)."
 )
-ALL, NO_ENGINE = "all", "none"  # in place of the names of engines
+ALL, NO_ENGINE = "all", "none"  # used in place of names of engines
 
 
 def _standing_alone(names: list[str] | None) -> list[str] | None:

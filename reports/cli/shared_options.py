@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rockwobble.models import RockingBody
 from .problem import WAYS, Body, ReadingOptions, first_given, under_slab
 
-DEFAULT_COUNT = 100  # of synthetic motions, where the user does not say
+DEFAULT_COUNT = 100  # default number of synthetic motions
 _motions = OptionsIn("Many ground motions")
 
 

@@ -97,7 +97,7 @@ class SubjectOptions(Plan):
         if self.workers is not None and (suite is None or trajectory is not None):
             raise ValueError("--workers belongs to the runs of a --suite, got it without one")
         if self.engine is not None:
-            find_engine(self.engine)  # what is wrong with it is said before anything runs
+            find_engine(self.engine)  # an unknown engine is refused before anything runs
         found: Subject = {
             name: getattr(self, name) for name in ("engine", "time_step", "workers", "support", "tolerance")
         }
@@ -140,7 +140,7 @@ class OutputOptions(Plan):
                 require_file(option, path)
             elif path is not None:
                 require_own_file(option, path, plan, plan_in)
-        if self.markdown is not None:  # to which a page is added
+        if self.markdown is not None:  # file to which a page is added
             require_file("--markdown", self.markdown)
 
     def write(self, results: Checks, plan: str) -> None:

@@ -124,7 +124,7 @@ def _scales(results: Advice) -> Panel:
                 x=rows["factor"].to_numpy(float), y=tilt, name=NAMES[name], style=marked, size=2.5, width=1.0
             )
         )
-    # at most five above zero, so that they do not collide
+    # five ticks above zero at most, so that they do not collide
     step = 0.25 * 2.0 ** max(0, math.ceil(math.log2(balance / 1.25)))
     levels = [(step * place, f"{step * place:g}") for place in range(int(balance / step) + 1)]
     return Panel(
@@ -152,7 +152,7 @@ def _friction(results: Advice) -> Panel:
     available, trace = results.facts["friction"], results.trace
     usual = float(results.groups["friction_95"].max())
     most = [value for value in (available, usual) if value is not None and math.isfinite(value)]
-    # what no friction supplies is drawn at the top
+    # a demand beyond any friction is drawn at the top
     top = 1.5 * max([*most, results.cylinder.tan_alpha])
     needed = np.where(trace["tilt"] > 0.0, np.minimum(trace["friction_needed"], top), 0.0)
     layers: list[Line | Rule] = [

@@ -18,7 +18,7 @@ from .ensemble import margin_rules, ratio_axes
 from .palette import DARK, GREY, ORDER, Style, mark_styles, pale
 from .picture import Axis, Band, Line, Panel, Picture, Rule, caption
 
-# of a panel: the support, and what it is called
+# support of a panel, and its title
 _PANELS = {"planar": "Planar analysis"} | {each: each.words.capitalize() for each in SUPPORTS.values()}
 _GUIDED = tuple(each for each in SUPPORTS.values() if each.guided)
 _COLOURS = (DARK, *ORDER)
@@ -42,7 +42,7 @@ def pictures(results: Fragility) -> list[Picture]:
 
 def _ratios(results: Fragility) -> Picture | None:
     answers = main_contrasts(results)
-    # of several cylinders their mean; those of each stand in the table
+    # mean over several cylinders; the values of each are in the table
     cylinder = ALL if len(results.facts["cylinders"]) > 1 else None
     rows = [
         row

@@ -19,7 +19,7 @@ from .thinning import POINTS, kept_points
 _PER_INCH = 125.0  # pixels of height
 # numbers in cells as long as a phone has room for them
 _MOST_WRITTEN = 42
-_COLOURS = 64  # of a continuous scale
+_COLOURS = 64  # colours of a continuous scale
 _EMPTY = 255  # place of a cell without a value and without a reason
 
 
@@ -27,7 +27,7 @@ def charts(picture: Picture) -> list[tuple[str, str]]:
     """Return title and HTML element of each panel."""
     elements = []
     for index, panel in enumerate(picture.panels):
-        # in a script only `</` would end it
+        # only `</` would end a script
         stated = json.dumps(chart(panel, picture), separators=(",", ":"), ensure_ascii=False).replace(
             "</", "<\\/"
         )

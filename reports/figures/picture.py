@@ -19,7 +19,7 @@ from .thinning import POINTS
 
 Array = NDArray[np.float64]
 
-MOST_ENTRIES = 8  # of a legend: more cannot be distinguished
+MOST_ENTRIES = 8  # limit of a legend: more cannot be distinguished
 _LINE = Style(colour=DARK, dash="solid")
 _DECADES = tuple(digit * 10.0**power for power in range(-6, 7) for digit in (1.0, 2.0, 5.0))
 _STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
@@ -176,7 +176,7 @@ class Rule:
     colour: str = DARK
     dash: str = "dash"
     name: str = ""
-    side: Literal["left", "right"] = "left"  # of the panel, or of a vertical line: where its text is
+    side: Literal["left", "right"] = "left"  # side of the panel, or of a vertical line, where its text is
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

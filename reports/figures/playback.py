@@ -14,12 +14,13 @@ from rockwobble.models import Trace
 from .case_view import CaseView
 from .interactive import base64_of
 
-# in a second: between them the page interpolates
+# frames in a second: the page interpolates between them
 _PICTURES = 25.0
 _TRAIL = 4.0  # how much of the path of the contact point is seen [s]
 _TRANSLUCENT, _SOLID = 0.35, 1.0
-_FACTORS = (1, 3, 10, 30)  # on the tilt
-_STEEPEST, _SEEN = np.radians(60.0), np.radians(25.0)  # of a magnified tilt: that may be chosen, at first
+_FACTORS = (1, 3, 10, 30)  # magnifications of the tilt
+# magnified tilt: largest that may be chosen, and at first
+_STEEPEST, _SEEN = np.radians(60.0), np.radians(25.0)
 _BEFORE = 0.5  # uplift, from when on the motion is shown [s]
 
 
@@ -48,7 +49,7 @@ def playback(view: CaseView) -> dict[str, object] | None:
     return {
         "base_radius": cylinder.base_radius,
         "height": 2.0 * cylinder.half_height,
-        # what falls after the end of the case is played until its side is down
+        # a fall after the end of the case is played until its side is down
         "length": max(view.case.length, *(float(trace.time[-1]) for trace in view.traces.values())),
         "runs": runs,
         "models": models,

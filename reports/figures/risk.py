@@ -13,8 +13,8 @@ from .picture import Axis, Line, Panel, Picture, Rule, caption
 
 _MOST = 4  # methods of a panel: more lines cannot be told apart
 _COLOURS = (DARK, *ORDER)
-_RETURN_PERIODS = (475, 2475)  # of codes [year]
-_LEAST = 0.01  # of the largest contribution: what is less is not looked for
+_RETURN_PERIODS = (475, 2475)  # return periods of codes [year]
+_LEAST = 0.01  # share of the largest contribution below which none is drawn
 
 
 def risk_pictures(results: Fragility) -> list[Picture]:

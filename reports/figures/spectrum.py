@@ -15,7 +15,7 @@ from .picture import Axis, Line, Panel, Picture, bar_ends, caption
 
 NAMES = TITLES | {SPATIAL: "3D"}
 _HEIGHT = 3.4
-_ASIDE = {SPATIAL: 0.0, PLANAR_X: -0.3, PLANAR_Y: 0.3}  # of the spacing of sizes: gaps side by side
+_ASIDE = {SPATIAL: 0.0, PLANAR_X: -0.3, PLANAR_Y: 0.3}  # offset over the spacing of sizes: gaps side by side
 
 
 def pictures(results: OverturningSpectrum) -> list[Picture]:

@@ -29,15 +29,15 @@ Keywords = dict[str, Any]  # arguments of a function of matplotlib
 WIDTH = 8.6
 # more points than such a column has pixels
 _POINTS = 1600
-_BELOW = -0.48  # of a legend, from its panel [inch]
+_BELOW = -0.48  # offset of a legend from its panel [inch]
 _GRID = "#dddddd"
-_FRAME = "#888888"  # of an entry in a legend, which may be white
+_FRAME = "#888888"  # edge of an entry in a legend, which may be white
 # no text is smaller than 8 pt at the width at which it is shown
 _STYLE: Any = {
     "svg.hashsalt": "rockwobble",
     "svg.fonttype": "none",  # text that can be searched, and a third of the file
     "pdf.fonttype": 42,  # letters that journals accept
-    # what is placed stays where it is, whatever the user has set
+    # fix the layout, whatever the user has set
     "figure.autolayout": False,
     "figure.constrained_layout.use": False,
     "figure.figsize": (WIDTH, 1.0),
@@ -53,7 +53,7 @@ _STYLE: Any = {
     "hatch.linewidth": 0.5,
     "path.simplify_threshold": 0.3,
 }
-# of a journal at the width of its columns, between 6 and 8 pt
+# type of a journal at the width of its columns, between 6 and 8 pt
 _PRINTED: Any = {
     **_STYLE,
     "font.size": 7.5,
@@ -66,11 +66,11 @@ _PRINTED: Any = {
 _LOWER = 0.65  # height of a panel in one column of a journal over that on a screen
 _LEAST_COLUMNS = 5.0  # width from which panels have room beside each other [inch]
 _BETWEEN = 4.0  # least distance of the words of two ticks [pixel]
-_RASTER_DPI = 200  # of maps, whose cells as paths would take ten times the room
-_EDGED_CELLS = 2500  # with more cells than these, a white edge would hide them
+_RASTER_DPI = 200  # resolution of maps, whose cells as paths would take ten times the room
+_EDGED_CELLS = 2500  # a white edge would hide more cells than these
 # more numbers than these would run into each other
 _MOST_WRITTEN = 64
-# of the scale of colours: there white letters are read better
+# range of the colour scale where white letters are read better
 _DARK = 0.6
 # no date: the same numbers give the same bytes
 _METADATA: dict[str, dict[str, Any]] = {
@@ -118,7 +118,7 @@ def figure(picture: Picture, *, titled: bool = False, width: float | None = None
             axes.set_axis_off()
         for place, (axes, panel) in enumerate(zip(places.flat, picture.panels, strict=False)):
             _panel(axes, panel, picture)
-            # what the panel below, or the one on the left, says as well
+            # labels that the panel below, or the one on the left, repeats
             below = picture.panels[place + picture.columns :][:1]
             left = picture.panels[place - 1 : place] if place % picture.columns else []
             axes.set_xlabel("" if [each.x.title for each in below] == [panel.x.title] else panel.x.title)
@@ -150,7 +150,8 @@ def _settle(drawn: Figure) -> None:
     layout = drawn.get_layout_engine()
     assert layout is not None
     layout.execute(drawn)
-    drawn.set_layout_engine(None)  # with one, even one that places nothing, saving draws everything twice
+    # any layout engine, even one that places nothing, makes saving draw everything twice
+    drawn.set_layout_engine(None)
     for axes in drawn.axes:
         x, y, width, height = (round(each, 3) for each in axes.get_position(original=True).bounds)
         axes.set_position((x, y, width, height))
@@ -191,7 +192,7 @@ def _panel(axes: Axes, panel: Panel, picture: Picture) -> None:
             assert picture.shades is not None
             _heat(axes, layer, panel, picture.shades)
     if picture.columns > 2 and not panel.x.log and not panel.x.ticks:
-        axes.locator_params(axis="x", nbins=5)  # in a narrow panel more numbers would touch
+        axes.locator_params(axis="x", nbins=5)  # more numbers would touch in a narrow panel
     # after what is drawn, which would move them
     axes.set_xlim(panel.x.low, panel.x.high)
     axes.set_ylim(panel.y.low, panel.y.high)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 POINTS = 2000
-_WINDOW = 1.0  # of an envelope, about one swing [s]
+_WINDOW = 1.0  # window of an envelope, about one swing [s]
 
 
 def kept_samples(*columns: NDArray[np.float64], points: int = POINTS) -> NDArray[np.intp]:

@@ -16,7 +16,7 @@ from .picture import TIME, Array, Axis, Layer, Line, Panel, Picture, Rule, capti
 
 _PATH = Style(colour=ORDER[0])
 _POINT = Style(colour=ORDER[1])
-_CLOSE = 5e-3  # of the extent of a path, between points that are drawn
+_CLOSE = 5e-3  # least distance of drawn points, over the extent of the path
 _ARC = 0.1  # [rad] between points of the rim
 _CIRCLE = Style(colour=GREY, dash="dash")
 
@@ -60,7 +60,7 @@ def _top(trace: Trace) -> Array:
     """Places of the centre of the top (n, 2) [m], seen from above."""
     body = trace.case.cylinder
     out = (2.0 * body.half_height - body.mass_centre_height) * np.sin(trace.tilt)
-    angle = np.nan_to_num(trace.rolling_angle)  # at rest there is none, and no way out
+    angle = np.nan_to_num(trace.rolling_angle)  # no rolling angle at rest, where the path has no length
     top: Array = trace.centre_of_mass[:, :2] + out[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
     return top
 

@@ -28,7 +28,7 @@ from .palette import DARK, GREY, ORDER, PALE, Style, mark_styles
 from .picture import Array, Axis, Layer, Line, Panel, Picture, Rule, bar_ends, caption, group_lines, list_axis
 
 _FREE_PANELS = 4
-_FAR = 1e3  # what infinite is drawn as: beyond every scale
+_FAR = 1e3  # stands for infinity: beyond every scale
 _STILL, _FEW = "no record uplifts it", "too few records left standing"
 _MODERATE = 2.0  # friction over tan(alpha): twice that of uplift
 # column of the cells, level, name of the line where it is reached, style
@@ -168,7 +168,7 @@ def _free(name: str, what: str, table: pd.DataFrame) -> Picture:
     )
 
 
-# of a method, in words
+# methods in words
 METHODS: Mapping[str, str] = {
     RECESS.model: RECESS.model,
     **{support: f"engine, {support.words}" for support in RECESSES_FIRST},
@@ -193,7 +193,7 @@ _MEDIANS: Mapping[str, str] = {
 _OTHER_MEDIAN = "cross"
 _APART = 0.16  # rows of one point
 _RATIO_ENDS = (0.2, 5.0)  # a ratio beyond is drawn at the end
-_LEAST = 1e-9  # what a logarithmic axis shows of nothing
+_LEAST = 1e-9  # stands for zero on a logarithmic axis
 _PEAK_RATIO = "peak / recess model's peak"
 _ONE = Rule(at=1.0, axis="y", colour=GREY, dash="solid")
 
@@ -205,9 +205,9 @@ def pictures(results: Validity) -> list[Picture]:
         _records(contrasts(tables)),
         *map_pictures(tables),
         _agreement(tables["following"]),
-        # with a tendon there is no second model to tell apart
+        # a tendon leaves one model, so there is no second to tell apart
         *([] if results.structure.tendon else [_verification(tables["verification"])]),
-        # with a slab there is no ring, and what slips first is not the base
+        # a slab has no ring, and its base is not what slips first
         *(
             []
             if results.structure.slab_mass_ratio

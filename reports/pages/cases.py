@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-# what is heavy is imported in the functions: the help of the command line needs no numpy
+# heavy imports stand in the functions: the help of the command line needs no numpy
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 

@@ -12,7 +12,7 @@ _OF_SPECTRUM = (
 )
 
 
-_BREAK = " \\"  # at the end of a line that goes on
+_BREAK = " \\"  # ends a line that goes on
 
 
 def command_line(command: str, options: Mapping[str, object]) -> str:

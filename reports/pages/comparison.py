@@ -93,7 +93,7 @@ def page_of(results: Comparison) -> Page:
 
 def _case(view: CaseView, results: Comparison, *, many: bool) -> dict[str, object]:
     rows, name = view.rows, view.case.name
-    # of many cases a page would hold too many
+    # a page of many cases would hold too many
     numbers, columns = ([], []) if many else all_columns(rows)
     findings = results.case_findings(name)
     return {
@@ -116,7 +116,7 @@ def _case(view: CaseView, results: Comparison, *, many: bool) -> dict[str, objec
 _MODES = tuple(f"mode.{name}" for name in words()["mode"])
 _HEADLINE = (*_MODES, *AGREE[0], *AGREE[1], "comparison.none")
 _SUPPORTS = ("comparison.on_guide", "comparison.on_flat", "comparison.on_walls")
-# what a terminal leaves to the page
+# parts that a terminal leaves to the page
 _CAUSES = ("slides", "support", "walls", "pass", "near_passes", "distributions")
 _USUAL = (*_HEADLINE, *_SUPPORTS, *(f"comparison.{cause}" for cause in _CAUSES))
 

@@ -17,12 +17,12 @@ from rockwobble.models.synthetic import pulse, synthetic_motions
 
 from .sentences import fragment
 
-MOST_RECORDS = 10  # of a page: each is some 100 kB of it
+MOST_RECORDS = 10  # limit for a page: each is some 100 kB of it
 _MOST_PEAK = 20.0  # [g]: to which the slider of the intensity brings the weakest ground motion
-# [s], [m/s^2], [s]: of the motions beside El Centro
+# motions beside El Centro: length [s], peak [m/s^2], period of the pulse [s], seed
 _SYNTHETIC_LENGTH, _SYNTHETIC_PEAK, _PULSE_PERIOD, _SEED = 12.0, 3.0, 0.8, 1
 
-_LEFT = 56  # [pixel] of the graphs over time, one below the other
+_LEFT = 56  # [pixel] left margin of the graphs over time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

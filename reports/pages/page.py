@@ -35,12 +35,12 @@ from .wording import sentence
 
 Output = Literal["terminal", "markdown", "html"]
 _PLACE = re.compile(r"\n?@@(\d+)@@\n?")
-# what Markdown would take for markup in a name; an underscore only where a word begins or ends
+# characters of a name that are markup in Markdown; an underscore only where a word begins or ends
 _MARKUP = re.compile(r"([\\`*<])|(?<!\w)_|_(?!\w)")
 # a command at the end of a line
 _COMMAND = re.compile(r"^(.*\S) `([^`\n]* [^`\n]*)`$", re.MULTILINE)
 _HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
-_LEAST_WIDTH = 80  # of what is not a terminal, such as a file
+_LEAST_WIDTH = 80  # width for output that is not a terminal, such as a file
 
 
 class MarkdownText(str):

@@ -41,7 +41,7 @@ def the(label: str, engine: str) -> str:
     return f"the {label}" if engine == REDUCED else label
 
 
-# what templates know besides what jinja2 does
+# filters of templates besides those of jinja2
 _FILTERS = {
     "degrees": math.degrees,
     "warnings": warnings,

@@ -20,7 +20,8 @@ def page_of(results: Sweep) -> Page:
     values = {
         "plan": plan,
         "findings": list(map(statement, results.findings())),
-        "conditions": conditions(plan.get("options", plan)) if grid else [],  # cases have their own
+        # the cases of a suite have conditions of their own
+        "conditions": conditions(plan.get("options", plan)) if grid else [],
         "parts": results.summary().to_dict("records"),
         "columns": [
             *(_OF_GRID if grid else _OF_CASES),

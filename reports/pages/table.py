@@ -133,7 +133,7 @@ def _duration(seconds: float) -> str:
 _FORMS: Mapping[str, Callable[[float], str]] = {"percent": _percent, "duration": _duration}
 
 
-# what LaTeX reads as a command, and letters that its text fonts lack
+# commands of LaTeX, and letters that its text fonts lack
 _LATEX = {
     "\\": r"\textbackslash{}",
     **{each: f"\\{each}" for each in "&%$#_{}"},

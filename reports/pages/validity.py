@@ -194,7 +194,7 @@ def _agreement_rows(traces: Mapping[str, float], *, tendon: bool) -> list[dict[s
     counted = ("whole", "runs")
     return [
         {"run": f"engine, {place}", "model": model, "low": traces[name], "high": traces[f"{name}_longest"]}
-        # what is expected to part is not counted
+        # runs expected to diverge are not counted
         | {each: traces[f"{name}_{each}"] for each in counted if name != "flat"}
         for name, place, model in compared[: 1 if tendon else 3]
     ]

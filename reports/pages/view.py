@@ -34,5 +34,5 @@ def page_of(results: View) -> Page:
             "about": results.manifest,
         },
         blocks={"player": fragment("comparison/player.html.j2", name="player", spec=spec)},
-        outputs=["html"],  # without the player there is nothing to see
+        outputs=["html"],  # nothing to see without the player
     )

@@ -134,7 +134,7 @@ class Response(TypedDict):
 
     outcome: str
     mode: str
-    displacement: float  # of the base centre over the ground, largest [m]
+    displacement: float  # largest displacement of the base centre over the ground [m]
     residual_displacement: float  # at the end [m]
     diagnostics: list[str]
     uplift_time: float
@@ -144,7 +144,7 @@ class Response(TypedDict):
     in_one_plane: bool
     largest_normal_force: float
     slip: float
-    tension: float  # of a tendon, largest until it falls [weights of one column]; NaN without one
+    tension: float  # largest force of a tendon until it falls [weights of one column]; NaN without one
     lost: float
     tolerance: float
     yields: bool  # a tendon, see `beyond_yield`
@@ -279,7 +279,7 @@ class Advice(Results, kind=KIND):
     @property
     def yields(self) -> bool:
         """Whether the tendon yields as given, so that the run is no answer."""
-        return self.response.get("yields", False)  # of an earlier version nothing is known
+        return self.response.get("yields", False)  # unknown for results of earlier versions
 
     @property
     def yielded(self) -> int:
@@ -549,7 +549,7 @@ def advise(
         [*(job_fingerprint(Job(case=case, run=each)) for each in (model, run) if each), plan]
     )
     if expected_mode(case, plan.support) in (REST, SLIDES):
-        run = None  # which has no tilt to verify
+        run = None  # a run at rest has no tilt to verify
     stage = stages(progress, [1.0] * (5 if run is None else 6))
     with stage("the reduced model (compiled on its first run)"):
         trace = simulate_run(case, model)
@@ -561,13 +561,13 @@ def advise(
     others: list[Trace] = []
     groups: dict[str, list[Case]] = {}
     with stage(f"{plan.copies} perturbed copies"):
-        if moves:  # in this process: other ones take longer to begin than hundreds of reduced runs
+        if moves:  # run in this process: others take longer to begin than hundreds of reduced runs
             groups[COPIES] = plan.perturbed(case)
             perturbed = [simulate_run(each, model, sample_step=DEMAND_STEP) for each in groups[COPIES]]
             # the other model has no anchor; and where the base never opens, chatter takes it minutes
             stays = case.is_release or case.friction >= case.friction_of_uplift  # on flat ground, too
             if stays and not case.anchor and trace.peak_tilt > CLOSED_TILT * case.cylinder.alpha:
-                few = groups[COPIES][:WEAKER_COUNT]  # of a ratio that no grade rests on
+                few = groups[COPIES][:WEAKER_COUNT]  # few suffice for a ratio that no grade rests on
                 others = [simulate_run(each, other, sample_step=BAND_STEP) for each in few]
         rows = [*member_rows(COPIES, perturbed), *member_rows(OTHER, others)]
     with stage("other records as strong, planar analysis and the vertical component"):
@@ -716,7 +716,7 @@ def advice_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, object]) -
 
 def _opened(tilt: float) -> float:
     """Return a tilt [alpha], at least that at which a base counts as open: chatter below is no response."""
-    return max(tilt, CLOSED_TILT)  # in this order NaN stays NaN
+    return max(tilt, CLOSED_TILT)  # this order keeps NaN
 
 
 def _moves(outcome: str, uplift_time: float) -> bool:

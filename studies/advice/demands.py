@@ -32,7 +32,7 @@ from rockwobble.multibody.ring import rim_overhang
 
 Array = NDArray[np.float64]
 
-# what is not exceeded in 99 % of the moving time leaves out the spikes of the nearest passes
+# percentile of the moving time [%], which leaves out the spikes of the nearest passes
 SPIKES = 0.01
 # share of the runs of a group that do not exceed its demand
 COVERED = 0.95
@@ -50,9 +50,9 @@ _RECESS = {"moment": "weights × b", "shear_and_wall": "weights", "tilt": "alpha
 # demands of a run with their units
 _TENDON = "tendon"  # tension, in weights of a column alone
 UNITS: Mapping[str, str] = {**_BASE, **_TOP, **_RECESS, _TENDON: "weights"}
-# what else there is of each run
+# other columns of each run
 SHARES = ("slip", "lost")
-# of these also the largest of all samples
+# columns with the largest of all samples as well
 PEAKS = {name: f"{name}_peak" for name in ("shear", "force")}
 # demands of which is said what acts together with them, and what that is
 _LEADING = ("shear", "moment")

@@ -23,7 +23,7 @@ from .members import ACCELERATION, COPIES, VELOCITY, WEAKER_COUNT
 from .scales import AS_STRONG
 from .trust import Verification
 
-Advice = Any  # of `.advice`, which imports this module
+Advice = Any  # class of `.advice`, which imports this module
 _RANGE: Mapping[str, Value] = {"share_weaker": 1.0 - AS_STRONG[0], "share_stronger": AS_STRONG[1] - 1.0}
 # times a ground motion: what has to be made stronger than that uplifts nothing, such as still ground
 _NO_SCALE = 1e9

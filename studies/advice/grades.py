@@ -25,7 +25,7 @@ NEAR = 1.5
 UNSAFE = 0.1
 # ratio by which the largest tilt may change under shaking as strong
 SENSITIVE = 1.5
-# of the ratio: the tilt may change by so much more between the scales that were run
+# margin of the ratio: the tilt may change by so much more between the scales that were run
 BETWEEN_SCALES = 1.05
 
 # columns of a frame: what lies on more than three ends rests on those that happen to be higher

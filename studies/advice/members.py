@@ -55,10 +55,10 @@ DEMAND_STEP = 0.005
 # members of each group that are run at each intensity of weaker shaking: all other records, and as many
 # copies, of which 95 % are all but one
 WEAKER_COUNT = 22
-_CLOSE = 1e-9  # relative, of an uplift threshold that rounding may pass
-_SEED = 1  # of synthetic ground motions where the records are not installed
+_CLOSE = 1e-9  # relative margin of an uplift threshold, for rounding
+_SEED = 1  # seed of synthetic ground motions where the records are not installed
 _QUANTILES = {"05": 0.05, "50": 0.5}
-# those of which there are percentiles over the members
+# columns with percentiles over the members
 DEMANDS = (*UNITS, *SHARES)
 
 
@@ -138,7 +138,7 @@ def run_rows(
         trace = simulate_run(scaled(case, factor), model, sample_step=DEMAND_STEP)
         return member_row(group, trace, factor)
 
-    # what never uplifts is the same at every scale below its own: one run of it is that of all
+    # a motion that never uplifts is the same at every lower scale: one run stands for all
     still = [each for each in cases if not each.is_release and uplift_of(each) > factor * (1.0 + _CLOSE)]
     at_rest = row(still[0]) if still else {}
     names = {id(each) for each in still}

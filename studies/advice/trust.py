@@ -166,7 +166,7 @@ def model_prediction(case: Case, trace: Trace, run: Run | None) -> Prediction:
         case,
         reference=trace,
         own=trace,
-        # of the fastest fall; the penetration counts for less than it
+        # scale of the fastest fall; the penetration counts for less than it
         contact_resolution=STEPS_OF_A_PASS * float(np.abs(trace.tilt_rate).max()) * step,
         error=estimated_error(case, run or Run(DEFAULT_ENGINE, trace.run.support), step),
         simulate=simulate_run,
@@ -200,7 +200,7 @@ def verify_run(case: Case, run: Run, reference: Trace) -> tuple[Verification, Pr
 
     (label,), name = labels_beside_references([run], reference.run)
     own = run.own_model
-    # in a process of its own: an engine that crashes leaves the rest of the advice
+    # a separate process: an engine that crashes leaves the rest of the advice
     (trace,) = simulate_all([Job(case=case, run=run, label=label)], workers=2)
     row = comparison_row(
         case,

@@ -108,7 +108,7 @@ def limits_by_function(results: Fragility) -> Iterator[tuple[str, list[Limit]]]:
             ].sort_values("intensity")
             x = unit * counts["intensity"].to_numpy(float)
             share = np.maximum.accumulate((counts["k"] / counts["n"]).to_numpy(float))
-            # of a level below uplift, at which nothing uplifts, the 0 is there
+            # a level below uplift already has the share 0
             if uplift < x[0]:
                 x, share = np.r_[uplift, x], np.r_[0.0, share]
             limits.append(
@@ -163,7 +163,7 @@ def nrml(results: Fragility) -> bytes:
         low, high = f"{x[0]:.9g}", f"{x[-1]:.9g}"
         ends = {"minIML": low, "maxIML": high} if continuous else {}
         imls = Tree.SubElement(function, "imls", {"imt": name, "noDamageLimit": low, **ends})
-        # of points OpenQuake itself adds a 0 at the noDamageLimit
+        # OpenQuake adds a 0 at the noDamageLimit itself
         if not continuous:
             imls.text = " ".join(f"{each:.9g}" for each in x[1:])
         for limit in limits:

@@ -29,9 +29,10 @@ EXTRAPOLATED, ONE_MOTION = "extrapolated", "one motion"
 KINDS = (FITTED, NEVER, ALWAYS, SEPARATED, FALLING, EXTRAPOLATED, ONE_MOTION)
 TOO_FEW = "too few"  # motions or levels: whatever the curve, it is not stated
 _ITERATIONS, _HALVINGS = 60, 30
-_TOLERANCE = 1e-11  # of a step of Newton's method, in standard deviations of the logarithm of the intensity
+# largest last step of Newton's method, in standard deviations of the logarithm of the intensity
+_TOLERANCE = 1e-11
 _LEVEL = 1e-9  # slope, in the same, of a share that is the same at all intensities
-_GROUPS = 10  # of a cloud, to compare shares with the curve
+_GROUPS = 10  # groups of a cloud, to compare shares with the curve
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -70,7 +71,7 @@ class Curves:
             z = (x[None, :] - self.centre[:, None]) / np.where(
                 np.isfinite(self.centre), self.dispersion, 1.0
             )[:, None]
-        # on the step of a separated curve itself
+        # the middle of the step of a separated curve
         shapeless = np.isin(self.kinds, [KINDS.index(FALLING), KINDS.index(ONE_MOTION)])
         z[np.isnan(z) & ~shapeless[:, None]] = 0.0
         return np.asarray(ndtr(z), dtype=np.float64)
@@ -226,7 +227,7 @@ def _lowest(x: Array, where: NDArray[np.bool_]) -> Array:
 
 
 _BOUNDS = ("median", "low", "high")
-# of logarithms of intensities: motions of one peak differ by the rounding of their samples
+# tolerance of log intensities: motions of one peak differ by the rounding of their samples
 _SAME = 1e-9
 # numbers held at once in a fit of many resamples
 _MOST_NUMBERS = 2_000_000

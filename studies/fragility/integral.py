@@ -57,7 +57,7 @@ def lognormal_frequency(hazard: HazardCurve, centre: float, dispersion: float) -
     k = -np.diff(y) / np.diff(x)
     shift = k * dispersion
     a, b = (x[:-1] - centre) / dispersion + shift, (x[1:] - centre) / dispersion + shift
-    # in the tail in which the difference of both shares keeps its digits
+    # evaluated in the tail where the difference of both shares keeps its digits
     a, b = np.where(a > 0.0, -b, a), np.where(a > 0.0, -a, b)
     with np.errstate(divide="ignore"):
         shares = log_ndtr(b) + np.log(-np.expm1(log_ndtr(a) - log_ndtr(b)))
@@ -152,7 +152,7 @@ def frequencies_of(hazard: HazardCurve, x: Array, y: Array, uplift: Array, far: 
     for row in np.flatnonzero(np.isnan(y).any(axis=1)):
         known[row] = _fill(x[row], y[row])
     lowest = known[:, 0]
-    # from 0 at uplift, unless that lies above the lowest level
+    # share 0 at uplift, unless that lies above the lowest level
     first = np.minimum(uplift, x[:, 0])
     x = np.column_stack([first, x])
     y = np.column_stack([np.where(uplift < x[:, 1], 0.0, lowest), known])

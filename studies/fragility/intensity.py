@@ -20,7 +20,7 @@ from rockwobble.models.number_checks import require_one_of, require_positive
 
 Array = NDArray[np.float64]
 
-DAMPING = 0.05  # of the oscillator of a response spectrum, as everywhere
+DAMPING = 0.05  # damping ratio of response spectra
 # samples of a period: between two of them a sine is at most 0.5 % above the larger
 _FINE = 32
 

@@ -141,7 +141,7 @@ class Resampled:
 
     def over(self, other: Resampled) -> Resampled:
         """Return the ratio to another of the same resamples."""
-        with np.errstate(invalid="ignore"):  # of two that are 0 there is none
+        with np.errstate(invalid="ignore"):  # two zeros have no ratio
             return replace(self, logs=self.logs - other.logs, parts=self.parts - other.parts)
 
     def interval(self, motions: int) -> Interval:
@@ -336,7 +336,7 @@ def _frequency_row(
     }
 
 
-_POINTS = 200  # of the picture
+_POINTS = 200  # points of the picture
 
 
 def _contributions(

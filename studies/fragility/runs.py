@@ -244,7 +244,7 @@ class Task:
             **{"rtol": _RTOL, **self.run.settings},
         )[0]
         return [
-            # of one without a peak its run says why
+            # a run without a peak gives its reason
             self._simulate(case, scale) if math.isnan(peak) else _row(case, peak, outcome_of_peak(peak))
             for peak, scale in zip(peaks.tolist(), shaking.scales, strict=True)
         ]
@@ -291,8 +291,8 @@ def _row(
 
 # The reduced runs of a task take about a second together: little is lost with it.
 _CHUNK_TIME = 1.0
-# of the default levels, as peak resultant over g tan(alpha): from a little above uplift to where a slender
-# body of ten metres has fallen under most records
+# range of the default levels, as peak resultant over g tan(alpha): from a little above uplift to where a
+# slender body of ten metres has fallen under most records
 _LOWEST, _HIGHEST, LEVELS = 1.25, 12.0, 20
 
 
@@ -396,7 +396,7 @@ class RunPlan(Study[Task, pd.DataFrame]):
             for index, motion in enumerate(self.motions):
                 for step, scale in self.factors(cylinder, motion).items():
                     found = {measure: scale * values[index] for measure, values in own.items()}
-                    if asked.levels is not None:  # to the last bit one level for all
+                    if asked.levels is not None:  # one level for all, to the last bit
                         found[asked.measure] = float(asked.levels[step])
                     place = {"cylinder": name, "motion": motion.name, "step": step, "scale": scale}
                     about = {"uplift_scale": lifts[index], "synthetic": motion.synthetic}

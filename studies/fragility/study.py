@@ -514,7 +514,7 @@ def _facts(plan: RunPlan) -> dict[str, object]:
         "methods": {method.label: _description(method, plan.methods) for method in plan.methods},
         "levels": None if asked.levels is None else list(map(float, asked.levels)),
         "scales": list(plan.scales) if asked.levels is None else None,
-        # by level, where each has motions of its own
+        # motions by level, where each level has its own
         "motions_of_levels": None if plan.stripes is None else plan.motions_of_levels(),
         "limits": [name for name in LIMITS if name in limits_of(asked)],
         **{name: getattr(asked, name) for name in named},

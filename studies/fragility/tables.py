@@ -198,7 +198,7 @@ def _whole(x: Array) -> Array:
     return np.where(made, x, means)
 
 
-# of a curve: from half of the lowest intensity to twice the highest
+# range of a curve: from half of the lowest intensity to twice the highest
 _POINTS, _BEYOND = 60, 2.0
 ALL = "all"  # cylinders
 _KEY = ("cylinder", "method", "limit")
@@ -331,7 +331,7 @@ def contrast_table(
             unknown = (np.isnan(pair[0].y) | np.isnan(pair[1].y)) & blocks.made
             if unknown.all():
                 continue
-            with np.errstate(divide="ignore", invalid="ignore"):  # of curves that have no median
+            with np.errstate(divide="ignore", invalid="ignore"):  # curves without a median
                 ends.append(_ratio_bounds(pair, blocks.made))
             own, many = ([of[cylinder, name, limit] for name in (method, against)] for of in (fitted, drawn))
             if unknown.any():
@@ -341,7 +341,7 @@ def contrast_table(
             row = curve_contrast(*entries[-1], blocks.fewest, margin)
             rows.append({"cylinder": cylinder, **about, **row, **_ends(ends[-1:])})
         if len(entries) == len(blocks.cylinders) > 1:
-            with np.errstate(invalid="ignore"):  # of one beyond all levels and one below there is none
+            with np.errstate(invalid="ignore"):  # a median beyond all levels and one below have no ratio
                 mean, means = (np.mean(each, axis=0) for each in zip(*entries, strict=True))
             row = curve_contrast(mean, means, blocks.fewest, margin)
             rows.append({"cylinder": ALL, **about, **row, **_ends(ends)})
@@ -360,7 +360,7 @@ def _ends(bounds: Sequence[tuple[float, float]]) -> dict[str, float]:
 def _differences(pair: Sequence[Curves]) -> Array:
     """Differences (4, B): of the medians' logarithms, of dispersions, and the first's least and largest."""
     first, second = pair
-    with np.errstate(invalid="ignore"):  # of two curves that are never reached there is none
+    with np.errstate(invalid="ignore"):  # two curves that are never reached have no ratio
         return np.array(
             [
                 first.median - second.median,
@@ -430,7 +430,7 @@ def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
             value = float(early.median[0] - whole.median[0])
             many_early, many = stopped.curves(weights), sample.curves(weights)
             low, high = many_early.low - many.high, many_early.high - many.low
-            # of the same counts the same curve, wherever it lies
+            # equal counts give equal curves, also where both are beyond the levels
             same = (stopped.counts(weights)[2] == sample.counts(weights)[2]).all(axis=1)
             low, high = (np.where(same, 0.0, end) for end in (low, high))
         found = below_gaps(sample.y)

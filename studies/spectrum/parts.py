@@ -30,7 +30,7 @@ TITLES = {
     PLANAR_X: "planar x (east-west)",
     PLANAR_Y: "planar y (north-south)",
 }
-AZIMUTH = {PLANAR_X: 0.0, PLANAR_Y: 0.5 * math.pi}  # of the plane [rad]
+AZIMUTH = {PLANAR_X: 0.0, PLANAR_Y: 0.5 * math.pi}  # azimuth of the plane [rad]
 # Steps end at each sample of the record, so a tenth of the tolerance of `reduced.peak_tilts` costs only
 # 4 % of the time, and the cells that it moves by 2 % of their tilt fall from 2 in 1000 to none.
 RTOL = 1e-8

@@ -26,7 +26,7 @@ T = TypeVar("T")
 # Yields intensities (m,), is sent the peak tilts of one cylinder there (m,) [rad], returns what it found.
 Search = Generator[Array, Array, T]
 
-_COARSEST = 8.0  # of these, where nothing asks for a finer one
+_COARSEST = 8.0  # coarsest step in units of the finest, where nothing asks for a finer one
 # A step is halved where a tilt that goes on as fast as there, or in one of the two steps beside it on either
 # side, reaches alpha within so many times its length: next to a window the tilt changes fast.
 _REACH, _BESIDE = 6.0, 2

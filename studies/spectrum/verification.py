@@ -112,7 +112,7 @@ def _share(which: NDArray[np.bool_]) -> float:
 
 
 def _median(lowest: Array) -> float:
-    # of an even number the upper middle one: a mean with infinity would hide a finite one
+    # the upper of two middle values: their mean with infinity would hide a finite one
     ordered = np.sort(_or_infinite(lowest))
     return float(ordered[len(ordered) // 2])
 
@@ -127,7 +127,7 @@ CHECK_RTOL = 1e-9
 NUDGE = 1e-9
 # a cell overturns for sure where it does so at all three of these factors on its record
 CONFIRMING = (1.0, 1.0 - NUDGE, 1.0 + NUDGE)
-SAME_PEAK = 0.02  # of the peak tilt, by which two runs of a cell may differ
+SAME_PEAK = 0.02  # relative difference of peak tilt allowed between two runs of a cell
 CELLS = 60  # enough to find one wrong cell in twenty almost surely, in half a second
 
 

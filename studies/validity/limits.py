@@ -35,13 +35,13 @@ _NAMES: Mapping[tuple[str, str], str] = {
 }
 CONTRASTS = tuple(_NAMES)
 _SHARE = 0.9
-FEWEST = 10  # of fewer motions nine in ten is none short of all
+FEWEST = 10  # nine in ten of fewer motions is all of them
 # [b], or of alpha, in one period: less is the creep of a contact that never lets go
 SLIPPED = 1e-3
 # [weight times base radius]: a tenth of what would tip the cylinder about its rim
 SLIGHT = 0.1
-ALIKE = 0.01  # of period, angle of turn or peak: below what a test on a shake table would see
-SMALL = 0.05  # of the peak tilt: less cannot be told from chance
+ALIKE = 0.01  # relative difference of period, angle of turn or peak that no shake-table test would see
+SMALL = 0.05  # relative difference of peak tilt: less cannot be told from chance
 # an engine confirms a model if it is nearer to it than this share of the difference of the models
 CONFIRMS = 0.5
 # and contradicts it where turn or period is off by more than this; the step of an engine errs by less
@@ -222,7 +222,7 @@ def vertical(tables: Tables) -> Numbers:
     numbers: Numbers = {"cells": float(len(table)), "fell": float(fell.sum())}
     for name in ("vertical", "copy"):
         theirs, logarithms = _fell(table, name), _changes(table, name)
-        # of those that overturn by one alone the ratio is infinite or zero, by both there is none
+        # the ratio is infinite or zero where one model alone overturns, undefined where both do
         numbers |= {
             f"{name}_compared": float((~np.isnan(logarithms)).sum()),
             f"{name}_apart": float((np.abs(logarithms) > math.log1p(MARGIN)).sum()),
@@ -266,7 +266,7 @@ def friction(tables: Tables) -> Numbers:
     # slip is counted at the base; under a slab it shows as a tilt that errs, or as energy that ends the run
     slipped = (slip[["slip", "tilt_rms"]] > SLIPPED).any(axis="columns") | slip["outcome"].isin(NO_PEAK)
     slips_at, sticks = largest(share[slipped]), share[~slipped]
-    sticks = sticks[~(sticks <= slips_at)]  # what slips at one release does not hold at all
+    sticks = sticks[~(sticks <= slips_at)]  # a base that slips at one release does not stick at all
     nearest = slip[share == slips_at]
     return {
         "free_response": largest(quotient(tables["free_response"], "friction", "tan_alpha")),

@@ -48,7 +48,7 @@ from .plan import (
 
 _FREE_RTOL = 1e-10
 _CYCLES = 10.0  # over which the flat-ground model may gather tilt
-_MAXIMUM = 1.0  # in the fourth column of `Trace.extrema`
+_MAXIMUM = 1.0  # code of a maximum in the fourth column of `Trace.extrema`
 
 
 def measure_free_response(
@@ -69,7 +69,7 @@ def _release_row(tan_alpha: float, release: float, spin: float, structure: Struc
     assert case.initial is not None
     exact = reduced.free_response(case.cylinder, case.initial, tendon=case.tendon)
     period = turn = peak = math.nan
-    if not case.anchor:  # which the flat-ground model does not have
+    if not case.anchor:  # the flat-ground model has no anchor
         flat = reduced.simulate(replace(case, duration=_CYCLES * exact.period), support=FLAT, rtol=_FREE_RTOL)
         (period, turn), peak = next_maximum(flat), flat.peak_tilt
     return {

@@ -32,7 +32,7 @@ from ..plans import tendon_of
 # arguments of `Part.measure` by name: numbers, text, tuples of them and a `Structure`
 Inputs = Mapping[str, object]
 Row = dict[str, float | str | bool]
-# names of the numbers of a point
+# coordinates of a point, by name
 RELEASE = ("tan_alpha", "release", "spin")
 POINT = ("tan_alpha", "semidiagonal", "intensity")
 
@@ -228,7 +228,7 @@ def _digits(value: float) -> float:
     return float(f"{value:.3g}")
 
 
-# of a record: hardly any was ever measured above it [g]
+# largest plausible peak of a record [g]
 LARGEST_PEAK = 1.5
 
 QUICK = Extent(

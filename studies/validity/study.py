@@ -218,7 +218,7 @@ def _makers(part: Part) -> dict[str, str]:
     return {
         **reduced_makers(),
         **engine,
-        # of the plan what states a problem: how many there are is no part of one
+        # fields of the plan that state a problem; their number is no part of it
         f"code of {part.name}": source_digest(module, Structure, release_case, motion_named, shaken_case),
         "records": source_of(record_names(1)),
     }

@@ -76,7 +76,7 @@ class Reader(Protocol):
         """
 
 
-# in the order in which they are asked
+# formats in the order in which they are tried
 READERS: tuple[Reader, ...] = (
     knet,
     jma,

@@ -51,7 +51,7 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
             format=NAME,
             label=name,
             direction=direction_of(name),
-            # of the raw samples, whose mean AFAD takes off
+            # offset of the raw samples, whose mean AFAD subtracts
             notes=compare_peak(f"{file.name}, {name}", values, peaks.get(name), "gal", 1e-3),
         )
         for name, values in zip(names, table.T, strict=True)

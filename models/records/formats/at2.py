@@ -66,7 +66,7 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
 def _orientation(file: RecordFile, at: int) -> tuple[float | None, float]:
     """Azimuth [deg], and 1 up or -1 down, by "azimuth = 310.0" or the title "event, date, station, 180"."""
     stated = {float(match[1]) % 360.0 for line in file.head[:at] if (match := _AZIMUTH.search(line))}
-    if stated:  # of a rotated component, whose other lines are about those it is made of
+    if stated:  # a rotated component: its other lines describe the components it is made of
         return (stated.pop() if len(stated) == 1 else None), 0.0
     for line in file.head[:at]:
         words = [word.strip() for word in line.split(",")]

@@ -21,7 +21,7 @@ _NUMBERED = re.compile(
     r"COLUMN ([2-9]): ([A-Z]{1,9}-[A-Z]{1,9}) [A-Z]{1,20} \(([^()]{1,20})\)", re.IGNORECASE
 )
 _VELOCITY = re.compile(r"\((c?m/s(?:ec)?)\)", re.IGNORECASE)
-_SEQUENCE = ("N-S", "E-W", "U-D")  # of the platform's format
+_SEQUENCE = ("N-S", "E-W", "U-D")  # order of components in the platform's format
 
 
 def recognizes(file: RecordFile) -> bool:

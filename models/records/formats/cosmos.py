@@ -30,7 +30,7 @@ _UNITS = {
 # places of the headers, counted from 0, and what is unknown
 _AZIMUTH, _INTERVAL, _LENGTH, _PEAK = 53, 61, 62, 63
 _UNKNOWN = -999
-_SHORTEST_LINE = 7  # of those that are looked at
+_SHORTEST_LINE = 7  # shorter lines are not looked at
 _UP, _DOWN, _VERTICAL = 400, 401, 402
 
 

@@ -19,7 +19,7 @@ _UNIT = re.compile(r"(?:UNITS OF|UNITS:|SEC, IN)\s+([A-Z/*^0-9]{1,12})")
 _CHANNEL = re.compile(r"CHAN\s{0,9}(\d{1,4})\s?:\s{0,9}(.{0,60})")
 _PEAK = re.compile(r"(?:PEAK ACCELERATION|UNITS OF UNCOR .{1,40}MAX)\s*=\s*([-+]?\d{0,9}\.\d{1,9})")
 _PARTS_OF_G = {"G/10": 0.1, "MG": 1e-3}
-_SHORTEST_LINE = 8  # of those that are looked at
+_SHORTEST_LINE = 8  # shorter lines are not looked at
 _NUMBERS_PER_LINE = {"V1": (8, 9), "V2": (8, 10)}
 
 

@@ -10,7 +10,7 @@ from ..headers import TURNED_UP, azimuth_of, compare_peak, direction_at, directi
 from ..reading import Reading
 
 NAME = "GeoNet V1A/V2A"
-_TEXT_LINES, _NUMBER_LINES = 16, 10  # of the header of a component
+_TEXT_LINES, _NUMBER_LINES = 16, 10  # lines in the header of a component
 _SHAPE = (10, 8)  # numbers in a line, and characters of each
 _COUNT = re.compile(r"NUMBER OF POINTS\s+(\d{1,9})")
 _STEP = re.compile(r"(?:AT INTERVALS OF|DATA AT)\s+(\d{0,3}\.\d{1,9})\s*S")

@@ -8,7 +8,7 @@ from ..reading import Reading
 from ..waveforms import read_waveforms, require_accelerations
 
 NAME = "miniSEED"
-_QUALITIES = b"DRQMVAST"  # of a data record, or the kind of a control header
+_QUALITIES = b"DRQMVAST"  # quality of a data record, or kind of a control header
 
 
 def recognizes(file: RecordFile) -> bool:

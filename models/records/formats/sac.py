@@ -11,8 +11,8 @@ from ..waveforms import Waveform, read_waveforms, require_accelerations
 
 NAME = "SAC"
 _HEADER_BYTES = 632
-_VERSIONS = (6, 7)  # of the header, the 77th of its words
-_KINDS = {6: "displacements", 7: "velocities", 50: "volts"}  # of the samples, by IDEP
+_VERSIONS = (6, 7)  # version of the header, the 77th of its words
+_KINDS = {6: "displacements", 7: "velocities", 50: "volts"}  # quantity of the samples, by IDEP
 
 
 def recognizes(file: RecordFile) -> bool:
@@ -42,7 +42,7 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
             Component(
                 path=file.path,
                 values=values,
-                time_step=float(f"{waveform.time_step:.7g}"),  # of single precision
+                time_step=float(f"{waveform.time_step:.7g}"),  # the format has single precision
                 unit=None,
                 start=waveform.start,
                 format=NAME,

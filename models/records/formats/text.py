@@ -30,7 +30,7 @@ from ..units import stated_unit, unit_of
 NAME, VALUES = "columns", "values without times"
 _AXES: tuple[Direction, ...] = ("x", "y", "z")
 _ROW_BY_ROW = ("values",)
-_MOST_COLUMNS = 4  # of a table without names; more numbers in a row are samples
+_MOST_COLUMNS = 4  # limit for a table without names; more numbers in a row are samples
 _LEAST_COUNT, _LARGEST_STEP = 10, 0.1  # samples and step [s] that may stand in front; of fewer it is chance
 _SEEN = 50  # rows whose first numbers tell whether they are times
 _MANY_DIGITS = re.compile(r"(?<![\d.])\d{17}")  # more than a double holds: whole numbers that touch
@@ -75,7 +75,7 @@ class _Columns:
     def _time(self) -> int | None:
         kinds = [name.kind for name in self.names]
         times = [at for at, kind in enumerate(kinds) if kind == "time"]
-        if len(times) > 1:  # of an app: times since 1970, and since the start
+        if len(times) > 1:  # apps write times since 1970 and since the start
             exact = [at for at in times if self.names[at].seconds == 1.0]
             starts = {at: self.values[0, at] * (self.names[at].seconds or 1.0) for at in times}
             times = exact if len(exact) == 1 else [at for at in times if not since_epoch(starts[at])]
