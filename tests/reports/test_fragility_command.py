@@ -104,7 +104,7 @@ def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):
 @needs_chromium
 def test_the_page_is_drawn_quiet_and_no_wider_than_the_window(found, tmp_path):
     page = page_of(found).html()
-    assert complaints(page, tmp_path, figures=3 + 2 * 4) == []
+    assert complaints(page, tmp_path, figures=1 + 2 * 4) == []
 
 
 @pytest.mark.slow
