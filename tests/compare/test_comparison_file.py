@@ -88,8 +88,8 @@ def test_a_folder_of_0_3_is_read_and_an_older_one_names_its_release(saved, tmp_p
     columns = {"time": trace.time, "tilt [rad]": trace.tilt, "azimuth [deg]": np.degrees(trace.rolling_angle)}
     pd.DataFrame(columns).to_csv(path := tmp_path / "table.csv", index=False)
     made = comparison(CASES[0], runs=[], external=[path], workers=1)
-    # one table held all, and there were no modes
-    whole = made.rows("release").drop(columns=["mode", "reference_mode", "twist_rms"])
+    # one table held all, and there was no mode
+    whole = made.rows("release").drop(columns=["mode", "error_source", "twist_rms"])
     tables = {name: table for name, table in made.tables.items() if name != "external"}
     dataclasses.replace(made, tables=tables | {"summary": whole}).save(tmp_path / "old")
     read = Comparison.load(tmp_path / "old")

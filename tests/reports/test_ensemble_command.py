@@ -109,7 +109,7 @@ def keys(found: Ensemble) -> set[str]:
 
 def test_findings_state_the_verdict_and_the_numbers_of_each_main_pair():
     pair = numbers(made_up(), "pair")
-    assert pair["ratio"] == pytest.approx((1.1, 1.1, 1.1))
+    assert pair["ratio"] == pytest.approx((1.1, np.nan, np.nan), nan_ok=True)  # no resample differs
     stated = ("runs", "count_higher", "count_lower", "overturned", "overturned_reference", "overturned_both")
     assert [pair[name] for name in stated] == [9, 9, 0, 2, 1, 1]
     assert "ratio_detectable" not in pair
