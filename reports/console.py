@@ -19,13 +19,14 @@ import typer
 
 import rockwobble.compare as rc
 
-from .pages.table import number
+from .pages.wording import some_of, written
 
 if TYPE_CHECKING:
     from rich.text import Text
 
     from rockwobble.compare.runs.progress import Progress, ProgressCallback
     from rockwobble.compare.storage.results import Results
+    from rockwobble.models.finding import Value
 
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
@@ -124,12 +125,10 @@ def shown_progress(what: str = "runs", *, heading: str = "", each: bool = True) 
 
 def sentence(event: Progress, what: str = "runs") -> str:
     """Return how far it is, in words."""
-    words = f"{event.done:,} of {event.total:,} {what}"
-    if event.found:
-        words += f" ({event.found:,} of them found finished)"
-    if event.done < event.total and math.isfinite(event.left):
-        words += f", about {number(event.left, 'duration')} left"
-    return words
+    going = event.done < event.total and math.isfinite(event.left)
+    values: dict[str, Value] = {"count": event.done, "count_all": event.total, "name": what}
+    values |= {"count_before": event.found or None, "duration": event.left if going else None}
+    return written("progress.tasks", values, {})
 
 
 def _say(words: str) -> None:
@@ -270,4 +269,4 @@ def _listed(first: str, names: Sequence[str], before: int) -> str:
             break
         shown.append(name)
     more = len(names) + 1 - len(shown)
-    return ", ".join(shown) + (f" and {more} more" if more else "")
+    return some_of(shown, more)

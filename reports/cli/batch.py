@@ -17,6 +17,7 @@ from rockwobble.studies.plans import Copies, FragilityPlan, SpectrumPlan
 
 from ..console import echo, interruptible, save_with_page, show_and_save, shown_progress, user_input
 from ..pages.cases import case_lines, case_warnings, record_lines, warnings_about
+from ..pages.wording import written
 from . import options
 from .command import takes_options
 from .outputs import claim_folder
@@ -38,6 +39,7 @@ from .suite_choice import chosen_runs, refuse_problem_options, report_skipped_en
 if TYPE_CHECKING:
     from rockwobble.models import RockingBody
     from rockwobble.models.case import TimeStep
+    from rockwobble.models.finding import Value
 
 Cylinders = Annotated[
     list[str] | None,
@@ -254,7 +256,7 @@ def ensemble(
                 refuse(context, ignored, f"does not go with a suite, got {suite}: its cases are the members")
                 refuse_problem_options(context, suite)
                 stated = given = rw.read_suite(suite)
-                source, members = f"cases of {suite}", list(given.cases)
+                source, members = written("motions.suite", {"name": str(suite)}, {}), list(given.cases)
                 lines = [f"Suite {suite}: {len(members)} members"]
             else:
                 stated, source = _members(context, problem, copies, motions, peak)
@@ -279,7 +281,7 @@ def _members(
     """Return the case whose copies are the members, or the members, and what they are."""
     if not motions.option:
         refuse(context, {"peak"}, "scales many motions, give --synthetic, --p695 or --records as well")
-        return problem.case(), f"perturbed copies, {100.0 * copies.perturbation:g} %"
+        return problem.case(), written("motions.copies", {"share": copies.perturbation}, {"share": "share"})
     ignored = {"record", "record_x", "record_y", "record_z", "scale", *_COPIES}
     refuse(context, ignored, f"does not go with {motions.option}: its motions are the members")
     case = unread(problem).case()
@@ -414,15 +416,16 @@ def _echo(plan: rw.Grid | rw.Suite) -> list[str]:
         doubts = plan.doubts()
         ends: list[RockingBody] = [*plan.corners()]
         runs = plan.rows
-        what = (
-            f"{len(plan.semidiagonals)} sizes, {len(plan.tan_alphas)} slendernesses, "
-            f"{len(plan.scales)} scales, {len(plan.motions)} records, models {', '.join(plan.models)}"
-        )
+        axes = {"length": plan.semidiagonals, "ratio": plan.tan_alphas, "factor": plan.scales}
+        counts = {f"count_{name}": len(axis) for name, axis in axes.items()}
+        values: dict[str, Value] = {**counts, "count_motions": len(plan.motions), "names": tuple(plan.models)}
+        what = written("motions.of_grid", values, dict.fromkeys(values, "count"))
     else:
         doubts = doubts_of_cases(plan.cases)
         ends = [case.cylinder for case in plan.cases]
         runs = len(plan.cases) * len(plan.runs)
-        what = f"{len(plan.cases)} cases, {len(plan.runs)} runs of each"
+        each = {"count": len(plan.cases), "count_of_each": len(plan.runs)}
+        what = written("motions.of_suite", each, dict.fromkeys(each, "count"))
     return [
         "Cylinders: "
         + ", ".join(

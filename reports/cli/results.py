@@ -25,6 +25,7 @@ from ..console import (
 from ..pages import stored_page
 from ..pages.cases import case_lines
 from ..pages.table import number
+from ..pages.wording import some_of, written
 from ..registry import KINDS
 from . import options
 from .command import takes_options
@@ -72,6 +73,9 @@ def show(store: Store, as_json: Json = False) -> None:
         raise typer.Exit(1)
 
 
+_STATES = {"whole": ""}  # what is not said of a file
+
+
 def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
     lines = {name: number(value) for name, value in made.headline.items()}
     lines |= {
@@ -87,7 +91,8 @@ def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
         "seeds": ", ".join(f"{name} {seed}" for name, seed in made.seeds.items()),
         "versions": ", ".join(f"{name} {version}" for name, version in made.versions.items()),
         "files": ", ".join(
-            name + (f" ({state})" if state != "whole" else "") for name, state in files.items()
+            written("progress.file", {"name": name, "detail": _STATES.get(state, state)}, {})
+            for name, state in files.items()
         ),
         "pages": ", ".join(made.pages),
         "drawn by": "" if made.kind in KINDS else _drawn_by(made),
@@ -105,8 +110,7 @@ def _text(value: object) -> str:
     if isinstance(value, Mapping):
         return str(value.get("name", value.get("label", "")))
     if isinstance(value, list):
-        shown = ", ".join(_text(item) for item in value[:6])
-        return shown + (f" and {len(value) - 6} more" if len(value) > 6 else "")
+        return some_of([_text(item) for item in value[:6]], max(len(value) - 6, 0))
     return number(value)
 
 

@@ -12,6 +12,7 @@ import rockwobble.compare as rc
 from rockwobble.compare.runs.plan import OptionsIn, Plan
 from rockwobble.studies.plans import GridPlan
 
+from ..pages.wording import written
 from . import options
 from .options import settings
 
@@ -45,7 +46,7 @@ class ManyMotions(ReadingOptions):
     @property
     def source(self) -> str:
         """Kind of the motions of --records."""
-        return "" if self.records is None else f"records of {self.records.name}"
+        return _kind("records", "" if self.records is None else self.records.name)
 
     def by_level(self) -> dict[float, list[rw.GroundMotion]]:
         """Return the motions of each level of the intensity; empty where the table of --records has none."""
@@ -68,11 +69,15 @@ class ManyMotions(ReadingOptions):
         if self.records is None and (lone := first_given(self, *WAYS)):
             raise ValueError(f"{lone} belongs to --records")
         if self.p695:
-            return recorded_far_field(), "far-field pairs of FEMA P-695"
+            return recorded_far_field(), _kind("p695")
         if self.records is not None:
             return rw.read_records(self.records, self.reading()), self.source
         count = DEFAULT_COUNT if self.synthetic is None else self.synthetic
-        return rw.synthetic_motions(count, peak=1.0, seed=seed), f"synthetic ground motions, seed {seed}"
+        return rw.synthetic_motions(count, peak=1.0, seed=seed), _kind("synthetic", str(seed))
+
+
+def _kind(option: str, name: str = "") -> str:
+    return written(f"motions.{option}", {"name": name}, {})
 
 
 def cylinders_of(given: Sequence[str] | None, body: Body) -> dict[str, RockingBody]:

@@ -31,8 +31,7 @@ def pictures(trace: Trace) -> list[Picture]:
         tilt.append(Rule(at=trace.uplift_time, axis="x", text="uplift", side="right"))
     falls, balance = overturning_time(trace), balance_of(trace.case)
     if math.isfinite(falls) and balance < OVERTURNED_TILT:
-        name = "α" if balance == cylinder.alpha else "its balance"
-        tilt.append(Rule(at=falls, axis="x", text=f"passes {name} for good", side="left"))
+        tilt.append(Rule(at=falls, axis="x", text="passes its balance for good", side="left"))
     b = cylinder.base_radius
     path = [Line(x=b * np.cos(turn), y=b * np.sin(turn), style=_CIRCLE, name="base", width=1.0)]
     paths = {"top": (_top(trace), _PATH)}
@@ -47,7 +46,7 @@ def pictures(trace: Trace) -> list[Picture]:
             x=Axis(label="x", unit="m"),
             y=Axis(label="y", unit="m"),
             layers=path,
-            title="path of the top" if len(paths) == 1 else "paths of the top and the contact point",
+            title="seen from above",
             equal=True,
             height=3.4,
         ),

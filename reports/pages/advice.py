@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from rockwobble.models import CLOSED_TILT
-from rockwobble.models.finding import GRADES, Finding, Findings
+from rockwobble.models.finding import GRADES, Finding, Findings, Value
 from rockwobble.models.records import p695
 from rockwobble.models.support import RECESS, RING, support_named
 from rockwobble.multibody import DEFAULT_ENGINE
@@ -139,28 +139,27 @@ def _numbers(found: Advice, findings: Findings) -> Iterator[Row]:
         return {"name": name, "overturn": overturn, "covered": covered, "tilt": moved[0], "top": moved[1]}
 
     fallen = found.overturned or found.yields
-    ends = "tendon yields" if found.yields else "overturns" if fallen else "stands"
+    ends = _cell("yields" if found.yields else "overturns" if fallen else "stands")
     copies = found.members[found.members["group"] == COPIES]["peak_tilt"]
     digits = scattered(scatter_of(found.peak, copies), most=3)
-    yield row("as given, one run", ends, "", math.inf if fallen else found.peak, ends, digits)
+    yield row(_cell("as_given"), ends, "", math.inf if fallen else found.peak, ends, digits)
     for group in _groups(found, findings):
         known, peak, yields = group["runs"] - group["failed"], group["peak_tilt_95"], group.get("yielded", 0)
         if group["single"]:
-            ends = "overturns" if math.isinf(peak) else "stands"
+            ends = _cell("overturns" if math.isinf(peak) else "stands")
             yield row(group["name"], ends, "", peak, ends)
             continue
         low, high = (number(group[f"chance_{end}"], "percent").removesuffix(" %") for end in ("low", "high"))
         share = f"{group['overturned']} of {known} ({low} to {high} %)"
-        covered = f"{group['covered']} of {known}" if group["covered"] else ""
+        covered = _cell("covered", count=group["covered"] or None, count_all=known)
         # "21 of 22" beside "overturns" would say that so many do
-        without = "tendon yields" if yields else "no limit" if covered else "overturns"
-        yield row(
-            group["name"],
-            f"tendon yields in {yields} of {known}" if yields else share,
-            covered,
-            peak,
-            without,
-        )
+        without = _cell("yields" if yields else "no_limit" if covered else "overturns")
+        share = _cell("yields_in", count=yields, count_all=known) if yields else share
+        yield row(group["name"], share, covered, peak, without)
+
+
+def _cell(name: str, **values: Value) -> str:
+    return sentence(Finding(key=f"number.{name}", values=values))
 
 
 def _demand_rows(found: Advice, findings: Findings) -> Iterator[Row]:
@@ -175,7 +174,7 @@ def _demand_rows(found: Advice, findings: Findings) -> Iterator[Row]:
         row, name = rows[demand], lines_of(f"demand.{demand}")[0]
         if math.isnan(row["value"]):
             reason = missing[f"demand_{'moment' if demand == 'wall_force' else demand}"]
-            yield {"name": name, "value": "not given", "of": sentence(reason, short=True)}
+            yield {"name": name, "value": _cell("not_given"), "of": sentence(reason, short=True)}
             continue
         yield {"name": name, **_sizes(row, "kNm" if demand == "moment" else "kN"), "of": _of(found, row)}
 
@@ -202,7 +201,7 @@ def _demand_columns(found: Advice) -> Iterator[list[str]]:
     """Columns of the design demands; forces of a body only where its mass was given."""
     yield from (["name", "demand", "words"], ["value", "value", "words"], ["tonne", "per tonne", "words"])
     if found.facts["mass"] is not None:
-        yield ["mass", "one column" if "columns" in found.facts["cylinder"] else "in all", "words"]
+        yield ["mass", _cell("one_column" if "columns" in found.facts["cylinder"] else "in_all"), "words"]
     yield from (["peak", "peak", "words"], ["of", "not exceeded by", "words"])
 
 
@@ -219,29 +218,31 @@ def _ratios_of_tendon(found: Advice) -> dict[str, str]:
 
 def _steps(found: Advice, findings: Findings) -> list[str]:
     """Lines of what to do next: words, and the whole command where there is one."""
-    commands = _commands(found)
+    commands = _calls(found) if found.facts["options"] is None else _commands(found)
     return [
-        statement(each)[:-1]
-        + (f": `{commands[step]}`" if (step := each.key.partition(".")[2]) in commands else "")
+        _cell("step", detail=statement(each)[:-1], code=commands.get(each.key.partition(".")[2], ""))
         for each in findings.of("step")
     ]
 
 
+def _calls(found: Advice) -> dict[str, str]:
+    """What to write in Python, where `case` is at hand."""
+    run = f'rw.Run("{DEFAULT_ENGINE}", "{found.facts["support"]}")'
+    return {
+        "friction_unknown": "dataclasses.replace(case, friction=...)",
+        "budget": f"rw.comparison(case, runs=[{run}], budget=True)",
+        "engine": f"rw.advise(case, {run})",
+        "spectrum": f"rw.spectrum({found.cylinder.tan_alpha:.6g}, case.motion)",
+        "ensemble": "rw.ensemble(case)",
+        "clearance": f'rw.advise(case, support="{RING}")',
+        "in_a_recess": f'rw.advise(case, support="{RECESS}")',
+        "vertical": "rw.read_record(x, y, z)",
+        "records": p695.REMEDY,
+    }
+
+
 def _commands(found: Advice) -> dict[str, str]:
     options, support = found.facts["options"], found.facts["support"]
-    if options is None:  # made in Python, where `case` is at hand
-        call = 'rw.advise(case, support="{}")'
-        return {
-            "friction_unknown": "dataclasses.replace(case, friction=...)",
-            "budget": f'rw.comparison(case, runs=[rw.Run("{DEFAULT_ENGINE}", "{support}")], budget=True)',
-            "engine": f'rw.advise(case, rw.Run("{DEFAULT_ENGINE}", "{support}"))',
-            "spectrum": f"rw.spectrum({found.cylinder.tan_alpha:.6g}, case.motion)",
-            "ensemble": "rw.ensemble(case)",
-            "clearance": call.format(RING),
-            "in_a_recess": call.format(RECESS),
-            "vertical": "rw.read_record(x, y, z)",
-            "records": p695.REMEDY,
-        }
     # the mass of a column states a tendon, too
     plan = [name for name in PLAN if name != "mass" or not options.get("tendon_force")]
     problem = {name: value for name, value in options.items() if name not in plan}

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from .wording import sentence
+
 # heavy imports stand in the functions: the help of the command line needs no numpy
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -20,8 +22,6 @@ def case_lines(case: Case, mass: float | None = None, *, record: bool = True) ->
     from rockwobble.models.finding import Finding
     from rockwobble.studies.stated import case_findings
 
-    from .wording import sentence
-
     stated = [each for each in case_findings(case) if record or each.key != "input.record"]
     if case.motion is None or case.length != case.motion.duration:
         stated.append(Finding(key="input.length", values={"duration": case.length}))
@@ -31,8 +31,6 @@ def case_lines(case: Case, mass: float | None = None, *, record: bool = True) ->
 def conditions(facts: Facts) -> list[str]:
     """A line on each condition of a study that is not the usual one, see `condition_findings`."""
     from rockwobble.studies.stated import condition_findings
-
-    from .wording import sentence
 
     return list(map(sentence, condition_findings(facts)))
 
@@ -47,8 +45,6 @@ def record_lines(motions: Iterable[GroundMotion | None]) -> list[str]:
 def source_lines(sources: Sequence[str]) -> list[str]:
     """A line on each of the first sources of records, and one on how many more there are."""
     from rockwobble.studies.stated import source_findings
-
-    from .wording import sentence
 
     return list(map(sentence, source_findings(sources)))
 

@@ -10,6 +10,7 @@ from rich.console import Console
 
 from rockwobble.compare.check import NOT_RUN, PASSED, Checks, Result
 from rockwobble.compare.check.groups import TITLES
+from rockwobble.models.finding import Finding
 
 from .page import Page
 from .table import NONE, Row, number
@@ -45,8 +46,9 @@ def page_of(found: Checks) -> Page:
     groups = []
     for group, of_group in _by_group(found.results).items():
         bad = sum(result.failed for result in of_group)
-        state = f"{bad} of {len(of_group)} failed" if bad else f"{len(of_group)} checks"
-        groups.append((f"{TITLES.get(group, 'engines')}: {state}", rows(of_group)))
+        counts = {"count": bad or math.nan, "count_all": len(of_group)}
+        state = Finding(key="check.group", values=counts | {"name": TITLES.get(group, "engines")})
+        groups.append((sentence(state), rows(of_group)))
     values = {
         "headline": headline(found),
         "failed": rows(found.failures),

@@ -35,7 +35,7 @@ def warnings(doubts: Iterable[Facts]) -> list[str]:
 
 def failure(facts: Iterable[Diagnostic]) -> str:
     """Return why a run failed, in words."""
-    return remarks(fact for fact in facts if fact.code in FAILURES) or "it failed"
+    return remarks(fact for fact in facts if fact.code in FAILURES) or lines_of("run.failed_unknown")[1]
 
 
 def code_counts(codes: Iterable[Iterable[str]]) -> list[str]:

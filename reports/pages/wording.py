@@ -15,13 +15,15 @@ from __future__ import annotations
 import math
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
-
-from rockwobble.models.finding import Finding, Value
+from typing import TYPE_CHECKING
 
 from .table import NONE, enumeration, interval_form, number, scattered
+
+if TYPE_CHECKING:  # help, which needs these words, loads no models
+    from rockwobble.models.finding import Finding, Value
 
 _FIELD = re.compile(r"\{(\w+)(?::([^}]*))?\}")
 _OPTIONAL = re.compile(r"\[([^\]]*)\]")
@@ -96,6 +98,11 @@ def _level(finding: Finding) -> str:
 def written(key: str, values: Mapping[str, Value], units: Mapping[str, str], *, short: bool = False) -> str:
     """The line of a key with values of the given units."""
     return filled(lines_of(_variant(key, values))[0 if short else 1], values, units)
+
+
+def some_of(names: Sequence[str], more: int) -> str:
+    """Names, and how many more there are."""
+    return written("progress.names", {"names": tuple(names) or ("",), "count": more or None}, {})
 
 
 def filled(line: str, values: Mapping[str, Value], units: Mapping[str, str]) -> str:

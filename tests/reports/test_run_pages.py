@@ -120,7 +120,7 @@ def test_a_run_that_fails_or_falls_says_so():
 @pytest.mark.parametrize(
     ("stiffness", "share", "key", "mark"),
     [
-        (0.0, 0.9, "run.falls", "passes α for good"),
+        (0.0, 0.9, "run.falls", "passes its balance for good"),
         (2.0, 0.9, "run.falls", "passes its balance for good"),
         (2.0, 1.1, "run.starts_beyond_balance", "passes its balance for good"),
         (6.0, 0.9, "run.falls_from_any_tilt", None),

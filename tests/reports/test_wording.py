@@ -16,7 +16,7 @@ from rockwobble.reports.pages.diagnostics import sentence as diagnosed
 from rockwobble.reports.pages.wording import filled, lines_of, sentence, words
 
 ROOT = Path(__file__).parents[2]
-PARTS = ("models", "compare", "studies", "reports/figures")
+PARTS = ("models", "compare", "studies", "reports")
 TEXTS = ("code", "name", "names", "reason", "detail")  # quantities that are no numbers
 _FIELD = re.compile(r"\{(\w+)(?::[^}]*)?\}")
 SENTENCES = {
