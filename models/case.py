@@ -169,7 +169,7 @@ class Case:
 
     @property
     def terms(self) -> dict[str, Any]:
-        """What it adds to the equations of the paper, by field: tendon and rolling resistance where given.
+        """Terms beyond the equations of the paper, by field: tendon and rolling resistance where given.
 
         Digests take all of them, models and engines refuse what they do not know: a new field is ignored
         nowhere.
@@ -180,7 +180,7 @@ class Case:
 
     @property
     def anchor(self) -> str:
-        """What joins the base to its place on the ground, such as "a tendon"; empty without.
+        """Connection of the base to the ground, such as "a tendon"; empty without one.
 
         The reduced model on flat ground, where the base wanders, has none of it.
         """

@@ -25,7 +25,7 @@ _SMALLEST, _LARGEST = 1e-70, 1e70  # [m]
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class RockingBody(CompactRepr, ABC):
-    """What models and engines ask of a body: the dimensions of one column, and what it carries."""
+    """Interface of a body for models and engines: dimensions of one column, and its load."""
 
     semidiagonal: float
     tan_alpha: float

@@ -120,7 +120,7 @@ class Tendon(CompactRepr):
         )
 
     def gaps(self, body: RockingBody) -> int:
-        """Return how many gaps the tendon crosses: 1, or 2 under a slab."""
+        """Number of gaps that the tendon crosses: 1, or 2 under a slab."""
         return 2 if body.slab_mass_ratio > 0.0 else 1
 
     def initial_stiffness(self, body: RockingBody) -> float:

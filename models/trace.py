@@ -373,7 +373,7 @@ class Trace(Shown):
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What ended or limits the motion, breaches of the model's assumptions included."""
+        """Diagnostics that ended or limit the motion, breaches of the model's assumptions included."""
         return self.facts + (self.assumptions.breaches if self.assumptions else ())
 
     def first(self, *codes: str) -> float:

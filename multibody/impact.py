@@ -1,4 +1,4 @@
-"""What a base that closes in one plane keeps of its energy, compared with the moment of momentum (Housner).
+"""Energy kept in a planar impact of the base, compared with conservation of moment of momentum (Housner).
 
 About the corner over which the body goes on, the tilt rate is r times what it was, and the energy r^2 times:
 r = (I1 + k (h^2 - b^2))/(I1 + k (h^2 + b^2)), with k the mass that a slab adds to. An engine has no such law;

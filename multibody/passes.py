@@ -102,7 +102,7 @@ def passes_between(
 def negligible_uplifts(
     points: Sequence[TurningPoint], threshold: float, rests: Sequence[tuple[float, float]]
 ) -> list[float]:
-    """Return when the base opened between two rests by less than `threshold` [rad], before it moved by more.
+    """Times of openings by less than `threshold` [rad] between two rests, before the last larger one.
 
     The models, which lose nothing there, still move when it opens next; contact has come to rest or moves
     otherwise, so that the direction in which the next motion begins is left to it.

@@ -52,7 +52,7 @@ def force_of_steps(
 
 
 def contact_tension_time(time: Array, force: Array) -> float:
-    """Return when the ground first pulled at the cylinder [s], from `force` (3, n) [weights]; NaN if never.
+    """First time of tensile contact force [s], from `force` (3, n) [weights]; NaN if never.
 
     Contact does not pull, but a joint in its place does.
     """
@@ -60,7 +60,7 @@ def contact_tension_time(time: Array, force: Array) -> float:
 
 
 def slip_onset_time(time: Array, force: Array, friction: float) -> float:
-    """Return when `force` (3, n) [weights] on the rim first exceeded friction [s]; NaN if never.
+    """First time at which `force` (3, n) [weights] on the rim exceeds friction [s]; NaN if never.
 
     Contact slides there, but a joint in its place does not.
     """
@@ -74,7 +74,7 @@ def slip_onset_time(time: Array, force: Array, friction: float) -> float:
 
 
 def _first(time: Array, force: Array, breaks: Callable[[Array], NDArray[np.bool_]]) -> float:
-    """Return when a force (3, n) first `breaks` a rule, in the mean over a window [s]; NaN if never."""
+    """First time at which a force (3, n) `breaks` a rule in the mean over a window [s]; NaN if never."""
     if not breaks(force).any():
         return float("nan")
     # not in single steps: where an engine pushes the rim out of the ground, the next step takes that back
@@ -210,7 +210,7 @@ class UpliftWatch:
         return self._crossing() if len(sure) else None
 
     def _reaction_eccentricity(self, poses: Steps, after: Steps, acceleration: Array) -> Array:
-        """Where the ground's reaction acts on the base, relative to its centre, shape (n, 2) [m]."""
+        """Point of action of the ground's reaction, relative to the centre of the base, shape (n, 2) [m]."""
         body = self._body
         # per unit of the driven mass; in a frame the forces at base and top act on opposite sides of it
         moved = body.moved_mass / body.effective_mass

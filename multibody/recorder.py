@@ -280,7 +280,7 @@ class Recorder:
 
     @property
     def _carried_shares(self) -> tuple[float, float]:
-        """What the base carries, a column and its share of the slab, and the top, the share [columns]."""
+        """Masses on the base (a column and its share of the slab) and on the top (the share) [columns]."""
         slab = self._scene.body.slab_mass_ratio
         return 1.0 + slab, slab
 
@@ -421,7 +421,7 @@ class WallWatch:
         self.first = math.nan
 
     def take(self, time: Array, wall: Wall | None) -> tuple[Array, Array]:
-        """Return how long there was contact until each time [s], and its impulse per unit mass [m/s]."""
+        """Duration of contact until each time [s], and its impulse per unit mass [m/s]."""
         if wall is None:
             return np.zeros(len(time)), np.zeros(len(time))
         if math.isnan(self.first) and wall.touching.any():

@@ -247,7 +247,7 @@ def _column_facts(cylinder: RockingBody) -> tuple[Diagnostic, ...]:
 
 
 def _yield(case: Case, recorder: Recorder, scale: Scale) -> Iterator[Diagnostic]:
-    """Yield where the tendon would have, if it would: the swing that goes on after the end included."""
+    """Diagnostic of a tendon that would have yielded, the swing after the end of the record included."""
     tendon = case.tendon
     if tendon is None or tendon.yield_force is None or math.isnan(recorder.yield_time):
         return

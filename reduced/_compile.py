@@ -59,7 +59,7 @@ def jit(function: F) -> F:
 
 
 def once(function: F) -> F:
-    """Compile a large function as a part of the one place that calls it, and not by itself before that."""
+    """Compile a large function inline at its only call, without compiling it separately."""
     return cast("F", _Part(function, inline="always"))
 
 

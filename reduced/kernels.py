@@ -85,7 +85,7 @@ SIZES = {"planar": 3, "recess": 4, "flat": 8, "resisted planar": 5, "resisted re
 
 
 def load(model: str) -> None:
-    """Load or compile what a run of `model` calls, by a cylinder at rest for a moment and a release."""
+    """Load or compile the code of `model` by two trivial runs: a moment at rest, and a release."""
     body = body_of(Cylinder(semidiagonal=1.0, tan_alpha=0.2), 9.81)
     options = Options(1e-6, 0.0, 1.0, 1.0, 1, False)
     start = (0.0,) * SIZES[model]

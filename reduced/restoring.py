@@ -1,4 +1,4 @@
-"""What holds a body down: its weight, and a tendon along its axis.
+"""Restoring couples of a body: weight, and a tendon along its axis.
 
 The tendon runs from an anchor in the foundation, at O, up the axis to the top of the column, or through
 a second gap into the slab: n gaps, of which a tilt opens each by 2 b sin(theta/2). So its elongation is
@@ -78,7 +78,7 @@ class TiedBody(NamedTuple):
 
 @inlined
 def _no_couple(body: Body, arm: float, s: float, u: float) -> float:
-    """Return what the tendon adds to a couple or force, `arm` (q u + k s), from sine of the tilt and u.
+    """Zero couple or force of an absent tendon.
 
     Without a tendon it is -0.0, which a compiler leaves out of a sum: +0.0 it would have to add.
     """

@@ -124,7 +124,7 @@ def shown_progress(what: str = "runs", *, heading: str = "", each: bool = True) 
 
 
 def sentence(event: Progress, what: str = "runs") -> str:
-    """Return how far it is, in words."""
+    """Progress in words."""
     going = event.done < event.total and math.isfinite(event.left)
     values: dict[str, Value] = {"count": event.done, "count_all": event.total, "name": what}
     values |= {"count_before": event.found or None, "duration": event.left if going else None}

@@ -1,4 +1,4 @@
-"""What is built on the comparison: advice, ensemble, fragility, spectrum, sweep, and limits of validity.
+"""Studies built on the comparison: advice, ensemble, fragility, spectrum, sweep, and limits of validity.
 
 The names stand in `__init__.pyi`, and each is imported when it is first used.
 """

@@ -90,7 +90,7 @@ class Ensemble(Results, kind=KIND):
         }
 
     def findings(self) -> Findings:
-        """Return which methods are equivalent, what differs significantly, and what failed."""
+        """Findings: equivalent methods, significant differences, failures."""
         return Findings(ensemble_findings(self.members["member"].nunique(), self.methods, self.contrasts))
 
     def sheets(self) -> dict[str, bytes]:
@@ -253,7 +253,7 @@ def ensemble_of(members: pd.DataFrame, about: Mapping[str, object]) -> Ensemble:
 
 
 def _of_all(values: Iterable[float | Tendon | None]) -> object:
-    """Return what all have, as plain fields; "differs" where there are several."""
+    """Common value as plain fields; "differs" where there are several."""
     value, *others = set(values)
     if others:
         return "differs"

@@ -1,4 +1,4 @@
-"""What an ensemble says: each a finding of the numbers of its tables."""
+"""Findings of an ensemble, from the numbers of its tables."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ _COPIES = 20  # enough to say from when on they diverge
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class SingleRun(Results, kind="run"):
-    """One run.
+    """Results of one run.
 
     Attributes
     ----------
@@ -127,7 +127,7 @@ class SingleRun(Results, kind="run"):
 
 
 def _outcome(trace: Trace, scatter: float) -> Finding:
-    """What becomes of the cylinder; scatter of the peaks of its copies over its own."""
+    """Finding of the outcome; `scatter` is that of the peaks of the copies over the peak of the run."""
     falls, peak, alpha = overturning_time(trace), trace.peak_tilt, trace.case.cylinder.alpha
     if math.isfinite(falls):
         balance = balance_of(trace.case)
@@ -194,7 +194,7 @@ def _quantities(trace: Trace, error: PeakError) -> Iterator[Finding]:
 
 
 def _demands(trace: Trace, quantity: Callable[..., Finding]) -> Iterator[Finding]:
-    """What a model asks of friction and recess, and up to when: a fall asks nothing."""
+    """Finding of the demands of a run on friction and recess, until it falls."""
     falls = overturning_time(trace)
     held = trace.assumptions_until(falls)
     if held is None:

@@ -1,4 +1,4 @@
-"""What was understood of the input as findings: a case, its conditions, and the records that it reads."""
+"""Findings of the input as it was understood: a case, its conditions, and the records that it reads."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def condition_findings(facts: Facts) -> Iterator[Finding]:
 
 
 def record_findings(motions: Iterable[GroundMotion | None]) -> Iterator[Finding]:
-    """What each ground motion is read from."""
+    """Source of each ground motion."""
     return source_findings(sources_of(motions))
 
 

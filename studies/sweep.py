@@ -160,7 +160,7 @@ class Sweep(Results, kind=KIND):
         return {"runs": len(outcome), **{name: int((outcome == name).sum()) for name in self.outcomes}}
 
     def findings(self) -> Findings:
-        """Return what was run, and how many runs ended in each way."""
+        """Findings: what was run, and the number of runs by outcome."""
         plan = self.facts
         values: dict[str, Value] = {"runs": len(self.table)}
         if "model" in self.table:

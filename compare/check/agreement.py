@@ -155,7 +155,7 @@ def ring(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def trajectory(subject: Subject, support: str) -> Iterator[Result]:
-    """The trajectory of a case: its start or uplift, its motion and its peak, as long as they must agree.
+    """Differences of start or uplift, motion and peak of a case from the model, as long as it is predictable.
 
     That is until a copy whose record or release is off by 0.1 % is 1 % of alpha away.
     """

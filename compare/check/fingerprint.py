@@ -208,7 +208,7 @@ def entry_of(short: ShortCase, subject: Subject) -> Entry:
 def repeat(
     subject: Subject, old: Sequence[Entry], progress: ProgressCallback | None = None
 ) -> Iterator[Sample]:
-    """Yield the parts of the entries needed to compare them with older ones: the copies are theirs."""
+    """Entries without perturbed copies, for comparison with a stored baseline (which has its own)."""
     cases = {short.name: short for short in short_cases()}
     shorts = [cases[one["name"]] for one in old]
     stage = stages(progress, [short.case.length for short in shorts])

@@ -325,7 +325,7 @@ class Checks(Results, kind="check"):
         return {name: counts[name] for name in ("FAILED", "passed", "no baseline", "not run")}
 
     def findings(self) -> Findings:
-        """Return how many checks failed, and each that did."""
+        """Findings: number of failed checks, and each failed check."""
         counts = {name: count for name, count in self.headline().items() if count}
         failed, passed = counts.pop(FAILED, 0), counts.pop(PASSED, 0)
         values = {
@@ -454,7 +454,7 @@ def check(
 
 
 def with_cause(subject: Subject, results: Sequence[Result]) -> list[Result]:
-    """Return results with the likely cause of each failure in the motion of a subject that names none."""
+    """Add the likely cause to failed motion checks that have none."""
 
     def lacks(result: Result) -> bool:
         own = result.subject == subject.label and result.group in ("exact", "conserved", "rest", "agreement")

@@ -1,4 +1,4 @@
-"""What must not change a motion: its frame, scale and statement, and how the protocol of an engine is used.
+"""Checks of invariance: under rotation, scale and restatement of a case, and under use of the protocol.
 
 An engine describes itself, refuses what it does not know, steps alike however it is called, starts as stated,
 keeps the time grid, repeats itself to the bit, and leaves no trace: `rockwobble.multibody.protocol`.

@@ -151,7 +151,7 @@ def base_centre(shape: Shape, theta: Array, phi: Array) -> Array:
 
 
 def gaps(shape: Shape) -> int:
-    """Return how many gaps a tendon crosses: one at the base, one more under a slab."""
+    """Number of gaps that a tendon crosses: one at the base, one more under a slab."""
     return 2 if shape.slab > 0.0 else 1
 
 

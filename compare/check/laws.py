@@ -1,4 +1,4 @@
-"""What a single motion must be: its exact solution, its rest and uplift, and a trace consistent with itself.
+"""Checks of a single motion: exact solutions, rest and uplift, and consistency of the trace.
 
 The exact solutions are quadratures of the energies of `lagrange` alone. Free motion in a recess conserves its
 energy e and L = B phi', so that
@@ -272,7 +272,7 @@ def static_loads(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def crossing(motion: GroundMotion) -> tuple[float, Array, Array]:
-    """Return when |a| first reaches (g + az) tan(alpha) [s], a there and its slope: root of a quadratic."""
+    """First time at which |a| reaches (g + az) tan(alpha) [s], a there and its slope: root of a quadratic."""
     steep = PIER.tan_alpha**2 * np.array([0.0, 0.0, 1.0]) - np.array([1.0, 1.0, 0.0])
     samples, step = motion.acceleration, motion.time_step
     for index in range(len(samples) - 1):

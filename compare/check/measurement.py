@@ -93,7 +93,7 @@ class Result(CompactRepr):
         return self.outcome == FAILED
 
     def finding(self) -> Finding:
-        """What was measured and what is allowed; the level is that of the outcome."""
+        """Finding of the measured and the allowed value; its level is that of the outcome."""
         values: dict[str, Value] = {"name": self.name, "demand": self.value, "bound": self.bound}
         values |= {"detail": self.note, "detail_unit": self.unit}
         values |= {"detail_reason": self.reason, "detail_cause": self.cause}

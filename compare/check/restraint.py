@@ -1,4 +1,4 @@
-"""What a tendon must do: its energy, its couple by exact solutions, uplift, load and balance.
+"""Checks of a tendon: energy, couple by exact solutions, uplift, load and balance.
 
 All follow from the energies of `lagrange`, in which the tendon is stretched by places: from O to the centre
 of the base, and under a slab by as much once more. In a recess both depend on the tilt alone, so that B, L

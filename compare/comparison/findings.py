@@ -1,4 +1,4 @@
-"""What a comparison says as findings: agreement, causes of divergence, mistakes, budgets, supports."""
+"""Findings of a comparison: agreement, causes of divergence, mistakes, budgets, supports."""
 
 from __future__ import annotations
 
@@ -195,7 +195,7 @@ def causes_of(case: Case, rows: pd.DataFrame, traces: Mapping[str, Trace]) -> li
 
 
 def explains_divergence(row: SummaryRow) -> bool:
-    """Whether a likely mistake is a reason for the tilts to diverge: a turn of the axes is none."""
+    """Whether the likely mistake explains diverging tilts (rotated axes do not)."""
     return any(mistake.changes_tilt for mistake in mistakes_of(row))
 
 
@@ -291,7 +291,7 @@ def budget_findings(summary: pd.DataFrame, budgets: pd.DataFrame) -> Iterator[Fi
 
 
 def parts_finding(budget: ErrorBudget | None, reference: str) -> Finding:
-    """What a difference is made of; a reference that is not the run's own has no budget."""
+    """Finding of the parts of a difference; only the run's own reference has an error budget."""
     if budget is None:
         return Finding(key="comparison.no_parts")
     sizes = {part: budget.rms(part) for part in ("whole", "model_form", "limit_error")}

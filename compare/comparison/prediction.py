@@ -199,7 +199,7 @@ def _divergence_of_copy(case: Case, own: Trace, error: float, simulate: Simulate
 
 
 def copies_off_by(case: Case, own: Trace, error: float, simulate: Simulate) -> list[Case]:
-    """Return the copies of a case that are as far off early on as an engine, of more and of less gravity.
+    """Copies with gravity perturbed up and down until their early error equals the engine's.
 
     Parameters
     ----------

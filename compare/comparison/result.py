@@ -135,14 +135,14 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
         }
 
     def findings(self) -> Findings:
-        """What the comparison says: of many cases the overview first, then those with `runs` the case."""
+        """Findings of the comparison: an overview of many cases, then those of each case (with `runs`)."""
         if len(self.cases) == 1:
             return self.case_findings(*self.cases)
         each = (replace(one, runs=name) for name in self.cases for one in self.case_findings(name))
         return Findings([*overview(self.summary, self.budget_rms), *each])
 
     def parts_findings(self, run: Run, reference: Run) -> Findings:
-        """What the difference of one run of a single case from one reference is made of."""
+        """Findings of the parts of the difference between one run of a single case and one reference."""
         labels = {trace.run: label for (_, label), trace in self.traces.items()}
         pair = labels[run], labels.get(reference)
         budget = next((each for key, each in self.budgets.items() if key[1:] == pair), None)
@@ -150,7 +150,7 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
         return Findings([parts_finding(budget, str(pair[1])), *not_split])
 
     def case_findings(self, name: str) -> Findings:
-        """What the comparison says of one case."""
+        """Findings of one case."""
         budgets = self.budget_rms[self.budget_rms["case"] == name]
         return Findings(
             case_findings(self.cases[name], self.rows(name), self._traces(name), self.causes[name], budgets)

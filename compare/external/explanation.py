@@ -78,7 +78,7 @@ class Explanation:
 
 
 def explanations(values: Values, read: Read, reference: Reference) -> Iterator[Explanation]:
-    """Yield what explains that columns differ from a reference, the likeliest first.
+    """Explanations of a difference between columns and a reference, the likeliest first.
 
     The last explains the least, maybe nothing; there is none where the columns tell no motion.
     """
@@ -104,7 +104,7 @@ class _Search:
     reference: Reference
 
     def left(self, motion: Motion, changes: Sequence[Change] = ()) -> Difference:
-        """What is left of the difference with changes of a motion."""
+        """Difference from the reference after changes of a motion."""
         return self.reference.difference(with_changes(motion, changes))
 
     def tilt_explained(self, motion: Motion) -> Iterator[tuple[tuple[Change, ...], Motion]]:
@@ -120,7 +120,7 @@ class _Search:
     def _following(
         self, before: Difference, tried: Sequence[tuple[tuple[Change, ...], Motion]]
     ) -> Iterator[tuple[tuple[Change, ...], Motion]]:
-        """Yield those that follow the reference, the closest first."""
+        """Changed motions that follow the reference, the closest first."""
         found = [(changes, motion, self.left(motion)) for changes, motion in tried]
         for changes, motion, after in sorted(found, key=lambda one: one[2].tilt.size):
             by_rate = any(change.mistake.code == "time_scale" for change in changes)
@@ -353,7 +353,7 @@ def fitted_frames(reference: Reference, motion: Motion, *, start: float, end: fl
 
 
 def _off(products: Complex, angle: float, lean: Complex, noise: float, small: float) -> tuple[float, float]:
-    """Return how far the turn of a part is from that of the whole, and how well it is known [rad]."""
+    """Difference of the rotation of a part from that of the whole, and its uncertainty [rad]."""
     strength = math.sqrt(float(np.mean(np.abs(lean) ** 2)))
     doubt = (CONFIDENCE * noise / math.sqrt(len(lean)) + small) / strength
     return abs(float(np.angle(products.sum() * np.exp(-1j * angle)))), doubt

@@ -185,7 +185,7 @@ def readings(values: Values) -> Iterator[Change]:
 
 
 def spinning(rate: float) -> Change:
-    """Return what takes back a steady spin about the axis [rad/s]."""
+    """Correction of a steady spin about the axis [rad/s]."""
 
     def corrected(motion: Motion) -> Motion:
         assert motion.twist is not None
@@ -208,7 +208,7 @@ def of_path(reading: Change) -> Change:
 
 
 def in_time_scale(rate: float) -> Change:
-    """Return what takes back that a motion is slower by a factor."""
+    """Correction of a motion that is slower by a factor."""
     mistake = Mistake(code="time_scale", concerns="time", value=rate)
     return Change(mistake=mistake, motion=partial(Motion.with_clock, rate=1.0 / rate))
 
@@ -230,7 +230,7 @@ class Frame:
         return motion.rotated(self.angle, mirrored=self.mirrored)
 
     def change(self, concerns: str) -> Change:
-        """Return what takes the mistake back in "azimuth", "path", or "axes", which are both."""
+        """Correction of the mistake in "azimuth", "path", or both ("axes")."""
         named = MIRRORS if self.mirrored else TURNS
         code = named.get(self.angle, "mirrored" if self.mirrored else "turned")
         value = {"turned": -math.degrees(self.angle), "mirrored": 0.5 * math.degrees(self.angle)}.get(

@@ -201,7 +201,7 @@ def scatter(time: Array, values: Array) -> float:
 
 
 def exceeds(time: Array, value: Array, level: float, power: float) -> float:
-    """Return when a value first exceeds a level [s], inf if never; its root is linear between samples."""
+    """First time at which a value exceeds a level [s], inf if never; its root is linear between samples."""
     i = int(np.argmax(value > level))
     if i == 0:
         return float(time[0]) if value[0] > level else math.inf

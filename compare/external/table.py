@@ -283,7 +283,7 @@ def _lines(path: Path) -> list[str]:
         reason = getattr(error, "strerror", None) or "it is no text"
         raise ValueError(f"cannot read the trajectory {path}: {reason}") from None
     if endless:
-        raise ValueError(f"cannot read the trajectory {path}: it is a device, which may never end")
+        raise ValueError(f"cannot read the trajectory {path}: not a regular file (a device)")
     return lines
 
 

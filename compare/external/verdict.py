@@ -169,7 +169,7 @@ def uplift_differences(trajectory: Trace, reference: Trace) -> tuple[Part | None
 
 
 def first_passage(trace: Trace, tilt: float) -> float:
-    """Return when a trace leans first by this tilt [s]; inf if never."""
+    """First time at which a trace reaches this tilt [s]; inf if never."""
     time = trace.time.copy()
     before = int(np.argmax(trace.tilt > tilt)) - 1
     if before >= 0 and trace.tilt[before] == 0.0:
@@ -179,7 +179,7 @@ def first_passage(trace: Trace, tilt: float) -> float:
 
 
 class ExternalSummaryRow(Protocol):
-    """A row of the verdicts: the columns that say what explains the differences."""
+    """Row of the summary of an external trajectory: the columns that explain its differences."""
 
     likely_mistake: Sequence[str]
     likely_mistake_in: Sequence[str]

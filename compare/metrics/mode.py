@@ -18,7 +18,7 @@ _KEYS = {SLIDES: "mode.slides", ROCKS_AND_SLIDES: "mode.rocks_and_slides", REST:
 def mode_findings(
     case: Case, support: str, *, friction_given: bool = True, named: bool = False
 ) -> Iterator[Finding]:
-    """Findings on the mode that a case has on a support: which, near its border both, and what walls take.
+    """Findings on the mode of a case on a support: both modes near a border, and the effect of walls.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def mode_findings(
 
 
 def slide_finding(peak: float, residual: float, copies: Sequence[Sequence[float]] = ()) -> Finding:
-    """How far it slides, and how far from its place it comes to rest [m].
+    """Finding of the peak and the residual displacement [m].
 
     Parameters
     ----------

@@ -163,7 +163,7 @@ def _resample(own: FloatArray, values: FloatArray, time: FloatArray) -> FloatArr
 
 
 def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
-    """Return where a run of a reduced model overturned, by its peak tilt [rad]; False where it failed.
+    """Mask of the runs of a reduced model that overturned, by peak tilt [rad]; False for failed runs.
 
     The models decide, also where a run ends in the middle of a fall, and then give pi/2 and no less.
     """
@@ -171,7 +171,7 @@ def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
 
 
 def beyond_yield(peak_tilts: ArrayLike, case: Case) -> NDArray[np.bool_]:
-    """Return where a run, of this peak tilt [rad], is no answer: its tendon yields, and models are elastic.
+    """Mask of the runs, by peak tilt [rad], whose tendon yields: models are elastic, so these are no answer.
 
     Where it yields only beyond the balance, a run that overturns does so before.
     """
@@ -440,7 +440,7 @@ def displacement_difference(pair: Pair) -> float:
 
 
 def agreed_passes(reference: Trace, agreement: Agreement) -> int:
-    """Return how many passes of the reference lie within the agreement."""
+    """Number of passes of the reference within the agreement time."""
     times = np.asarray(reference.passes["time"], dtype=np.float64)
     return int(np.count_nonzero(times <= agreement.end))
 

@@ -108,7 +108,7 @@ class Cache(Generic[T, R]):
             write_whole(self._folder / _PLAN, plain_json.dumps(plan).encode())
 
     def complete(self, *, alone: bool) -> None:
-        """Note that all tasks are done; where the folder is theirs alone, remove the results of others."""
+        """Mark the plan as complete; with `alone`, remove results that no task of it has used."""
         for path in set(self._folder.glob("*.parquet")) - self._used if alone else ():
             path.unlink()
         (self._folder / _PLAN).unlink(missing_ok=True)

@@ -107,7 +107,7 @@ class Clock:
 
 
 def stages(tell: ProgressCallback | None, costs: Sequence[float]) -> Stage:
-    """Return what tells a callback of one stage after the other, each a with block of its label.
+    """Context manager that reports one stage after the other to a callback, by label.
 
     Parameters
     ----------

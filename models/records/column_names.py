@@ -106,7 +106,7 @@ class ColumnName:
 
 
 def column_name(text: str) -> ColumnName:
-    """What a name says of its column.
+    """Quantity, component and unit of a column, from its name.
 
     Examples
     --------
@@ -174,7 +174,7 @@ def quantity_of_unit(unit: str) -> Kind | None:
 
 
 def _by_words(words: str) -> ColumnName:
-    """What the words of a name say, without its unit."""
+    """Quantity and component from the words of a name, without its unit."""
     azimuth = _azimuth(words)
     if azimuth is not None:
         return ColumnName(kind="acceleration", azimuth=azimuth)

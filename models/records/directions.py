@@ -1,4 +1,4 @@
-"""Which component is x, y and z: by the directions and azimuths that their files state."""
+"""Assignment of components to x, y and z by the directions and azimuths in their files."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ _LONGEST_LINE = 200  # [characters]; bounds what a pattern can cost on a damaged
 
 
 def stated_format(line: str, default: tuple[int, int]) -> tuple[int, int]:
-    """Return how many numbers a line holds and how wide each is, as "(8F10.3)" in a header line says.
+    """Count and width of the numbers of a line, from a format such as "(8F10.3)" in a header.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the headers of networks state beside the samples: orientation of a sensor, peak of a component."""
+"""Metadata in headers of networks: orientation of a sensor, peak of a component."""
 
 from __future__ import annotations
 

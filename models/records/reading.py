@@ -1,4 +1,4 @@
-"""How a record is read: what its files do not say, and what is done to them."""
+"""Options for reading a record: facts missing from its files, and processing."""
 
 from __future__ import annotations
 

@@ -152,7 +152,7 @@ def _blank_separated(file: RecordFile, places: Sequence[int], rows: Sequence[str
 
 
 def _damage(file: RecordFile, places: Sequence[int], rows: Sequence[str], width: int) -> str:
-    """What is wrong with the first damaged row."""
+    """Description of the first damaged row."""
     damaged = (
         at
         for at, row in zip(places, rows, strict=True)

@@ -119,8 +119,8 @@ def require_accelerations(file: RecordFile, name: str, waveform: Waveform) -> ND
         raise ValueError(f"{file.name} ({name}), {waveform.channel[:30]}: holds no numbers")
     if waveform.values.dtype.kind != "f":
         raise ValueError(
-            f"{file.name} ({name}), {waveform.channel[:30]}: holds counts, no accelerations: "
-            "remove the response (obspy: remove_response(inventory, output='ACC')), write floats, say --units"
+            f"{file.name} ({name}), {waveform.channel[:30]}: contains counts, not accelerations: "
+            "remove the response (obspy: remove_response(inventory, output='ACC')), or give --units"
         )
     values = waveform.values.astype(np.float64)
     if not np.isfinite(values).all():

@@ -138,7 +138,7 @@ def _range(given: Mapping[str, object]) -> tuple[float, ...]:
         raise KeyedError("spacing", f"must be linear or log, got {brief(spacing)}")
     if "step" in given:
         if spacing == "log":
-            raise KeyedError("spacing", "log must go with count, got step")
+            raise KeyedError("spacing", "log needs count, not step")
         count = _steps_in(low, high, numbers["step"]) + 1
     else:
         count = int(numbers["count"])
@@ -191,7 +191,7 @@ class _Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     def present(self, *names: str) -> list[str]:
-        """Return those of the keys that the file gives."""
+        """Keys that the file gives."""
         return [name for name in names if getattr(self, name) is not None]
 
     def require_one_of(self, *names: str) -> str:

@@ -134,7 +134,7 @@ class DrakeScene:
         return acceleration, left
 
     def count_contacts(self) -> int:
-        """Return how many the last step solved."""
+        """Number of contacts that the last step solved."""
         results = self.plant.get_contact_results_output_port().Eval(self.context)
         return int(results.num_point_pair_contacts())
 
@@ -467,7 +467,7 @@ class _Rim(NamedTuple):
         return x - spin_y * self.down - spin_z * along_y, y + spin_x * self.down + spin_z * along_x
 
     def goes_on_to(self, after: _Rim) -> bool:
-        """Return whether it stays on its side of upright."""
+        """Whether the cylinder stays on its side of upright."""
         return self.axis_x * after.axis_x + self.axis_y * after.axis_y > 0.0
 
 

@@ -228,7 +228,7 @@ class _MujocoStepper:
         self._state = rows[-1].copy()
 
     def _eccentricity(self, acceleration: Array) -> Array:
-        """Of the load, over b, in each step (n,)."""
+        """Eccentricity of the load over b in each step (n,)."""
         body = self._scene.body
         push = np.hypot(acceleration[:, 0], acceleration[:, 1]) * body.mass_centre_height
         load: Array = push / (body.base_radius * (self._scene.tipping_gravity + acceleration[:, 2]))

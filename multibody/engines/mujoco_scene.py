@@ -129,8 +129,7 @@ def compile_scene(
 ) -> mujoco.MjModel:
     """Return the compiled model of `scene`: its file, with what the case does not need taken out.
 
-    The prisms that carry the cylinder are there only while it is `standing`, and then its rim is not; the
-    walls only of a `ring`.
+    A `standing` cylinder rests on prisms, a tilted one on its rim; walls exist for the support ring only.
     """
     import mujoco
 
@@ -330,7 +329,7 @@ def _bears(pair: mujoco.MjsPair) -> bool:
 
 
 def _yield(impedance: float) -> float:
-    """Return the share of a load that contact leaves to its spring, over what it takes at once."""
+    """Ratio of the load that contact leaves to its spring to the load it takes at once."""
     return (1.0 - impedance) / impedance
 
 

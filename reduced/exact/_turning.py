@@ -151,7 +151,7 @@ def momentum_growth(body: Body, R: float, t: T, gap: T) -> T:
 
 
 def _first_root(f: Callable[[float], float], guess: float, limit: float) -> float | None:
-    """Return where `f`, negative at 0, first turns positive; None if not before `limit`."""
+    """First root of `f`, which is negative at 0; None if there is none before `limit`."""
     lower = upper = min(max(guess, _SMALLEST), limit)
     while f(upper) < 0.0:
         if upper == limit:

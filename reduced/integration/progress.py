@@ -81,7 +81,7 @@ class Sampling(NamedTuple):
 
 
 def make_sampling(lifted: Callable[..., State], partial: Callable[..., tuple[State, State]]) -> Sampling:
-    """Return the sampling of uplifts by `lifted` and of steps that `partial` fills."""
+    """Build the sampler of output times."""
 
     @inlined
     def of_rest(wanted: Wanted, sample: int, until: float, y: State) -> int:
@@ -199,7 +199,7 @@ class Progress(NamedTuple):
 
 
 def make_progress(system: System, stepper: Stepper) -> Progress:
-    """Return what carries the runs of one model on by one method."""
+    """Functions that advance the runs of one model by one method."""
     _, restarted, _, partial, _ = stepper
     tried, ending_of = make_events(system, stepper)
     momenta = system.momenta

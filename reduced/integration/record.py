@@ -48,7 +48,7 @@ def piece_of_record(
 
 @jit
 def still_from(record: NDArray[np.float64], time_step: float) -> float:
-    """Return when the ground begins to keep still [s]: at the last sample, or the first of the last zeros."""
+    """Time from which the ground is still [s]: that of the last sample, or of the first of the last zeros."""
     last = max(len(record) - 1, 0)
     while last > 0 and not (record[last - 1].any() or record[last].any()):
         last -= 1

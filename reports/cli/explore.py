@@ -154,7 +154,7 @@ def _call(name: str, *values: object, **named: object) -> str:
 
 
 def _state(problem: Problem, records: Path | None, support: str, plane: float | None) -> Any:
-    """Return where the sliders stand at first.
+    """Initial values of the sliders.
 
     Raises
     ------

@@ -22,7 +22,7 @@ from .command import ShownCommand
 
 @cache
 def _command(name: str) -> TyperCommand:
-    """Return what typer makes of a command, which is imported here; its docstring ends with an example."""
+    """Import a command and return it as typer builds it; its docstring ends with an example."""
     entry = COMMANDS[name]
     group = entry.group
     module = importlib.import_module(f".{'of_study' if entry.study else group}", __package__)

@@ -33,7 +33,7 @@ def refuse_problem_options(context: typer.Context, suite: str) -> None:
 def chosen_runs(
     suite: rw.Suite, engines: Sequence[str] | None, supports: Sequence[str] | None, time_step: TimeStep
 ) -> list[rw.Run]:
-    """Return the runs of a suite, with those of the options in their place.
+    """Runs of a suite, as changed by the options of the command line.
 
     Engines and supports that are named choose among the runs of the file; one that the file does not have
     is added with each of the others. A time step replaces all others.

@@ -92,7 +92,7 @@ class Shades:
         return "Blues" if self.centre is None else "RdBu" if self.reverse else "RdBu_r"
 
     def place(self, values: Array) -> Array:
-        """Return where values are on the scale, from 0 to 1; NaN stays."""
+        """Positions of values on the scale, from 0 to 1; NaN stays."""
         low, high = self.low, self.high
         if self.log:
             with np.errstate(divide="ignore", invalid="ignore"):

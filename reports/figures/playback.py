@@ -116,7 +116,7 @@ def _picture_step(time: NDArray[np.float64]) -> int:
 
 
 def _start(view: CaseView) -> float:
-    """Return when the motion is shown from: half a second before the first uplift [s]."""
+    """Start of the playback: half a second before the first uplift [s]."""
     uplifts = [trace.uplift_time for trace in view.traces.values() if math.isfinite(trace.uplift_time)]
     return max(0.0, min(uplifts, default=0.0) - _BEFORE)
 

@@ -13,7 +13,7 @@ _WINDOW = 1.0  # window of an envelope, about one swing [s]
 
 
 def kept_samples(*columns: NDArray[np.float64], points: int = POINTS) -> NDArray[np.intp]:
-    """Return which samples to draw: both ends, and the extremes of each column in each stretch.
+    """Samples to draw: both ends, and the extremes of each column in each stretch.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def kept_samples(*columns: NDArray[np.float64], points: int = POINTS) -> NDArray
 
 
 def kept_points(x: Array, y: Array, *, points: int = POINTS) -> NDArray[np.intp]:
-    """Return which points of a line (n,), (n,) to draw: as `kept_samples`, for a path in both directions."""
+    """Points of a line (n,), (n,) to draw: as `kept_samples`, for a path in both directions."""
     rising = bool(np.all(np.diff(x) >= 0.0))
     return kept_samples(y, points=points) if rising else kept_samples(x, y, points=2 * points)
 

@@ -358,7 +358,7 @@ def _rings(table: pd.DataFrame, uplift: float) -> Picture:
 
 
 def has_walls(table: pd.DataFrame) -> pd.Series[bool]:
-    """Return which runs are of a support with walls."""
+    """Mask of the runs whose support has walls."""
     return table["support"].map(lambda name: SUPPORTS[name].walls)
 
 

@@ -193,7 +193,7 @@ def _sizes(row: Mapping[Any, Any], unit: str) -> Row:
 
 
 def _of(found: Advice, row: Mapping[Any, Any]) -> str:
-    """How many runs of which group ask no more than a demand, and under which shaking."""
+    """Number and group of the runs whose demand is covered, and their shaking."""
     return sentence(Finding(key="demand.of", values=covering_values(found, row)))
 
 

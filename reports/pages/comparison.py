@@ -122,7 +122,7 @@ _USUAL = (*_HEADLINE, *_SUPPORTS, *(f"comparison.{cause}" for cause in _CAUSES))
 
 
 def headline(findings: Sequence[Finding]) -> str:
-    """Which motion it is, and how long runs of each support follow their own model."""
+    """Ground motion, and agreement times of the runs of each support with their model."""
     return " ".join(statement(each) for each in findings if each.key in _HEADLINE)
 
 
@@ -134,7 +134,7 @@ def run_diagnostics(view: CaseView) -> list[str]:
 
 
 def counted_diagnostics(summary: pd.DataFrame) -> list[str]:
-    """How many runs of many cases have which diagnostic."""
+    """Number of runs with each diagnostic, over many cases."""
     runs = summary[(summary["outcome"] != "failed") & (summary["reference_outcome"] != "failed")]
     counts = code_counts(map(codes_in, runs.drop_duplicates(["case", "run"])["diagnostics"]))
     said = f"Of the runs {', '.join(counts)}: see the column diagnostics of summary.csv."
@@ -170,7 +170,7 @@ def _thin(pictures: Sequence[Picture]) -> list[Picture]:
 
 
 def _blocks(views: Sequence[CaseView], *, many: bool) -> dict[str, str]:
-    """Parts of a page alone: the chooser of many cases, the player of each of few."""
+    """Parts that only the HTML page has: a chooser for many cases, a player each for few."""
     if many:
         groups: dict[str, list[tuple[int, str]]] = {}
         for place, view in enumerate(views):

@@ -39,7 +39,7 @@ def failure(facts: Iterable[Diagnostic]) -> str:
 
 
 def code_counts(codes: Iterable[Iterable[str]]) -> list[str]:
-    """Return how many runs have which diagnostic, from the codes of each run; failures left out."""
+    """Number of runs with each diagnostic, from the codes of each run; failures left out."""
     counts = Counter(code for of_run in codes for code in set(of_run))
     shown = [code for code in CODES if code not in FAILURES and counts[code]]
     lines = {code: lines_of(f"diagnostic.{code}") for code in shown}

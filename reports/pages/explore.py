@@ -45,7 +45,7 @@ class Shaking:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class State:
-    """What the sliders of the page are set to at first, by the names that its address has.
+    """Initial values of the sliders, by their names in the address of the page.
 
     Attributes
     ----------

@@ -19,7 +19,7 @@ def _words(name: str) -> str:
 
 
 def page_of(found: Results) -> Page:
-    """Return the page."""
+    """Page of the results."""
     drawn = pictures(found)
     values = {
         "title": (inspect.getdoc(type(found)) or found.kind).partition("\n")[0].rstrip("."),

@@ -105,7 +105,7 @@ VERTICAL_COUNT = 20  # pairs of copies with and without the vertical component
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Vertical:
-    """What is known of the vertical component of the ground motion.
+    """Knowledge of the vertical component of the ground motion.
 
     Attributes
     ----------
@@ -241,7 +241,7 @@ class Advice(Results, kind=KIND):
 
     @property
     def mode_findings(self) -> Findings:
-        """Which motion it is, and how far it slides."""
+        """Findings of the mode of motion, and of the slide."""
         first = [
             Finding(
                 key=each["key"],
@@ -443,7 +443,7 @@ class Advice(Results, kind=KIND):
 
     @property
     def next_steps(self) -> list[str]:
-        """What to do next, by name, the most urgent first; pages have the words and the commands."""
+        """Next steps by name, the most urgent first; pages have the words and the commands."""
         grades, friction = self.grades, self.facts["friction"]
         holds = support_named(self.facts["support"])
         slides = friction is not None and friction < self.cylinder.tan_alpha

@@ -61,7 +61,7 @@ _NOT_PLANE = "all runs stay in one plane, in which no moment arises: a real moti
 
 
 def overturning_time(trace: Trace) -> float:
-    """Return when a run that overturns last passes its balance [s], inf where it does not.
+    """Time at which an overturning run last passes its balance [s]; inf where none does.
 
     A fall asks nothing.
     """
@@ -270,7 +270,7 @@ def _groups(members: pd.DataFrame) -> Iterator[tuple[str, float, pd.DataFrame]]:
 
 
 def all_alike(runs: pd.DataFrame) -> bool:
-    """Return whether several runs that move are one: of records that differ many may not move at all."""
+    """Whether all runs that move are the same run, as where most records are too weak to uplift."""
     numbers = [name for name in ("peak_tilt", *UNITS) if name in runs.columns]
     return len(runs) > 1 and runs["peak_tilt"].min() > 0.0 and bool(runs[numbers].nunique().max() == 1)
 

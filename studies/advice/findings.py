@@ -1,4 +1,4 @@
-"""What an advice says, each a finding of its numbers: which motion, the grades with their reasons, notes."""
+"""Findings of an advice: mode of motion, grades with their reasons, notes."""
 
 from __future__ import annotations
 
@@ -361,7 +361,7 @@ def _groups(advice: Advice) -> Iterator[Finding]:
 
 
 def covering_values(advice: Advice, row: Mapping[Any, Any]) -> dict[str, Value]:
-    """How many runs of which group ask no more than a demand, and under which shaking."""
+    """Number and group of the runs whose demand is covered, and their shaking."""
     return {
         "count": int(row["covered"]),
         "runs": int(row["runs"]),
@@ -419,7 +419,7 @@ def _demands(advice: Advice) -> Iterator[Finding]:
 
 
 def _without(advice: Advice, row: Mapping[Any, Any], group: str, name: str) -> Finding:
-    """Why a demand has no value, and in which group."""
+    """Reason and group of a demand without a value."""
     reason = row["reason"] if row["reason"] in ("yields", "overturns") else "other"
     about: dict[str, Value] = {"reason": f"demand_{name}"} if name else {}
     if reason == "other":
@@ -443,7 +443,7 @@ def _steps(advice: Advice) -> Iterator[Finding]:
 
 
 def _checks(advice: Advice) -> Iterator[Finding]:
-    """What the grades rest on."""
+    """Findings of the evidence for the grades."""
     if not advice.moves:
         return
     response, groups, copies = advice.response, advice.groups, advice.members
@@ -558,7 +558,7 @@ def _ratios(advice: Advice) -> Iterator[Finding]:
 
 
 def _case(advice: Advice) -> Iterator[Finding]:
-    """What was asked: cylinder or frame, ground motion or release, support, tendon, other records, mass."""
+    """Findings of the input: body, ground motion or release, support, tendon, other records, mass."""
     facts, cylinder = advice.facts, advice.cylinder
     frame, motion, release, tendon = (
         "columns" in facts["cylinder"],
@@ -610,7 +610,7 @@ def _case(advice: Advice) -> Iterator[Finding]:
 
 
 def _steel(tendon: Mapping[str, Any]) -> Finding:
-    """What a tendon does to uplift, stiffness and balance."""
+    """Effect of a tendon on uplift, stiffness and balance."""
     stress = tendon.get("unit_stress")
     return _note(
         "steel.couple",
@@ -626,7 +626,7 @@ def _steel(tendon: Mapping[str, Any]) -> Finding:
 
 
 def _assumptions(advice: Advice) -> Iterator[Finding]:
-    """What the models take for granted."""
+    """Assumptions of the models."""
     facts, cylinder = advice.facts, advice.cylinder
     other = "besides_rolling" if facts["rolling_resistance"] else None
     yield _note("assumption.rigid", share=1.0 - restitution_from_momentum(cylinder), reason=other)

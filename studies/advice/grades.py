@@ -46,7 +46,7 @@ _CRITERIA: Mapping[str, Mapping[str, Value]] = {
 
 
 def criterion(topic: str, grade: Grade) -> Finding:
-    """What has to be so for a grade of a topic."""
+    """Criterion for a grade of a topic."""
     key = f"criterion.{topic}_{grade.replace(' ', '_')}"
     return Finding(key=key, level=grade, values=_CRITERIA.get(topic, {}))
 

@@ -1,4 +1,4 @@
-"""What a fragility says: each a finding of the numbers of its tables."""
+"""Findings of a fragility, from the numbers of its tables."""
 
 from __future__ import annotations
 

@@ -234,7 +234,7 @@ _MOST_NUMBERS = 2_000_000
 
 
 def resamples(motions: int, count: int, seed: int, *, strata: NDArray[np.int64] | None = None) -> Array:
-    """Return how often each motion is drawn (count, motions); strata (motions,) keep their numbers."""
+    """Number of times each motion is drawn (count, motions); strata (motions,) keep their sizes."""
     rng = np.random.default_rng(seed)
     weights = np.empty((count, motions))
     strata = np.zeros(motions, dtype=np.int64) if strata is None else strata

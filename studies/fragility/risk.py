@@ -244,7 +244,7 @@ def risk_tables(
 
 
 def _verdict(row: Mapping[str, float], target: float) -> str:
-    """Return where the interval of a frequency lies: "below" a target, "above" it, or "inconclusive"."""
+    """Verdict on the interval of a frequency: "below" a target, "above" it, or "inconclusive"."""
     if row["annual_frequency_high"] < target:
         return "below"
     return "above" if row["annual_frequency_low"] > target else "inconclusive"
@@ -380,7 +380,7 @@ def _indicator(at: Array, x: Array, y: Array, uplift: float) -> Array:
 
 
 def measure_factor(hazard: HazardCurve, body: Mapping[str, float], period: float) -> tuple[str, float]:
-    """Return the measure of a fragility, and the factor on it, that give the measure of a hazard.
+    """Intensity measure of the fragility that matches the hazard curve, and the conversion factor.
 
     Parameters
     ----------

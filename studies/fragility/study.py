@@ -462,7 +462,7 @@ def fragility(
     stripes: dict[str, tuple[int, ...]] | None = None
     if isinstance(motions, Mapping):
         if levels is not None or scales is not None:
-            raise ValueError("motions by level state the levels themselves: got levels or scales besides")
+            raise ValueError("motions by level have levels of their own: leave out levels and scales")
         levels, motions, stripes = motions_by_level(motions)
     require_each("motions", motions, GroundMotion)
     bodies = _by_name(cylinders)

@@ -400,7 +400,7 @@ def margin_of(ratio: Interval) -> float:
 
 
 def curves_of(blocks: Blocks, weights: Array | None = None) -> dict[Key, Curves]:
-    """Return by cylinder, method and limit the curve, or with weights (B, R) those of all resamples."""
+    """Fragility curves by cylinder, method and limit; with `weights` (B, R), one per bootstrap resample."""
     return {key: blocks.sample(*key).curves(weights) for key in blocks.known_keys()}
 
 
@@ -451,7 +451,7 @@ def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
 
 
 def below_gaps(y: Array) -> NDArray[np.bool_]:
-    """Return where a run (R, S) overturns while the same motion, stronger, leaves the cylinder standing.
+    """Mask (R, S) of the runs that overturn while the same motion, stronger, leaves the cylinder standing.
 
     Parameters
     ----------

@@ -57,7 +57,7 @@ class OverturningSpectrum(Results, kind=KIND, findings_file="spectrum.json"):
         return maps_of(self.tables, self.facts)
 
     def findings(self) -> Findings:
-        """Return what overturns, where planar analysis is another answer, and how far both are reliable."""
+        """Findings: overturning, where planar analysis differs, and the reliability of both."""
         return Findings(spectrum_findings(self.maps, self.tables))
 
     def headline(self) -> dict[str, Number]:

@@ -1,4 +1,4 @@
-"""What the limits say of the model: each a finding of their numbers, which one file of words says."""
+"""Findings of the limits of the model, from the numbers of its tables."""
 
 from __future__ import annotations
 

@@ -364,7 +364,7 @@ def _confirmations(table: pd.DataFrame) -> Numbers:
 
 
 def model_difference(table: pd.DataFrame) -> Array:
-    """Return how far the turns of the recess and of the flat model are apart in the release of each row.
+    """Difference of the angles of turn of the recess and flat models in the release of each row.
 
     NaN where there is one of them alone.
     """

@@ -1,4 +1,4 @@
-"""What the report measures: its parts, extent and resolution of its maps, releases and ground motions."""
+"""Plan of the report on validity: parts, extent and resolution of maps, releases and ground motions."""
 
 from __future__ import annotations
 

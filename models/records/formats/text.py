@@ -97,7 +97,7 @@ class _Columns:
         return times[0] if times else None
 
     def by_option(self, stated: float | None) -> tuple[int | None, dict[int, ColumnName]]:
-        """Column of times, None without one, and those of accelerations, as the user states them."""
+        """Column of times (None without one) and columns of accelerations that the user has named."""
         given, width = self.reading.column_texts, len(self.names)
         found = [self._place(text) for text in given]
         places = [at for at in found if at is not None]
