@@ -267,8 +267,8 @@ def run_duration(motion: GroundMotion | None, duration: float | None) -> float:
 
 _Way = Literal["auto", "extrapolated"]
 WAYS_TO_A_STEP: tuple[_Way, ...] = ("auto", "extrapolated")
+#: Time step of an engine [s], or the way to one.
 TimeStep = float | _Way | None
-"""Time step of an engine [s], or the way to one."""
 REDUCED = "reduced"  # the engine of a reduced model, in tables
 
 

@@ -19,11 +19,13 @@ _WRITERS = "rockwobble.words"  # group of entry points: who has words for findin
 
 Level = Literal["note", "satisfied", "not tested", "caution", "not satisfied"]
 Grade = Literal["satisfied", "not tested", "caution", "not satisfied"]
+#: Grades, the best first; a finding that grades nothing is a note.
 GRADES: tuple[Grade, ...] = ("satisfied", "not tested", "caution", "not satisfied")
-"""Grades, the best first; a finding that grades nothing is a note."""
+#: A number, a text, a list of texts, or a number with the ends of its 95 % interval.
 Value = float | int | str | tuple[str, ...] | tuple[float, float, float] | None
-"""A number, a text, a list of texts, or a number with the ends of its 95 % interval."""
 
+#: Unit and meaning of each value that a finding may have, by its name; a name may end in a number or in
+#: `_` and a word that tells two of one kind apart, as ``share_vertical``.
 QUANTITIES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
         # value of a finding: (unit, meaning)
@@ -62,8 +64,6 @@ QUANTITIES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "detail": ("", "what a file or an engine says, word for word"),
     }
 )
-"""Unit and meaning of each value that a finding may have, by its name; a name may end in a number or in
-`_` and a word that tells two of one kind apart, as ``share_vertical``."""
 
 
 def unit_of(name: str) -> str:

@@ -13,10 +13,10 @@ import numpy as np
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
+#: An object of JSON: who stored it knows what its members are.
 JsonObject = dict[str, Any]
-"""An object of JSON: who stored it knows what its members are."""
+#: What results or a motion say beside their tables, as JSON gives it back.
 Facts = Mapping[str, Any]
-"""What results or a motion say beside their tables, as JSON gives it back."""
 _FLOAT = "float"
 JsonValue = Any  # an object, a list, a text, a number, a truth or None
 

@@ -30,8 +30,8 @@ from .guard import LARGEST_STEP
 from .halving import common_count, error_left, order_between
 
 Progress = Callable[[float], None]
+#: Runs with a time step [s] and a callback for its fraction done.
 Attempt = Callable[[float, Progress], Trace]
-"""Runs with a time step [s] and a callback for its fraction done."""
 
 
 @dataclass(frozen=True, slots=True)

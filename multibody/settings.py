@@ -12,8 +12,8 @@ from rockwobble.models.number_checks import quoted, require_in_range
 
 GUIDE = 0.2  # 2 h sqrt(stiffness of the guide): see `MujocoSettings.guide_stiffness`
 
+#: Refuses a value out of range, by its name.
 Check = Callable[[str, object], None]
-"""Refuses a value out of range, by its name."""
 
 
 def positive(*, most: float = math.inf, or_zero: bool = False) -> Check:

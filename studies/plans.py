@@ -16,21 +16,17 @@ _COPIES = "Number of perturbed copies."
 _SEED = "Random seed of the perturbations."
 GRAVITY = "Gravitational acceleration g, in m/s2."
 _SIZES = "Semidiagonals R, in m: a list 1,2,6 or an even range FROM:TO:COUNT. Default: 0.5:30:100."
-_SLAB = "Mass of a rigid slab / total mass of the columns that carry it."
+SLAB = "Mass of a rigid slab / total mass of the columns that carry it."
 PRESTRESS = "Prestress of a tendon along the axis / weight of one column."
 STIFFNESS = "Stiffness of the tendon, in weights of one column per base radius."
-_ROLLING = "Rolling resistance length, in m, below every base radius. 0: no loss."
-MASS = (
-    "Mass of the cylinder, or of one column without its slab, in t. With it forces are in kN and moments in "
-    "kNm."
-)
+ROLLING = "Rolling resistance length, in m, below every base radius. 0: no loss."
+MASS = "Mass of the cylinder, or of one column without its slab, in t: forces in kN, moments in kNm."
+YIELD = "Yield force of the tendon / weight of one column"
+FRICTION = "Friction coefficient between cylinder and ground."
 # name and words of each support that an engine may have; written out, as help loads no models
 SUPPORT_WORDS = "recess (ideal recess), flat (flat ground) or ring (recess with clearance)"
 _PLANE = "Azimuth of the plane of a planar motion, in rad. Default: motion in three dimensions."
-_RESTITUTION = (
-    "Ratio of tilt rates after and before an impact of planar motion. momentum: by conservation of "
-    "angular momentum about the new pivot. Default: 1, as in the paper."
-)
+_RESTITUTION = "Tilt rate after / before an impact of planar motion; momentum: that of Housner. Default: 1."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,8 +49,7 @@ class Copies(Plan):
     copies: int = option(20, _COPIES, group="Members", least=2)
     perturbation: float = option(
         0.01,
-        "Relative standard deviation of the perturbations: of both horizontal components, or of tilt "
-        "and rolling rate at release.",
+        "Relative standard deviation of both horizontal components, or of tilt and rolling rate at release.",
         group="Members",
         above=0.0,
         most=0.1,
@@ -135,7 +130,7 @@ class YieldPlan(TendonPlan):
 
     tendon_yield: float | None = option(
         None,
-        "Yield force of the tendon / weight of one column; runs that pass it are no answer. Default: none.",
+        f"{YIELD}; runs that pass it are no answer. Default: none.",
         group="Tendon",
         above=0.0,
     )
@@ -163,8 +158,7 @@ class FragilityPlan(YieldPlan):
     )
     levels: Sequence[float] | None = option(
         None,
-        "Intensities to which every motion is scaled: a list 1.5,2,3 or a logarithmic range "
-        "FROM:TO:COUNT. Default: 20, from just above uplift to where most motions overturn.",
+        "Intensities of all motions: 1,2,3 or logarithmic FROM:TO:COUNT. Default: 20, uplift to overturning.",
         group="Intensity",
         form="levels",
     )
@@ -199,8 +193,7 @@ class FragilityPlan(YieldPlan):
     seed: int = option(0, "Random seed of resamples and synthetic motions.", group="Statistics", least=0)
     restitution: float | str = option(
         1.0,
-        "Ratio of tilt rates after and before an impact of the planar models: a number, or momentum "
-        "(Housner). Default: 1, as in the 3D models.",
+        _RESTITUTION,
         form="restitution",
     )
     step_factor: float = option(
@@ -208,11 +201,11 @@ class FragilityPlan(YieldPlan):
         "Multiplies the default time step of the engines; probabilities need less accuracy than traces.",
         above=0.0,
     )
-    friction: float = option(1.0, "Friction coefficient between cylinder and ground.", least=0.0)
+    friction: float = option(1.0, FRICTION, least=0.0)
     gap: float | None = option(
         None, "Displacement on flat ground that the limit state slides asks for, in m.", least=0.0
     )
-    rolling_resistance: float = option(0.0, _ROLLING, least=0.0)
+    rolling_resistance: float = option(0.0, ROLLING, least=0.0)
     gravity: float = option(9.81, GRAVITY, above=0.0)
 
     def __post_init__(self) -> None:
@@ -261,9 +254,9 @@ class SpectrumPlan(YieldPlan):
         form="numbers",
         flag="--intensity",
     )
-    slab_mass_ratio: float = option(0.0, _SLAB, group="Cylinder", least=0.0)
+    slab_mass_ratio: float = option(0.0, SLAB, group="Cylinder", least=0.0)
     gravity: float = option(9.81, GRAVITY, group="Ground motion", above=0.0)
-    rolling_resistance: float = option(0.0, _ROLLING, group="Ground motion", least=0.0)
+    rolling_resistance: float = option(0.0, ROLLING, group="Ground motion", least=0.0)
     friction: float | None = option(
         None,
         "Friction coefficient, which decides the mode of motion. Default: enough.",
@@ -278,8 +271,7 @@ class SpectrumPlan(YieldPlan):
     )
     probes: int = option(
         PROBES,
-        "Number of random intensities tried below each overturning boundary (bounds the missed share; "
-        "most of the computing time). 0: none.",
+        "Random intensities below each boundary, which bound the missed share (most of the time). 0: none.",
         least=0,
     )
 
@@ -299,8 +291,7 @@ class ValidityPlan(TendonPlan):
 
     quick: bool = option(
         False,
-        "Reduced extent: coarser maps, fewer points, members and conditions (about two minutes on two "
-        "idle cores).",
+        "Coarser maps, fewer points, members and conditions: about two minutes on two idle cores.",
         flag="--quick",
     )
     slab_mass_ratio: float = option(
@@ -344,6 +335,6 @@ class GridPlan(TendonPlan):
         flag="--scale",
     )
     gravity: float = option(9.81, GRAVITY, group="Ground motion", above=0.0)
-    slab_mass_ratio: float = option(0.0, _SLAB, group="Cylinder", least=0.0)
+    slab_mass_ratio: float = option(0.0, SLAB, group="Cylinder", least=0.0)
     plane: float | None = option(None, _PLANE, group="Reduced models", least=-math.tau, most=math.tau)
     restitution: float | str | None = option(None, _RESTITUTION, group="Reduced models", form="restitution")

@@ -165,13 +165,10 @@ _FREE_FALL = Bound(2.0, "no acceleration of the mass centre is larger", "g")
 # below the energy at balance, or the run would go on until it turns back
 _STATE = InitialState(0.12, tilt_rate=0.05, rolling_angle=-2.0, rolling_rate=0.5)
 _FIELDS = ("tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "energy", "centre_of_mass")
-_QUIET = """
-import json, sys
-import rockwobble as rw
+_QUIET = """import json, sys, rockwobble as rw
 pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 case = rw.Case(pier, initial=rw.InitialState(0.1, rolling_rate=0.5), duration=0.01)
-rw.simulate(case, engine=sys.argv[1], support=sys.argv[2], **json.loads(sys.argv[3]))
-"""
+rw.simulate(case, engine=sys.argv[1], support=sys.argv[2], **json.loads(sys.argv[3]))"""
 
 
 def description(subject: Subject, support: str) -> Iterator[Result]:

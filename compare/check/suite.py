@@ -201,7 +201,7 @@ def _result_by_step(
     runs: SuiteRuns, job: Job, name: str, model: Trace, trace: Trace, *, clean: bool
 ) -> Result:
     if not any(math.isfinite(each.uplift_time) for each in (model, trace)):
-        return not_run(name, "neither uplifts: there is nothing to compare")
+        return not_run(name, "neither uplifts")
     by_step = _by_step(runs, job, trace)
     if by_step is None:
         return not_run(name, "the run of another step failed: there is nothing to judge it by")

@@ -60,8 +60,7 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     "contact_rms": ("b", "RMS of the contact-point difference where both tilts exceed 5 % of the peak"),
     "turn_difference": (
         "deg",
-        "angle-of-turn difference: how far apart the contact points have rolled at the end of agreement, or "
-        "at a pass unresolved",
+        "how far apart the contact points have rolled at the end of agreement, or at a pass unresolved",
     ),
     "uplift_time_difference": ("s", "run minus reference"),
     "uplift_direction_difference": ("rad", "azimuth of the contact point at uplift or release"),
@@ -93,10 +92,7 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     ),
     "mode": ("", "mode of motion: rest, slides, rocks, rocks in one plane, rocks and slides"),
     "reference_mode": ("", "that of the reference"),
-    "reference_wall_time": (
-        "s",
-        "computing time of the reference: the least of its run and its perturbed copies",
-    ),
+    "reference_wall_time": ("s", "that of the reference: the least of its run and its perturbed copies"),
     "contact_resolution": ("rad", "smallest minimum tilt of a pass that the engine resolves"),
     "closest_pass": ("alpha", "smallest minimum tilt of the reference's passes within the agreement"),
     "engine_version": ("", "version of the engine"),

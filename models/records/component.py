@@ -12,8 +12,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+#: Of a component: x east, y north, z up.
 Direction = Literal["x", "y", "z"]
-"""Of a component: x east, y north, z up."""
 
 # what spreadsheets call "Unicode text"
 _UTF16 = {"utf-16-le": codecs.BOM_UTF16_LE, "utf-16-be": codecs.BOM_UTF16_BE}

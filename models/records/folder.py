@@ -21,8 +21,8 @@ PEER_TABLE = "_SearchResults.csv"
 _COLUMNS = ("name", "record", "x", "y", "z", "scale", "level", "units")
 
 
+#: Cells by column; those under no column by None.
 Row = Mapping[str | None, str | list[str]]
-"""Cells by column; those under no column by None."""
 
 
 @with_argument_kinds

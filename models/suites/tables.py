@@ -43,8 +43,8 @@ _RANGE = ("from", "to", "step", "count", "spacing")
 # a step divides its range up to the rounding of decimal fractions
 _ROUNDING = 1e-9
 
+#: Refuses a value out of range.
 Check = Callable[[float], None]
-"""Refuses a value out of range."""
 
 
 def any_number(_: float) -> None:

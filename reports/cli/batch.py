@@ -318,7 +318,7 @@ SuiteFile = Annotated[
     str | None,
     typer.Argument(
         metavar="[SUITE]",
-        help="Suite instead of a grid: a TOML file, or a shipped one (canon, p695, quick).",
+        help=f"Suite instead of a grid: {options.SUITES}.",
         show_default=False,
     ),
 ]

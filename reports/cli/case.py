@@ -60,8 +60,7 @@ class Trajectories(Plan):
     )
     trajectory_noise_deg: float | None = _external(
         None,
-        "Tilt below which the trajectory counts as at rest, in deg. Default: estimated from the "
-        "scatter, at least 1e-4 alpha.",
+        "Tilt below which it counts as at rest, in deg. Default: from the scatter, at least 1e-4 alpha.",
         above=0.0,
         below=90.0,
     )
@@ -106,8 +105,7 @@ def compare(
     budget: Annotated[
         bool,
         options.method(
-            "Split each difference into model form, numerics and an unexplained rest, by runs at finer "
-            "steps (about seven times as long).",
+            "Split each difference into model form, numerics and a rest, by finer steps (7 times as long).",
             "--budget",
         ),
     ] = False,
@@ -213,7 +211,7 @@ def simulate(
     problem: Problem,
     model: ModelPlan,
     engine: Annotated[
-        str | None, options.method(f"{options.ENGINES}. Default: the reduced model instead of an engine.")
+        str | None, options.method(f"{options.ENGINE}. Default: the reduced model instead of an engine.")
     ] = None,
     support: options.Support = "recess",
     time_step: options.TimeStep = None,
@@ -282,7 +280,7 @@ def _with_settings(case: rw.Case, run: rw.Run, setting: list[str] | None, model:
 
 Engine = Annotated[
     str | None,
-    options.method(f"{options.ENGINES}; checks the model by one run. none: no check. Default: mujoco."),
+    options.method(f"{options.ENGINE}; checks the model by one run. none: no check. Default: mujoco."),
 ]
 Details = Annotated[bool, options.output("Also print the details of the page.", "--details")]
 

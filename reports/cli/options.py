@@ -144,19 +144,18 @@ UNITS = (
     "Unit of the accelerations in the files, such as g, m/s2 or cm/s2; required if the files do not state it."
 )
 RECORD_COLUMNS = (
-    "Columns of time, x, y and z in this order, by name or number: Zeit,Ost,Nord or 1,4,3. values: all "
-    "numbers of the file are one component."
+    "Columns of time, x, y, z in this order: Zeit,Ost,Nord or 1,4,3. values: all numbers are one component."
 )
 RECORD_STEP = "Time step of files without times, in s."
 LENGTHS = "Components of different length: pad (fill the shorter with zeros) or cut (shorten the longer)."
 REMOVE_MEAN = "Subtract the mean (sensor offset) of each component."
 ROTATE = (
-    "Rotation of the record, in deg, counter-clockwise from above. north: to x east and y north, by the "
-    "azimuths in its files."
+    "Rotation of the record [deg], counter-clockwise from above. north: x east, y north, by its azimuths."
 )
 RESAMPLE = (
     "Resample components to a common time step by linear interpolation (all original samples are kept)."
 )
+SUITES = "a TOML file, or a shipped one (canon, p695, quick)"
 ALL, NO_ENGINE = "all", "none"  # used in place of names of engines
 
 
@@ -180,16 +179,15 @@ def engine_names(names: list[str] | None) -> list[str] | None:
     return _standing_alone(names)
 
 
-ENGINES = "Engine: mujoco, pybullet, dart, drake, exudyn, rapier or another that is installed"
+ENGINE = "Engine: mujoco, pybullet, dart, drake, exudyn, rapier or another that is installed"
+ENGINES = f"{ENGINE}; may be repeated"
 _SUPPORTS = f"Support: {SUPPORT_WORDS}; a support with walls needs an engine"
 _DEFAULT = "Default: MuJoCo and PyBullet (DART where PyBullet is missing)"
-Engines = Annotated[
-    list[str] | None, method(f"{ENGINES}; may be repeated. {_DEFAULT}.", callback=engine_names)
-]
+Engines = Annotated[list[str] | None, method(f"{ENGINES}. {_DEFAULT}.", callback=engine_names)]
 EnginesOrAll = Annotated[
     list[str] | None,
     method(
-        f"{ENGINES}; may be repeated. {_DEFAULT}. all: every installed engine.",
+        f"{ENGINES}. {_DEFAULT}. all: every installed engine.",
         callback=_standing_alone,
     ),
 ]
@@ -198,9 +196,8 @@ Supports = Annotated[list[str] | None, method(f"{_SUPPORTS}; may be repeated. De
 TimeStep = Annotated[
     Any,  # a number, a word or None: typer knows no type for that, `time_step` makes it
     method(
-        "Time step of the engines, in s. Default: 1e-4 s at R = 6 m, scaled with sqrt(R). auto: halved until "
-        "the tilt converges. extrapolated: Richardson extrapolation from three steps. Both state the "
-        "remaining error.",
+        "Time step, in s. Default: 1e-4 s at R = 6 m, scaled with sqrt(R). auto: halved until the tilt "
+        "converges; extrapolated: Richardson extrapolation from three steps; both state the remaining error.",
         parser=time_step,
         metavar="FLOAT|auto|extrapolated",
     ),
@@ -218,7 +215,7 @@ SuiteName = Annotated[
     str | None,
     typer.Argument(
         metavar="[SUITE]",
-        help="Suite of cases and runs: a TOML file, or a shipped one (canon, p695, quick).",
+        help=f"Suite of cases and runs: {SUITES}.",
         show_default=False,
     ),
 ]

@@ -12,7 +12,18 @@ import typer
 
 import rockwobble as rw
 from rockwobble.compare.runs.plan import OptionsIn, Plan, option
-from rockwobble.studies.plans import GRAVITY, MASS, PRESTRESS, STIFFNESS, TendonPlan, YieldPlan
+from rockwobble.studies.plans import (
+    FRICTION,
+    GRAVITY,
+    MASS,
+    PRESTRESS,
+    ROLLING,
+    SLAB,
+    STIFFNESS,
+    YIELD,
+    TendonPlan,
+    YieldPlan,
+)
 
 from ..pages.command_line import command_line
 from . import options
@@ -41,15 +52,12 @@ class Body(Plan):
     )
     transverse_inertia: float | None = _cylinder(
         None,
-        "Transverse moment of inertia per mass, I1/m, about the mass centre, in m2. Default: "
-        "homogeneous solid cylinder.",
+        "Transverse inertia per mass about the mass centre, I1/m, in m2. Default: homogeneous and solid.",
     )
     axial_inertia: float | None = _cylinder(
         None, "Axial moment of inertia per mass, I2/m, in m2. Default: homogeneous solid cylinder."
     )
-    slab_mass_ratio: float | None = _cylinder(
-        None, "Mass of a rigid slab / total mass of the columns that carry it. Default: no slab."
-    )
+    slab_mass_ratio: float | None = _cylinder(None, f"{SLAB} Default: no slab.")
     columns: int | None = _cylinder(
         None,
         "Number of columns under the slab: 3 or more, or 1 for a slab that cannot rotate. Engines "
@@ -143,8 +151,7 @@ class Record(ReadingOptions):
     )
     record_x: Path | None = _ground(
         None,
-        "East-west component: a file in any format of the guide Records, or zero (planar motion). "
-        "Default: El Centro 1940.",
+        "East-west component: a file of the guide Records, or zero (planar motion). Default: El Centro 1940.",
     )
     record_y: Path | None = _ground(None, "North-south component: a file, or zero.")
     record_z: Path | None = _ground(None, "Vertical component. Default: none.")
@@ -205,8 +212,7 @@ class Release(Plan):
     rolling_rate: float = _release(0.0, "Rolling rate at release, in rad/s.")
     duration: float | None = _release(
         None,
-        "Duration of the run, in s; motion at its end is continued over still ground to the next peak. "
-        "Default: that of the record, 10 s without one.",
+        "Duration, in s; motion goes on over still ground to its next peak. Default: the record's, or 10 s.",
     )
 
     def initial(self) -> rw.InitialState | None:
@@ -323,9 +329,7 @@ class Restraint(Steel):
 
     tendon_prestress: float | None = _tendon(None, PRESTRESS, least=0.0)
     tendon_stiffness: float | None = _tendon(None, STIFFNESS, least=0.0)
-    tendon_yield: float | None = _tendon(
-        None, "Yield force of the tendon / weight of one column. Default: no yielding.", above=0.0
-    )
+    tendon_yield: float | None = _tendon(None, f"{YIELD}. Default: no yielding.", above=0.0)
 
     def tendon(self, cylinder: RockingBody, gravity: float) -> rw.Tendon | None:
         """Return the tendon of one column; None without any of its options.
@@ -362,12 +366,11 @@ class Problem(Release, Record, Restraint, Body):
     gravity: float = _ground(9.81, GRAVITY)
     friction: float = _ground(
         1.0,
-        "Friction coefficient between cylinder and ground. The reduced models assume no sliding and "
-        "warn where it would occur.",
+        f"{FRICTION} The reduced models assume no sliding and warn where it would occur.",
     )
     rolling_resistance: float = _ground(
         0.0,
-        "Rolling resistance length, in m; less than the base radius. 0: no loss.",
+        ROLLING,
     )
 
     def case(self) -> rw.Case:

@@ -135,8 +135,7 @@ Forms = Annotated[
 Width = Annotated[
     str | None,
     options.output(
-        "Width of the figures as pdf or png in print, with letters of 6 to 8 pt, as 89mm or 183mm of many "
-        "journals. Default: that of a screen, 218mm.",
+        "Width of pdf or png in print, with letters of 6 to 8 pt, such as 89mm. Default: a screen's, 218mm.",
         metavar="MM",
     ),
 ]
@@ -228,7 +227,7 @@ Stored = Annotated[
     ),
 ]
 CaseName = Annotated[str | None, typer.Option("--case", help="Name of the case, if the folder has several.")]
-Engine = Annotated[str | None, options.method(f"{options.ENGINES}. Default: mujoco.")]
+Engine = Annotated[str | None, options.method(f"{options.ENGINE}. Default: mujoco.")]
 
 
 @takes_options

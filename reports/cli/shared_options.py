@@ -121,7 +121,7 @@ class ManyMethods:
     ] = None
     engine: Annotated[
         list[str] | None,
-        options.method(f"{options.ENGINES}; may be repeated. Default: none.", callback=options.engine_names),
+        options.method(f"{options.ENGINES}. Default: none.", callback=options.engine_names),
     ] = None
     support: options.Supports = None
     setting: options.Settings = None
@@ -176,13 +176,11 @@ class Hazard(Plan):
 
     hazard: Path | None = _hazard(
         None,
-        "Hazard curve of the site, which adds the annual frequency of overturning: CSV of two named columns, "
-        "CSV of OpenQuake or JSON of the USGS.",
+        "Hazard curve, for the annual frequency: CSV of two named columns or of OpenQuake, JSON of the USGS.",
     )
     hazard_measure: str | None = _hazard(
         None,
-        "Intensity measure of the hazard curve: pga, pgv or sa_mean (geometric means), pga_resultant, "
-        "pgv_resultant or sa (horizontal resultant).",
+        "Its measure: pga, pgv, sa_mean (geometric means), pga_resultant, pgv_resultant or sa (resultants).",
     )
     hazard_units: str | None = _hazard(
         None, "Unit of the intensity, such as g or cm/s2, where the header of the file does not state it."
@@ -197,14 +195,12 @@ class Hazard(Plan):
     risk_limit: str = _hazard("overturned", 'Limit state of the annual frequency, such as "tendon yields".')
     target: float = _hazard(
         2e-4,
-        "Annual frequency that the result is compared with. Default: 2e-4, collapse of 1 % in 50 years "
-        "(ASCE/SEI 7-16, 21.2.1.2).",
+        "Annual frequency to compare with. Default: 2e-4, collapse of 1 % in 50 years (ASCE/SEI 7-16).",
         above=0.0,
     )
     total_dispersion: float | None = _hazard(
         None,
-        "Dispersion of the lognormal curves, such as the total dispersion of FEMA P-695. Default: the "
-        "record-to-record dispersion.",
+        "Dispersion of the lognormal curves, such as the total of FEMA P-695. Default: record to record.",
         above=0.0,
     )
 

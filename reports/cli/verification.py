@@ -54,16 +54,14 @@ class SubjectOptions(Plan):
     time_step: float | None = _subject(None, _STEP)
     model: str | None = _subject(
         None,
-        "Model to check, as MODULE:FUNCTION: takes a rockwobble.Case and a support, returns time, tilt "
-        "and azimuth.",
+        "Model to check, as MODULE:FUNCTION of a rockwobble.Case and a support, to time, tilt and azimuth.",
     )
     trajectory: Path | None = _subject(
         None, "Trajectory to check (CSV with time, tilt, azimuth); --suite states its case."
     )
     suite: str | None = _subject(
         None,
-        "Suite whose engine runs are compared with the models: a TOML file, or a shipped one (canon, "
-        "p695, quick).",
+        f"Suite whose engine runs are compared with the models: {options.SUITES}.",
     )
     support: str | None = _subject(
         None, "Support of the model or trajectory: recess or flat. Default: recess."
@@ -296,8 +294,7 @@ def certify(
         list[str] | None,
         typer.Option(
             metavar="GROUP",
-            help="Group of checks whose results become claims; may be repeated. Default: all but protocol "
-            "and baseline.",
+            help="Group whose checks become claims; may be repeated. Default: all but protocol, baseline.",
         ),
     ] = None,
     overwrite: options.Overwrite = False,

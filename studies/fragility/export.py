@@ -124,8 +124,8 @@ def limits_by_function(results: Fragility) -> Iterator[tuple[str, list[Limit]]]:
         yield ":".join(re.sub(r"\W+", "_", str(name)) for name in (cylinder, method)), limits
 
 
+#: File of each format.
 EXPORTS = {"nrml": "fragility.nrml.xml", "pelicun": "fragility.pelicun.csv"}
-"""File of each format."""
 
 
 def exported(results: Fragility, form: str) -> tuple[str, bytes]:

@@ -10,6 +10,9 @@ from ..reading import Reading
 
 NAME = "format that is not read"
 _COLUMNS = "write its accelerations as columns 'time [s], E, N, Z' (CSV) and give their unit"
+_XLS = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+_ITSELF = "give the file of the record itself"
+_CORRECTED = "give the record in AT2 of PEER, or write its corrected accelerations as columns"
 _VALUES = "write its accelerations alone, one in a line, and give their step (--record-step) and unit"
 # archives, MATLAB, HDF5, Parquet, Arrow, pickles and arrays of Python, TDMS, SEG-2
 _BINARY = (
@@ -37,7 +40,7 @@ def _ends(*endings: str) -> Callable[[RecordFile], bool]:
 _FORMATS: tuple[tuple[str, Callable[[RecordFile], bool], str], ...] = (
     (
         "a spreadsheet of Excel",
-        lambda file: _ends(".xlsx", ".xlsm")(file) and _begins(b"PK")(file),
+        lambda file: (_ends(".xlsx", ".xlsm")(file) and _begins(b"PK")(file)) or _begins(_XLS)(file),
         "save it as CSV",
     ),
     (
@@ -45,11 +48,10 @@ _FORMATS: tuple[tuple[str, Callable[[RecordFile], bool], str], ...] = (
         lambda file: _begins(*_BINARY)(file) or file.content[257:262] == b"ustar",
         f"unpack it, or {_COLUMNS}",
     ),
-    ("a spreadsheet of Excel", _begins(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"), "save it as CSV"),
     (
         "a PDF or a picture",
         _begins(b"%PDF-", b"\x89PNG", b"\xff\xd8\xff", b"GIF8"),
-        "give the file of the record itself",
+        _ITSELF,
     ),
     ("K-NET/KiK-net WIN32", _begins(b"\x0a\x02\x00\x00"), "give the ASCII files (.EW, .NS, .UD) of NIED"),
     (
@@ -66,12 +68,12 @@ _FORMATS: tuple[tuple[str, Callable[[RecordFile], bool], str], ...] = (
     (
         "USC or Caltech Volume I",
         lambda file: _says(r"UNCORRECTED ACCELEROGRAM DATA OF VOL(UME)? ?I", 1)(file),
-        "give the record in AT2 of PEER, or write its corrected accelerations as columns",
+        _CORRECTED,
     ),
     (
         "USC or Caltech Volume II",
         _says(r"DATA OF VOL(UME)? ?I|CORRECTED ACCELEROGRAM +I{1,3}[A-Z]{1,3}\d|STATION USC", 8),
-        "give the record in AT2 of PEER, or write its corrected accelerations as columns",
+        _CORRECTED,
     ),
     (
         "processed text of the USGS (SAMPLES/SEC, DATA TYPE)",
@@ -95,7 +97,7 @@ _FORMATS: tuple[tuple[str, Callable[[RecordFile], bool], str], ...] = (
         _ends(".vol", ".vol1", ".vol2"),
         "give the V1A or V2A file of GeoNet",
     ),
-    ("a response spectrum", _says(r"^RESPONSE SPECTR|^ELASTIC RESPONSE SPECTR"), "give the record itself"),
+    ("a response spectrum", _says(r"^RESPONSE SPECTR|^ELASTIC RESPONSE SPECTR"), _ITSELF),
     (
         "QuakeML or StationXML",
         _says(r"^<\?XML|^<Q:QUAKEML|^<FDSNSTATIONXML", 2),
@@ -108,7 +110,7 @@ _FORMATS: tuple[tuple[str, Callable[[RecordFile], bool], str], ...] = (
     ),
     ("an input of DIANA", _says(r"^:\s?DIANA DATAFILE", 1), _VALUES),
     ("JSON", _says(r"^\s*(?:\{\s*(?:\"|$)|\[\s*[{\[])", 1), _COLUMNS),
-    ("a web page", _says(r"^\s*<(!DOCTYPE HTML|HTML)", 3), "give the file of the record itself"),
+    ("a web page", _says(r"^\s*<(!DOCTYPE HTML|HTML)", 3), _ITSELF),
 )
 
 
