@@ -141,7 +141,7 @@ def arguments() -> list[tuple[str, str]]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", VALID)
-def test_what_is_right_runs(name: str) -> None:
+def test_arguments_of_the_right_kind_are_accepted(name: str) -> None:
     lacking = name in OF_AN_EXTRA and p695.missing_packages()
     refused = pytest.raises(ValueError, match=re.escape(p695.REMEDY)) if lacking else nullcontext()
     with refused:

@@ -31,12 +31,12 @@ def test_each_folder_is_a_package(folder: str) -> None:
     assert (files(f"rockwobble.{folder}") / "__init__.py").is_file()
 
 
-def test_above_them_are_the_names_the_command_and_the_mark_that_all_is_typed() -> None:
+def test_wheel_has_top_level_names_command_and_py_typed() -> None:
     inside = {path.name for place in rockwobble.__path__ for path in Path(place).iterdir()}
     assert inside - {"__pycache__"} == {*FOLDERS, "__init__.py", "__init__.pyi", "__main__.py", "py.typed"}
 
 
-def test_a_type_checker_is_told_where_each_name_comes_from() -> None:
+def test_a_type_checker_resolves_each_public_name() -> None:
     stub = ast.parse(Path(str(rockwobble.__file__)).with_suffix(".pyi").read_text(encoding="utf-8")).body
     told = {alias.name for node in stub if isinstance(node, ast.ImportFrom) for alias in node.names}
     assert set(rockwobble.__all__) == told >= {"compare", "comparison"}

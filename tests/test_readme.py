@@ -29,7 +29,7 @@ def commands() -> list[str]:
 
 
 @pytest.mark.parametrize("block", blocks("python"))
-def test_python_runs(block: str) -> None:
+def test_python_examples_of_the_readme_run(block: str) -> None:
     exec(compile(block, "README.md", "exec"), {"__name__": "readme"})
 
 

@@ -101,7 +101,7 @@ def test_every_format_is_read(judge: Judge, name: str, form: Form) -> None:
     assert judged.result["judged"] == [asked if complete else asked - 1, asked]
 
 
-def test_what_a_case_asks_for_is_needed_and_columns_not_read_are_named(judge: Judge) -> None:
+def test_needed_columns_are_required_and_unread_ones_named(judge: Judge) -> None:
     found = {
         run: {
             {"azimuth": "azimut"}.get(key, key): values
@@ -162,7 +162,7 @@ def test_another_tendon_fails_and_no_mistake_explains_it(
 
 
 @pytest.mark.slow
-def test_under_shaking_a_body_one_percent_too_large_fails_and_no_mistake_explains_it(judge: Judge) -> None:
+def test_a_shaken_body_one_percent_too_large_fails_without_explanation(judge: Judge) -> None:
     judged = judge("el-centro", tables("el-centro", tilt_and_azimuth, larger=0.01))
     assert judged.verdict == "fail"
     assert not judged.mistakes
@@ -211,7 +211,7 @@ def test_a_mistake_in_units_axes_or_clock_is_named(judge: Judge, mistake: str) -
         assert judged.mistakes[code] == (None if value is None else pytest.approx(value, rel=0.01))
 
 
-def test_what_one_plane_cannot_tell_other_runs_do(judge: Judge) -> None:
+def test_planar_runs_leave_mistakes_for_other_runs_to_find(judge: Judge) -> None:
     # an uplift in one direction is a turn as well as a mirror image
     found = sparse(tables("uplift-directions", tilt_and_azimuth))
     mirrored = {run: table | {"azimuth": -table["azimuth"]} for run, table in found.items()}

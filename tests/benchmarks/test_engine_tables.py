@@ -35,7 +35,7 @@ def test_a_convergence_row() -> None:
     assert table["order"].to_numpy() == pytest.approx(np.ones(2), abs=SLOPE)
 
 
-def test_values_are_of_settings_that_the_engines_have_with_the_default_among_them() -> None:
+def test_values_belong_to_engine_settings_and_include_the_default() -> None:
     for engine, values in engine_settings.SETTINGS.items():
         if engine in available_engines():
             kind = getattr(find_engine(engine), "settings_type")  # noqa: B009  # of an engine of this package

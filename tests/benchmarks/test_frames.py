@@ -23,7 +23,7 @@ def test_one_column_is_the_reduced_model(support: str) -> None:
     assert measured(frame, lambda frame: by_mujoco(frame, impedance=0.995, contact_steps=2.0))[1] < MUJOCO
 
 
-def test_the_end_of_a_cylinder_is_an_octagon_against_a_box_of_dart() -> None:
+def test_dart_collides_cylinder_with_box_as_an_octagon() -> None:
     pytest.importorskip("dartpy", reason="DART has no wheel for this Python")
     frame = Frame(columns=1, duration=SHORT)
     assert measured(frame, partial(by_engine, name="dart", step=4e-4))[1] < 2e-6  # 2.1e-6 in 3 s
@@ -37,7 +37,7 @@ def test_three_columns_stay_in_step(solve: object) -> None:
     assert off < TURNS
 
 
-def test_of_four_columns_unequal_ones_part() -> None:
+def test_four_unequal_columns_diverge() -> None:
     until, _, apart, _, load = measured(Frame(columns=4, longer=30.0, duration=SHORT), by_springs)
     assert until < SHORT
     assert apart > 0.01

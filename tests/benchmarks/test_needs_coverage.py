@@ -8,7 +8,7 @@ from benchmarks.needs_coverage import coverage
 from rockwobble.models import el_centro_1940
 
 
-def test_a_need_covers_all_or_none_and_what_falls_does_not_count() -> None:
+def test_demand_ignores_overturned_runs() -> None:
     stated = pd.DataFrame({"tan_alpha": 0.2, "intensity": [2.0, 60.0], "friction": [9.0, 9.0], "moment": 0.0})
     found = coverage(stated, (20.0, 30.0), [el_centro_1940()], 3, seed=1)
     assert found["standing"].to_list() == [3, 0]

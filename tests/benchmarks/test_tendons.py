@@ -64,7 +64,7 @@ def test_each_ratio_of_the_page_is_that_of_its_table(medians: pd.DataFrame) -> N
             assert "includes 1" in page[match.end() : match.end() + 20]
 
 
-def test_what_the_page_says_of_flat_ground_is_in_its_table() -> None:
+def test_claims_on_flat_ground_match_their_table() -> None:
     page = " ".join((PUBLISHED / "README.md").read_text(encoding="utf-8").split())
     tables = [pd.read_csv(PUBLISHED / f"flat-{engine}.csv") for engine in ("mujoco", "pybullet")]
     stated = re.findall(r"(\d+\.\d+) b \((\d+\.\d+) to (\d+\.\d+)\)", page)
@@ -105,7 +105,7 @@ def test_many_motions_are_counted_at_levels_about_the_median() -> None:
     assert found["overturned_there"][4] == sum(own) / 3.0
 
 
-def test_what_the_page_says_of_the_highest_levels_of_many_motions_is_in_its_table() -> None:
+def test_claims_on_highest_levels_match_their_table() -> None:
     page = " ".join((PUBLISHED / "README.md").read_text(encoding="utf-8").split())
     rows = _medians("2000")["median"]
     of_g = [rows[body, 0.0, 1.0, "recess model"] * BODIES[body].tan_alpha for body in _ORDER]

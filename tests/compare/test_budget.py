@@ -161,7 +161,7 @@ def test_the_end_of_the_agreement_is_left_out(make_trace, cylinder):
         ((1e-3, 1e-4, 1e-2, 1.1e-3), 1.0, 1.9, ""),
     ],
 )
-def test_what_cannot_be_known_is_not_split(parts, order, unresolved, reason) -> None:
+def test_unknown_differences_have_no_budget(parts, order, unresolved, reason) -> None:
     numerics, unexplained, model_form, error = (np.full_like(TIME, part) for part in parts)
     found = ErrorBudget(
         time=TIME,

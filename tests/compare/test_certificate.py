@@ -165,9 +165,7 @@ def test_the_interpreter_without_a_compiler_gives_the_same(certificate: dict[str
 
 @pytest.mark.slow
 @pytest.mark.parametrize("mutation", FAULTS, ids=lambda mutation: mutation.name)
-def test_a_fault_in_the_models_is_a_change_with_its_claim_and_term(
-    certificate: dict[str, Any], mutation: Any
-) -> None:
+def test_a_fault_in_the_models_changes_its_claim_and_term(certificate: dict[str, Any], mutation: Any) -> None:
     with mutated(*mutation.faults) as copy:
         answer = verify(certificate, models(copy))
     assert answer.word == CHANGED, mutation.name
@@ -186,7 +184,7 @@ def test_only_the_last_case_is_chaotic_and_keeps_the_peaks_of_copies(certificate
 @pytest.mark.parametrize(
     ("size", "words"), [(1e-15, {SAME, CHAOTIC}), (3e-11, {CHAOTIC}), (1e-10, {CHAOTIC})]
 )
-def test_a_difference_that_is_rounding_or_within_the_accuracy_is_never_a_change(
+def test_rounding_and_differences_within_accuracy_are_no_change(
     certificate: dict[str, Any], size: float, words: set[str]
 ) -> None:
     """As another version would: the ground acceleration of each sample is off by a share of its own."""
@@ -301,7 +299,7 @@ def test_the_program_reads_certificates_with_numpy_alone(certificate: dict[str, 
     assert bad.returncode == 2
 
 
-def test_what_is_said_of_releases_is_in_their_table() -> None:
+def test_claims_on_releases_match_their_table() -> None:
     """docs/published/certificates.md: what is chaotic, what is the same, and by how much they differ."""
     path = ROOT / "reports" / "published" / "certificates" / "releases.csv"
     rows = list(csv.DictReader(path.read_text().splitlines()))

@@ -283,7 +283,7 @@ def test_a_right_model_of_somebody_else_passes_tightly(support: str) -> None:
     assert outcomes(found, NOT_RUN) == lacking
 
 
-def test_what_a_model_does_not_return_is_said_and_the_rest_is_checked() -> None:
+def test_missing_fields_of_a_model_are_named_and_the_rest_checked() -> None:
     found = rw.check(model=without("azimuth", "energy")).results
     assert {"free motion", "frame"} <= outcomes(found, NOT_RUN)
     assert outcomes(found, FAILED) == set()
@@ -338,7 +338,7 @@ def test_a_wrong_model_of_somebody_else_fails_where_it_is_wrong(
     assert holds <= outcomes(found, PASSED)
 
 
-def test_a_model_that_cannot_do_a_case_is_said_and_the_others_run() -> None:
+def test_a_model_that_cannot_run_a_case_leaves_the_others_running() -> None:
     def only_releases(case: Case, support: str) -> Trace:
         if case.initial is None:
             raise NotImplementedError("it must be released")
@@ -362,7 +362,7 @@ def test_a_model_that_cannot_do_a_case_is_said_and_the_others_run() -> None:
         ({"time": [0.0, 1.0], "tilt": [0.1]}, "as long as time"),
     ],
 )
-def test_what_is_no_motion_is_said(result: dict[str, Any], reason: str) -> None:
+def test_a_model_that_returns_no_motion_is_reported(result: dict[str, Any], reason: str) -> None:
     found = list(run_checks(external_model(lambda case, support: result), ["exact"]))
     assert all(each.outcome == NOT_RUN and reason in each.note for each in found)
 

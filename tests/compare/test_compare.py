@@ -133,7 +133,7 @@ def test_a_window_narrows_only_the_rms(made_up, case, cylinder):
     assert row.agreement_time == pytest.approx(5.01)
 
 
-def test_what_limits_a_run_is_in_its_row_by_code(made_up, case):
+def test_diagnostics_are_in_the_summary_by_code(made_up, case):
     facts = (Diagnostic(code="slip", time=2.0), Diagnostic(code="energy", time=0.0), Diagnostic(code="slip"))
     made_up({"outcome": "failed", "facts": facts, "peak_tilt": math.nan}, {"outcome": "overturned"})
     row = comparison(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]

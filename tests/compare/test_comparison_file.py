@@ -39,7 +39,7 @@ def saved(tmp_path_factory) -> tuple[Comparison, Comparison]:
     return made, Comparison.load(folder)
 
 
-def test_cases_are_the_same(saved):
+def test_cases_of_a_saved_comparison_are_restored(saved):
     for case, again in zip(saved[0].cases.values(), saved[1].cases.values(), strict=True):
         for name in ("name", "cylinder", "initial", "duration", "gravity", "friction", "length"):
             assert getattr(case, name) == getattr(again, name)
@@ -83,7 +83,7 @@ def test_the_tables_say_what_made_them(saved, tmp_path):
         assert len(about["inputs"]) == 32
 
 
-def test_a_folder_of_0_3_is_read_and_an_older_one_names_its_release(saved, tmp_path):
+def test_folders_of_0_3_are_read_and_older_ones_refused_by_release(saved, tmp_path):
     made, trace = saved[0], saved[0].traces["release", "recess model"]
     columns = {"time": trace.time, "tilt [rad]": trace.tilt, "azimuth [deg]": np.degrees(trace.rolling_angle)}
     pd.DataFrame(columns).to_csv(path := tmp_path / "table.csv", index=False)

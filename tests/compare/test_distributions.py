@@ -164,9 +164,7 @@ def test_an_end_of_the_interval_of_a_share_leaves_out_its_part(total: int) -> No
 
 
 @pytest.mark.parametrize(("only", "only_there"), [(0.1, 0.1), (0.3, 0.1), (0.0, 0.4)])
-def test_the_interval_of_a_difference_of_shares_becomes_that_of_a_normal_one(
-    only: float, only_there: float
-) -> None:
+def test_interval_of_a_difference_of_shares_tends_to_the_normal_one(only: float, only_there: float) -> None:
     count = 100_000_000
     ends = paired_difference(round(only * count), round(only_there * count), count)
     deviation = math.sqrt((only + only_there - (only - only_there) ** 2) / count)

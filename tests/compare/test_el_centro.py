@@ -81,7 +81,7 @@ def test_traces_with_passes_near_upright_agree_for_twenty_seconds_of_the_record(
     assert row.agreed_passes >= 15
 
 
-def test_energy_lost_from_the_path_alone_is_what_the_engine_counts_step_by_step(run):
+def test_energy_loss_from_the_path_equals_that_summed_by_the_engine(run):
     _, _, trajectory = traces(run(10.0, 0.1, 1.0))
     counted = -trajectory.energy_error[-1] / trajectory.energy.max()
     assert run(10.0, 0.1, 1.0).summary.energy_loss[0] == pytest.approx(counted, abs=SAMPLING)

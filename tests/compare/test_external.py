@@ -137,7 +137,7 @@ def test_other_samples_are_brought_to_those_of_the_comparison(save, every):
     assert np.nanmax(np.abs(pair.rolling_angle - pair.reference_rolling_angle)) < 2e-3
 
 
-def test_a_pass_between_two_samples_is_guessed_by_the_sense_of_the_turning_and_said(save):
+def test_a_pass_between_samples_is_inferred_from_rotation_sense_and_reported(save):
     start = InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.01)
     case = Case(PIER, initial=start, duration=5.0, name="near")
     response = reduced.simulate(Case(PIER, initial=start, duration=5.0))
@@ -221,7 +221,7 @@ def test_half_turns_of_planar_motion_are_passes_and_no_turn(save: Callable[..., 
     assert row["turn_difference"] == pytest.approx(0.0, abs=1e-6)  # as above
 
 
-def test_the_peak_of_a_file_that_ends_early_is_held_against_the_same_stretch(tmp_path: Path) -> None:
+def test_peak_of_a_short_file_is_compared_over_its_duration(tmp_path: Path) -> None:
     trace = reduced.simulate(SHAKEN)
     early = angles(trace)[trace.time <= 0.7 * trace.time[int(np.argmax(trace.tilt))]]
     early.to_csv(tmp_path / "early.csv", index=False)

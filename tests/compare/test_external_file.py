@@ -206,7 +206,7 @@ def test_a_signed_tilt_leans_to_the_other_side(save):
     assert np.isnan(alone.contact_point).all()
 
 
-def test_a_mass_centre_alone_tells_the_pose_of_a_cylinder_in_a_recess(save, response):
+def test_mass_centre_alone_determines_the_pose_in_a_recess(save, response):
     x, y, z = 100.0 * response.centre_of_mass.T
     trajectory = read_trajectory(save(columns(response, **{"x [cm]": x, "y [cm]": y, "z [cm]": z})), RELEASE)
     assert measurement(trajectory).poses.given == ("path",)
@@ -255,7 +255,7 @@ def test_the_noise_is_told_by_the_samples(save, response, share):
     assert measurement(trajectory).poses.stands == pytest.approx(5.0 * measurement(trajectory).poses.noise)
 
 
-def test_the_samples_of_a_run_of_this_project_are_read_as_they_are(tmp_path):
+def test_samples_of_a_rockwobble_run_are_read_unchanged(tmp_path):
     run = reduced.simulate(RELEASE)
     run.to_frame().to_csv(tmp_path / "run.csv", index=False)
     found = read_trajectory(tmp_path / "run.csv", RELEASE)

@@ -27,7 +27,7 @@ def test_the_rolling_resistance_of_a_trajectory_is_found(tmp_path: Path, resista
     assert row["likely_mistake_value"][1] == pytest.approx(resistance, rel=0.05)
 
 
-def test_what_loses_nothing_is_not_said_to(tmp_path: Path) -> None:
+def test_no_loss_is_reported_where_none_exists(tmp_path: Path) -> None:
     other = Case(CYLINDER, initial=InitialState(0.45 * CYLINDER.alpha, rolling_rate=0.3), duration=3.0)
     trace = reduced.simulate(other)
     path = tmp_path / "other.csv"

@@ -22,7 +22,7 @@ BODIES = [
 
 @pytest.mark.parametrize("power", [2, 3, 4])
 @pytest.mark.parametrize("begin", [0.613, 0.6195, 0.6205])
-def test_the_uplift_of_a_growth_by_a_power_lies_within_a_sample_or_two(begin, power):
+def test_uplift_of_power_law_growth_is_found_within_two_samples(begin, power):
     time = 0.02 * np.arange(100)
     tilt = 0.5 * np.maximum(time - begin, 0.0) ** power
     found = uplift(time, tilt, 0.3 + time, stands=1e-6)
@@ -32,7 +32,7 @@ def test_the_uplift_of_a_growth_by_a_power_lies_within_a_sample_or_two(begin, po
     assert 0.0 <= found.direction - (0.3 + begin) < 0.0376 + 0.02
 
 
-def test_a_release_has_its_uplift_at_the_start_and_a_body_at_rest_has_none():
+def test_a_release_uplifts_at_the_start_and_a_body_at_rest_never():
     time, ones = 0.01 * np.arange(10), np.ones(10)
     assert uplift(time, 0.1 * ones, ones, stands=1e-3) == (0.0, 1.0, 0)
     still = uplift(time, 0.0 * ones, ones, stands=1e-3)

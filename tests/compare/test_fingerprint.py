@@ -58,7 +58,7 @@ def test_the_name_is_that_of_another_process():
     assert there.strip() == fingerprint({"a": [0.1, "x", None]})
 
 
-def test_what_has_no_bits_has_no_name():
+def test_unhashable_options_have_no_cache_name():
     with pytest.raises(ValueError, match=r"input of type object"):
         fingerprint({"a": object()})
 
@@ -83,7 +83,7 @@ def test_each_input_of_a_run_is_in_its_name(other):
     assert job_fingerprint(other) != job_fingerprint(job())
 
 
-def test_what_is_left_out_where_it_is_none_is_in_the_name_by_its_value():
+def test_optional_fields_enter_the_cache_name_only_when_set():
     names = {job_fingerprint(job(rolling_resistance=length)) for length in (0.0, 0.01, 0.02)}
     assert len(names) == 3
 

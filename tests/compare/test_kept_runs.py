@@ -74,7 +74,7 @@ def test_only_what_is_missing_runs_and_results_come_in_their_order(tmp_path, cou
     assert [str(trace.run) for trace in found] == ["mujoco recess", "mujoco flat", "recess model"]
 
 
-def test_a_kept_run_is_found_whatever_it_is_called_and_not_for_another_case():
+def test_a_cached_run_is_found_by_case_and_not_by_label():
     job = Job(case=CASE, run=GUIDED, label="mine")
     renamed = Job(case=dataclasses.replace(CASE, name="yours"), run=GUIDED)
     assert job_fingerprint(job) == job_fingerprint(renamed)

@@ -36,7 +36,7 @@ def write(folder, kind="study", tables=("points",), **options):
     return write_results(folder, with_provenance(made), dict.fromkeys(tables, TABLE), **options)
 
 
-def test_what_was_written_is_read_again(tmp_path):
+def test_a_written_manifest_is_read_back(tmp_path):
     write(tmp_path, files={"raw.csv": b"1,2\n"}, pages={"study.md": b"# Study"})
     found = read_results(tmp_path, "study")
     pd.testing.assert_frame_equal(found.table("points"), TABLE, check_exact=True)
@@ -116,7 +116,7 @@ def test_pages_drawn_again_leave_the_results_as_they_are(tmp_path):
         ('{"kind": "study"}', "cannot be read"),
     ],
 )
-def test_what_is_no_manifest_is_said(tmp_path, content, says):
+def test_a_file_that_is_no_manifest_is_refused(tmp_path, content, says):
     if content is not None:
         (tmp_path / MANIFEST).write_text(content)
     with pytest.raises(ValueError, match=says):
@@ -129,7 +129,7 @@ def test_results_of_another_kind_are_named(tmp_path):
         read_results(tmp_path, "study")
 
 
-def test_an_installed_package_has_no_commit_of_the_repository_that_it_is_installed_in(monkeypatch):
+def test_an_installed_package_reports_no_commit_of_the_surrounding_repository(monkeypatch):
     refused = provenance.subprocess.CalledProcessError(1, "git")
 
     def run(command, **_):

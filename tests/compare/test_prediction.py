@@ -85,7 +85,7 @@ def test_a_prediction_under_shaking_counts_from_uplift(cylinder, make_trace):
     assert (form.reason, form.length) == ("model form", pytest.approx(2.0))
 
 
-def test_a_copy_as_far_off_as_the_engine_grows_to_one_per_cent(predicted):
+def test_a_copy_with_the_early_error_of_the_engine_diverges(predicted):
     # RMS of exp(t) in the first second: sqrt((e^2 - 1)/2) = 1.787; 1e-5/1.787 exp(t) = 0.01
     found = predicted(1e-5)
     assert found.reason == "growth"
@@ -142,7 +142,7 @@ def test_the_estimated_error_is_of_first_order_in_the_step(case):
     assert estimated_error(case, run, 4e-4) == pytest.approx(4.0 * estimated_error(case, run, 1e-4))
 
 
-def test_what_is_early_is_the_first_second_at_six_metres(case):
+def test_early_error_covers_one_second_at_six_metres(case):
     size = math.sqrt(case.cylinder.semidiagonal / 6.0)
     time = size * np.array([1.9, 2.0, 3.0, 3.005])
     assert early_rms(case, time, np.array([9.0, 3.0, 4.0, 9.0]), 2.0 * size) == pytest.approx(math.sqrt(12.5))

@@ -31,7 +31,7 @@ def case(cylinder):
     return Case(cylinder, duration=1.0, name="still")
 
 
-def test_default_runs_are_every_installed_engine_in_the_recess_and_on_flat_ground():
+def test_default_runs_cover_installed_engines_in_recess_and_flat():
     first, second = standard_engines()
     if second not in available_engines():
         pytest.skip(f"{second} is not installed")
@@ -55,7 +55,7 @@ def test_an_engine_without_a_wheel_is_left_out_and_refused_by_name(monkeypatch, 
         require_runnable(case, Run(name, "recess"))
 
 
-def test_a_suite_runs_with_what_takes_the_place_of_an_engine_without_a_wheel(monkeypatch):
+def test_a_suite_replaces_an_engine_that_has_no_wheel(monkeypatch):
     if "dart" not in available_engines():
         pytest.skip("dart is not installed")
     place = {"pybullet": "dart"}.get
@@ -74,7 +74,7 @@ def test_a_suite_runs_with_what_takes_the_place_of_an_engine_without_a_wheel(mon
     assert Run("pybullet", "recess") in runs_here(runs, ["pybullet"])[0]  # to be refused by name
 
 
-def test_a_suite_leaves_out_an_engine_that_is_missing_and_keeps_an_extra(monkeypatch):
+def test_a_suite_drops_missing_engines_and_keeps_extras(monkeypatch):
     packages, find = engine_packages().values(), importlib.util.find_spec
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name in packages else find(name))
     name = standard_engines()[0]
@@ -84,7 +84,7 @@ def test_a_suite_leaves_out_an_engine_that_is_missing_and_keeps_an_extra(monkeyp
     assert re.fullmatch(rf"{name} is not installed here: pip install .*; it is left out", said)
 
 
-def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeypatch, case):
+def test_an_ideal_rim_is_never_default_and_refused_where_unsuitable(monkeypatch, case):
     if "exudyn" not in available_engines():
         pytest.skip("exudyn is not installed")
     assert "exudyn" not in {run.engine for run in default_runs()}
@@ -136,7 +136,7 @@ def test_a_ring_that_is_not_touched_follows_the_model_of_open_ground():
     assert own["tilt_rms"] < FOLLOWS * other["tilt_rms"]
 
 
-def test_a_ring_runs_with_the_engines_that_have_it_unless_others_are_named(case):
+def test_a_ring_runs_by_default_on_engines_that_support_it(case):
     assert [(run.engine, run.support) for run in default_runs(supports=["ring"])] == [("mujoco", "ring")]
     both = default_runs(supports=["ring", "flat"])
     assert ("pybullet", "ring") not in [(run.engine, run.support) for run in both]
@@ -177,7 +177,7 @@ def test_half_of_a_step_that_is_sought_is_half_of_the_default(
     assert list(found) == ["recess model", "mujoco ring, half the default step"]
 
 
-def test_a_run_has_a_label_beside_a_reference_and_models_of_its_name() -> None:
+def test_labels_are_unique_beside_references_and_models_of_one_name() -> None:
     fine, coarse = Run("mujoco", "recess", 5e-4), Run("mujoco", "recess", 1e-3)
     assert labels_beside_references([coarse], fine) == (("mujoco recess 0.001 s",), "mujoco recess 0.0005 s")
     assert labels_beside_references([coarse], None) == (("mujoco recess",), "")

@@ -109,7 +109,7 @@ def test_ctrl_c_ends_the_processes_at_once_and_leaves_nothing(monkeypatch, tmp_p
     assert list(tmp_path.iterdir()) == []  # the folders of the processes went with them
 
 
-def test_what_was_finished_before_an_interruption_is_kept_and_counted(tmp_path):
+def test_tasks_finished_before_an_interruption_are_kept(tmp_path):
     def interrupt(event):
         if event.done == 2:
             raise KeyboardInterrupt
@@ -143,7 +143,7 @@ def test_a_damaged_file_is_named_and_its_task_runs_again(tmp_path):
         assert path.read_bytes() == whole
 
 
-def test_a_single_task_has_a_process_of_its_own_where_it_is_asked_for():
+def test_a_single_task_gets_its_own_process_on_request():
     assert run_tasks(os.getpgid, [0], workers=2) != [os.getpgid(0)] == run_tasks(os.getpgid, [0])
 
 
@@ -267,7 +267,7 @@ def test_an_answer_that_cannot_travel_is_an_error_of_its_task():
 
 
 @pytest.mark.slow
-def test_what_a_task_prints_does_not_mix_with_its_answer():
+def test_output_of_a_task_does_not_mix_with_its_answer():
     assert run_tasks(os.system, ["echo noise", "echo more"], workers=2) == [0, 0]
     assert run_tasks(print, ["noise", "more"], workers=2) == [None, None]
 

@@ -103,7 +103,7 @@ def test_contact_points_count_only_where_both_are_tilted(cylinder, make_trace, t
     assert contact_rms(make_pair(cylinder, reference, trial)) == pytest.approx(expected, rel=ROUNDING)
 
 
-def test_contact_points_count_from_5_per_cent_of_the_peak_of_the_reference(cylinder, make_trace, time):
+def test_contact_points_count_above_5_percent_of_the_reference_peak(cylinder, make_trace, time):
     high, angle = 0.3 * cylinder.alpha, 2.0 * time
     # then just above 5 % of that peak: below 5 % of alpha, and of the trial's own peak; at last just below
     share = np.where(time < 4.0, 1.0, np.where(time < 8.0, 0.0502, 0.0498))

@@ -95,7 +95,7 @@ def test_what_a_user_calls_has_an_example() -> None:
     assert silent == ["far_field_motions", "p695_far_field"]
 
 
-def test_identifiers_of_the_references_are_well_formed_and_what_is_cited_is_there() -> None:
+def test_reference_identifiers_are_well_formed_and_all_citations_resolve() -> None:
     page = (DOCS / "references.md").read_text(encoding="utf-8")
     links = re.findall(r"\[doi:(\S+?)\]\((\S+?)\)", page)
     assert len(links) >= 10
@@ -145,7 +145,7 @@ def test_every_group_of_findings_is_on_its_page_once() -> None:
     assert sorted(listed) == sorted({*words()} - labels)
 
 
-def test_every_file_of_a_comparison_and_key_of_its_manifest_is_on_its_page(tmp_path: Path) -> None:
+def test_every_comparison_file_and_manifest_key_is_documented(tmp_path: Path) -> None:
     page = (DOCS / "reference" / "results.md").read_text(encoding="utf-8")
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     case = Case(pier, initial=InitialState(0.5 * pier.alpha, rolling_rate=0.5), duration=0.1)

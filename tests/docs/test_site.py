@@ -159,7 +159,7 @@ def test_every_page_is_drawn_quiet_and_no_wider_than_the_window(tmp_path: Path) 
     assert wrong == []
 
 
-def test_the_cells_of_a_table_that_is_shown_row_by_row_have_their_own_heads() -> None:
+def test_cells_of_a_stacked_table_carry_their_headings() -> None:
     for page in ("guide/advice.html", "guide/limits.html", "guide/frames.html", "theory/tendon.html"):
         text = (BUILT / page).read_text(encoding="utf-8")
         for table in re.findall(r'<table[^>]*class="[^"]*stacked.*?</table>', text, flags=re.DOTALL):

@@ -15,7 +15,7 @@ def test_every_code_has_words_of_its_own() -> None:
     assert len(set(meanings)) == len(CODES)
 
 
-def test_facts_that_say_the_same_are_equal_whatever_their_numbers_were_made_of() -> None:
+def test_equal_facts_compare_equal_for_any_number_type() -> None:
     first = Diagnostic(code="slip", time=float("nan"), size=np.float64(2.0))
     assert first == Diagnostic(code="slip", duration=np.float64("nan"), size=2)
     assert first != Diagnostic(code="slip", size=2.0, time=1.0)

@@ -55,7 +55,7 @@ def likely(number: float, units: dict[str, float], usual: float) -> str:
     return min(units, key=lambda unit: max(number * units[unit] / usual, usual / (number * units[unit])))
 
 
-def test_the_doubt_about_a_length_states_that_length_and_the_limit_that_it_is_beyond() -> None:
+def test_a_doubtful_length_is_stated_with_its_limit() -> None:
     """Of any body: the height of its outline first, then its diameter; 1 mm to 300 m are usual."""
     chance = np.random.default_rng(2)
     seen = set()
@@ -89,7 +89,7 @@ def test_the_doubt_about_a_gravity_states_it_and_its_limit() -> None:
 
 
 @pytest.mark.parametrize(("one", "other", "columns"), [(0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)])
-def test_two_components_that_are_one_are_named(one: int, other: int, columns: int) -> None:
+def test_equal_components_are_named(one: int, other: int, columns: int) -> None:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     samples = np.random.default_rng(4).uniform(-1.0, 1.0, (60, columns))
     samples[:, other] = samples[:, one]

@@ -55,7 +55,7 @@ def test_its_repr_makes_it_again() -> None:
         ({"cylinder": Cylinder(semidiagonal=6.0, tan_alpha=0.2, height=8.0)}, "mass centre"),
     ],
 )
-def test_what_is_no_frame_is_refused_in_a_line(given: dict[str, Any], named: str) -> None:
+def test_an_invalid_frame_is_refused_in_one_line(given: dict[str, Any], named: str) -> None:
     with pytest.raises(ValueError, match=named) as refused:
         WobblingFrame(**{"cylinder": PIER, **given})
     assert "\n" not in str(refused.value)

@@ -45,7 +45,7 @@ def test_between_its_points_a_curve_is_a_power_law() -> None:
         (X, RATE, {"measure": "sa", "period": -1.0}, "period must be positive"),
     ],
 )
-def test_what_is_no_curve_is_refused(
+def test_an_invalid_hazard_curve_is_refused(
     intensity: list[float], frequency: list[float], options: dict[str, object], words: str
 ) -> None:
     with pytest.raises(ValueError, match=words):
@@ -122,7 +122,7 @@ ROWS = "\n" + "".join(f"{x},{y}\n" for x, y in zip(X, RATE, strict=True))
         ("PGA (g),poe_50", "years", 50.0, "in how many years"),
     ],
 )
-def test_what_a_header_leaves_open_is_asked_for(
+def test_missing_hazard_units_are_asked_for(
     header: str, option: str, value: object, words: str, tmp_path: Path
 ) -> None:
     with pytest.raises(ValueError, match=words):

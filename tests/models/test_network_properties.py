@@ -196,7 +196,7 @@ QUADRANTS = [(f"{a}{angle:02d}{b}", a, angle, b) for a in "NS" for angle in (0, 
 
 
 @pytest.mark.parametrize(("name", "first", "angle", "second"), QUADRANTS)
-def test_a_quadrant_is_the_azimuth_from_north_or_south_to_east_or_west(
+def test_a_quadrant_bearing_is_converted_to_an_azimuth(
     tmp_path: Path, name: str, first: str, angle: int, second: str
 ) -> None:
     parts = {"x": any_motion(np.random.default_rng(7))["x"]}

@@ -41,9 +41,7 @@ def words(low: str, high: str, a: int, b: int, *, whole: bool) -> str:
 
 @pytest.mark.parametrize("whole", [True, False])
 @pytest.mark.parametrize(("low", "high"), list(itertools.product(LOW, HIGH)))
-def test_a_number_is_refused_where_it_is_beyond_its_ends_and_the_message_states_them(
-    low: str, high: str, whole: bool
-) -> None:
+def test_a_number_beyond_its_bounds_is_refused_with_the_bounds(low: str, high: str, whole: bool) -> None:
     chance = np.random.default_rng(1)
     for a, width in chance.integers([-9, 2], [9, 9], (20, 2)).tolist():
         b = a + width

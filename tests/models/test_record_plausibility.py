@@ -19,7 +19,7 @@ def times(x: float, y: float) -> GroundMotion:
     return GroundMotion(RECORD.acceleration * [x, y], RECORD.time_step, "made")
 
 
-def test_what_records_are_is_plausible() -> None:
+def test_measured_records_are_plausible() -> None:
     strong = RECORD.scaled(0.99 * LARGEST_PEAK * G / RECORD.peak)
     planar = times(1.0, 0.0)
     for motion in (RECORD, el_centro_1940(vertical=True), strong, planar, times(1.0, 0.03)):
@@ -122,9 +122,7 @@ def test_peaks_of_components_that_differ_by_a_factor_of_30_are_doubted(
 
 @pytest.mark.parametrize("unit", ["g", "m/s2", "cm/s2"])
 @pytest.mark.parametrize("peak", [1.99, 2.01, 39.5, 2000.0])
-def test_a_peak_above_2_g_is_doubted_with_a_smaller_unit_that_makes_sense(
-    tmp_path: Path, unit: str, peak: float
-) -> None:
+def test_a_peak_above_2_g_is_doubted_with_a_plausible_unit(tmp_path: Path, unit: str, peak: float) -> None:
     """The unit in which the peak is nearest to 0.4 g; none where the unit is already the smallest."""
     metre = {"g": G, "m/s2": 1.0, "cm/s2": 0.01}
     resultant = np.hypot(X, Y).max()

@@ -55,7 +55,7 @@ def unit_vector(azimuth: float) -> NDArray[np.float64]:
 
 @pytest.mark.parametrize("first", [0, 44, 45, 46, 135, 250])
 @pytest.mark.parametrize("turn", [90, -90])
-def test_of_two_azimuths_x_is_the_nearer_to_east(write: Write, first: int, turn: int) -> None:
+def test_x_is_the_azimuth_nearer_to_east(write: Write, first: int, turn: int) -> None:
     """Where both are as near, x is clockwise of y as seen from above; turned to north they are one motion."""
     second = (first + turn) % 360
     east_north = MOTION[:, :2]
@@ -71,9 +71,7 @@ def test_of_two_azimuths_x_is_the_nearer_to_east(write: Write, first: int, turn:
 
 
 @pytest.mark.parametrize(("count", "step"), [(2, 0.02), (181, 0.005)])
-def test_the_line_of_a_record_states_its_samples_their_step_and_each_component(
-    write: Write, count: int, step: float
-) -> None:
+def test_a_record_summary_states_samples_step_and_components(write: Write, count: int, step: float) -> None:
     """A mean above a twentieth of the peak is said beside it."""
     chance = np.random.default_rng(count)
     for offset in (0.0, 0.04, 0.06, 0.5):
@@ -267,9 +265,7 @@ def test_a_spike_of_a_million_times_all_others_is_no_sample(
 
 @pytest.mark.parametrize("fill", ["-999", "-9999.9", "99999", "-12345", "9990"])
 @pytest.mark.parametrize("times", [4.9, 5.1])
-def test_a_number_that_fills_places_is_one_where_it_is_five_times_all_others(
-    write: Write, fill: str, times: float
-) -> None:
+def test_a_fill_value_is_five_times_all_other_numbers(write: Write, fill: str, times: float) -> None:
     """Of nines alone, or -12345; where the motion itself is as large, it is a sample."""
     value = float(fill)
     others = MOTION[:, 0] / np.abs(MOTION[:, 0]).max() * abs(value) / times

@@ -187,7 +187,7 @@ def path_of(folder: Path, name: str, content: str | bytes) -> Path:
 
 
 @pytest.mark.parametrize("name", READ)
-def test_is_read(tmp_path: Path, name: str) -> None:
+def test_text_records_of_any_layout_are_read(tmp_path: Path, name: str) -> None:
     content, parts, options = READ[name]
     motion = read_record(path_of(tmp_path, name, content), *(["zero"] if "y" not in parts else []), **options)
     assert motion.time_step == pytest.approx(STEP, rel=1e-9)
@@ -199,7 +199,7 @@ def test_is_read(tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_is_refused_in_a_line(tmp_path: Path, name: str) -> None:
+def test_bad_text_records_are_refused_in_one_line(tmp_path: Path, name: str) -> None:
     content, words = REFUSED[name]
     with pytest.raises(ValueError, match=f"^{re.escape(name)}") as caught:
         read_record(path_of(tmp_path, name, content))
@@ -254,9 +254,7 @@ def test_the_columns_that_the_user_numbers_are_read_in_any_order(write: Write, t
 
 
 @pytest.mark.parametrize("late", [1, 20, COUNT - 2])
-def test_a_late_sample_is_taken_at_its_even_time_where_resampling_is_asked_for(
-    write: Write, late: int
-) -> None:
+def test_resampling_moves_a_late_sample_to_its_even_time(write: Write, late: int) -> None:
     """Linearly between the samples of the file; a gap is refused even so."""
     time = TIME.copy()
     time[late] += 0.3 * STEP
@@ -278,7 +276,7 @@ _SCRAPS = [*re.split(" ", _WORDS), *',;-+.#%|"{}']
 
 
 @pytest.mark.slow
-def test_whatever_stands_in_a_text_it_is_read_or_refused_in_one_line(write: Write) -> None:
+def test_any_text_is_read_or_refused_in_one_line(write: Write) -> None:
     random = np.random.default_rng(57)
     for _ in range(600):
         width, separator = random.integers(1, 5), random.choice([" ", ",", ";", "\t"])

@@ -66,7 +66,7 @@ def test_a_run_beyond_yield_answers_only_if_its_balance_comes_first() -> None:
         ({"stiffness": "much"}, "stiffness"),
     ],
 )
-def test_what_is_no_tendon_is_refused(options: dict[str, object], words: str) -> None:
+def test_an_invalid_tendon_is_refused(options: dict[str, object], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         Tendon(**options)  # type: ignore[arg-type]
 

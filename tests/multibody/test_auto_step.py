@@ -114,7 +114,7 @@ def test_times_are_common_until_one_differs(seed: int) -> None:
 
 
 @pytest.mark.parametrize("code", ["unresolved_pass", "energy"])
-def test_what_is_left_to_chance_has_not_settled(code: str) -> None:
+def test_auto_step_is_unsettled_after_chance_events(code: str) -> None:
     left: dict[str, Any] = {"facts": (Diagnostic(code=code, time=0.2),)}
     if code == "unresolved_pass":  # contact resolves 1e-6 rad
         left = {"extrema": np.array([[0.1, 0.1, 0.0, 1.0], [0.2, 1e-7, 0.0, -1.0]])}

@@ -126,7 +126,7 @@ def test_the_largest_step_scales_with_the_cylinder() -> None:
         multibody.simulate(Case(small, initial=RELEASE, duration=0.1), time_step=0.0002)
 
 
-def test_motion_ends_and_the_run_goes_on(engine: str, time_step: float | None) -> None:
+def test_energy_is_constant_after_the_motion_ends(engine: str, time_step: float | None) -> None:
     pulse = GroundMotion([[0.0, 0.0], [4.0, 1.0], [-1.0, 2.0], [0.0, 0.0]], 0.2)
     run = multibody.simulate(Case(PIER, pulse, duration=1.5), engine=engine, time_step=time_step)
     assert run.time[-1] == 1.5

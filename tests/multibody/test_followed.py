@@ -82,7 +82,7 @@ def test_wherever_still_ground_is_cut_the_fall_ends_alike() -> None:
         assert cut.time[-1] == pytest.approx(whole.time[-1], abs=1e-9), duration
 
 
-def test_a_run_that_stands_ends_at_its_duration_and_has_the_peak_of_its_swing(engine: str) -> None:
+def test_a_standing_run_ends_on_time_with_its_last_swing_peak(engine: str) -> None:
     run, later = (
         multibody.simulate(Case(PIER, one_sine(2.0, still)), engine=engine, time_step=STEP)
         for still in (0.0, 2.0)
@@ -112,7 +112,7 @@ def test_a_free_response_that_is_cut_has_the_peak_of_its_swing(
     assert run.followed_until == pytest.approx(model.followed_until, abs=1e-4)
 
 
-def test_what_follows_leaves_only_its_peak(engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_motion_after_the_end_changes_only_the_peak(engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
     # it wobbles with more energy than that of its balance, and turns back after the end
     start = InitialState(0.55 * PIER.alpha, tilt_rate=0.02, rolling_rate=0.95)
     case = Case(PIER, initial=start, duration=0.51303)
@@ -172,7 +172,7 @@ def test_the_step_after_a_cut_takes_back_what_goes_beyond_it(centre: float) -> N
     assert total[2] == 0.0
 
 
-def test_what_is_not_decided_in_time_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_undecided_run_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "undecided" not in {fact.code for fact in multibody.simulate(Case(PIER, one_sine(2.0))).facts}
     monkeypatch.setattr(stepping, "LONGEST", 0.5)
     run = multibody.simulate(Case(PIER, one_sine(4.0)))

@@ -76,7 +76,7 @@ def test_means_of_a_force_that_changes_steadily_are_that_force() -> None:
     assert (found[[0, -1], 0] != expected[[0, -1], 0]).all()
 
 
-def test_a_step_without_contact_and_the_next_with_twice_the_load_are_one_load() -> None:
+def test_load_is_averaged_over_an_empty_and_a_doubled_step() -> None:
     force = np.ones((3, 400))
     force[:, 203], force[:, 204] = 0.0, 2.0
     record = ForceSamples(np.array([0.02]), STEP)

@@ -85,7 +85,7 @@ def test_el_centro_from_rest(size: float, tan_alpha: float, scale: float, name: 
 
 
 @pytest.mark.parametrize("name", [name for name in ("mujoco", "pybullet") if name in ENGINES])
-def test_on_flat_ground_friction_creeps_less_the_more_of_the_slip_a_step_removes(name: str) -> None:
+def test_creep_on_flat_ground_falls_with_slip_removed_per_step(name: str) -> None:
     frame = WobblingFrame(Cylinder(semidiagonal=6.0, tan_alpha=0.2), 1.0, columns=1)
     case = Case(frame, el_centro_1940().scaled(2.0), duration=8.0)
     model = reduced.simulate(case, support="flat")
@@ -119,7 +119,7 @@ def test_a_joint_that_holds_the_slab_down_or_drags_it_says_so() -> None:
 
 @pytest.mark.parametrize("name", ENGINES)
 @pytest.mark.parametrize("columns", [3, 4])
-def test_one_column_stands_for_any_number_of_them_and_the_run_says_so(name: str, columns: int) -> None:
+def test_one_column_represents_any_number_with_a_diagnostic(name: str, columns: int) -> None:
     support, start = find_engine(name).supports[0], InitialState(0.1, rolling_rate=0.5)
     one, many = (
         multibody.simulate(

@@ -65,7 +65,7 @@ def test_a_guide_that_gives_way_fails() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("tan_alpha", [0.05, 0.5, 10.0])
 @pytest.mark.parametrize("friction", [0.0, 10.0])
-def test_extremes_are_sound_or_say_so(
+def test_engines_at_extreme_settings_gain_no_energy_or_report_it(
     engine: str, tan_alpha: float, friction: float, time_step: float | None
 ) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
@@ -113,7 +113,7 @@ def test_sound_extremes_agree_and_say_nothing(engine: str, support: str, given: 
         ("pybullet", {"iterations": 1}, "solver"),
     ],
 )
-def test_what_is_doubtful_is_said(engine: str, settings: dict[str, Any], code: str) -> None:
+def test_doubtful_runs_have_diagnostics(engine: str, settings: dict[str, Any], code: str) -> None:
     if engine not in multibody.available_engines():
         pytest.skip(f"no wheel of {engine} here")
     case = Case(PIER, initial=RELEASE, duration=1.5)
@@ -126,7 +126,7 @@ def test_friction_that_does_not_suffice_is_said(engine: str) -> None:
     assert {"slip", "energy"} <= {fact.code for fact in multibody.simulate(case, engine=engine).facts}
 
 
-def test_a_step_that_contact_cannot_follow_or_is_lost_in_rounding_is_refused(engine: str) -> None:
+def test_steps_too_large_for_contact_or_lost_in_rounding_are_refused(engine: str) -> None:
     for step, words in ((1e-2, "at most 0.001 s"), (1e-300, "at least 1e-09 s")):
         with pytest.raises(ValueError, match=f"^time_step must be {words}"):
             multibody.simulate(Case(PIER, initial=RELEASE, duration=0.1), engine=engine, time_step=step)

@@ -161,7 +161,7 @@ def _forward(at: Any) -> Any:
     return np.full(len(at), 1.0)
 
 
-def test_a_turn_about_its_axis_is_given_back_to_a_cylinder_of_drake() -> None:
+def test_drake_cylinder_recovers_its_rotation_about_the_axis() -> None:
     turned = Rotation.from_rotvec([[0.3, -0.2, 0.5], [1.0, 0.4, -0.7]])
     angle = np.array([0.8, -2.5])
     expected = turned * Rotation.from_rotvec(angle[:, None] * [0.0, 0.0, 1.0])

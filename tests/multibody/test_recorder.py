@@ -133,7 +133,7 @@ def test_chunks_make_no_difference(chunks: Any) -> None:
     np.testing.assert_allclose([parts.slip_time, parts.flight_time], [whole.slip_time, whole.flight_time])
 
 
-def test_what_an_engine_does_after_the_side_is_on_the_ground_is_no_part_of_the_run() -> None:
+def test_motion_after_overturning_is_not_recorded() -> None:
     scene, steps, acceleration = computed(InitialState(1.2), None, 10000)
     tilt = np.arccos(axis_of(steps.quaternion)[:, 2])
     over = int(np.argmax(tilt > 0.5 * np.pi - 1e-3))

@@ -71,7 +71,7 @@ def test_a_pass_belongs_to_one_motion() -> None:
     assert len(passes_between(points[:3], 1e-9, [(0.0, 0.5), (9.0, 9.5)])) == 1
 
 
-def test_between_a_release_that_lands_and_a_later_pulse_there_is_no_pass(engine: str) -> None:
+def test_no_pass_between_a_landed_release_and_a_later_pulse(engine: str) -> None:
     # planar rocking loses almost everything in each landing: it stands from 1 s until the ground moves
     squat = Cylinder(semidiagonal=6.0, tan_alpha=1.2)
     time = 0.01 * np.arange(61)

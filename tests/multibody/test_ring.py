@@ -232,7 +232,7 @@ def test_a_ring_at_an_extreme_says_what_happened(extreme: dict[str, Any], outcom
     assert said in {fact.code for fact in run.facts}
 
 
-def test_the_first_touch_is_when_the_flat_ground_model_has_rolled_out_by_the_clearance() -> None:
+def test_first_wall_contact_is_when_flat_roll_out_equals_clearance() -> None:
     body = Cylinder(semidiagonal=3.0, tan_alpha=1.0, height=5.0, transverse_inertia=3.0, axial_inertia=1.6)
     release = InitialState(0.5 * body.alpha, tilt_rate=-0.1, rolling_angle=0.7, rolling_rate=1.1)
     case, clearance = Case(body, initial=release, duration=1.0), 0.01

@@ -241,7 +241,7 @@ def test_an_engine_without_tendons_refuses_one_in_a_line(monkeypatch: pytest.Mon
 
 @pytest.mark.slow
 @pytest.mark.parametrize("gamma", [0.0, 1.0])
-def test_beyond_the_balance_of_weight_and_tendon_it_falls_and_short_of_it_it_does_not(gamma: float) -> None:
+def test_a_release_with_tendon_falls_only_beyond_the_balance(gamma: float) -> None:
     tendon = Tendon(prestress=0.8, stiffness=0.5)
     body = body_of(gamma)
     shape = scaled_body(body, 1.0)

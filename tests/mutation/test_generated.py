@@ -35,7 +35,7 @@ def test_a_fault_is_one_change_outside_of_refusals_and_messages(kind: str, expec
     assert expected in applied(next(each for each in faults if f", {kind}: " in each.change), SOURCE)
 
 
-def test_the_files_that_import_a_module_are_nearest_and_those_of_its_package_first() -> None:
+def test_importing_test_files_come_first_by_package() -> None:
     asked = near(CHECKOUT, "models/hazard.py")
     assert asked[0] == "tests/models/test_hazard.py"
     asked = near(CHECKOUT, "studies/fragility/fit.py")

@@ -49,7 +49,7 @@ def test_a_cylinder_that_stands_demands_nothing_of_the_model():
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10, 1e-12])
-def test_a_loss_of_contact_that_is_shorter_than_a_part_of_a_step_is_said(rtol):
+def test_contact_loss_shorter_than_a_step_is_reported(rtol):
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     initial = InitialState(1.5 * pier.alpha, rolling_angle=0.3, rolling_rate=0.1)
     review = reduced.simulate(Case(pier, initial=initial, duration=5.0, friction=0.6), rtol=rtol).assumptions

@@ -22,9 +22,7 @@ def case(
 
 @pytest.mark.parametrize("times", [1.0, 17.0, 34.0, 200.0])
 @pytest.mark.parametrize(("size", "tan_alpha"), SHAPES)
-def test_what_sits_on_its_balance_is_undecided_however_long_it_runs(
-    size: float, tan_alpha: float, times: float
-) -> None:
+def test_a_body_at_balance_is_undecided_for_any_duration(size: float, tan_alpha: float, times: float) -> None:
     for slab in (0.0, 1.0):
         trace = simulate(case(size, tan_alpha, 1.0, times, slab=slab))
         assert trace.outcome == "undecided"
@@ -48,9 +46,7 @@ def test_next_to_the_balance_the_side_of_it_decides(
 
 @pytest.mark.parametrize("support", ["recess", "flat"])
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12])
-def test_a_release_below_the_balance_is_never_said_to_fall_or_to_stand_beyond_it(
-    distance: float, support: str
-) -> None:
+def test_a_release_falls_beyond_the_balance_and_never_below_it(distance: float, support: str) -> None:
     # in an undamped motion each swing comes back to the balance, which the error of the solution may pass
     for times in (10.0, 17.0, 30.0, 60.0, 200.0):
         for rate in (0.0, 1e-7):
@@ -78,7 +74,7 @@ def test_rolling_resistance_holds_what_sits_on_its_balance() -> None:
 
 
 @pytest.mark.parametrize("tendon", [Tendon(prestress=0.5), Tendon(prestress=0.3, stiffness=1.0)])
-def test_with_a_tendon_the_balance_is_its_own_and_alpha_is_a_tilt_like_others(tendon: Tendon) -> None:
+def test_a_tendon_moves_the_balance_away_from_alpha(tendon: Tendon) -> None:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
     def released(tilt: float) -> Trace:

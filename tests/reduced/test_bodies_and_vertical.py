@@ -22,7 +22,7 @@ def test_the_default_inertias_by_name_are_the_same_body():
     assert np.array_equal(plain.tilt, other.tilt)
 
 
-def test_a_point_mass_on_a_light_column_is_a_pendulum_of_the_length_of_the_semidiagonal():
+def test_a_point_mass_on_a_light_column_is_a_pendulum():
     """Without inertia of its own p^2 = g/R: Housner's equation of the inverted pendulum."""
     bob = Cylinder(semidiagonal=4.0, tan_alpha=0.2, transverse_inertia=1e-12, axial_inertia=1e-12)
     initial = InitialState(0.3 * bob.alpha)

@@ -29,7 +29,7 @@ def first_turn(response):
     return math.degrees(response.passes.angle_of_turn[0])
 
 
-def test_spin_of_zero_turns_by_pi_and_spin_of_1e_15_by_the_limit():
+def test_zero_spin_turns_by_pi_and_tiny_spin_by_the_limit():
     still = simulate(PIER, initial=InitialState(0.5 * PIER.alpha), duration=10.0)
     assert abs(first_turn(still)) == pytest.approx(180.0, abs=1e-12)
     spun = simulate(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=1e-15), duration=10.0)
@@ -47,7 +47,7 @@ def test_spins_that_no_number_can_resolve_end_all_the_same(spin):
     assert abs(first_turn(response)) == pytest.approx(181.33, abs=1.34)  # pi or the limit
 
 
-def test_release_at_1e_12_alpha_rocks_in_proportion_to_the_root_of_the_tilt():
+def test_rocking_period_at_tiny_tilt_scales_with_its_square_root():
     tilt = 1e-12 * PIER.alpha
     initial = InitialState(tilt, rolling_rate=1e-3)
     quarter = reduced.free_response(PIER, initial).half_period
@@ -153,7 +153,7 @@ def test_a_hundred_g_overturns():
     assert response.outcome == "overturned"
 
 
-def test_samples_of_1e_5_s_move_it_as_the_velocity_jump_that_they_are():
+def test_samples_of_1e_5_s_act_as_a_velocity_jump():
     """A pulse much shorter than 1/p is a jump of velocity: theta' = p^2 cos(alpha) dv/g."""
     acceleration = np.zeros((201, 2))
     acceleration[50:150, 0] = -2.0e3
@@ -164,7 +164,7 @@ def test_samples_of_1e_5_s_move_it_as_the_velocity_jump_that_they_are():
     assert at_end == pytest.approx(kick, rel=2e-3)
 
 
-def test_samples_of_half_a_second_are_the_same_motion_as_a_hundred_times_as_many():
+def test_interpolating_half_second_samples_does_not_change_the_motion():
     coarse = GroundMotion(el_centro_1940().acceleration[::50] * 1.2, 0.5)
     fine_time = np.arange(round(coarse.duration / 0.005) + 1) * 0.005
     at = np.arange(len(coarse.acceleration)) * 0.5
@@ -175,7 +175,7 @@ def test_samples_of_half_a_second_are_the_same_motion_as_a_hundred_times_as_many
     assert few.peak_tilt == pytest.approx(many.peak_tilt, rel=1e-6)
 
 
-def test_a_million_samples():
+def test_a_record_of_a_million_samples_has_an_outcome():
     rng = np.random.default_rng(1)
     slow = np.cumsum(rng.normal(size=(1_000_000, 2)), axis=0)
     slow -= np.linspace(slow[0], slow[-1], len(slow))

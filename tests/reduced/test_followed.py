@@ -66,7 +66,7 @@ def test_still_ground_after_the_record_changes_no_peak(model: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS)
-def test_a_cell_whose_record_is_cut_is_its_single_run_to_the_bit(model: str) -> None:
+def test_a_batch_cell_with_a_cut_record_equals_its_single_run(model: str) -> None:
     followed = 0
     for seed in range(30):
         given = cut(seed)

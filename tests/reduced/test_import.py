@@ -35,7 +35,7 @@ print(os.environ["NUMBA_CACHE_DIR"])
 """
 
 
-def test_compiled_code_goes_to_a_folder_of_ours_where_it_has_no_other_place(tmp_path):
+def test_compiled_code_falls_back_to_a_private_folder(tmp_path):
     environment = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")}
     environment["TMPDIR"] = str(tmp_path)
 
@@ -60,12 +60,12 @@ def test_compiled_code_goes_to_a_folder_of_ours_where_it_has_no_other_place(tmp_
 @pytest.mark.parametrize(
     ("mode", "ours"), [(0o700, True), (0o755, True), (0o711, True), (0o720, False), (0o702, False)]
 )
-def test_a_folder_is_ours_where_nobody_else_writes(tmp_path, mode, ours):
+def test_a_private_folder_is_writable_by_its_owner_alone(tmp_path, mode, ours):
     tmp_path.chmod(mode)
     assert _is_ours(tmp_path) == ours
 
 
-def test_what_is_compiled_has_all_its_numbers_from_its_own_folder():
+def test_compiled_code_imports_constants_from_its_own_folder():
     folder = Path(_compile.__file__).parent
     files = [folder / name for name in ("body.py", "equations.py", "restoring.py", "rolling.py")]
     files += sorted((folder / "integration").glob("*.py"))

@@ -10,7 +10,7 @@ from rockwobble.models import Case, Cylinder, InitialState
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 
-def test_a_response_from_elsewhere_is_solved_again_with_the_code_that_is_compiled():
+def test_an_unpickled_response_reuses_the_compiled_code():
     # compiled code that travels with a response would be compiled again where it arrives, for many seconds
     response = reduced.simulate(Case(PIER, initial=InitialState(tilt=0.1, rolling_rate=0.1), duration=1.0))
     sent = pickle.loads(pickle.dumps(response))

@@ -153,7 +153,7 @@ def test_overturning_by_a_one_sine_pulse_without_impact(row):
     assert verdicts == [False, True]
 
 
-def test_what_shakes_across_the_plane_has_no_part_in_forces_either():
+def test_planar_forces_ignore_motion_across_the_plane():
     azimuth, record = 0.3, el_centro_1940()
     along = record.acceleration[:, :2] @ [math.cos(azimuth), math.sin(azimuth)]
     inside = GroundMotion(np.outer(along, [math.cos(azimuth), math.sin(azimuth)]), record.time_step)
@@ -170,7 +170,7 @@ def test_what_shakes_across_the_plane_has_no_part_in_forces_either():
     assert needs[0] == pytest.approx(needs[1], rel=1e-9)
 
 
-def test_swings_that_die_away_have_the_heights_and_times_of_momentum_and_quadrature():
+def test_decaying_swings_match_momentum_and_quadrature():
     """Each rises to r^2 of the height before; each half takes the exact quarter period of its tilt."""
     ratio = (16.0 - 25.0 * math.sin(PIER.alpha) ** 2) / (16.0 - math.sin(PIER.alpha) ** 2)
     case = Case(PIER, initial=InitialState(0.5 * PIER.alpha), duration=16.0)

@@ -104,7 +104,7 @@ def test_a_weak_foreshock_that_comes_to_rest_before_the_main_shock():
 
 
 @pytest.mark.slow
-def test_after_a_rest_it_lifts_as_it_would_have_for_the_first_time():
+def test_uplift_after_a_rest_equals_a_first_uplift():
     """Where the series of the uplift ends at a sample, the next step must not know of what was before."""
     count = 0
     for seed in range(200):
@@ -300,7 +300,7 @@ def test_free_response_run_backwards():
     ids=["still ground", "half the weight", "a push of half the threshold"],
 )
 @pytest.mark.parametrize("planar", [False, True])
-def test_a_release_rests_below_the_energy_of_the_rest_threshold_and_not_above(scale, ground, spin, planar):
+def test_a_release_rests_only_below_the_energy_of_the_threshold(scale, ground, spin, planar):
     """A push of half the threshold takes half off restoring moment and bound; weight changes both."""
     pier, rest = Cylinder(semidiagonal=6.0, tan_alpha=0.2), 1e-2
     motion = GroundMotion([ground, ground], 10.0)

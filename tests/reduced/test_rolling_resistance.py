@@ -114,7 +114,7 @@ def test_an_impact_loses_what_delta_of_b_does_to_first_order() -> None:
 
 @pytest.mark.parametrize("kind", ["h = 2b", "frame"])
 @pytest.mark.parametrize("restitution", [1.0, 0.9])
-def test_what_the_couple_takes_of_an_impact(restitution: float, kind: str) -> None:
+def test_rolling_resistance_reduces_an_impact_by_its_impulse(restitution: float, kind: str) -> None:
     body = body_of(BODIES[kind], G, 0.02)
     before = 0.7
     after = impact_ratio(body, restitution) * before
@@ -156,7 +156,7 @@ def test_the_energy_of_a_run_is_accounted_for(model: str, restitution: float | s
 
 
 @pytest.mark.parametrize("support", ["recess", "flat"])
-def test_the_precession_of_a_spinning_disc_grows_as_one_over_the_time_left(support: str) -> None:
+def test_precession_of_a_spinning_disc_diverges_as_inverse_time_left(support: str) -> None:
     """The root of theta is linear, by W^2 = 4 g/(b theta), energy 3 g b theta/2 and power delta g theta W."""
     disc = Cylinder(semidiagonal=1.0, tan_alpha=1e4)
     b, length, tilt = disc.base_radius, 2e-3, 0.02

@@ -231,7 +231,7 @@ def test_batch_has_the_peaks_of_single_slides() -> None:
         reduced.peak_displacements([-0.1], motion, [1.0])
 
 
-def test_what_is_no_slide_from_rest_is_not_taken_for_one() -> None:
+def test_only_slides_from_rest_are_accepted() -> None:
     motion = GroundMotion(shaking(5)[0] * 3.0, 0.02)
     for case, support in (
         (Case(BODY, motion, friction=0.51), "flat"),

@@ -28,9 +28,7 @@ def rough(seed: int, time_step: float) -> Case:
 @pytest.mark.slow
 @pytest.mark.parametrize("time_step", [0.05, 0.1])
 @pytest.mark.parametrize("model", OPTIONS)
-def test_each_turn_of_the_samples_is_listed_and_each_that_is_listed_turns(
-    model: str, time_step: float
-) -> None:
+def test_listed_turning_points_are_those_of_the_samples(model: str, time_step: float) -> None:
     turned = 0
     for seed in range(PROBLEMS):
         found = reduced.simulate(rough(seed, time_step), sample_step=SAMPLE, **OPTIONS[model])
@@ -52,7 +50,7 @@ def test_each_turn_of_the_samples_is_listed_and_each_that_is_listed_turns(
     assert turned > 5 * PROBLEMS
 
 
-def test_a_block_that_lands_and_rises_within_one_step_is_seen_to_land() -> None:
+def test_landing_and_rise_within_one_step_are_detected() -> None:
     """In the step in which it lands it rises at both ends; not seen, it overturned."""
     scale = 0.5 + 1.5 * 6.0 / 39.0
     (cell,) = reduced.peak_tilts([2.0], 0.1, el_centro_1940(), [scale], plane=0.3).ravel()

@@ -104,7 +104,7 @@ def spin_momentum(theta, rate):
     return math.sin(theta) ** 2 * (BODY.J + 2.0 * BODY.E * t + BODY.C * t * t) * rate
 
 
-def test_an_uplift_within_a_hair_of_a_sample_is_the_same_as_one_at_it():
+def test_uplift_is_continuous_at_a_sample_time():
     for miss in (1e-15, 1e-12, 1e-9, 1e-7):
         crossing = np.array([0.0, THRESHOLD * (1.0 + miss), 3.0, 3.5])
         late = reduced.simulate(Case(PIER, GroundMotion(np.column_stack([crossing, 0.1 * crossing**2]), 0.2)))

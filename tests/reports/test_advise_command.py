@@ -260,7 +260,7 @@ def test_chatter_of_a_closed_base_is_no_change_of_the_response(found):
     assert opens.grades["intensity"] == "caution"
 
 
-def test_what_stays_at_rest_is_told_from_what_others_do_to_it(found):
+def test_a_case_at_rest_is_compared_with_stronger_motions(found):
     still = changed(found, response={**found.facts["response"], "uplift_time": math.inf, "peak_tilt": 0.0})
     assert not still.moves
     moved = (found.members[found.members["group"] == "velocity"]["peak_tilt"] > 0.0).sum()
@@ -269,7 +269,7 @@ def test_what_stays_at_rest_is_told_from_what_others_do_to_it(found):
     assert (key, values["runs_velocity"], values["overturned_velocity"]) == ("compared.at_rest", moved, fell)
 
 
-def test_what_slides_at_rest_is_not_said_to_stay_there(found):
+def test_a_sliding_body_without_uplift_is_not_called_at_rest(found):
     at_rest = {**found.facts["response"], "uplift_time": math.inf, "peak_tilt": 0.0}
     motion = {**found.facts["motion"], "friction_at_rest": 0.0859}
     still = changed(found, response=at_rest, motion=motion)
@@ -317,7 +317,7 @@ def test_the_case_and_its_assumptions_are_those_asked(found):
         assert support["length"] == pytest.approx(length, nan_ok=True)
 
 
-def test_the_part_of_the_range_that_overturns_is_stated_with_its_lowest_scale(found):
+def test_the_overturning_range_is_stated_with_its_lowest_scale(found):
     factors = found.as_strong["factor"].to_numpy()
     falls = found.as_strong.assign(peak_tilt=np.where(factors > 1.08, 0.5 * np.pi, 0.1))
     fallen = dataclasses.replace(found, tables={**found.tables, "as_strong": falls})

@@ -83,7 +83,7 @@ def test_a_page_with_a_broken_figure_is_found(tmp_path: Path):
 
 
 @needs_chromium
-def test_what_a_reader_would_stumble_over_is_found(tmp_path: Path):
+def test_page_faults_are_detected(tmp_path: Path):
     whole = ensemble()
     wrong = whole.replace("share of the members [-]", 20 * "share_of_the_members_")
     wrong = wrong.replace(

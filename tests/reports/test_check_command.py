@@ -102,7 +102,7 @@ def test_the_version_of_a_baseline_is_said_once_where_nothing_has_changed() -> N
 
 
 @pytest.mark.parametrize("option", ["--json", "--junit", "--markdown"])
-def test_a_report_that_cannot_be_written_in_the_end_is_one_line_after_the_result(
+def test_an_unwritable_report_is_one_line_after_the_result(
     option: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     def in_the_way(subject: Subject, support: str) -> Iterator[Result]:

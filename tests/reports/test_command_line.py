@@ -247,7 +247,7 @@ def _alive(pid: int) -> bool:
     return True
 
 
-def test_a_run_that_takes_its_process_with_it_is_one_line_and_exit_code_1(folder, monkeypatch, capsys):
+def test_a_crashed_run_is_one_line_and_exit_code_1(folder, monkeypatch, capsys):
     def died(jobs: list[Job], **_: Any) -> list[Trace]:
         return [lost_trace(job.case, job.run, "status -11") for job in jobs]
 
@@ -287,7 +287,7 @@ def test_results_are_whole_where_the_output_cannot_be_printed(tmp_path, in_this_
         assert Trace.load(tmp_path / name / "run.parquet").outcome == "stands"
 
 
-def test_a_run_that_cannot_take_its_first_step_is_one_line_and_exit_code_1(folder, in_this_process, capsys):
+def test_a_failed_first_step_is_one_line_and_exit_code_1(folder, in_this_process, capsys):
     assert call("simulate", "--release-tilt-deg", "3", "--rolling-rate", "1e40") == 1
     *_, said = capsys.readouterr().err.splitlines()
     assert said.startswith("rockwobble: recess model left no result: ")

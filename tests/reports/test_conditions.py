@@ -99,6 +99,6 @@ def test_an_ensemble_of_several_says_so() -> None:
     assert "Gravity: differs" in page_of(found.made_by("rockwobble")).markdown()
 
 
-def test_what_is_usual_is_not_said() -> None:
+def test_default_conditions_are_not_stated() -> None:
     assert conditions({}) == []
     assert conditions({"gravity": 9.81, "tendon_prestress": 0.0, "slab_mass_ratio": 0.0}) == []

@@ -133,7 +133,7 @@ def test_a_package_of_which_a_folder_is_left_does_not_load(fresh, tmp_path, monk
         registry.find_engine("mujoco")
 
 
-def test_what_is_damaged_in_any_way_stops_no_other(fresh, tmp_path, monkeypatch):
+def test_a_damaged_engine_stops_no_other(fresh, tmp_path, monkeypatch):
     install(tmp_path, monkeypatch, {"mujoco/__init__.py": "raise RuntimeError"})
     assert registry.engine_fault("mujoco") == "is installed and does not load: RuntimeError"
     assert Run("mujoco", "recess") not in default_runs()

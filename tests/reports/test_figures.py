@@ -84,7 +84,7 @@ def test_no_text_is_too_small_to_be_read():
 
 
 @pytest.mark.parametrize("width", [89.0, 183.0])
-def test_in_print_letters_have_6_to_8_pt_at_the_width_of_a_column(width):
+def test_printed_type_is_6_to_8_pt_at_column_width(width):
     drawn = figure(lines(columns=2), width=width / 25.4)
     sizes = [each.get_fontsize() for each in drawn.findobj(Words) if each.get_text()]
     assert drawn.get_figwidth() == pytest.approx(width / 25.4)
@@ -128,7 +128,7 @@ def test_a_map_shows_values_gaps_by_kind_and_its_scale():
     assert heat["written"] == ["-2.0", "1.0", "", "9.0"]
 
 
-def test_logarithmic_scale_has_its_decades_and_draws_what_is_beyond_as_its_ends():
+def test_a_logarithmic_scale_shows_decades_and_clips_values_beyond():
     shades = Shades(label="difference", unit="%", low=0.1, high=100.0, log=True)
     assert [name for _, name in shades.ticks()] == ["0.1", "1", "10", "100"]
     np.testing.assert_allclose(shades.place(np.array([1e-9, 1.0, 1e9])), [0.0, 1.0 / 3.0, 1.0])
@@ -182,7 +182,7 @@ def test_axis_without_a_unit_is_refused():
         Axis(label="tilt", unit="")
 
 
-def test_elements_of_a_page_carry_the_name_of_the_picture_and_what_is_linked():
+def test_page_elements_carry_their_picture_and_link_names():
     ((title, element),) = charts(lines(link_x=True))
     assert title == ""
     assert 'id="lines-0"' in element
@@ -207,7 +207,7 @@ def test_only_a_model_is_drawn_as_one_whatever_a_run_is_called() -> None:
     assert len(set(styles.values())) == len(labels)
 
 
-def test_the_path_of_the_contact_point_runs_along_the_rim_on_flat_ground_alone():
+def test_the_contact_path_is_joined_along_the_rim_only_when_flat():
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     names = {}
     for support in ("recess", "flat"):

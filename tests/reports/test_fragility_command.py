@@ -143,7 +143,7 @@ def test_a_cloud_by_another_measure(tmp_path, capsys, monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_cloud_of_motions_of_one_peak_has_a_count_for_each_scale() -> None:
+def test_motions_of_one_peak_are_counted_at_each_scale() -> None:
     motions = synthetic_motions(4, peak=1.0, seed=1)
     cloud = fragility(PIER, motions, methods=["recess"], scales=[2.0, 6.0], resamples=2, workers=1)
     assert cloud.counts.loc[cloud.counts["limit"] == "overturned", "n"].tolist() == [4, 4]

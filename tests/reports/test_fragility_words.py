@@ -94,7 +94,7 @@ def by_one_method(found: Fragility, **changes: Any) -> Fragility:
 
 
 @pytest.mark.slow
-def test_what_is_too_few_for_a_curve_is_counted(found):
+def test_too_few_motions_are_counted_without_a_curve(found):
     kept = [f"m{n}" for n in range(4)]
     few = fragility_of(
         *(table[table["motion"].isin(kept)] for table in (found.runs, found.points)),
@@ -139,7 +139,7 @@ def test_one_method_is_not_asked_whether_it_agrees_and_states_its_median(found):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("cylinders", [("pier",), ("pier", "tower")])
-def test_each_reason_for_no_curve_is_one_line_with_all_limits_of_it(cylinders):
+def test_each_reason_for_no_curve_lists_its_limits_once(cylinders):
     found = made_up(cylinders)
     kinds = {0: "separated", 1: "not increasing", 2: "one motion", 3: "fitted"}
     fits = found.fits.assign(kind=[kinds[place % 4] for place in range(len(found.fits))])
@@ -173,7 +173,7 @@ def test_each_reason_for_no_curve_is_one_line_with_all_limits_of_it(cylinders):
         ("always", 8, "bounded_always"),
     ],
 )
-def test_what_bounds_a_median_is_said(kind: str, exceeded: int, reason: str) -> None:
+def test_bounds_of_a_median_are_stated(kind: str, exceeded: int, reason: str) -> None:
     found = made_up(("pier",))
     fits = found.fits.copy()
     chosen = (fits["limit"] == "overturned") & (fits["method"] == "recess model")

@@ -100,7 +100,7 @@ def test_a_run_that_never_moves_or_fails_can_be_shown(no_engines):
     assert failed["figure.svg"]
 
 
-def test_the_document_of_a_release_is_this_one(no_engines):
+def test_release_page_matches_golden_file(no_engines):
     no_engines()
     pier = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
     release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)

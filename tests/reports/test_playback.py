@@ -30,7 +30,7 @@ def comparison():
     return rw.comparison(case, runs=[Run("mujoco", "flat", 1e-3)], workers=1)
 
 
-def test_the_pose_of_the_page_puts_the_mass_centre_where_the_run_has_it(comparison):
+def test_the_page_draws_the_mass_centre_of_the_run(comparison):
     spec = playback(case_views(comparison)[0])
     b, h = spec["base_radius"], 0.5 * spec["height"]
     for body in (*spec["models"], *spec["runs"]):
@@ -65,7 +65,7 @@ def test_a_fall_after_the_end_of_the_case_is_played():
     assert 0.0 < row["agreement_time"] <= max(ends)
 
 
-def test_the_motion_starts_at_uplift_so_that_one_sees_it_with_slab_and_tendon():
+def test_playback_starts_at_uplift_with_slab_and_tendon():
     push = np.zeros((300, 2))
     push[200:, 0] = np.linspace(0.0, 1.5, 100) * 9.81 * PIER.tan_alpha
     frame = rw.WobblingFrame(PIER, 1.0, columns=1)
@@ -80,7 +80,7 @@ def test_the_motion_starts_at_uplift_so_that_one_sees_it_with_slab_and_tendon():
     assert all(factor * largest >= np.radians(25.0) for factor in spec["magnify"] if factor > spec["shown"])
 
 
-def test_what_a_tendon_brings_back_is_no_fall():
+def test_playback_shows_no_fall_where_a_tendon_recentres():
     release, tendon = InitialState(tilt=1.55 * PIER.alpha), rw.Tendon(stiffness=2.0)
     case = Case(PIER, initial=release, duration=0.5, tendon=tendon)
     view = case_views(rw.comparison(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1))[0]

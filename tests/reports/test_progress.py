@@ -37,7 +37,7 @@ def test_few_tasks_have_a_line_each_and_many_one_at_the_end(capsys):
     assert capsys.readouterr().err == "100 of 100 cells\n"
 
 
-def test_what_takes_two_seconds_says_how_far_it_is_and_what_is_left(capsys, monkeypatch):
+def test_progress_after_two_seconds_states_share_and_time_left(capsys, monkeypatch):
     now = 0.0
     monkeypatch.setattr("rockwobble.reports.console.time.monotonic", lambda: now)
     with shown_progress("checks", each=False) as tell:

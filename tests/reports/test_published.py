@@ -50,7 +50,7 @@ def page_of(folder: Path) -> Path:
 
 
 @pytest.mark.slow
-def test_what_is_published_is_sound(remake: dict[str, Any], copy: Path, tmp_path: Path) -> None:
+def test_published_results_are_undamaged(remake: dict[str, Any], copy: Path, tmp_path: Path) -> None:
     assert remake["faults"](tmp_path) == []
 
 

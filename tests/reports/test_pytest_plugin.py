@@ -84,9 +84,7 @@ def test_stated_bounds_hold_or_fail_with_the_budget_of_the_difference(suite, in_
     )
 
 
-def test_a_run_held_against_another_model_than_it_is_compared_with_says_what_failed(
-    suite, in_this_process
-) -> None:
+def test_an_assertion_against_another_model_names_the_failure(suite, in_this_process) -> None:
     result = suite(bounded('tilt_rms = 1e-12\nreference = "flat"')).runpytest("-k", "alpha and 1 and recess")
     result.stdout.fnmatch_lines(["*compared with flat: tilt_rms: *at most 1e-12*", "There is no budget *"])
     assert "Error" not in result.stdout.str()

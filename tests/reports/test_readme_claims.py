@@ -119,7 +119,7 @@ def test_an_interval_that_includes_1_is_called_that_beside_it(place: str) -> Non
             assert "includes 1" in text[match.end() : match.end() + 120], match.group()
 
 
-def test_the_answer_in_the_readme_is_what_the_terminal_shows_of_the_published_advice(
+def test_the_readme_shows_the_terminal_output_of_the_published_advice(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", "80")
@@ -136,7 +136,7 @@ def test_the_answer_in_the_readme_is_what_the_terminal_shows_of_the_published_ad
 
 
 @pytest.mark.slow
-def test_a_run_of_the_reduced_model_takes_the_time_that_the_readme_says() -> None:
+def test_run_time_of_the_reduced_model_is_as_in_the_readme() -> None:
     case = rw.Case(rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2), rw.el_centro_1940())
     sizes, scales = np.linspace(2.0, 20.0, 10), np.linspace(1.0, 3.0, 10)
     seconds: dict[str, list[float]] = {"trace": [], "peaks": []}
@@ -191,7 +191,7 @@ def test_agreement_times_of_the_readme_are_those_published() -> None:
     assert f"{walls.min():.1f}" == stated[1]
 
 
-def test_at_half_the_step_of_an_engine_no_ratio_moves_by_more_than_the_guide_says() -> None:
+def test_halving_the_step_changes_ratios_as_the_guide_says() -> None:
     coarse, fine = median_ratios("fragility/p695"), median_ratios("fragility/half-step")
     engines = {pair for pair in fine if any(each.startswith("mujoco") for each in pair)}
     # a median above the levels has a bound, and a ratio to it has none

@@ -25,12 +25,12 @@ def test_a_kind_finds_its_class_and_its_page(kind: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", COMMANDS)
-def test_a_command_is_the_function_of_its_name_in_the_module_of_its_group(name: str) -> None:
+def test_each_command_is_a_function_of_its_group_module(name: str) -> None:
     module = importlib.import_module(f"rockwobble.reports.cli.{COMMANDS[name].group}")
     assert inspect.isfunction(getattr(module, name))
 
 
-def test_names_commands_and_kinds_stand_once_and_groups_in_the_order_of_their_headings() -> None:
+def test_registry_names_are_unique_and_groups_in_heading_order() -> None:
     for field in ("name", "command", "kind"):
         stated = [getattr(each, field) for each in ENTRIES]
         assert len({*stated}) == len(stated), field

@@ -174,7 +174,7 @@ def test_a_sweep_of_cases_counts_runs_and_how_they_end(swept):
     assert ended.values["count_stands"] == 4
 
 
-def test_a_map_has_a_cell_for_each_run_or_says_of_how_many(monkeypatch):
+def test_a_map_has_a_cell_per_run_or_states_the_number(monkeypatch):
     found = rw.sweep(GRID, workers=1)
     own = found.table[found.table["tan_alpha"] == 0.1].set_index(["scale", "semidiagonal"])
     (picture,) = figure.pictures(found)

@@ -101,7 +101,7 @@ def test_show_says_how_far_it_is_and_nothing_when_it_is_done(tmp_path, capsys):
 
 
 @pytest.mark.slow
-def test_report_draws_again_here_or_elsewhere_and_leaves_the_results_as_they_are(stored, tmp_path, capsys):
+def test_report_redraws_in_any_folder_and_keeps_the_results(stored, tmp_path, capsys):
     before = {path.name: path.read_bytes() for path in stored.iterdir()}
     assert call("report", str(stored), "--out", str(tmp_path)) == 0
     pages = {path.name: path.read_bytes() for path in tmp_path.iterdir()}

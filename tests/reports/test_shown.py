@@ -140,7 +140,7 @@ def test_a_line_says_of_what_is_long_how_much_there_is():
     assert repr(made) == f"Made(share=0.333333, few=(1, 2), many=9 items, table=array(4, 2), words='{text}')"
 
 
-def test_names_are_told_to_whoever_completes_them():
+def test_dir_lists_public_names():
     assert {"simulate", "Case", "comparison", "compare", "__version__"} <= set(dir(rw))
     for part in (rw.compare, rw.studies, rw.models, rw.reduced, rw.multibody):
         assert dir(part) == sorted(part.__all__)

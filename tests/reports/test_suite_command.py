@@ -130,7 +130,7 @@ def stated(case: Case) -> dict[str, dict[str, Value]]:
     return {each.key.partition(".")[2]: dict(each.values) for each in case_findings(case)}
 
 
-def test_a_peak_is_told_in_times_of_what_uplifts_under_the_vertical_component():
+def test_peaks_are_in_units_of_uplift_with_vertical_component():
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     level = [[0.0, 0.0], [1.5, 2.0], [0.0, 0.0]]
     falling = [[x, y, -3.0 * (x > 0.0)] for x, y in level]
@@ -172,7 +172,7 @@ def test_a_trajectory_is_one_more_run(folder, no_engines, monkeypatch, capsys):
 
 
 @pytest.mark.slow
-def test_the_page_of_many_cases_stays_small_and_draws_one_at_a_time(no_engines, monkeypatch):
+def test_a_page_of_many_cases_is_small_and_draws_one(no_engines, monkeypatch):
     no_engines()
     monkeypatch.setattr(driver, "require_runnable", lambda case, run: None)
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

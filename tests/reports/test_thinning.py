@@ -43,7 +43,7 @@ def test_a_path_keeps_the_extremes_of_both_coordinates():
         assert coordinate[keep].min() == coordinate.min()
 
 
-def test_envelope_is_the_largest_of_the_last_second_and_crosses_where_the_values_do():
+def test_the_envelope_is_the_maximum_over_the_last_second():
     time = np.arange(1001) * 0.01
     values = np.abs(np.sin(np.pi * time)) * np.exp(0.5 * time)
     upper = envelope(time, values)

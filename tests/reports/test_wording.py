@@ -44,7 +44,7 @@ def texts_of_code() -> set[object]:
     return {node.value for tree in trees for node in ast.walk(tree) if isinstance(node, ast.Constant)}
 
 
-def test_each_key_in_the_code_has_a_line_and_each_line_a_key():
+def test_keys_in_the_code_are_those_of_the_word_file():
     lines = {key.partition(":")[0] for key in SENTENCES}
     assert keys_in_code() <= lines
     texts = texts_of_code()  # of some keys the name is put behind the group, as "mode."

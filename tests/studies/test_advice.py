@@ -134,7 +134,7 @@ def test_demands_of_samples_are_those_of_the_continuous_solution():
     assert {name: value for name, value in still.items() if value} == dict.fromkeys(weight, 1.0)
 
 
-def test_what_a_falling_cylinder_asks_is_no_demand():
+def test_demands_exclude_the_fall():
     trace = reduced.simulate(case(4.0))
     assert trace.outcome == "overturned"
     assert math.isinf(trace.assumptions.largest_friction_needed)
@@ -330,7 +330,7 @@ def loads_of(*rows: tuple[float, float, float]) -> pd.DataFrame:
     ids=["force", "moment", "friction", "contact lost"],
 )
 @pytest.mark.parametrize("support", ["recess", "flat"])
-def test_what_acts_together_is_beyond_no_demand(beyond, support):
+def test_simultaneous_forces_are_within_the_demands(beyond, support):
     usual = [(0.1 + 0.001 * place, 1.1, 0.005) for place in range(20)]
     members = loads_of(*usual[:18], beyond, (0.3, 1.1, 0.005))
     found = demand_table(members, PIER, gravity=9.81, support=support)
@@ -342,7 +342,7 @@ def test_what_acts_together_is_beyond_no_demand(beyond, support):
     assert tuple(shear[[f"with_{part}" for part in ("shear", "force", "moment")]]) == expected
 
 
-def test_what_acts_together_is_near_the_demands_of_a_run():
+def test_simultaneous_forces_are_near_the_demands_of_a_run():
     found = demands_of(simulate_run(case(2.0), RECESS, sample_step=0.005))
     for name in ("shear", "moment"):
         acting = {part: found[f"{name}_with_{part}"] for part in ("shear", "force", "moment")}
@@ -407,7 +407,7 @@ def test_no_demand_falls_where_the_record_is_scaled_up(body, motion, monkeypatch
 
 
 @pytest.mark.slow
-def test_what_never_opens_its_base_is_compared_with_no_other_support(monkeypatch):
+def test_a_closed_base_is_compared_with_no_other_support(monkeypatch):
     """There is nothing to compare, and the chatter of its rim takes the flat-ground model minutes."""
     monkeypatch.setattr(study, "other_records", lambda _: ({}, ""))
     nothing = scan_scales(Case(PIER, GroundMotion(np.zeros((9, 2)), 0.1)))
@@ -422,7 +422,7 @@ def test_what_never_opens_its_base_is_compared_with_no_other_support(monkeypatch
         assert ("other support" in set(found.members["group"])) == opens
 
 
-def test_weaker_shaking_of_a_stronger_record_contains_that_of_a_weaker():
+def test_scaled_records_are_nested():
     # of a record twice as strong the threshold is at half the factor
     weak = weaker_factors(0.4)
     strong = 2.0 * np.array(weaker_factors(0.2))
@@ -444,7 +444,7 @@ def test_top_and_slab_move_as_the_traces_say():
 
 
 @pytest.mark.slow
-def test_a_frame_has_demands_at_base_and_top_and_a_mass_gives_kilonewtons_of_what_is_carried(no_records):
+def test_a_frame_has_demands_at_base_and_top_in_kilonewtons(no_records):
     mass, gamma = 40.0, 0.5
     found = advise(
         Case(WobblingFrame(PIER, slab_mass_ratio=gamma), SHORT, friction=0.15), copies=20, mass=mass
@@ -533,7 +533,7 @@ def test_shaking_as_strong_is_scanned_finely_and_holds_single_runs(advice):
     assert not len(scan_as_strong(Case(PIER, SHORT), "recess", 0.5 * math.pi))
 
 
-def test_the_share_that_overturns_does_not_grow_with_the_scales_that_are_run(advice):
+def test_the_overturning_share_is_independent_of_the_scales_run(advice):
     """Most scales are run about the largest tilts: nine tenths of them may be of a tenth of the range."""
     low, high = AS_STRONG
     coarse = np.geomspace(low, high, 101)
@@ -594,7 +594,7 @@ def test_ratios_of_overturned_copies_are_counts():
 
 
 @pytest.mark.slow
-def test_a_fall_that_the_record_does_not_see_is_a_fall_in_all_that_is_run(no_records):
+def test_overturning_after_the_record_counts_in_every_group(no_records):
     time = np.arange(121) * 0.01
     wave = 4.0 * 9.81 * 0.2 * np.sin(2.0 * np.pi * time / 1.2)  # one sine of 4 g tan(alpha) and 1.2 s
 
@@ -631,7 +631,7 @@ def test_a_run_cut_short_ends_when_asked_unless_it_falls(no_records):
 
 
 @pytest.mark.slow
-def test_a_single_run_is_one_of_many_from_where_an_advice_says_so(no_records):
+def test_a_single_run_and_an_advice_have_one_divergence_time(no_records):
     # a cylinder whose largest tilt an input 1 % off changes by half of it and more
     slender = Cylinder(semidiagonal=6.0847320541999865, tan_alpha=0.08996054265853794)
     chaotic = Case(slender, el_centro_1940().scaled(1.28359029043245))
@@ -661,7 +661,7 @@ def test_advice_shows_itself(advice, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_prediction_of_an_engine_is_the_same_after_a_second_of_rest() -> None:
+def test_leading_rest_does_not_change_the_predicted_agreement() -> None:
     shaking, predictions = el_centro_1940().scaled(1.5), []
     for rest in (0, 1):
         still = np.zeros((round(rest / shaking.time_step), shaking.acceleration.shape[1]))

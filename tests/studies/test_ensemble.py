@@ -32,7 +32,7 @@ CASE = Case(PIER, initial=InitialState(0.1, rolling_rate=0.5), duration=1.0, nam
 
 
 @pytest.mark.slow
-def test_what_a_wall_holds_beyond_its_balance_has_overturned_in_every_study():
+def test_leaning_on_a_wall_beyond_balance_counts_as_overturned():
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     cases = [
         Case(cylinder, initial=InitialState(share * cylinder.alpha), duration=3.0, name=f"{share}")

@@ -55,7 +55,7 @@ def test_every_method_runs_under_the_same_motions(found):
 
 
 @pytest.mark.slow
-def test_contact_is_asked_of_whole_solutions_which_have_the_peaks_of_the_kernel(found):
+def test_solutions_with_contact_forces_have_the_peaks_of_the_kernel(found):
     # at the strongest level, where contact is lost
     options = {"methods": ["recess"], "levels": LEVELS[-1:], "resamples": 2, "workers": 1}
     whole = fragility(COLUMN, MOTIONS, limits=["contact_lost"], **options).runs.sort_values("motion")
@@ -92,7 +92,7 @@ def test_limits_are_one_inside_the_other(found):
     assert fallen.to_dict() == total.to_dict()
 
 
-def test_what_a_run_exceeds():
+def test_a_run_exceeds_the_limits_below_its_peak():
     table = pd.DataFrame(
         {
             "peak_tilt": [0.0, 1e-9, 0.5, 1.2, 8.0, NAN],
@@ -180,7 +180,7 @@ def test_pairs_leave_out_what_failed_by_either(found):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("fate", [0, 1])
-def test_what_failed_runs_would_have_done_lies_within_the_bounds(found: Fragility, fate: int) -> None:
+def test_bounds_contain_the_curve_had_failed_runs_ended(found: Fragility, fate: int) -> None:
     """Runs that overturn, or that stand, are lost: what all of them say lies between the bounds."""
     method, other = found.runs["method"].unique()[:2]
     runs = found.runs.copy()
@@ -247,9 +247,7 @@ def test_bodies_that_the_kernel_does_not_know_are_solved():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("motions", "levels", "few"), [(5, 3, True), (6, 1, True), (6, 2, False)])
-def test_of_too_few_motions_or_levels_there_are_counts_and_no_curve(
-    motions: int, levels: int, few: bool
-) -> None:
+def test_too_few_motions_or_levels_give_counts_without_curve(motions: int, levels: int, few: bool) -> None:
     options = {"methods": ["recess", "planar-x"], "resamples": 20, "workers": 1}
     made = fragility(COLUMN, MOTIONS[:motions], levels=LEVELS[3 : 3 + levels], **options)
     overturned = made.fits[made.fits["limit"] == "overturned"]

@@ -94,7 +94,7 @@ def test_the_maximum_is_one_and_moves_with_the_intensities():
     assert doubled.dispersion[0] == pytest.approx(spread, abs=1e-12)
 
 
-def test_what_has_no_maximum_says_so():
+def test_a_likelihood_without_maximum_is_reported():
     assert kind_of([0.0] * 5)[:2] == (NEVER, math.inf)
     assert kind_of([10.0] * 5)[:2] == (ALWAYS, -math.inf)
     name, centre, spread = kind_of([0.0, 0.0, 10.0, 10.0, 10.0])

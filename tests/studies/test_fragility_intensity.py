@@ -58,7 +58,7 @@ def test_a_spectrum_is_that_of_the_oscillator_itself():
     assert found <= largest * (1.0 + 1e-4)
 
 
-def test_a_long_period_is_moved_by_the_ground_and_a_short_one_with_it():
+def test_spectrum_tends_to_ground_displacement_and_acceleration_at_its_ends():
     motion = sine()
     stiff = intensity("sa", motion, PIER, period=0.02)
     assert stiff == pytest.approx(intensity("peak_acceleration", motion, PIER) * 0.2, rel=0.02)

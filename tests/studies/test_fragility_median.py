@@ -46,7 +46,7 @@ def contrast(first: tuple[int, ...], second: tuple[int, ...]) -> dict[str, Any]:
         ((12, 12, 12), (7, 12, 12)),  # below 2 each
     ],
 )
-def test_what_no_level_tells_is_undecided(first: tuple[int, ...], second: tuple[int, ...]) -> None:
+def test_a_median_beyond_all_levels_is_undecided(first: tuple[int, ...], second: tuple[int, ...]) -> None:
     assert contrast(first, second)["verdict"] == "undecided"
 
 
@@ -57,7 +57,7 @@ def exceeded(*rows: str) -> Sample:
 
 @pytest.mark.parametrize("others", [6, 30])
 @pytest.mark.parametrize(("one", "rest", "median"), [("011", "000", math.inf), ("001", "111", -math.inf)])
-def test_what_one_motion_alone_tells_is_no_curve(one: str, rest: str, median: float, others: int) -> None:
+def test_one_motion_gives_no_curve(one: str, rest: str, median: float, others: int) -> None:
     # of many motions the counts have a maximum, which is that motion's alone
     sample = exceeded(one, *[rest] * others)
     assert KINDS[fit_curves(*sample.counts()).kinds[0]] in (FITTED, FALLING)

@@ -56,7 +56,7 @@ GRID = np.linspace(1.0, 4.0, 28)
 
 
 @pytest.mark.parametrize("centre", [1.4951, 1.3152, 1.5037, 2.7182])
-def test_a_window_narrower_than_the_step_of_the_grid_is_found_by_its_flanks(centre):
+def test_an_overturning_window_narrower_than_the_grid_is_found(centre):
     window = Window(centre, 0.015, 0.3)
     found = search(window, 1.0, GRID)
     assert abs(found - centre) <= 0.0075
@@ -77,7 +77,7 @@ def test_a_coarse_grid_is_filled_and_nothing_beyond_it_is_run():
     assert far.run == []
 
 
-def test_what_is_known_to_overturn_is_the_end_of_a_search():
+def test_a_search_ends_at_a_known_overturning():
     def edge(levels: np.ndarray) -> np.ndarray:
         return np.where(levels >= 1.2345, FALL, 0.0)
 
@@ -110,7 +110,7 @@ def test_searches_side_by_side_find_what_each_finds_alone():
 
 
 @pytest.mark.parametrize("stands", [True, False])
-def test_what_moves_at_the_start_alone_is_run_there(stands: bool):
+def test_motions_that_uplift_only_at_the_start_are_run_there(stands: bool):
     run: list[float] = []
 
     def still(_: int, levels: np.ndarray) -> np.ndarray:
@@ -158,7 +158,7 @@ def test_probes_go_down_until_none_overturns():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("width", "chance"), [(2.0 / 500, 1.0), (0.5 / 500, 0.5), (0.1 / 500, 0.1)])
-def test_a_gap_narrower_than_every_step_is_found_as_often_as_is_stated(width: float, chance: float):
+def test_narrow_gaps_are_found_at_the_stated_rate(width: float, chance: float):
     """The probes lie one in each of 500 parts: a gap within one is hit as often as it is wide."""
     trials, found = 200, 0
     for seed in range(trials):
@@ -177,7 +177,7 @@ def test_a_gap_narrower_than_every_step_is_found_as_often_as_is_stated(width: fl
     )
 
 
-def test_a_bound_on_gaps_is_that_of_no_hit_in_so_many_draws():
+def test_the_bound_on_gaps_is_that_of_zero_hits():
     assert (1.0 - gap_bound(500)) ** 500 == pytest.approx(0.05)
     assert gap_bound(500) == pytest.approx(0.006, abs=1e-4)
 

@@ -25,7 +25,7 @@ def off_models(trace: Trace) -> dict[str, float]:
     return {name: tilt_rms_relative(make_pair(SQUAT, model, trace)) for name, model in models.items()}
 
 
-def test_a_run_is_compared_with_the_models_and_its_losses_are_its_own() -> None:
+def test_losses_and_model_differences_identify_the_support() -> None:
     case = Case(SQUAT, initial=InitialState(SQUAT.alpha / 2, rolling_rate=0.5), duration=1.2, friction=3.0)
     # the release would start inside of such walls
     assert not has_room(case, Run("mujoco", "ring", ring_inclination=0.1))

@@ -24,13 +24,13 @@ def power_law(count: int = 40, low: float = 1e-3, high: float = 1e3) -> HazardCu
 
 
 @pytest.mark.parametrize(("median", "dispersion"), [(0.5, 0.4), (1.0, 0.7), (0.3, 0.05)])
-def test_of_a_power_law_the_frequency_is_the_closed_form(median: float, dispersion: float) -> None:
+def test_frequency_of_a_power_law_hazard_is_the_closed_form(median: float, dispersion: float) -> None:
     # k0 theta^-k exp(k^2 beta^2 / 2); the ends of the curve are 9 and more dispersions away
     exact = K0 * median**-K * math.exp(0.5 * (K * dispersion) ** 2)
     assert lognormal_frequency(power_law(), math.log(median), dispersion) == pytest.approx(exact, rel=1e-12)
 
 
-def test_a_sum_over_the_points_of_a_hazard_is_short_by_half_of_slope_times_step() -> None:
+def test_left_point_summation_underestimates_by_half_slope_times_step() -> None:
     hazard = power_law(100, 1e-3, 2.0)
     share = np.array([0.5 * math.erfc(-math.log(x / 0.4) / 0.4 / math.sqrt(2.0)) for x in hazard.intensity])
     steps = np.append(-np.diff(hazard.annual_frequency), hazard.annual_frequency[-1])
@@ -39,7 +39,7 @@ def test_a_sum_over_the_points_of_a_hazard_is_short_by_half_of_slope_times_step(
     assert short == pytest.approx(0.5 * K * math.log(2000.0) / 99, rel=0.15)
 
 
-def test_many_motions_that_follow_a_lognormal_curve_give_its_frequency_without_a_fit() -> None:
+def test_lognormal_motions_give_the_closed_form_without_a_fit() -> None:
     rng = np.random.default_rng(5)
     capacity = np.exp(rng.normal(math.log(0.8), 0.4, 4000))
     x = np.tile(np.log(np.geomspace(0.1, 8.0, 60)), (len(capacity), 1))
@@ -118,7 +118,7 @@ def test_cut_at_either_end_a_hazard_bounds_what_the_whole_one_gives(y: list[floa
             assert full["total"] <= part["most"] * (1.0 + 1e-12)
 
 
-def test_what_rests_on_either_end_is_stated() -> None:
+def test_tail_shares_of_both_ends_are_stated() -> None:
     law, levels = power_law(), [0.2, 0.5, 1.0]
     stands, falls = (single(law, levels, [0.0, 0.0, last], 0.1) for last in (0.0, 1.0))
     assert (stands["total"], stands["most"]) == (0.0, pytest.approx(K0))  # all that is above 1
@@ -143,7 +143,7 @@ def test_a_power_law_continued_is_the_same_law() -> None:
 
 
 @pytest.mark.filterwarnings("error")
-def test_however_steep_a_hazard_its_lognormal_frequency_is_that_of_a_fine_sum() -> None:
+def test_lognormal_frequency_equals_a_fine_sum_for_steep_hazards() -> None:
     rng = np.random.default_rng(3)
     for slopes in ([2.0, 40.0, 300.0], [150.0, 60.0, 5.0], [331.0, 57.0, 100.0]):
         widths, dispersion, centre = np.array([0.02, 0.03, 0.05]), 0.6, rng.normal(-1.0, 0.4)
@@ -284,7 +284,7 @@ def test_a_total_dispersion_raises_the_frequency_of_the_curve_alone(found: rw.st
     pd.testing.assert_series_equal(plain["annual_frequency"], wide["annual_frequency"])
 
 
-def test_where_no_motion_overturns_a_bound_is_given() -> None:
+def test_no_overturning_gives_an_upper_bound() -> None:
     pier = rw.Cylinder(semidiagonal=30.0, tan_alpha=0.3)
     motions = rw.synthetic_motions(8, peak=1.0, seed=4)
     none = rw.fragility(pier, motions, methods=["recess"], levels=[1.1, 1.3], resamples=50, workers=1)
@@ -309,7 +309,7 @@ def test_the_verdict_is_where_the_interval_lies_of_the_target(found: rw.studies.
         found.risk(SITE, target=0.0)
 
 
-def test_a_tendon_yields_where_its_tension_at_the_peak_is_the_yield_force() -> None:
+def test_a_tendon_yields_at_peak_tension_equal_to_yield_force() -> None:
     pier, motions = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2), rw.synthetic_motions(8, peak=1.0, seed=61)
     tendon = rw.Tendon(prestress=0.5, stiffness=1.0, yield_force=0.6)
     options = {"methods": ["recess"], "levels": [2, 3, 4.5], "resamples": 50, "workers": 1}
@@ -414,7 +414,7 @@ def test_a_factor_above_5_is_far(found: rw.studies.Fragility, lowest: float, all
     assert share == pytest.approx(1.0, abs=1e-9) if all_far else 0.0 < share < 0.999
 
 
-def test_the_margin_is_the_median_of_the_curve_over_what_is_exceeded_with_2_percent_in_50_years(found):
+def test_the_margin_is_the_median_over_the_2475_year_intensity(found):
     table = found.risk(SITE).set_index("method")
     fits = found.fits[found.fits["limit"] == "overturned"].set_index("method")
     rare = SITE.intensity[0] * (SITE.annual_frequency[0] / (-math.log(0.98) / 50.0)) ** 0.5  # its power is -2

@@ -130,7 +130,7 @@ def test_the_rolling_model_makes_another_spectrum(spectrum):
     assert rolling.peak_tilt[SPATIAL][1, 1] != spectrum.peak_tilt[SPATIAL][1, 1]
 
 
-def test_a_slab_is_carried_in_every_cell_and_when_it_is_run_again():
+def test_every_cell_and_its_rerun_carry_the_slab():
     options = {"semidiagonals": [4.0], "intensities": [2.0, 4.0], "search_step": 2.0, "probes": 0}
     maps = tilt_maps(0.1, EL_CENTRO, SpectrumPlan(slab_mass_ratio=2.0, **options))
     frame = WobblingFrame(Cylinder(semidiagonal=4.0, tan_alpha=0.1), slab_mass_ratio=2.0)
@@ -161,7 +161,7 @@ def drawn() -> TiltMaps:
     )
 
 
-def test_cells_agree_with_tighter_single_runs_unless_a_perturbed_copy_differs_as_much(drawn):
+def test_cells_agree_with_tighter_runs_unless_copies_differ(drawn):
     checked = check_cells(drawn)
     assert len(checked) == len(checked.drop_duplicates(["series", "semidiagonal", "intensity"])) == CELLS
     assert (checked["agrees"] | checked["sensitive"]).all(), checked.to_string()
@@ -181,7 +181,7 @@ def test_a_wrong_cell_does_not_pass_the_check(drawn):
     assert not checked["agrees"][moved].any()
 
 
-def test_what_overturns_again_is_confirmed_and_what_stands_is_not(spectrum, monkeypatch):
+def test_reruns_confirm_overturned_cells_only(spectrum, monkeypatch):
     table = confirm_lowest(spectrum).set_index(["series", "semidiagonal"])
     assert len(table) == len(SERIES) * len(SIZES)
     # large cylinders fall after few passes; no shaking of the grid overturns this one in one of its planes
@@ -199,7 +199,7 @@ def test_what_overturns_again_is_confirmed_and_what_stands_is_not(spectrum, monk
     assert not confirm_lowest(forged)["confirmed"].to_numpy().reshape(3, -1)[0, 2:].any()
 
 
-def test_what_falls_after_the_record_has_overturned_in_every_cell():
+def test_a_fall_after_the_record_counts_as_overturned_in_cells():
     # a sine whose one cycle leaves the cylinder short of its balance, and on its way to it
     time = np.arange(121) * 0.01
     pulse = np.column_stack([np.sin(2.0 * np.pi * time / 1.2), np.zeros(121)])

@@ -117,7 +117,7 @@ def test_an_edge_within_the_resolution_is_no_difference():
     assert edge_difference(spectrum)[0] == pytest.approx(-0.18)
 
 
-def test_without_a_lower_edge_at_the_top_there_is_no_size_to_name():
+def test_no_size_is_named_without_a_lower_edge():
     assert math.isnan(unconservative_from(made_up(["oX", "oX"], ["oo", "oX"], ["oo", "oo"])))
     assert unconservative_from(made_up(["oX", "oX"], ["oo", "oo"], ["oo", "oo"])) == 1.0
 

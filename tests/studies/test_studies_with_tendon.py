@@ -80,7 +80,7 @@ def test_the_balance_without_a_term_is_alpha_to_the_bit(gravity: float) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("share", "duration", "outcome"), [(1.4, 0.3, "stands"), (1.7, 3.0, "overturned")])
-def test_what_a_tendon_still_rights_has_not_overturned_in_a_ring(
+def test_a_ring_run_righted_by_a_tendon_has_not_overturned(
     share: float, duration: float, outcome: str
 ) -> None:
     """The tendon moves the balance to 1.63 alpha: a wall holds what leans by more, and not what swings."""

@@ -67,7 +67,7 @@ def test_tables_are_in_the_order_of_the_tasks_whatever_ran_first(tmp_path):
 
 
 @pytest.mark.usefixtures("second_dies")
-def test_a_lost_task_has_its_table_or_ends_the_study_with_all_others_kept(tmp_path):
+def test_a_failed_task_has_a_table_or_ends_the_study(tmp_path):
     assert Multiples([1, 2, 3], known=True).run(workers=1) == [10, -2, 30]
     with pytest.raises(IncompleteError, match=r"1 of 3 tasks ended .* the last words of 2: out of memory"):
         Multiples([1, 2, 3]).run(folder=tmp_path, workers=1)

@@ -31,7 +31,7 @@ def files(folder) -> dict[str, int]:
     return {path.name: path.stat().st_ino for path in (folder / CACHE / KIND).glob("*.parquet")}
 
 
-def test_the_table_holds_what_peak_tilts_gives_in_the_order_of_the_axes():
+def test_the_sweep_table_equals_peak_tilts_in_axis_order():
     table = sweep(grid(models=["recess", "planar"]), workers=1).table
     assert len(table) == 2 * 2 * 4 * 5
     cells = table.set_index(["model", "tan_alpha"])["peak_tilt"]
@@ -67,7 +67,7 @@ def test_a_grid_that_grows_keeps_what_is_there(tmp_path):
     pd.testing.assert_frame_equal(table, Sweep.load(tmp_path).table, check_exact=True)
 
 
-def test_chunks_of_another_sweep_go_only_when_a_folder_is_claimed_and_this_one_is_complete(tmp_path):
+def test_chunks_of_another_sweep_are_removed_on_completion_alone(tmp_path):
     sweep(grid(tan_alphas=[0.1]), out=tmp_path, workers=1, chunk_size=5)
     other = set(files(tmp_path))
 
@@ -151,7 +151,7 @@ def test_cases_with_engines_and_models(tmp_path):
     pd.testing.assert_frame_equal(again, table.tail(2).reset_index(drop=True), check_exact=True)
 
 
-def test_the_chunks_of_a_suite_have_names_for_whoever_waits():
+def test_progress_names_the_chunks_of_a_suite():
     cases = [Case(PIER, duration=0.1, name=name) for name in "abc"]
     events: list[Progress] = []
     sweep(Suite(cases, [Run(None, "recess")]), workers=1, chunk_size=2, progress=events.append)
@@ -168,7 +168,7 @@ def test_the_manifest_says_what_was_swept(tmp_path):
     assert np.array_equal(motions[["acceleration_x", "acceleration_y"]], SHORT.acceleration)
 
 
-def test_a_summary_counts_the_outcomes_of_each_part_and_an_overturned_run_is_infinite(tmp_path):
+def test_a_summary_counts_outcomes_and_ranks_overturned_as_infinite(tmp_path):
     found = sweep(grid(), out=tmp_path, workers=1)
     summary = found.summary()
     assert list(summary["tan_alpha"]) == [0.1, 0.2]

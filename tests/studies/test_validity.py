@@ -235,7 +235,7 @@ def test_a_friction_that_slips_at_one_release_does_not_hold() -> None:
         assert (found["slips_at"], found["holds_from"]) == (0.9, 1.0)
 
 
-def test_soft_contact_is_told_by_its_damping_and_failures_are_counted(tables: Tables) -> None:
+def test_soft_contact_is_identified_by_damping_and_failures_counted(tables: Tables) -> None:
     rows = [
         {"damping": damping, "softness": softness, "time_constant": round(softness, 3), "loss": 0.1,
          "peak": peak, "recess_peak": 0.5, "free_outcome": "stands", "outcome": outcome}
@@ -289,9 +289,7 @@ OF_THE_BODY = {
 }
 
 
-def test_with_a_slab_every_part_but_that_of_rings_is_of_the_frame_and_says_so(
-    tables: Tables, tmp_path: Path
-) -> None:
+def test_every_part_but_rings_uses_the_slab(tables: Tables, tmp_path: Path) -> None:
     extent = replace(TINY, sizes=(4.0,), structure=Structure(slab_mass_ratio=1.0))
     found = validity_of(measure_all(extent, tmp_path, workers=1), extent)
     assert set(found.tables) == {*OF_THE_BODY, "limits"} == {*PARTS, "limits"} - {"rings"}
@@ -318,9 +316,7 @@ OF_THE_TENDON = {**OF_THE_BODY, "rings": "recess_peak", "slip": "needed"}
 TIED = Structure(tendon_prestress=0.5, tendon_stiffness=2.0)
 
 
-def test_with_a_tendon_every_part_is_of_it_and_flat_ground_is_of_the_engine_alone(
-    tables: Tables, tmp_path: Path
-) -> None:
+def test_every_part_uses_the_tendon_and_only_engines_run_flat(tables: Tables, tmp_path: Path) -> None:
     extent = replace(TINY, sizes=(4.0,)).of(TIED)
     found = validity_of(measure_all(extent, tmp_path, workers=1), extent)
     assert set(found.tables) == {*PARTS, "limits"}
