@@ -29,7 +29,7 @@ STRONGEST = 1e3  # prestress [weights of a column]
 
 
 def doubts_of_cases(cases: Iterable[Case], mass: float | None = None) -> list[dict[str, object]]:
-    """Return the doubts about what some cases state as plain values, for a file: record and fields of each.
+    """Return the doubts about the input of some cases as plain values for a file.
 
     Each is there once; those about lengths and gravity have "cylinder" and "gravity" for a record. `mass`: of
     a cylinder, or of one column [t].

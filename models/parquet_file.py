@@ -38,7 +38,7 @@ def pack(table: pd.DataFrame, about: Mapping[str, object]) -> bytes:
 
 
 def read(content: bytes) -> tuple[pd.DataFrame, JsonObject]:
-    """Return the table of a file that `pack` made, and what it says of itself.
+    """Return the table of a file written by `pack`, and its metadata.
 
     Raises
     ------

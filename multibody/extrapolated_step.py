@@ -114,7 +114,7 @@ def extrapolation(runs: Sequence[Trace], alpha: float) -> Trace:
 
 
 def _meaningful(moved: Array, difference: Array) -> int:
-    """Return up to which sample a halving moves the extrapolation by less than the run itself."""
+    """Number of samples in which halving the step moves the extrapolation less than the run itself."""
     holds = np.maximum.accumulate(moved) <= np.maximum.accumulate(difference)
     return int(np.flatnonzero(holds)[-1]) + 1 if holds.any() else 0
 

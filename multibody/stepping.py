@@ -43,7 +43,7 @@ def run_steps(
     sample_step: float,
     progress: Progress | None,
 ) -> Recorder:
-    """Step a run to its end, and return what recorded it: `recorder`, or one that saw it end later.
+    """Step a run to its end, and return its recorder: `recorder`, or a continued one that saw a later end.
 
     `sample_step` is that of samples after the end [s], in the scene.
     """

@@ -287,7 +287,7 @@ def fitted_rate(reference: Reference, motion: Motion) -> float:
 
 
 def _beginning(reference: Reference, window: float) -> Motion:
-    """The samples of the reference in so many time scales from its start."""
+    """Samples of the reference within a number of time scales from its start."""
     motion, end = reference.motion, reference.start + window * reference.time_scale
     return motion.at(motion.time[(motion.time >= reference.start) & (motion.time <= end)])
 

@@ -148,7 +148,7 @@ def uplift_differences(trajectory: Trace, reference: Trace) -> tuple[Part | None
     if not (seen > 0.0 and 0.0 < passed[1] < math.inf):
         return None, None
     early, middle, late = passed
-    # a tilt that the model only just reaches may be missed: until its largest, nobody knows
+    # a trajectory may miss a tilt that the model only just reaches: undecided until the largest tilt
     late = late if math.isfinite(late) else float(reference.time[int(np.argmax(reference.tilt))])
     half = 0.5 * trajectory.time_step
     apart = seen - half - middle

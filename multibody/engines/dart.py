@@ -295,7 +295,7 @@ class _DartStepper(Leapfrog):
             if excited:
                 pull([-ax * turn_x - ay * turn_y, ax * turn_y - ay * turn_x, -az - gravity])
             if stiffness and k:
-                # along the vertical plus the axis, proportional to the twist
+                # torque along the vertical plus the axis, proportional to the twist
                 pair = 0.5 * stiffness * math.atan2(k, w)
                 torque([pair * axis_x, pair * axis_y, pair * (2.0 - 2.0 * (i * i + j * j))])
             if tied:

@@ -351,7 +351,7 @@ class _DrakeStepper(Leapfrog):
         if not self._stiffness:
             return self._pull_of_tendon(np.array([0.0, 0.0, 0.0, *push]))
         w, x, y, z = self._place[:4]
-        # along the vertical plus the axis, proportional to the twist
+        # torque along the vertical plus the axis, proportional to the twist
         twist = math.remainder(2.0 * math.atan2(z, w) + self._spun, 2.0 * math.pi)
         pair = -4.0 * self._stiffness * twist
         couple = pair * (x * z + w * y), pair * (y * z - w * x), pair * (1.0 - x * x - y * y)
@@ -461,7 +461,7 @@ class _Rim(NamedTuple):
         return velocity[5] + self.reach * (velocity[0] * self.axis_y - velocity[1] * self.axis_x)
 
     def slip(self, velocity: Sequence[float]) -> tuple[float, float]:
-        """Return its velocity along the ground, from the same [m/s]."""
+        """Velocity of the contact point along the ground, from the same arguments [m/s]."""
         spin_x, spin_y, spin_z, x, y = velocity[:5]
         along_x, along_y = self.reach * self.axis_x, self.reach * self.axis_y
         return x - spin_y * self.down - spin_z * along_y, y + spin_x * self.down + spin_z * along_x

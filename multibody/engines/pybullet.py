@@ -396,7 +396,7 @@ class _PybulletStepper(Leapfrog):
             pull(along_x, along_y, along_z, client)
             across_x, across_y, xy = x * z + w * y, y * z - w * x, x * x + y * y
             if stiffness and z:
-                # along the vertical plus the axis, proportional to the twist
+                # torque along the vertical plus the axis, proportional to the twist
                 pair = 2.0 * stiffness * atan2(z, w)
                 moment = pair * across_x, pair * across_y, pair * (1.0 - x * x - y * y)
                 torque(body, -1, moment, world, client)

@@ -142,7 +142,7 @@ class _RapierStepper(Leapfrog):
             if excited:
                 world.gravity = (-ax, -ay, -az - gravity)
             if stiffness:
-                # along the vertical plus the axis, proportional to the twist
+                # torque along the vertical plus the axis, proportional to the twist
                 pair = stiffness * min(1.0, lean / _OPEN) * math.atan2(k, w)
                 body.add_torque(
                     (pair * (i * k + w * j), pair * (j * k - w * i), pair * (1.0 - i * i - j * j))

@@ -109,7 +109,7 @@ def contact_picture(view: CaseView, name: str) -> Picture:
 
 
 def azimuth_picture(view: CaseView, name: str) -> Picture:
-    """Return the azimuth alone."""
+    """Picture of the azimuth against time."""
     whole = contact_picture(view, name)
     return replace(whole, panels=whole.panels[:1])
 

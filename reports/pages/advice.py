@@ -26,7 +26,7 @@ from .table import number, scattered
 from .wording import lines_of, sentence, statement
 
 _MARKS = dict(zip(GRADES, "✓?!✗", strict=True))
-# a handed-over page is signed by hand
+# lines to sign on a printed page
 _SIGNED = '<p class="signed">Project: <span></span> Checked by: <span></span> Date: <span></span></p>'
 # rows of the box of demands, in order; of the moment of a recess also the force on a wall
 _DEMANDS = (

@@ -141,7 +141,7 @@ def _counts(found: Fragility) -> dict[str, object]:
 
 
 def _share(exceeded: float, runs: float) -> str:
-    return f"{exceeded:g} of {runs:g}".replace(" ", "\u00a0")  # in one line
+    return f"{exceeded:g} of {runs:g}".replace(" ", "\u00a0")  # no-break spaces keep it in one line
 
 
 def _gaps(found: Fragility) -> list[Row]:

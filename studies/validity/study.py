@@ -181,7 +181,7 @@ class MeasureStudy(Study[Task, dict[str, pd.DataFrame]]):
         return result_fingerprint({"part": part.name, "inputs": task[1]}, _makers(part))
 
     def name(self, task: Task) -> str:
-        """Name of its part."""
+        """Name of the part of the report."""
         return task[0].replace("_", " ")
 
     def results(self, tables: list[pd.DataFrame]) -> dict[str, pd.DataFrame]:

@@ -573,7 +573,7 @@ def state_of(*values: float) -> State:
 
 
 @pytest.mark.parametrize("ratio", [0.0, 1.5])
-def test_kinetic_energy_is_that_of_vectors(ratio: float) -> None:
+def test_kinetic_energy_equals_the_vector_formula(ratio: float) -> None:
     theta, phi, theta_rate, phi_rate = 0.3, 1.1, 0.7, -0.9
     state = state_of(theta, theta_rate, phi, phi_rate, -phi_rate)
     expected = kinetic_energy(body_of(CYLINDER, 9.81), state, ratio) / (1.0 + 2.0 * ratio)

@@ -50,7 +50,7 @@ def test_cases_of_a_saved_comparison_are_restored(saved):
             assert (case.motion.time_step, case.motion.name) == (again.motion.time_step, again.motion.name)
 
 
-def test_runs_are_the_same(saved):
+def test_runs_of_a_saved_comparison_are_restored(saved):
     first, again = (comparison.traces for comparison in saved)
     assert list(first) == list(again)
     for trace, loaded in zip(first.values(), again.values(), strict=True):

@@ -187,7 +187,7 @@ def budgets(*reasons: str) -> pd.DataFrame:
     )
 
 
-def test_what_is_not_split_is_neither_explained_nor_unexplained():
+def test_a_difference_without_budget_is_not_classified():
     (unsplit,) = budget_findings(table(row(), row()), budgets("order", "order"))
     assert (unsplit.key, value(unsplit, "count")) == ("comparison.not_split", 2)
     explained, unsplit = budget_findings(table(row(), row()), budgets("", "unresolved_pass"))

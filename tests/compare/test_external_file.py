@@ -55,7 +55,7 @@ def notes(trajectory):
 
 
 @pytest.mark.parametrize("text", BAD)
-def test_whatever_is_wrong_with_a_file_is_one_line_with_its_number(save, text):
+def test_every_error_of_a_trajectory_file_names_its_line(save, text):
     with pytest.raises(ValueError, match=r"table\.csv") as caught:
         read_trajectory(save(text), RELEASE)
     assert BAD[text] in str(caught.value)
@@ -242,7 +242,7 @@ def test_uneven_samples_and_a_clock_that_does_not_start_at_zero(save):
 
 
 @pytest.mark.parametrize("share", [0.001, 0.005])
-def test_the_noise_is_told_by_the_samples(save, response, share):
+def test_noise_is_estimated_from_the_samples(save, response, share):
     generator = np.random.default_rng(2)
     lean = np.sin(response.tilt) * np.exp(1j * response.rolling_angle)
     lean = lean + share * PIER.alpha * (

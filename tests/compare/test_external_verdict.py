@@ -348,7 +348,7 @@ def test_a_motion_that_dies_away_has_no_other_time_scale(save, name, loss):
     }
 
 
-def test_what_is_not_told_is_said_and_not_compared(save):
+def test_missing_columns_are_reported_and_not_compared(save):
     alone = verdict("pier shaken", save(samples("pier shaken", "tilt")))
     assert alone.not_compared == alone.not_given == ("azimuth", "path")
     assert math.isnan(alone.azimuth_rms)
@@ -359,7 +359,7 @@ def test_what_is_not_told_is_said_and_not_compared(save):
     assert (found.not_compared, found.not_given) == (("azimuth",), ())
 
 
-def test_of_a_trajectory_of_another_problem_nothing_is_explained(save):
+def test_a_trajectory_of_another_problem_gets_no_explanation(save):
     found = verdict("pier wobbles", save(samples("pier shaken")))
     # one sample that an offset would bring to its place is no path that agrees
     assert found.differs_in == ("tilt",)

@@ -198,7 +198,7 @@ def test_dask_gives_the_same_and_refuses_other_code():
 
 
 @pytest.mark.slow
-def test_a_function_that_cannot_be_imported_there_is_said(tmp_path):
+def test_an_unimportable_function_is_reported_by_the_scheduler(tmp_path):
     # the script's own functions are those of __main__, which is another module there
     script = tmp_path / "script.py"
     script.write_text(

@@ -76,7 +76,7 @@ def test_the_steps_are_those_that_a_runner_needs() -> None:
     assert STEPS[-1]["with"]["path"] == "*.xml"
 
 
-def test_what_is_installed_is_what_is_needed() -> None:
+def test_the_ci_example_installs_what_the_start_page_names() -> None:
     # both need the network: that they are whole shell lines, and ask for what the other pages say
     for name in ("libraries of the system", "packages"):
         assert subprocess.run(["bash", "-n", "-c", RUN[name]], check=False).returncode == 0

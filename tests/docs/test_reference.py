@@ -85,7 +85,7 @@ def test_every_public_member_of_a_class_has_words(package: str) -> None:
     assert silent == []
 
 
-def test_what_a_user_calls_has_an_example() -> None:
+def test_public_functions_have_examples() -> None:
     # tests/test_doctests.py runs them
     names = [(rockwobble, name) for name in rockwobble.__all__ if name not in PARTS]
     names += [(reduced, name) for name in reduced.__all__]

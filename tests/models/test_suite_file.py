@@ -221,7 +221,7 @@ WRONG = {replaced(*part): words for part, words in WRONG_PARTS.items()} | {
 
 
 @pytest.mark.parametrize(("text", "words"), WRONG.items(), ids=[*WRONG.values()])
-def test_whatever_is_wrong_is_one_line_with_the_path_of_the_key(write, text, words):
+def test_every_error_of_a_suite_file_names_its_key(write, text, words):
     with pytest.raises(ValueError, match=r"\S") as caught:
         read_suite(write(text, "mine.suite.toml"))
     message = str(caught.value)

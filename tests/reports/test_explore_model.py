@@ -282,7 +282,7 @@ def test_undecided_and_overturned_runs_have_no_peak(tmp_path: Path):
         ("mu = (1 + 4 * gamma) / w", "mu = (1 + 4.0004 * gamma) / w"),
     ],
 )
-def test_a_term_that_is_off_is_found(broken, solved, tmp_path: Path):
+def test_a_wrong_term_in_explore_is_detected(broken, solved, tmp_path: Path):
     runs = on_the_page([each for each, _, _ in solved], tmp_path, broken=broken)
     assert complaints_of(solved, runs) != []
 

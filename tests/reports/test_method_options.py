@@ -20,7 +20,8 @@ RELEASE = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "0.
 
 @pytest.mark.parametrize("name", ["advise", "compare", "ensemble", "fragility", "simulate", "view"])
 def test_every_command_of_a_cylinder_states_it_in_the_same_way(name: str) -> None:
-    assert {option.name for option in get_command(app).commands[name].params} >= BODY  # type: ignore[attr-defined]
+    # type: ignore[attr-defined]
+    assert {option.name for option in get_command(app).commands[name].params} >= BODY
 
 
 def test_settings_are_whole_numbers_numbers_or_words() -> None:
@@ -51,9 +52,7 @@ def test_a_setting_goes_to_the_runs_that_know_it() -> None:
 
 
 @pytest.mark.slow
-def test_a_run_that_flies_in_a_ring_of_its_own_says_so(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_flight_in_a_ring_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     spin = ["--tan-alpha", "1", "--release-tilt-deg", "20", "--rolling-rate", "8", "--duration", "0.3"]
     given = ["--set", "ring_clearance=3", "--set", "ring_inclination=0.05", "--set", "ring_facets=16"]
     place = ["--engine", "mujoco", "--support", "ring", "--out", str(tmp_path)]

@@ -22,7 +22,7 @@ from rockwobble.reports.console import sentence, shown_progress
         ({"done": 1, "total": 10, "left": math.nan}, "1 of 10 runs"),
     ],
 )
-def test_progress_in_words(far, words):
+def test_progress_is_worded_by_share_and_time(far, words):
     assert sentence(Progress(label="a", state="finished", **far)) == words
 
 

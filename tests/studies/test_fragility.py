@@ -164,7 +164,7 @@ def test_a_first_method_that_always_fails_leaves_the_others(found: Fragility) ->
         fragility_of(runs[runs["outcome"] == "failed"], found.points, found.facts)
 
 
-def test_pairs_leave_out_what_failed_by_either(found):
+def test_pairs_exclude_motions_that_failed_in_either_method(found):
     runs = found.runs[found.runs["method"].isin(["recess model", "planar x"])].copy()
     lost = (runs["method"] == "planar x") & (runs["motion"] == MOTIONS[0].name)
     runs.loc[lost, ["peak_tilt", "outcome"]] = [NAN, "failed"]

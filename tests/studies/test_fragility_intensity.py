@@ -102,7 +102,7 @@ def test_uplift_and_slide_begin_at_an_intensity_of_one():
     assert below == 0.0 < above
 
 
-def test_bad_input_and_what_has_no_measure():
+def test_bad_input_of_intensity_measures_is_refused():
     with pytest.raises(ValueError, match=r"an intensity must be one of peak_acceleration, .* got 'pgd'"):
         intensity("pgd", sine(), PIER)
     with pytest.raises(ValueError, match="period must be positive"):

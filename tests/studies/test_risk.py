@@ -385,7 +385,7 @@ def test_each_level_is_shaken_by_motions_of_its_own() -> None:
 def test_motions_by_level_are_refused_where_they_are_not_one_set() -> None:
     pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     a, b = rw.synthetic_motions(2, peak=1.0, seed=4)
-    with pytest.raises(ValueError, match="state the levels themselves"):
+    with pytest.raises(ValueError, match="have levels of their own"):
         rw.fragility(pier, {1.0: [a, b]}, levels=[1.0])
     with pytest.raises(ValueError, match="must have different names"):
         rw.fragility(pier, {1.0: [a, a]})
