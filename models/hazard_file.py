@@ -203,7 +203,7 @@ def _curve(given: _Given, columns: _Columns, name: str) -> HazardCurve:
         raise ValueError(f"{place} has no hazard at this site: no level is ever exceeded")
     first, last = np.cumprod(np.isinf(frequency)).sum(), np.flatnonzero(frequency > 0.0)[-1]
     x, frequency = x[first : last + 1], frequency[first : last + 1]
-    highest = np.append(frequency[1:] != frequency[:-1], True)[: len(x)]  # of each plateau
+    highest = np.append(frequency[1:] != frequency[:-1], True)[: len(x)]  # last point of each plateau
     x, frequency = x[highest], frequency[highest]
     if len(x) < 2:
         raise ValueError(

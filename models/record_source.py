@@ -103,7 +103,7 @@ class RecordSource:
 
     @property
     def line(self) -> str:
-        """All of it in one line."""
+        """Description of the source in one line."""
         files = {each.file for each in self.components if each.file not in ("", "zero")}
         one = f"{next(iter(files))}: " if len(files) == 1 else ""
         facts = f"{one}{self.format}, {self.samples} samples of {self.time_step:.6g} s, {self.duration:.5g} s"

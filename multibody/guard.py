@@ -37,7 +37,7 @@ ENERGY_GAIN = 0.02  # share of the largest energy of the motion so far
 # least energy, over that at balance: a base that is just about to open has no
 # energy yet, and what its contact gains or loses there is noise
 _LEAST_ENERGY = 0.05
-PENETRATION = 0.01  # of b
+PENETRATION = 0.01  # depth over b
 GUIDE_TWIST = 0.02  # [rad] about one degree
 LARGEST_STEP = 1e-3  # [s] at the reference size; contact needs it ten times shorter than the fastest pass
 SMALLEST_STEP = 1e-9  # [s] there; below it what a step changes is lost in rounding

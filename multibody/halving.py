@@ -23,7 +23,7 @@ Difference = TypeVar("Difference", float, Array)
 
 
 def common_count(times: Sequence[Array]) -> int:
-    """Return up to which sample the times of all traces are the same."""
+    """Number of leading samples whose times are equal in all traces."""
     count = min(map(len, times))
     # the last sample of a run that overturned stands at its own time
     near = _SAME_TIME * max(1.0, *(float(time[-1]) for time in times if len(time)))

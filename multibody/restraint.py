@@ -38,8 +38,8 @@ from rockwobble.models.tendon import Tendon
 
 Array = NDArray[np.float64]
 
-# of b: a release in MuJoCo is off by 7e-7 alpha at 1e-4, by 7e-8 at 1e-5 and at 1e-6, where 5e-8 remain
-# without a tendon; at 1e-7 it uplifts too early
+# depth of the anchor over b: a release in MuJoCo is off by 7e-7 alpha at 1e-4, by 7e-8 at 1e-5 and at 1e-6,
+# where 5e-8 remain without a tendon; at 1e-7 it uplifts too early
 ANCHOR_DEPTH = 1e-5
 # the least depth in roundings of b, so that the direction of v at rest is not noise: Rapier (2^-24) uplifts
 # by 26 ms too early at 1e-5 b, by 6 ms at this depth of 1e-3 b, by 4 ms without a tendon

@@ -48,10 +48,10 @@ def echo(lines: Iterable[str]) -> None:
     """
     with suppress(OSError):
         for line in lines:
-            print(_wrapped(line), file=sys.stderr if line.startswith("Warning: ") else sys.stdout)
+            print(_wrap(line), file=sys.stderr if line.startswith("Warning: ") else sys.stdout)
 
 
-def _wrapped(line: str) -> str:
+def _wrap(line: str) -> str:
     width = shutil.get_terminal_size().columns
     return textwrap.fill(line, width, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
 
@@ -256,7 +256,7 @@ def save_with_page(found: Results, out: Path, *, details: bool = False) -> Calla
         page.show(details=details)
         first, *rest = dict.fromkeys([*reversed(pages), *found.sheets(), "manifest.json"])
         tables = [f"{name}.parquet" for name in found.tables]
-        print(_wrapped(f"Written to {out}: {_listed(first, [*rest, *tables], len(str(out)))}"))
+        print(_wrap(f"Written to {out}: {_listed(first, [*rest, *tables], len(str(out)))}"))
 
     return show
 

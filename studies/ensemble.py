@@ -242,7 +242,7 @@ def _compared_with(run: Run) -> str:
 
 
 def ensemble_of(members: pd.DataFrame, about: Mapping[str, object]) -> Ensemble:
-    """Return the ensemble of a table of members, and of what `Ensemble.facts` says of them."""
+    """Return the ensemble of a table of members and of their `Ensemble.facts`."""
     methods = cast("Mapping[str, str]", about["methods"])
     tables = {
         "members": members,

@@ -345,7 +345,7 @@ def claims_of(results: Iterable[Result]) -> tuple[list[dict[str, object]], list[
                     "unit": result.unit,
                     "evidence": f"rockwobble check --only {result.group}: {result.reason}",
                     "status": "cross-validated" if result.group == _BETWEEN else "verified",
-                    "data_sha256": "",  # of an experiment
+                    "data_sha256": "",  # hash of the data of an experiment
                 }
             )
     return claims, open_points

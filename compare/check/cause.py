@@ -30,7 +30,7 @@ _EXPLAINED = 0.1  # largest share of the difference that an accepted cause may l
 _ALIKE, _SAME = 3.0, 0.01
 _LEAST = 0.05  # share of the tolerance of a subject: a smaller difference may be its method's
 _RTOL = 1e-10
-_LARGEST_LOSS = 0.2  # of the base radius
+_LARGEST_LOSS = 0.2  # largest rolling resistance, over the base radius
 Change = Callable[[Case, float], Case]
 
 

@@ -198,7 +198,7 @@ def entry_of(short: ShortCase, subject: Subject) -> Entry:
         **found,
         "agreement_time": found["time"][lost[0]] if len(lost) else None,
         "repeats": _REPEATS * subject.tolerance,
-        "allowed": {name: _rounded(allowed[:, k], 3) for k, name in enumerate(SIGNALS)},
+        "allowed": {name: _round(allowed[:, k], 3) for k, name in enumerate(SIGNALS)},
     }
     if len(lost):
         whole["copies"] = copied_tilts(short, subject)
@@ -237,7 +237,7 @@ def entry(short: ShortCase, trace: Trace) -> Sample:
         "uplift_direction": _finite_or_none(trace.uplift_direction),
         # as the signals, of the run alone
         "peak_tilt": _finite_or_none(trace.peak_within_run / short.case.cylinder.alpha),
-        "time": _rounded(trace.time),
+        "time": _round(trace.time),
         "signals": {name: _finite_list(values[:, k]) for k, name in enumerate(SIGNALS)},
     }
 
@@ -289,10 +289,10 @@ def _finite_or_none(value: float) -> float | None:
 
 
 def _finite_list(values: Array) -> list[float | None]:
-    return [value if math.isfinite(value) else None for value in _rounded(values)]
+    return [value if math.isfinite(value) else None for value in _round(values)]
 
 
-def _rounded(values: Array, digits: int = 12) -> list[float]:
+def _round(values: Array, digits: int = 12) -> list[float]:
     return [float(f"{value:.{digits}g}") for value in values]
 
 

@@ -213,15 +213,15 @@ def residuals(
 def rate(values: Array, step: float) -> Array:
     """Return the rate (n - 2 REACH, ...) of samples (n, ...) that are `step` [s] apart."""
     weights = [_weight(k) / k for k in range(1, REACH + 1)]
-    pairs = (weight * (_shifted(values, k) - _shifted(values, -k)) for k, weight in enumerate(weights, 1))
+    pairs = (weight * (_shift(values, k) - _shift(values, -k)) for k, weight in enumerate(weights, 1))
     return np.asarray(sum(pairs) / step)
 
 
 def curve(values: Array, step: float) -> Array:
     """Return the second derivative (n - 2 REACH, ...) of samples (n, ...)."""
-    centre = _shifted(values, 0)
+    centre = _shift(values, 0)
     pairs = (
-        2.0 * _weight(k) / k**2 * ((_shifted(values, k) - centre) + (_shifted(values, -k) - centre))
+        2.0 * _weight(k) / k**2 * ((_shift(values, k) - centre) + (_shift(values, -k) - centre))
         for k in range(1, REACH + 1)
     )
     return np.asarray(sum(pairs) / step**2)
@@ -231,7 +231,7 @@ def _weight(k: int) -> float:
     return float((-1) ** (k + 1) * factorial(REACH) ** 2 / (factorial(REACH - k) * factorial(REACH + k)))
 
 
-def _shifted(values: Array, by: int) -> Array:
+def _shift(values: Array, by: int) -> Array:
     return values[REACH + by : len(values) - REACH + by]
 
 

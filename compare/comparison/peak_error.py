@@ -17,7 +17,7 @@ from rockwobble.models.members import perturbed_in_strength
 
 from .prediction import Simulate
 
-PERTURBATION = 0.01  # of the input
+PERTURBATION = 0.01  # relative perturbation of the input
 RTOL = 1e-8  # default of `reduced.simulate`
 COARSER = 10.0  # tolerance of the coarser run, over that of the run, that estimates the integration error
 # the estimates of a run at several time steps, in `rockwobble.models.diagnostic`

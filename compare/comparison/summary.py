@@ -360,7 +360,7 @@ def own_rows(summary: pd.DataFrame) -> pd.DataFrame:
     return summary[own | alone]
 
 
-# of the agreement matrix, likewise
+# columns of the agreement matrix, likewise
 MATRIX_COLUMNS: Mapping[str, tuple[str, str]] = {
     "case": SUMMARY_COLUMNS["case"],
     "support": ("", "of both"),

@@ -220,12 +220,12 @@ def _origin(reference: Reference, motion: Motion, end: float) -> Change:
     assert own.path is not None
     origin = np.median((own.path - wanted.path)[wanted.time <= end + SAME_TIME], axis=0)
 
-    def corrected(given: Motion) -> Motion:
+    def correct(given: Motion) -> Motion:
         assert given.path is not None
         return replace(given, path=given.path - origin)
 
     mistake = Mistake(code="origin", concerns="path", value=float(np.linalg.norm(origin)))
-    return Change(mistake=mistake, motion=corrected)
+    return Change(mistake=mistake, motion=correct)
 
 
 def _with_lean_of_path(motion: Motion) -> Motion:

@@ -149,19 +149,19 @@ def readings(values: Values) -> Iterator[Change]:
     """Yield the mistakes in units, order and vertical axis of columns that change the pose."""
 
     def in_unit(code: str, concerns: str, names: Sequence[str], factor: float) -> Change:
-        def corrected(given: Values) -> Values:
+        def correct(given: Values) -> Values:
             return given | {name: given[name] / factor for name in names}
 
-        return Change(mistake=Mistake(code=code, concerns=concerns, value=factor), values=corrected)
+        return Change(mistake=Mistake(code=code, concerns=concerns, value=factor), values=correct)
 
     def in_order(code: str, concerns: str, signed: dict[str, str]) -> Change:
-        def corrected(given: Values) -> Values:
+        def correct(given: Values) -> Values:
             known = {name: own for name, own in signed.items() if name in given}
             return given | {
                 name: -given[own[1:]] if own[0] == "-" else given[own] for name, own in known.items()
             }
 
-        return Change(mistake=Mistake(code=code, concerns=concerns), values=corrected)
+        return Change(mistake=Mistake(code=code, concerns=concerns), values=correct)
 
     by_position = not {"qw", "tilt"} & set(values)
     if "qw" in values:
@@ -187,24 +187,24 @@ def readings(values: Values) -> Iterator[Change]:
 def spinning(rate: float) -> Change:
     """Correction of a steady spin about the axis [rad/s]."""
 
-    def corrected(motion: Motion) -> Motion:
+    def correct(motion: Motion) -> Motion:
         assert motion.twist is not None
         return replace(motion, twist=motion.twist - rate * (motion.time - motion.time[0]))
 
-    return Change(mistake=Mistake(code="spin", concerns="twist", value=math.degrees(rate)), motion=corrected)
+    return Change(mistake=Mistake(code="spin", concerns="twist", value=math.degrees(rate)), motion=correct)
 
 
 def of_path(reading: Change) -> Change:
     """Return the change of the path alone that corresponds to another reading of its columns."""
     mistake = replace(reading.mistake, concerns="path")
 
-    def corrected(motion: Motion) -> Motion:
+    def correct(motion: Motion) -> Motion:
         assert motion.path is not None
         columns = reading.values(dict(zip(POSITION, motion.path.T, strict=True)))
         noise = motion.path_noise / (mistake.value if mistake.code == "length_unit" else 1.0)
         return replace(motion, path=np.column_stack([columns[name] for name in POSITION]), path_noise=noise)
 
-    return Change(mistake=mistake, motion=corrected)
+    return Change(mistake=mistake, motion=correct)
 
 
 def in_time_scale(rate: float) -> Change:
@@ -237,11 +237,11 @@ class Frame:
             code, math.nan
         )
 
-        def corrected(motion: Motion) -> Motion:
+        def correct(motion: Motion) -> Motion:
             other = self.apply(motion)
             if concerns == "azimuth":
                 return replace(motion, lean=other.lean, twist=other.twist)
             return replace(motion, path=other.path) if concerns == "path" else other
 
         mistake = Mistake(code=code, concerns=concerns, value=value)
-        return Change(mistake=mistake, motion=corrected, frame=self if concerns == "axes" else None)
+        return Change(mistake=mistake, motion=correct, frame=self if concerns == "axes" else None)

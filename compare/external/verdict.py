@@ -24,7 +24,7 @@ from .trajectory import external_motion, measurement, trajectory_of, twist_since
 # standard deviations of the noise: the first of some hundred samples that is above a tilt is sought
 CONFIDENCE = 4.0
 
-Row = dict[str, Any]  # of a summary
+Row = dict[str, Any]  # row of a summary
 # columns of an external trajectory besides case, run and reference: unit, meaning
 VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = {
     "differs_in": ("", "tilt, azimuth, path, twist, uplift_time, uplift_direction"),

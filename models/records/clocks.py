@@ -181,7 +181,7 @@ def resampled(components: Sequence[Component]) -> list[Component]:
             for each, count in zip(components, counts, strict=True)
         ]
         if max(drifts) <= _DRIFT * step:
-            return [_refined(each, count, step) for each, count in zip(components, counts, strict=True)]
+            return [_refine(each, count, step) for each, count in zip(components, counts, strict=True)]
     coarsest = max(components, key=lambda each: each.time_step)
     raise ValueError(
         f"components are resampled to a step that divides all, at least 1/{_MOST_PARTS} of the smallest: "
@@ -190,7 +190,7 @@ def resampled(components: Sequence[Component]) -> list[Component]:
     )
 
 
-def _refined(component: Component, count: int, step: float) -> Component:
+def _refine(component: Component, count: int, step: float) -> Component:
     """Component with each of its time steps cut into `count` of `step` [s]."""
     values = component.values
     places = np.arange((len(values) - 1) * count + 1) / count

@@ -184,7 +184,7 @@ def build_motion(
     motion = motion.scaled(values.get("scale", 1.0))
     if "rotation_deg" in values:
         motion = motion.rotated(math.radians(math.fmod(values["rotation_deg"], 360.0)))
-    return _shifted(motion, values.get("time_shift", 0.0))
+    return _shift(motion, values.get("time_shift", 0.0))
 
 
 def _record(table: MotionTable, values: dict[str, float], folder: Path) -> GroundMotion:
@@ -220,7 +220,7 @@ def _pulse(kind: str, values: dict[str, float], uplift: float) -> GroundMotion:
     return pulse(kind, amplitude=amplitude, period=values["period"], azimuth=azimuth, start=shift)
 
 
-def _shifted(motion: GroundMotion, shift: float) -> GroundMotion:
+def _shift(motion: GroundMotion, shift: float) -> GroundMotion:
     """Return the motion begun later, after still ground, or earlier, without its first samples."""
     if shift > MOST_STILL * motion.time_step:
         raise KeyedError("time_shift", f"must leave at most {MOST_STILL:g} samples before, got {shift:g} s")

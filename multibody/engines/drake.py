@@ -457,7 +457,7 @@ class _Rim(NamedTuple):
         return cls(axis_x, axis_y, lean, down - height, reach, down)
 
     def upwards(self, velocity: Sequence[float]) -> float:
-        """Return the speed of the material point there, from angular velocity and velocity (6,) [m/s]."""
+        """Return the upward speed of the contact point of the body, from its velocities (6,) [m/s]."""
         return velocity[5] + self.reach * (velocity[0] * self.axis_y - velocity[1] * self.axis_x)
 
     def slip(self, velocity: Sequence[float]) -> tuple[float, float]:

@@ -31,7 +31,7 @@ _RISEN = 1e-4
 # the same over the depth of a single corner under the weight, over b: what stands leans by up to a sixteenth
 _RISEN_DEPTHS = 1000.0
 _LEANS = 1e-8  # [rad] from which a lean has a direction, which a corner follows instead of the load
-# of b, eccentricities of the load: from the first a corner follows it, from the second at every step, and on
+# eccentricities of the load over b: from the first a corner follows it, from the second at every step, and on
 # the four corners of the first prism alone, early enough for the change to die away before the base opens
 _LOADED, _OPENING = 0.5, 0.98
 _LAST_PRISMS, _OUT_OF_REACH = 1, 1e-3  # [-], [m]

@@ -62,7 +62,7 @@ class PybulletSettings(EngineSettings):
     collision_margin: Annotated[float, positive(most=0.1, or_zero=True)] = 0.0
 
 
-_POINT_SIZE = 1e-6  # of b
+_POINT_SIZE = 1e-6  # size over b
 _LEAST = 1e-12  # friction of a pair, for a quotient
 
 

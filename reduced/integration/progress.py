@@ -155,7 +155,7 @@ class Lift(NamedTuple):
     stays: bool
     at: float  # time of uplift since the beginning of the piece [s]
     length: float  # for which the series of the uplift is used [s]
-    y: State  # after it
+    y: State  # state after the uplift
 
 
 class Stage(NamedTuple):
@@ -176,7 +176,7 @@ class Stage(NamedTuple):
 class Step(NamedTuple):
     """One step of a run, and what there is to list of it."""
 
-    run: Stage  # after it
+    run: Stage  # run after the step
     turn: Turn  # the turning point inside it
     landing: Turn  # state at its end
 

@@ -187,7 +187,7 @@ def _when(c: NDArray[np.float64], order: int, time: float, end: float) -> float:
 
 
 @jit
-def _turned(c: NDArray[np.float64], order: int, end: float) -> float:
+def _rotate(c: NDArray[np.float64], order: int, end: float) -> float:
     """Largest distance within a step at whose start it moves away, and at whose end it comes back [m]."""
     low, high = 0.0, end
     for _ in range(50):
@@ -383,7 +383,7 @@ def slide(
             if count > 0:
                 path, lost = _at(c, PATH, order, far), _at(c, LOST, order, far)
             if outward > 0.0 and x * (p * p - q * q) + y * 2.0 * p * q < 0.0:
-                peak = max(peak, _turned(c, order, far) ** 2)
+                peak = max(peak, _rotate(c, order, far) ** 2)
             peak = max(peak, x * x + y * y)
             now += spent
             slides = p * p + q * q > still

@@ -38,7 +38,7 @@ def pictures(trace: Trace) -> list[Picture]:
     if not (trace.run.support.is_recess or trace.run.is_planar):
         paths["contact point"] = _along_the_rim(trace), _POINT
     for name, (places, style) in paths.items():
-        x, y = _thinned(places).T
+        x, y = _thin(places).T
         path.append(Line(x=x, y=y, style=style, name=name, width=1.0))
     panels = [
         Panel(x=TIME, y=tilt_axis([tilts], balance / cylinder.alpha), layers=tilt, title="tilt", height=3.4),
@@ -78,7 +78,7 @@ def _along_the_rim(trace: Trace) -> Array:
     return along
 
 
-def _thinned(places: Array) -> Array:
+def _thin(places: Array) -> Array:
     """As many of some places (n, 2) as a path shows, and one of those that are NaN between its pieces."""
     if not np.isfinite(places).any():
         return places[:1]

@@ -184,11 +184,11 @@ def _sizes(row: Mapping[Any, Any], unit: str) -> Row:
     if not math.isnan(row.get("peak", math.nan)):  # an earlier version stated none
         cells["peak"] = f"{number(row['peak'])}{_UNITS[row['unit']]}"
         if not math.isnan(row["for_mass"]):
-            cells["peak"] = f"{_rounded(row['peak'] / row['value'] * row['for_mass'])} {unit}"
+            cells["peak"] = f"{_round(row['peak'] / row['value'] * row['for_mass'])} {unit}"
     if not math.isnan(row["per_tonne"]):
-        cells["tonne"] = f"{_rounded(row['per_tonne'])} {unit}/t"
+        cells["tonne"] = f"{_round(row['per_tonne'])} {unit}/t"
         if not math.isnan(row["for_mass"]):
-            cells["mass"] = f"{_rounded(row['for_mass'])} {unit}"
+            cells["mass"] = f"{_round(row['for_mass'])} {unit}"
     return cells
 
 
@@ -205,7 +205,7 @@ def _demand_columns(found: Advice) -> Iterator[list[str]]:
     yield from (["peak", "peak", "words"], ["of", "not exceeded by", "words"])
 
 
-def _rounded(value: float) -> str:
+def _round(value: float) -> str:
     """Three digits of a force as a designer writes it: without a power of ten where it is large."""
     return f"{float(f'{value:.3g}'):.10g}" if value >= 1.0 else number(value)
 
@@ -226,7 +226,7 @@ def _steps(found: Advice, findings: Findings) -> list[str]:
 
 
 def _calls(found: Advice) -> dict[str, str]:
-    """What to write in Python, where `case` is at hand."""
+    """Python calls for the next steps, where `case` is defined."""
     run = f'rw.Run("{DEFAULT_ENGINE}", "{found.facts["support"]}")'
     return {
         "friction_unknown": "dataclasses.replace(case, friction=...)",

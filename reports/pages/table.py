@@ -46,7 +46,7 @@ def number(value: object, form: str = ".3g") -> str:
         return "∞" if found > 0.0 else "-∞"
     bound, _, plain = form.rpartition(" ")
     if bound:
-        found, form = _rounded(found, plain, _BOUNDS[bound]), plain
+        found, form = _round(found, plain, _BOUNDS[bound]), plain
     if form in _FORMS:
         return _FORMS[form](found)
     if form.endswith("d"):
@@ -99,7 +99,7 @@ _BOUNDS: Mapping[str, str] = {"most": ROUND_CEILING, "least": ROUND_FLOOR}
 _EXACT = 12  # digits beyond are those of binary arithmetic
 
 
-def _rounded(value: float, form: str, rounding: str) -> float:
+def _round(value: float, form: str, rounding: str) -> float:
     """Return a number rounded to one side, to the digits that a format shows."""
     exact = Decimal(f"{value:.{_EXACT}g}")
     if form == "percent":

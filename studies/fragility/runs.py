@@ -37,7 +37,7 @@ from ..study import Study
 from .intensity import intensity, measures_of, uplift_scale
 from .tables import CONTACT_LOST, SLIDES, YIELDED
 
-Row = dict[str, float | str]  # of a run
+Row = dict[str, float | str]  # row of a run
 # The worse plane is no run of its own: of both planes, for each motion, the one that tilts more.
 WORSE_PLANE = "worse-plane"
 _PLANES = {"planar-x": 0.0, "planar-y": 0.5 * math.pi}

@@ -490,7 +490,7 @@ def measure_rings(
 
 
 def release_of(tan_alpha: float, turn: float, length: float) -> Case:
-    """Return a release at alpha/2 in an azimuth [rad], of so long [s]."""
+    """Return a release at alpha/2 in an azimuth [rad], of a duration [s]."""
     cylinder = Cylinder(semidiagonal=REFERENCE_SIZE, tan_alpha=tan_alpha)
     initial = InitialState(tilt=0.5 * cylinder.alpha, rolling_angle=turn, rolling_rate=0.5)
     return Case(cylinder, initial=initial, duration=length, friction=AMPLE, name=FREE)

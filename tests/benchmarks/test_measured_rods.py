@@ -49,7 +49,7 @@ def test_a_known_loss_is_found_by_both_estimators() -> None:
     assert found["pass_to_pass"] == pytest.approx(expected, rel=1e-12)  # rounding
 
 
-def test_the_table_is_the_one_that_is_described() -> None:
+def test_the_table_of_rods_matches_its_description() -> None:
     told = (TABLE.parent / "README.md").read_text(encoding="utf-8")
     assert hashlib.sha256(TABLE.read_bytes()).hexdigest() in told
     assert TRACKS_SHA256 in told

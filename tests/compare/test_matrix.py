@@ -55,7 +55,7 @@ def test_the_numbers_are_those_of_the_two(matrix, motions, cylinder) -> None:
     assert other_way["tilt_rms"] == pytest.approx(both["tilt_rms"])
 
 
-def test_the_table_has_a_row_and_a_column_for_each(matrix) -> None:
+def test_the_agreement_matrix_has_a_row_and_column_per_run(matrix) -> None:
     (table,) = matrix_tables(matrix)
     assert table["support"] == "recess"
     assert [row["run"] for row in table["rows"]] == ["mujoco", "dart", "model"]

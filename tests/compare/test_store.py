@@ -13,7 +13,7 @@ def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.rglob("*"))
 
 
-def test_folders_are_made(tmp_path):
+def test_missing_folders_are_created(tmp_path):
     replace_files(tmp_path / "a" / "b", {"c.csv": b"1"})
     assert (tmp_path / "a" / "b" / "c.csv").read_bytes() == b"1"
 

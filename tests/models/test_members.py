@@ -41,7 +41,7 @@ def changed(case: Case, copy: Case) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("start", STARTS)
-def test_inputs_are_off_by_factors_of_their_own_of_one_seed(start: str) -> None:
+def test_each_input_is_perturbed_independently_by_one_seed(start: str) -> None:
     """Tilt and rolling rate of a release, both horizontal components of a motion from rest."""
     case = Case(PIER, name="a", **STARTS[start])
     due = 1.0 + 0.01 * np.random.default_rng(4).standard_normal((5, 2))

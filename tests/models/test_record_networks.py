@@ -185,7 +185,7 @@ class TestRefusals:
         counts = networks.cosmos(PARTS, COSMOS_NAMES, unit="counts(50)", kind="raw accel.")
         assert "V1 or V2" in refusal(tmp_path, "a.V0c", counts)
 
-    def test_velocities_and_displacements(self, tmp_path: Path) -> None:
+    def test_files_of_velocities_or_displacements_are_refused(self, tmp_path: Path) -> None:
         velocity = ["#    time(sec)      N-S(cm/s)      E-W(cm/s)      U-D(cm/s)"]
         assert "velocities" in refusal(tmp_path, "s.vel.bbp", networks.bbp(PARTS, velocity))
         assert "velocities" in refusal(tmp_path, "s.acc.bbp", networks.bbp(PARTS, velocity))

@@ -125,7 +125,9 @@ def test_an_uplift_under_a_turning_load_leaves_next_to_no_error(
 
 
 @pytest.mark.slow
-def test_vertical_motion(pier: Cylinder, solve_forced: Callable[..., Any]) -> None:
+def test_vertical_ground_motion_agrees_with_the_model(
+    pier: Cylinder, solve_forced: Callable[..., Any]
+) -> None:
     motion = el_centro_1940(vertical=True).scaled(2.0)
     run = multibody.simulate(Case(pier, motion, duration=5.0))
     exact = solve_forced(pier, motion, 5.0)

@@ -31,7 +31,7 @@ def test_mean_about_the_pose_of_the_step(centre: float) -> None:
     np.testing.assert_allclose(means[:, 0], time / 0.02 * 2.0, rtol=1e-9)
 
 
-def test_chunks_are_one_record() -> None:
+def test_excitation_in_chunks_equals_the_whole_record() -> None:
     means = StepMeans(MOTION, UNIT, 1e-3)
     np.testing.assert_array_equal(np.vstack([means(0, 13), means(13, 40)]), means(0, 53))
 

@@ -182,7 +182,7 @@ def test_rotated_by_any_angle(late):
 
 
 @pytest.mark.slow
-def test_overturned_is_what_still_ground_for_as_long_as_it_takes_decides():
+def test_overturning_is_decided_over_still_ground():
     """Records cut in the middle of the strong part."""
     fell, later = 0, 0
     for seed in range(120):

@@ -45,7 +45,7 @@ def by_key(limits: dict[str, Numbers], **structure: float) -> dict[str, Finding]
         ("records", {"halved_05_least": 1.0, "halved_95_largest": 1.0}, "limit_records.converged"),
     ],
 )
-def test_other_numbers_are_other_findings(
+def test_findings_change_with_the_numbers(
     limits: dict[str, Numbers], limit: str, numbers: Numbers, key: str
 ) -> None:
     plain, other = by_key(limits), by_key({**limits, limit: {**limits[limit], **numbers}})
