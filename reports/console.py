@@ -254,7 +254,8 @@ def save_with_page(found: Results, out: Path, *, details: bool = False) -> Calla
 
     def show() -> None:
         page.show(details=details)
-        first, *rest = dict.fromkeys([*reversed(pages), *found.sheets(), "manifest.json"])
+        sheets = sorted(found.sheets(), key=lambda name: name.endswith(".json"))  # tables before findings
+        first, *rest = dict.fromkeys([*reversed(pages), *sheets, "manifest.json"])
         tables = [f"{name}.parquet" for name in found.tables]
         print(_wrap(f"Written to {out}: {_listed(first, [*rest, *tables], len(str(out)))}"))
 
