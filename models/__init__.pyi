@@ -13,7 +13,7 @@ from .diagnostic import Assumptions as Assumptions
 from .diagnostic import Diagnostic as Diagnostic
 from .ground_motion import GroundMotion as GroundMotion
 from .hazard import HazardCurve as HazardCurve
-from .hazard_file import read_hazard as read_hazard
+from .hazard import read_hazard as read_hazard
 from .members import perturbed_copies as perturbed_copies
 from .members import with_motions as with_motions
 from .records.files import el_centro_1940 as el_centro_1940

@@ -176,7 +176,7 @@ class Hazard(Plan):
 
     hazard: Path | None = _hazard(
         None,
-        "Hazard curve, for the annual frequency: CSV of two named columns or of OpenQuake, JSON of the USGS.",
+        "Hazard curve, for the annual frequency: CSV of two named columns or of OpenQuake.",
     )
     hazard_measure: str | None = _hazard(
         None,

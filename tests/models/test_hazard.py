@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import math
 from pathlib import Path
 
@@ -36,7 +35,7 @@ def test_between_its_points_a_curve_is_a_power_law() -> None:
         (X, RATE[:-1], {}, "got 4 for 5"),
         (X[:1], RATE[:1], {}, "two or more intensities"),
         ([0.1, 0.1, 0.2], RATE[:3], {}, "increasing"),
-        (X, [2e-2, 7e-3, 7e-3, 4e-4, 5e-5], {}, "got 0.007 at 0.1"),
+        (X, [2e-2, 7e-3, 7e-3, 4e-4, 5e-5], {}, "got 0.007 at 0.2"),
         (X, [2e-2, 7e-3, 2e-3, 4e-4, 0.0], {}, "got 0 at 0.8"),
         (X, [2e-2, 7e-3, math.nan, 4e-4, 1e-5], {}, "positive and finite"),
         (X, RATE, {"measure": "pgd"}, "the measure of a hazard curve"),
@@ -113,54 +112,47 @@ ROWS = "\n" + "".join(f"{x},{y}\n" for x, y in zip(X, RATE, strict=True))
 
 
 @pytest.mark.parametrize(
-    ("header", "option", "value", "words"),
+    ("header", "options", "first"),
     [
-        ("PGA,AFE", "units", "g", "say the unit"),
-        ("acceleration,AFE", "units", "m/s2", "say the unit"),
-        ("PGA (g),probability", "years", 50.0, "in how many years"),
-        ("PGA (g),P50", "years", 50.0, "in how many years"),
-        ("PGA (g),poe_50", "years", 50.0, "in how many years"),
+        ("PGA,AFE", {"units": "Gal"}, (X[0] / UNITS["pga"]["Gal"], RATE[0])),
+        ("PGA (g),probability", {"years": 50.0}, (X[0], -math.log1p(-RATE[0]) / 50.0)),
     ],
 )
-def test_missing_hazard_units_are_asked_for(
-    header: str, option: str, value: object, words: str, tmp_path: Path
+def test_what_a_header_does_not_say_is_asked_for(
+    header: str, options: dict[str, object], first: tuple[float, float], tmp_path: Path
 ) -> None:
-    with pytest.raises(ValueError, match=words):
+    with pytest.raises(ValueError, match=next(iter(options))):
         read(tmp_path, header + ROWS)
-    site = read(tmp_path, header + ROWS, **{option: value})
-    assert site.intensity[0] == pytest.approx(X[0] / UNITS["pga"][value] if option == "units" else X[0])  # type: ignore[index]
-    rate = -math.log1p(-RATE[0]) / 50.0 if option == "years" else RATE[0]
-    assert site.annual_frequency[0] == pytest.approx(rate)
+    site = read(tmp_path, header + ROWS, **options)
+    assert (site.intensity[0], site.annual_frequency[0]) == pytest.approx(first)
 
 
 @pytest.mark.parametrize(
     ("header", "options", "words"),
     [
-        ("x,y", {"units": "g"}, "must name one column"),
-        ("PGA (g),PGA (g)", {}, "must name one column"),
-        ("AFE,TR", {}, "must name one column"),
-        ("PGA (g),rate", {}, "that it is annual"),
-        ("ln(PGA),AFE", {}, "'ln'"),
-        ("log10 PGA (g),AFE", {}, "'log10'"),
-        ("PGA (g),AFE x 1e-3", {}, "'1e-3'"),
-        ("PGA (g),10% in 50 years", {}, "'10%'"),
-        ("PGA (g),probability in 50 years (%)", {}, "'%'"),
-        ("PGA (g),annual probability of non-exceedance", {}, "'non-exceedance'"),
-        ("PGA (g),return period (days)", {}, "'days'"),
-        ("PGD (cm),AFE", {}, "'pgd'"),
-        ("site (g),AFE", {}, "names no intensity"),
+        *((header, {"units": "g"}, "must name one column") for header in ("x,y", "PGA,PGA", "AFE,TR")),
+        *(
+            (f"{title},AFE", {}, "no intensity")
+            for title in ("ln(PGA)", "PGD (cm)", "site (g)", "Sa (5%) (g)")
+        ),
+        *((f"PGA (g),{title}", {}, "must name one") for title in ("rate", "AFE x 1e-3", "10% in 50 years")),
+        *(
+            (f"PGA (g),{title}", {}, "must name one")
+            for title in ("poe 50 years (%)", "annual probability of non-exceedance", "return period (days)")
+        ),
+        ("PGA (g),annual probability in 50 years", {}, "must name one"),
         ("PGV (cm/s),AFE", {}, "is of 'PGV"),
+        ("PGA (0.5 s) (g),AFE", {}, "is of 'PGA"),
         ("Sa(0.5 s) (g),AFE", {"measure": "sa", "period": 0.6}, "is of 'Sa"),
         ("PGA (g),AFE", {"units": "m/s2"}, "is in g, got units m/s2"),
         ("PGA (g),AFE", {"units": "inch"}, "units of a hazard curve"),
         ("PGA (g),AFE", {"years": 50.0}, "years belong to a probability"),
-        ("PGA (g),P50", {"years": 10.0}, "contradicts"),
         ("PGA (g),probability in 50 years", {"years": 10.0}, "is of 50 years"),
         ("PGA (g),AFE", {"site": 1}, "no file of OpenQuake"),
-        ("PGA (g),TR", {}, "must decrease"),
-        ("name,lon,lat,0.1,0.2", {}, "levels in the header"),
-        ("imt,iml,poe", {}, "two columns"),
-        ("0.01,0.9", {}, "two columns"),
+        ("PGA (g),TR", {}, "decrease"),
+        ("name,lon,lat,0.1,0.2", {}, "two columns"),
+        ("0.01,0.9", {}, "must name one column"),
+        ('{"response":', {}, "two columns"),
     ],
 )
 def test_a_table_that_could_be_read_wrongly_is_refused(
@@ -179,9 +171,9 @@ def test_a_table_that_could_be_read_wrongly_is_refused(
         ("0.1,0.2,0.3\n", "two columns"),
         ("0.1,2\n0.2,nan\n", "two numbers"),
         ("0.1,0\n0.2,0\n", "no hazard at this site"),
-        ("0.1,0.1\n0.2,0.1\n0.2,0.05\n", "two frequencies at the level 0.2"),
-        ("0,0.1\n0.2,0.05\n", "a level must be positive, got 0: leave"),
-        ("", "no rows below its header"),
+        ("0.1,0.1\n0.2,0.1\n0.2,0.05\n", "positive, finite and increasing"),
+        ("0,0.1\n0.2,0.05\n", "positive, finite and increasing"),
+        ("", "two columns"),
         ("0.05,0.1\n0.2,0.01\n0.1,0.05\n", "rise, or fall, throughout"),
         ("0.1,-2\n0.2,-3\n", "a logarithm"),
     ],
@@ -189,6 +181,8 @@ def test_a_table_that_could_be_read_wrongly_is_refused(
 def test_rows_that_are_no_curve_are_refused(rows: str, words: str, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=words):
         read(tmp_path, "PGA (g),AFE\n" + rows)
+    with pytest.raises(ValueError, match=r"must be positive, got 0|two|no hazard|increasing|rise|logarithm"):
+        read(tmp_path, "PGA (g),TR\n" + rows)
 
 
 def test_a_comma_that_may_part_thousands_is_refused(tmp_path: Path) -> None:
@@ -214,7 +208,9 @@ def test_a_curve_is_its_highest_levels_or_refused_in_a_line(tmp_path: Path) -> N
             assert site.annual_frequency == pytest.approx([-math.log1p(-each) / 50.0 for each in levels])
             read_so_far += 1
             continue
-        with pytest.raises(ValueError, match=r"fewer than two|no hazard at this|must decrease") as refusal:
+        with pytest.raises(
+            ValueError, match=r"fewer than two|no hazard at this|finite and decrease"
+        ) as refusal:
             read(tmp_path, text)
         assert refusal.value.args[0].startswith("site.csv")
     assert read_so_far > 10
@@ -227,17 +223,8 @@ def test_a_header_may_be_the_last_comment_above_the_numbers(tmp_path: Path) -> N
     curve = read(tmp_path, "# site, a = 1\n# PGA(g) AFE\n" + rows)
     assert curve.intensity == pytest.approx(X)
     assert "site" not in curve.source
-    with pytest.raises(ValueError, match="two columns"):
+    with pytest.raises(ValueError, match="must name one column"):
         read(tmp_path, rows)
-
-
-def usgs(imt: str, newer: bool) -> str:
-    own = {"value": imt, "display": "0.20 Second Spectral Acceleration"}
-    other = {"component": "Fault", "yvalues": [1e-9] * 5, "values": {"xs": X, "ys": [1e-9] * 5}}
-    total = {"component": "Total", "yvalues": RATE, "values": {"xs": X, "ys": RATE}}
-    if newer:
-        return json.dumps({"response": {"hazardCurves": [{"imt": own, "data": [other, total]}]}})
-    return json.dumps({"response": [{"metadata": {"imt": own, "xvalues": X}, "data": [other, total]}]})
 
 
 def openquake(imt: str, sites: int = 1, years: float = 50.0, columns: str = "poe-{:.7f}") -> str:
@@ -252,19 +239,14 @@ def openquake(imt: str, sites: int = 1, years: float = 50.0, columns: str = "poe
     )
 
 
-@pytest.mark.parametrize("form", [openquake, lambda imt: usgs(imt, True), lambda imt: usgs(imt, False)])
 @pytest.mark.parametrize(
-    ("measure", "period", "imts", "unit"),
-    [
-        ("pga", None, ("PGA", "PGA"), 1.0),
-        ("sa_mean", 0.2, ("SA(0.2)", "SA0P2"), 1.0),
-        ("pgv_resultant", None, ("PGV", "PGV"), 0.01),
-    ],
+    ("measure", "period", "imt", "unit"),
+    [("pga", None, "PGA", 1.0), ("sa_mean", 0.2, "SA(0.2)", 1.0), ("pgv_resultant", None, "PGV", 0.01)],
 )
-def test_files_of_programs_are_in_the_units_of_their_convention(
-    form: object, measure: str, period: float | None, imts: tuple[str, str], unit: float, tmp_path: Path
+def test_files_of_openquake_are_in_the_units_of_its_convention(
+    measure: str, period: float | None, imt: str, unit: float, tmp_path: Path
 ) -> None:
-    text = form(imts[form is not openquake])  # type: ignore[operator]
+    text = openquake(imt)
     site = read(tmp_path, text, measure=measure, period=period)
     assert site.intensity == pytest.approx(unit * np.array(X), rel=1e-12)
     assert site.annual_frequency == pytest.approx(RATE, rel=1e-9)
@@ -290,24 +272,14 @@ def test_a_site_of_several_is_chosen(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "options", "words"),
     [
-        (openquake("PGA"), {"measure": "pgv"}, "is of PGA, not of PGV: choose"),
-        (openquake("AvgSA(0.2)"), {}, "not read here: export PGA, PGV or SA"),
-        (
-            usgs("PGA", True).replace('"hazardC', '"metadata": {"ylabel": "probability"}, "hazardC'),
-            {},
-            "annual frequencies over",
-        ),
+        (openquake("PGA"), {"measure": "pgv"}, "is of 'PGA', not of PGV"),
+        (openquake("AvgSA(0.2)"), {}, "no intensity"),
         (openquake("PGA"), {"years": 1.0}, "is of 50 years"),
         (openquake("PGA", columns="PGA~{}"), {}, "no hazard curve of OpenQuake"),
-        (openquake("PGA").replace("1,2.0,0.0,", "1,2.0,0.0,-"), {}, "from 0 to 1"),
-        (usgs("PGA", True), {"years": 50.0}, "annual frequencies"),
-        (usgs("PGA", True).replace("Total", "total"), {}, "one total of levels and values"),
-        ('{"response": {}}', {}, "no hazard curve of the USGS"),
-        ('{"response": "no such site"}', {}, "no hazard curve of the USGS"),
-        (usgs("PGA", True).replace('"xs": [', '"xs": [[1], '), {}, "one total of levels and values"),
+        (openquake("PGA").replace("1,2.0,0.0,", "1,2.0,0.0,-"), {}, "must not be negative"),
+        (openquake("PGA").replace("1,2.0,0.0,", "1,2.0,0.0,x"), {}, "expected a number in each"),
         (openquake("PGA").replace("investigation_time=50", "investigation_time=-50"), {}, "positive number"),
-        (openquake("PGA").replace("imt='PGA'", ""), {}, "does not say its measure"),
-        ("{", {}, "no hazard curve of the USGS"),
+        (openquake("PGA").replace("imt='PGA'", ""), {}, "'no imt' is no intensity"),
     ],
 )
 def test_a_file_of_a_program_that_is_something_else_is_refused(
