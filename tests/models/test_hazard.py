@@ -37,7 +37,7 @@ def test_between_its_points_a_curve_is_a_power_law() -> None:
         ([0.1, 0.1, 0.2], RATE[:3], {}, "increasing"),
         (X, [2e-2, 7e-3, 7e-3, 4e-4, 5e-5], {}, "got 0.007 at 0.2"),
         (X, [2e-2, 7e-3, 2e-3, 4e-4, 0.0], {}, "got 0 at 0.8"),
-        (X, [2e-2, 7e-3, math.nan, 4e-4, 1e-5], {}, "positive and finite"),
+        (X, [2e-2, 7e-3, math.nan, 4e-4, 1e-5], {}, "got nan at 0.2"),
         (X, RATE, {"measure": "pgd"}, "the measure of a hazard curve"),
         (X, RATE, {"measure": "sa"}, "needs the period"),
         (X, RATE, {"period": 1.0}, "a period belongs to sa"),
