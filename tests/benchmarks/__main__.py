@@ -12,17 +12,14 @@ from pathlib import Path
 TESTS = Path(__file__).resolve().parents[1]
 SCRIPTS = (
     "certified_releases",
-    "convergence",
     "decks",
     "engine_settings",
-    "false_alarms",
     "fragility_coverage",
     "frames",
     "loss_effects",
     "measured_rods",
     "needs_coverage",
     "risk_coverage",
-    "rolling_losses",
     "tendons",
     "who_can_rock",
     "who_can_slide",

@@ -9,12 +9,8 @@ springs have friction with memory: the elongation of a spring, at most friction 
 
 from __future__ import annotations
 
-import contextlib
 import math
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import Any
-from unittest import mock
 
 import numba
 import numpy as np
@@ -28,7 +24,6 @@ from rockwobble.multibody.scene import Body, scaled_body, starting_state
 Array = NDArray[np.float64]
 G, R = 9.81, 6.0
 SAMPLE = 0.01  # [s]
-THICKNESS = 1.0  # of the slab [m]
 _EDGE = 2.5  # the slab reaches this far beyond the axes of its columns, in b
 _GUIDE = 2.5e5  # of each half, over the axial inertia [1/s^2]
 _DAMPING = 1.8  # share of the slip that one step removes, as `MujocoSettings`
@@ -37,46 +32,24 @@ _STEP = 0.05  # of the period of a column between two springs, over 2 pi
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Frame:
-    """One problem: a frame and how far it is from the ideal one.
+    """One problem: a frame and how far it is from the ideal one."""
 
-    Attributes
-    ----------
-    columns : int
-        1: under a slab that cannot turn.
-    circle : float
-        Radius of the circle on which the columns stand, in b.
-    tilt, spin : float
-        Of the release, over alpha and in rad/s.
-    give : float
-        Depth by which an end of a column sinks in under the weight at the base, in b.
-    longer : float
-        Length of one column beyond that of the others, in gives.
-    lean : float
-        Tilt of one column beyond that of the others, as a share.
-    offset : float
-        Mass centre of the slab from the middle of the columns [m].
-    thickness : float
-        Of the slab [m]; its mass centre is in the middle.
-    inertia : float
-        Of the slab, over that of a homogeneous one.
-    """
-
-    columns: int
+    columns: int  # 1: under a slab that cannot turn
     ratio: float = 1.0
     tan_alpha: float = 0.5
-    circle: float = 3.0
+    circle: float = 3.0  # radius of that on which the columns stand [b]
     support: str = "recess"
     motion: GroundMotion | None = None
     duration: float = 3.0
-    tilt: float = 0.5
-    spin: float = 0.5
+    tilt: float = 0.5  # of the release [alpha]
+    spin: float = 0.5  # of the release [rad/s]
     friction: float = 1.0
-    give: float = 1e-4
-    longer: float = 0.0
-    lean: float = 0.0
-    offset: float = 0.0
-    thickness: float = THICKNESS
-    inertia: float = 1.0
+    give: float = 1e-4  # depth by which an end sinks in under the weight at the base [b]
+    longer: float = 0.0  # one column than the others [gives]
+    lean: float = 0.0  # tilt of one column beyond that of the others, a share of it
+    offset: float = 0.0  # mass centre of the slab from the middle of the columns [m]
+    thickness: float = 1.0  # of the slab, whose mass centre is in the middle [m]
+    inertia: float = 1.0  # of the slab, over that of a homogeneous one
 
     @property
     def cylinder(self) -> Cylinder:
@@ -159,21 +132,11 @@ class Frame:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Motion:
-    """Samples of all bodies.
+    """Samples of all bodies."""
 
-    Attributes
-    ----------
-    tilt : ndarray, shape (m, n)
-        Of the columns [rad].
-    turned : ndarray, shape (m,)
-        Turn of the slab from how it was released [rad].
-    load : ndarray, shape (m, n)
-        Normal force on the tops, over the weight of a share of the slab.
-    """
-
-    tilt: Array
-    turned: Array
-    load: Array
+    tilt: Array  # (m, n) of the columns [rad]
+    turned: Array  # (m,) turn of the slab from how it was released [rad]
+    load: Array  # (m, n) normal force on the tops, over the weight of a share of the slab
 
 
 def _motion(frame: Frame, axes: Array, turn: Array, load: Array) -> Motion:
@@ -332,50 +295,11 @@ def by_bullet(frame: Frame, step: float = 2e-4) -> Motion:
     return _motion(frame, np.array(axes), np.array(turns), np.array(load))
 
 
-def by_engine(frame: Frame, name: str, step: float | None = None, *, box: bool = False) -> Motion:
-    """Solve by an engine of the product, with a `box` in the place of the plane that its slab is."""
-    with BOXES[name]() if box else contextlib.nullcontext():
-        trace = simulate(frame.case, engine=name, support=frame.support, time_step=step, sample_step=SAMPLE)
+def by_engine(frame: Frame, name: str, step: float | None = None) -> Motion:
+    """Solve by an engine of the product."""
+    trace = simulate(frame.case, engine=name, support=frame.support, time_step=step, sample_step=SAMPLE)
     count = len(trace.time)
     return Motion(tilt=trace.tilt[:, None], turned=np.zeros(count), load=np.full((count, 1), np.nan))
-
-
-def _box_of_bullet() -> AbstractContextManager[object]:
-    from rockwobble.multibody.engines import pybullet as engine
-
-    plane = engine._PybulletStepper._add_slab
-
-    def box(stepper: engine._PybulletStepper) -> int:
-        bullet, client = stepper._bullet, stepper._client
-        made = bullet.createCollisionShape(
-            bullet.GEOM_BOX, halfExtents=[_WIDE, _WIDE, 0.5 * THICKNESS],
-            collisionFramePosition=[0.0, 0.0, -0.5 * THICKNESS], physicsClientId=client,
-        )  # fmt: skip
-        with mock.patch.object(bullet, "createCollisionShape", return_value=made):
-            return plane(stepper)
-
-    return mock.patch.object(engine._PybulletStepper, "_add_slab", box)
-
-
-def _box_of_dart() -> AbstractContextManager[object]:
-    import dartpy
-
-    from rockwobble.multibody.engines import dart as engine
-
-    plane = engine._DartStepper._build
-
-    def box(stepper: engine._DartStepper, scene: Any, settings: Any) -> None:
-        plane(stepper, scene, settings)
-        assert stepper._slab is not None
-        outline = stepper._slab.getChildBodyNode().getShapeNode(0)
-        outline.setShape(dartpy.dynamics.BoxShape([2.0 * _WIDE, 2.0 * _WIDE, THICKNESS]))
-        outline.setRelativeTranslation([0.0, 0.0, 0.5 * THICKNESS])
-
-    return mock.patch.object(engine._DartStepper, "_build", box)
-
-
-BOXES = {"pybullet": _box_of_bullet, "dart": _box_of_dart}
-_WIDE = 30.0  # half of its width [m]
 
 
 def by_springs(frame: Frame) -> Motion:

@@ -18,7 +18,7 @@ from rockwobble.models import el_centro_1940
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 
 from .console import options_of
-from .frame_solvers import BOXES, SAMPLE, Frame, Motion, by_bullet, by_engine, by_mujoco, by_springs
+from .frame_solvers import SAMPLE, Frame, Motion, by_bullet, by_engine, by_mujoco, by_springs
 
 APART = 0.01  # of alpha, by which columns that are out of step differ
 Row = tuple[str, Frame, Callable[[Frame], Motion]]
@@ -41,12 +41,10 @@ def one_column() -> Iterator[Row]:
 def engines() -> Iterator[Row]:
     """The same in the engines of the product, at four times the default step and at the default."""
     for name in own_engines():
-        for box in (False, True) if name in BOXES else (False,):
-            for support in find_engine(name).supports[:2]:
-                for step in (4e-4, 1e-4):
-                    solve = partial(by_engine, name=name, step=step, box=box)
-                    title = f"{support}, {name}{', box' if box else ''}, step {step:g} s"
-                    yield title, Frame(columns=1, support=support), solve
+        for support in find_engine(name).supports[:2]:
+            for step in (4e-4, 1e-4):
+                solve = partial(by_engine, name=name, step=step)
+                yield f"{support}, {name}, step {step:g} s", Frame(columns=1, support=support), solve
 
 
 def equal_columns() -> Iterator[Row]:
@@ -118,22 +116,17 @@ def measured(frame: Frame, solve: Callable[[Frame], Motion]) -> tuple[float, flo
     From the reduced model and between columns in alpha, turn of the slab in rad, and the least load of a
     column over its share of the slab, in the whole run.
     """
-    found, alpha = solve(frame), frame.cylinder.alpha
+    motion, alpha = solve(frame), frame.cylinder.alpha
     reference = frame.reference().tilt[:, None]
-    count = min(len(reference), len(found.tilt))
-    off = np.abs(found.tilt[:count] - reference[:count]).max(axis=1) / alpha
-    apart = np.ptp(found.tilt[:count], axis=1) / alpha
+    count = min(len(reference), len(motion.tilt))
+    off = np.abs(motion.tilt[:count] - reference[:count]).max(axis=1) / alpha
+    apart = np.ptp(motion.tilt[:count], axis=1) / alpha
     parted = np.flatnonzero(apart > APART)
     until = int(parted[0]) if len(parted) else count
     kept = slice(0, max(until, 1))
     time = math.inf if until == count else SAMPLE * until
-    return (
-        time,
-        float(off[kept].max()),
-        float(apart.max()),
-        float(found.turned[kept].max()),
-        float(found.load.min()),
-    )
+    turned = float(motion.turned[kept].max())
+    return time, float(off[kept].max()), float(apart.max()), turned, float(motion.load.min())
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -41,27 +41,14 @@ STANDS, LEANS = 3e-4, 1e-3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class World:
-    """A can in a simulator.
+    """A can in a simulator."""
 
-    Parameters
-    ----------
-    put : callable
-        Puts the mass centre [m], the quaternion (scalar first), velocity [m/s] and angular velocity [rad/s].
-    step : callable
-        Takes a step under a gravity [m/s^2].
-    lean : callable
-        Returns the horizontal components of the axis.
-    stands : bool
-        Whether it can stand on its base.
-    kept : object
-        What must live as long as the world does.
-    """
-
+    # puts the mass centre [m], the quaternion (scalar first), velocity [m/s] and angular velocity [rad/s]
     put: Callable[[Array, Array, Array, Array], None]
-    step: Callable[[Array], None]
-    lean: Callable[[], tuple[float, float]]
-    stands: bool = True
-    kept: object = None
+    step: Callable[[Array], None]  # takes a step under a gravity [m/s^2]
+    lean: Callable[[], tuple[float, float]]  # the horizontal components of the axis
+    stands: bool = True  # whether it can stand on its base
+    kept: object = None  # what must live as long as the world does
 
 
 def _lean(w: float, x: float, y: float, z: float) -> tuple[float, float]:
@@ -430,30 +417,20 @@ WORLDS: Mapping[str, tuple[str, float, float, Callable[[float, bool], World]]] =
     "prism-32": ("", 1e-4, math.nan, functools.partial(prism, corners=32)),
     "prism-64": ("", 1e-4, math.nan, functools.partial(prism, corners=64)),
     "prism-128": ("", 1e-4, math.nan, functools.partial(prism, corners=128)),
-    "newton-xpbd": (
-        "newton[sim]",
-        1 / 500,
-        1 / 1000,
-        _newton("XPBD", iterations=20, rigid_contact_relaxation=1.0),
-    ),
-    "newton-mujoco": ("newton[sim]", 1 / 500, 1 / 1000, _newton("MuJoCo")),
-    "newton-semi-implicit": (
-        "newton[sim]",
-        1 / 500,
-        1 / 2000,
-        _newton("SemiImplicit", _STIFF, angular_damping=0.0),
-    ),
-    "newton-featherstone": (
-        "newton[sim]",
-        1 / 500,
-        1 / 2000,
-        _newton("Featherstone", _STIFF, angular_damping=0.0),
-    ),
-    "newton-vbd": ("newton[sim]", 1 / 500, 1 / 1000, _newton("VBD", iterations=20)),
-    "newton-steel": ("newton[sim]", 1 / 500, 1 / 1000, _newton("Steel", iterations=30)),
-    "newton-kamino": ("newton[sim]", 1 / 500, math.nan, _newton("Kamino")),
-    "newton-style3d": ("newton[sim]", 1 / 500, math.nan, _newton("Style3D", cloth=True)),
-    "newton-mpm": ("newton[sim]", 1 / 500, math.nan, _newton("ImplicitMPM", cloth=True)),
+    **{
+        f"newton-{name}": ("newton[sim]", 1 / 500, better, world)
+        for name, better, world in (
+            ("xpbd", 1 / 1000, _newton("XPBD", iterations=20, rigid_contact_relaxation=1.0)),
+            ("mujoco", 1 / 1000, _newton("MuJoCo")),
+            ("semi-implicit", 1 / 2000, _newton("SemiImplicit", _STIFF, angular_damping=0.0)),
+            ("featherstone", 1 / 2000, _newton("Featherstone", _STIFF, angular_damping=0.0)),
+            ("vbd", 1 / 1000, _newton("VBD", iterations=20)),
+            ("steel", 1 / 1000, _newton("Steel", iterations=30)),
+            ("kamino", math.nan, _newton("Kamino")),
+            ("style3d", math.nan, _newton("Style3D", cloth=True)),
+            ("mpm", math.nan, _newton("ImplicitMPM", cloth=True)),
+        )
+    },
 }
 
 

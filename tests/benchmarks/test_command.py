@@ -22,7 +22,7 @@ def test_help_answers(name: str, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_the_command_runs_from_anywhere(tmp_path: Path) -> None:
-    command = [sys.executable, str(FOLDER), "convergence", "--none"]
+    command = [sys.executable, str(FOLDER), "decks", "--none"]
     answer = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert answer.returncode == 2
     assert "unrecognized arguments: --none" in answer.stderr

@@ -4,35 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 
-import numpy as np
 import pytest
 
-from benchmarks import convergence, engine_settings
-from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
+from benchmarks import engine_settings
+from rockwobble.models import el_centro_1940
 from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import find_engine
-
-PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-RELEASE = InitialState(0.8 * PIER.alpha, rolling_rate=0.5)
-# slopes of first and second order are told apart; a quarter of a second is too short for a sharper one
-SLOPE = 0.3
-
-
-def test_the_order_is_a_slope() -> None:
-    steps = [4.0, 2.0, 1.0]
-    assert convergence.order(steps, [48.0, 12.0, 3.0]) == pytest.approx(2.0)
-    assert convergence.order(steps, [1.0, np.nan, 0.25]) == pytest.approx(1.0)
-    assert np.isnan(convergence.order(steps, [np.nan, np.nan, 1.0]))
-
-
-def test_a_convergence_row() -> None:
-    case = Case(PIER, initial=RELEASE, duration=1.0, name="short")
-    table = convergence.convergence([case], engines=["mujoco"], steps=(8e-4, 4e-4, 2e-4), workers=1)
-    assert list(table["support"]) == ["recess", "flat"]
-    assert (table["error_3"] < table["error_1"]).all()
-    # 3e-6 alpha over 8 s at the default step, first order
-    assert (table["error_3"] < 1e-5).all()
-    assert table["order"].to_numpy() == pytest.approx(np.ones(2), abs=SLOPE)
 
 
 def test_values_belong_to_engine_settings_and_include_the_default() -> None:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from functools import partial
 
 import pytest
 
-from benchmarks.frame_solvers import Frame, by_bullet, by_engine, by_mujoco, by_springs
+from benchmarks.frame_solvers import Frame, by_bullet, by_mujoco, by_springs
 from benchmarks.frames import measured
 
 SHORT = 0.5  # [s]
@@ -21,13 +20,6 @@ def test_one_column_is_the_reduced_model(support: str) -> None:
     frame = Frame(columns=1, support=support, duration=SHORT)
     assert measured(frame, by_springs)[1] < SPRINGS
     assert measured(frame, lambda frame: by_mujoco(frame, impedance=0.995, contact_steps=2.0))[1] < MUJOCO
-
-
-def test_dart_collides_cylinder_with_box_as_an_octagon() -> None:
-    pytest.importorskip("dartpy", reason="DART has no wheel for this Python")
-    frame = Frame(columns=1, duration=SHORT)
-    assert measured(frame, partial(by_engine, name="dart", step=4e-4))[1] < 2e-6  # 2.1e-6 in 3 s
-    assert measured(frame, partial(by_engine, name="dart", step=4e-4, box=True))[1] > 1e-3  # 0.1 in 3 s
 
 
 @pytest.mark.parametrize("solve", [by_springs, by_mujoco, by_bullet])

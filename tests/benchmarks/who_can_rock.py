@@ -1,9 +1,9 @@
 """Who can rock: one can in every simulator, with its default settings and with the best that were found.
 
 Default settings, and simulators that rockwobble does not drive, are in `rock_worlds`, each run in a process
-of its own. The best settings of an engine are those of rockwobble. PhysX and Newton are packages of their
-own: `--environment physx=/path/to/python`, or they are installed into a fresh one (`pip install sapien`,
-`pip install 'newton[sim]'`). The times of a step are medians over rounds, each of which times them all.
+of its own. The best settings of an engine are those of rockwobble. PhysX and Newton need a Python with
+`pip install numpy sapien` or `pip install numpy 'newton[sim]'`: `--environment physx=/path/to/python`.
+The times of a step are medians over rounds, each of which times them all.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ import math
 import statistics
 import subprocess
 import sys
-import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
@@ -37,7 +36,6 @@ if TYPE_CHECKING:
 _STEP = 1e-4  # [s] of the engines with the settings of rockwobble
 _CAN = Cylinder(semidiagonal=math.hypot(worlds.B, worlds.H), tan_alpha=worlds.B / worlds.H)
 _LONGEST = 1200.0  # [s] of one simulator
-_INSTALL = 300.0  # [s]
 _ROUNDS = 3  # in which the steps of all simulators are timed
 # formulation and precision
 KNOWN: Mapping[str, tuple[str, str]] = MappingProxyType(
@@ -127,31 +125,6 @@ def _answer(python: str, *words: str) -> Any:
     return json.loads(done.stdout.splitlines()[-1])
 
 
-def environment(simulator: str, folder: Path) -> str:
-    """Return the Python that has a simulator: this one, or of a fresh environment with its package.
-
-    Raises
-    ------
-    RuntimeError
-        If it does not install.
-    """
-    package = worlds.WORLDS[simulator][0]
-    if simulator in own_engines() or not package:
-        return sys.executable
-    place = folder / package
-    python = str(place / "bin" / "python")
-    if not place.exists():
-        subprocess.run([sys.executable, "-m", "venv", str(place)], check=True)
-        install = [python, "-m", "pip", "install", "--quiet", "numpy", package]
-        try:
-            subprocess.run(install, capture_output=True, text=True, timeout=_INSTALL, check=True)
-        except subprocess.CalledProcessError as error:
-            raise RuntimeError(f"does not install: {error.stderr.strip().splitlines()[-1]}") from error
-        except subprocess.TimeoutExpired as error:
-            raise RuntimeError(f"is not installed within {_INSTALL:.0f} s") from error
-    return python
-
-
 def _row(simulator: str, settings: str, found: Mapping[str, Any]) -> dict[str, Any]:
     formulation, precision = KNOWN[simulator]
     row: dict[str, Any] = dict.fromkeys(_COLUMNS, math.nan) | {"version": "", "remark": ""}
@@ -190,29 +163,22 @@ def page(table: pd.DataFrame, when: str, command: str) -> str:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure each simulator, print the table and write it."""
+    import pandas as pd
+
     parser = options_of("who_can_rock", "What each simulator makes of a can: its turn, its tilt, its uplift.")
     parser.add_argument("--simulator", action="append", choices=tuple(KNOWN), help="default: all")
     parser.add_argument("--environment", action="append", default=[], metavar="NAME=PYTHON",
-                        help="Python that has physx or newton; default: a fresh one")  # fmt: skip
+                        help="Python that has physx or newton; default: this one")  # fmt: skip
     parser.add_argument("--out", type=Path, help="folder for the table; rows of other simulators stay")
-    parser.add_argument("--times", action="store_true", help="of --out alone: time the rows that it has")
     given = parser.parse_args(arguments)
-    if given.times and given.out is None:
-        parser.error("--times needs --out")
-    pythons = dict(each.split("=", 1) for each in given.environment)
-    chosen = given.simulator or list(KNOWN)
-    with tempfile.TemporaryDirectory() as scratch:
+    pythons: dict[str, str] = dict(each.split("=", 1) for each in given.environment)
 
-        def python_of(simulator: str) -> str:
-            return pythons.get(simulator.partition("-")[0]) or environment(simulator, Path(scratch))
+    def python_of(simulator: str) -> str:
+        return pythons.get(simulator.partition("-")[0], sys.executable)
 
-        if given.times:
-            kept: Any = known(given.out).to_dict("records")
-            rows: list[dict[str, Any]] = [row for row in kept if row["simulator"] in chosen]
-        else:
-            rows = [row for simulator in chosen for row in _measured(simulator, python_of)]
-        _time(rows, python_of)
-    table = _table(rows)
+    rows = [row for simulator in given.simulator or KNOWN for row in _measured(simulator, python_of)]
+    _time(rows, python_of)
+    table = pd.DataFrame(rows, columns=list(_COLUMNS))
     show(table, "Who can rock", {"simulator": "", "settings": "", "turn": ".3f", "tilt": ".5f", "uplift": "",
                                  "microseconds": ".0f", "remark": ""})  # fmt: skip
     if given.out is not None:
@@ -227,10 +193,7 @@ def _measured(simulator: str, python_of: Callable[[str], str]) -> list[dict[str,
     print(f"{simulator} ...", file=sys.stderr, flush=True)
     rows = []
     if simulator in worlds.WORLDS:
-        try:
-            python = python_of(simulator)
-        except RuntimeError as error:
-            return [_row(simulator, "default", {"remark": str(error)})]
+        python = python_of(simulator)
         steps = dict(zip(("default", "best"), worlds.WORLDS[simulator][1:3], strict=True))
         variants = [name for name, step in steps.items() if math.isfinite(step)]
         rows = [_row(simulator, each, foreign(simulator, each, python)) for each in variants]
@@ -248,12 +211,6 @@ def _time(rows: Sequence[dict[str, Any]], python_of: Callable[[str], str]) -> No
         rounds.append([cost(row["simulator"], row["settings"], python_of) for row in ran])
     for row, times in zip(ran, zip(*rounds, strict=True), strict=True):
         row["microseconds"] = statistics.median(times)
-
-
-def _table(rows: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
-    import pandas as pd
-
-    return pd.DataFrame(rows, columns=list(_COLUMNS))
 
 
 def known(out: Path) -> pd.DataFrame:

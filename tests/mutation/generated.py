@@ -57,23 +57,12 @@ sys.exit(not found.passed)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GeneratedFault:
-    """One fault: the place of a node among those of its file that can be changed.
+    """One fault: the place of a node among those of its file that can be changed."""
 
-    Parameters
-    ----------
-    file : str
-        Path in the checkout.
-    place : int
-    change : str
-        Line, kind, and what is changed.
-    sources : str
-        Hash of the file.
-    """
-
-    file: str
+    file: str  # path in the checkout
     place: int
-    change: str
-    sources: str
+    change: str  # line, kind, and what is changed
+    sources: str  # hash of the file
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

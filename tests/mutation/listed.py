@@ -23,7 +23,7 @@ from rockwobble.compare.check.groups import ENDS
 from rockwobble.multibody import available_engines
 
 from .mutant import Fault, mutated
-from .places import after_assignment, appended, before_assignment, scaled_argument, wrapped
+from .places import appended, at_assignment, scaled_argument, wrapped
 from .term_faults import FILE, term_faults
 
 # asked of a copy, which the interpreter runs: the others have solutions to 1e-13 and long records
@@ -32,26 +32,13 @@ INTERPRETED = tuple(group for group in GROUPS if group not in ("order", "baselin
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mutation:
-    """One fault, and where it is sought first.
-
-    Parameters
-    ----------
-    name : str
-    group : str
-        Group of checks that finds it; the others are asked where it does not.
-    faults : tuple of Fault
-        In the sources of the reduced models; empty for a fault in an engine.
-    engine : str
-        Engine whose settings are wrong.
-    settings : mapping
-        Its time step and settings.
-    """
+    """One fault, and where it is sought first."""
 
     name: str
-    group: str
-    faults: tuple[Fault, ...] = ()
-    engine: str = ""
-    settings: Mapping[str, Any] = field(default_factory=dict)
+    group: str  # of the checks that find it; the others are asked where it does not
+    faults: tuple[Fault, ...] = ()  # in the sources of the reduced models
+    engine: str = ""  # whose settings are wrong
+    settings: Mapping[str, Any] = field(default_factory=dict)  # its time step and settings
 
 
 def mutations() -> tuple[Mutation, ...]:
@@ -78,9 +65,7 @@ def _constants() -> list[Mutation]:
     """Constants of the body 1 % off, wherever they are used; R off through the cylinder itself."""
     # those of which others are made are changed before A, the first that is made of them
     made_of = {"b": "b", "h": "h", "I1": "I1", "I2": "I2"}
-    changes = {
-        name: before_assignment("body_of", "A", f"{symbol} *= 1.01") for name, symbol in made_of.items()
-    }
+    changes = {name: at_assignment("body_of", "A", f"{symbol} *= 1.01") for name, symbol in made_of.items()}
     fields = ("A", "J", "C", "E", "g", "p2", "sin_alpha", "cos_alpha")
     changes |= {name: scaled_argument("body_of", "Body", name, 1.01) for name in fields}
     found = [
@@ -132,7 +117,9 @@ def _structure() -> list[Mutation]:
     rolling = Fault(
         file="kernels.py", change=appended('INTEGRATORS["recess"], SIZES["recess"] = integrate_flat, 8')
     )
-    leak = Fault(file=FILE, change=after_assignment("expand", "momentum_1", "momentum_1 -= 1e-6 * h * L"))
+    leak = Fault(
+        file=FILE, change=at_assignment("expand", "momentum_1", "momentum_1 -= 1e-6 * h * L", after=True)
+    )
     return [
         Mutation(name="a sample of the record skipped", faults=(skipped,), group="conserved"),
         Mutation(name="components exchanged", faults=(exchanged,), group="rest"),
@@ -151,7 +138,7 @@ def _tendons() -> list[Mutation]:
     }
     changes |= {
         "1 % off: gaps of the force": scaled_argument("_tied_body", "TiedBody", "gaps", 1.01),
-        "a gap missing": before_assignment("_tied_body", "stiffness", "gaps = 1"),
+        "a gap missing": at_assignment("_tied_body", "stiffness", "gaps = 1"),
     }
     bodies = {
         "half angle: couple": (

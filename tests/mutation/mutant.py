@@ -52,18 +52,10 @@ def announce(entry, model, load):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fault:
-    """A change in the sources of the reduced models.
+    """A change in the sources of the reduced models."""
 
-    Parameters
-    ----------
-    file : str
-        Path in the package, such as "taylor.py".
-    change : callable
-        Changes the tree of that file in place; a ValueError says that the place of the change is gone.
-    """
-
-    file: str
-    change: Change
+    file: str  # such as "body.py"
+    change: Change  # of its tree in place; a ValueError says that its place is gone
 
     def applied(self, text: str) -> str:
         """Return the text of the file with the fault in it.

@@ -17,13 +17,7 @@ ORIGINAL = "without_fault"
 
 
 def function_in(tree: ast.AST, name: str) -> ast.FunctionDef:
-    """Return a function by its dotted name, such as "make_driver.integrate".
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
+    """The function of a dotted name, such as "make_driver.integrate"."""
     found: ast.AST = tree
     for part in name.split("."):
         inside = {each.name: each for each in _below(found)}
@@ -33,13 +27,7 @@ def function_in(tree: ast.AST, name: str) -> ast.FunctionDef:
 
 
 def assignment_in(function: ast.FunctionDef, target: str) -> tuple[list[ast.stmt], int]:
-    """Return the block and the place in it of the first assignment to `target`, written as in the source.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
+    """The block and the place in it of the first assignment to `target`, written as in the source."""
     found: dict[str, tuple[list[ast.stmt], int]] = {}
     for block in _blocks(function):
         for index, statement in enumerate(block):
@@ -52,41 +40,25 @@ def assignment_in(function: ast.FunctionDef, target: str) -> tuple[list[ast.stmt
 
 
 def argument_in(function: ast.FunctionDef, call: str, keyword: str) -> ast.keyword:
-    """Return an argument given by keyword in the first call of `call`.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
+    """An argument given by keyword in the first call of `call`."""
     calls = [node for node in ast.walk(function) if isinstance(node, ast.Call)]
     given = {each.arg: each for node in calls if ast.unparse(node.func) == call for each in node.keywords}
     named = {name: each for name, each in given.items() if name is not None}
     return _of(named, keyword, f"an argument {keyword!r} of {call} in {function.name}")
 
 
-def before_assignment(function: str, target: str, statement: str) -> Change:
-    """Return the change that puts a statement in front of the first assignment to `target`."""
+def at_assignment(function: str, target: str, statement: str, *, after: bool = False) -> Change:
+    """Puts a statement in front of the first assignment to `target`, or after it."""
 
     def change(tree: ast.Module) -> None:
         block, index = assignment_in(function_in(tree, function), target)
-        block[index:index] = ast.parse(statement).body
-
-    return change
-
-
-def after_assignment(function: str, target: str, statement: str) -> Change:
-    """Return the change that puts a statement behind the first assignment to `target`."""
-
-    def change(tree: ast.Module) -> None:
-        block, index = assignment_in(function_in(tree, function), target)
-        block[index + 1 : index + 1] = ast.parse(statement).body
+        block[index + after : index + after] = ast.parse(statement).body
 
     return change
 
 
 def scaled_argument(function: str, call: str, keyword: str, factor: float) -> Change:
-    """Return the change that multiplies an argument of a call."""
+    """Multiplies an argument of a call."""
 
     def change(tree: ast.Module) -> None:
         argument = argument_in(function_in(tree, function), call, keyword)
@@ -96,15 +68,7 @@ def scaled_argument(function: str, call: str, keyword: str, factor: float) -> Ch
 
 
 def wrapped(function: str, text: str) -> Change:
-    """Return the change that puts a function of the same name around one of the module.
-
-    Parameters
-    ----------
-    function : str
-        Its name.
-    text : str
-        Its new definition, which calls the one that it replaces as `without_fault`.
-    """
+    """Puts the definition `text`, which calls the one that it replaces as `without_fault`, around a function."""
 
     def change(tree: ast.Module) -> None:
         original = function_in(tree, function)
@@ -116,7 +80,7 @@ def wrapped(function: str, text: str) -> Change:
 
 
 def appended(text: str) -> Change:
-    """Return the change that adds statements to the end of the module."""
+    """Adds statements to the end of the module."""
 
     def change(tree: ast.Module) -> None:
         tree.body += ast.parse(text).body

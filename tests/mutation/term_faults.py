@@ -36,19 +36,10 @@ SUMS: Mapping[str, tuple[str, ...]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TermFault:
-    """One wrong term.
+    """One wrong term."""
 
-    Parameters
-    ----------
-    name : str
-        The sum, and the term as the source has it.
-    equations : tuple of str
-        "(18)", "(19)" or both.
-    fault : Fault
-    """
-
-    name: str
-    equations: tuple[str, ...]
+    name: str  # the sum, and the term as the source has it
+    equations: tuple[str, ...]  # "(18)", "(19)" or both
     fault: Fault
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from mutation.listed import Mutation, false_alarm, first_failure, mutations, run
 from mutation.mutant import Fault, mutated
-from mutation.places import Change, after_assignment, appended, before_assignment, scaled_argument, wrapped
+from mutation.places import Change, appended, at_assignment, scaled_argument, wrapped
 from mutation.term_faults import SUMS, term_faults
 from rockwobble import reduced
 from rockwobble.compare.check import lagrange
@@ -57,12 +57,12 @@ def test_every_sum_has_faults_in_both_senses() -> None:
     ("change", "message"),
     [
         (
-            before_assignment("body_of", "no_such", "pass"),
+            at_assignment("body_of", "no_such", "pass"),
             "reduced/body.py: the source must have an assignment to 'no_such' in body_of, got b, h, height, "
             "I1, I2, gamma, w, mu, A, R, p2",
         ),
         (
-            after_assignment("no_such", "A", "pass"),
+            at_assignment("no_such", "A", "pass", after=True),
             "reduced/body.py: the source must have a function 'no_such', got Body, body_of",
         ),
         (
