@@ -14,7 +14,8 @@ from rockwobble import reduced
 DOCS = Path(__file__).parents[2] / "docs"
 GUIDE = DOCS / "guide" / "frames.md"
 PAGE = DOCS / "published" / "frames.md"
-SECTION = re.compile(r"## Does a deck help or harm\?.*?(?=\n## )", re.DOTALL)
+SECTION = re.search(r"## Does a deck help or harm\?.*?(?=\n## )", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+WORDS = SECTION.group() if SECTION else ""
 METHODS = {"in three dimensions": "recess model", "in the worse of two planes": "worse plane"}
 
 
@@ -26,12 +27,6 @@ def medians() -> pd.DataFrame:
 def row_of(table: pd.DataFrame, method: str, ratio: float) -> dict[str, float]:
     own = table[(table["method"] == method) & (table["slab_mass_ratio"] == ratio)]
     return {str(name): value for name, value in own.iloc[0].items()}
-
-
-def said() -> str:
-    found = SECTION.search(PAGE.read_text(encoding="utf-8"))
-    assert found
-    return found.group()
 
 
 @pytest.mark.parametrize("title", METHODS)
@@ -47,7 +42,7 @@ def test_each_number_of_the_guide_is_that_of_the_table(
     if METHODS[title] == "recess model":
         numbers[-1] = ""
     line = f"| γ = {ratio:g}, {title} | {' | '.join(numbers)} |".replace("  ", " ")
-    assert line in said()
+    assert line in WORDS
 
 
 def test_a_deck_helps_by_what_the_guide_says(medians: pd.DataFrame) -> None:
@@ -57,7 +52,7 @@ def test_a_deck_helps_by_what_the_guide_says(medians: pd.DataFrame) -> None:
             row = row_of(table, "recess model", ratio)
             numbers = [row[f"over_alone{end}"] for end in ("", "_low", "_high")]
             words = "{:.2f} ({:.2f} to {:.2f})".format(*numbers)
-            assert words in said().replace("\n", " ")
+            assert words in WORDS.replace("\n", " ")
             assert table is few or words in " ".join(GUIDE.read_text(encoding="utf-8").split())
     # and the larger cylinder is as good
     rows = medians[medians["slab_mass_ratio"] > 0.0]
@@ -66,7 +61,7 @@ def test_a_deck_helps_by_what_the_guide_says(medians: pd.DataFrame) -> None:
 
 def test_what_a_deck_asks_for_is_what_the_guide_says() -> None:
     rows = pd.read_csv(PUBLISHED / "needs-300.csv").set_index("slab_mass_ratio")
-    words = said().replace("\n", " ")
+    words = WORDS.replace("\n", " ")
     assert "a friction of {:.2f}, {:.2f} and {:.2f} at the base".format(*rows["friction_base"]) in words
     assert "of {:.2f} and {:.2f} at the top".format(*rows["friction_top"].iloc[1:]) in words
     assert "moment of {:.3f}, {:.3f} and {:.3f} b".format(*rows["moment"]) in words

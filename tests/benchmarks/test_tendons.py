@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import re
-from typing import Any
 
 import pandas as pd
 import pytest
@@ -14,71 +13,53 @@ from rockwobble import reduced
 from rockwobble.models import Case, Tendon, synthetic_motions
 
 RATIO = re.compile(r"(\d+\.\d+) \((\d+\.\d+) to (\d+\.\d+)")
-# body, prestress, stiffness, method and column of each ratio of the page, in their order
-_ORDER = ("pier", "column", "tower", "pier under a deck")
-SAID: list[Any] = [
-    *((body, 1.0, 0.0, "recess model", "over_without") for body in _ORDER),
-    *((body, 0.0, 0.5, "recess model", "over_without") for body in _ORDER),
-    *(
-        ("pier", prestress, stiffness, method, "over_3d")
-        for method in ("planar x", "worse plane")
-        for prestress, stiffness in ((0.0, 0.0), (0.5, 0.0), (0.0, 0.5))
+PAGE = " ".join((PUBLISHED / "README.md").read_text(encoding="utf-8").split())
+ORDER = ("pier", "column", "tower", "pier under a deck")
+PLANES = ("planar x", "worse plane")
+# prestress and stiffness of the ratios of the page in their order, by table: to no tendon, and to 3D
+STATED = {
+    "p695": (((1.0, 0.0), (0.0, 0.5)), ((0.0, 0.0), (0.5, 0.0), (0.0, 0.5))),
+    "2000": (
+        ((1.0, 0.0), (0.5, 0.0), (0.0, 0.5), (0.0, 1.0)),
+        ((0.0, 0.0), (0.5, 0.0), (0.0, 0.5), (0.0, 1.0)),
     ),
-]
-SAID_OF_2000: list[Any] = [
-    *(
-        (body, prestress, stiffness, "recess model", "over_without")
-        for prestress, stiffness in ((1.0, 0.0), (0.5, 0.0), (0.0, 0.5), (0.0, 1.0))
-        for body in _ORDER
-    ),
-    *(
-        ("pier", prestress, stiffness, method, "over_3d")
-        for method in ("planar x", "worse plane")
-        for prestress, stiffness in ((0.0, 0.0), (0.5, 0.0), (0.0, 0.5), (0.0, 1.0))
-    ),
-]
+}
 
 
-@pytest.fixture(scope="module")
-def medians() -> pd.DataFrame:
-    return _medians("p695")
-
-
-def _medians(motions: str) -> pd.DataFrame:
+def medians(motions: str) -> pd.DataFrame:
     table = pd.read_csv(PUBLISHED / f"medians-{motions}.csv")
     return table.set_index(["body", "prestress", "stiffness", "method"])
 
 
-def test_each_ratio_of_the_page_is_that_of_its_table(medians: pd.DataFrame) -> None:
-    page = " ".join((PUBLISHED / "README.md").read_text(encoding="utf-8").split())
-    numbers = [
-        tuple(f"{of_key[tuple(key)][f'{name}{end}']:.2f}" for end in ("", "_low", "_high"))
-        for table, said in ((medians, SAID), (_medians("2000"), SAID_OF_2000))
-        for of_key in [table.to_dict("index")]
-        for *key, name in said
-    ]
-    assert [match.groups() for match in RATIO.finditer(page[: page.index("On flat ground")])] == numbers
-    for match in RATIO.finditer(page):
+def test_each_ratio_of_the_page_is_that_of_its_table() -> None:
+    numbers = []
+    for motions, (without, planes) in STATED.items():
+        table = medians(motions)
+        keys = [((body, *each, "recess model"), "over_without") for each in without for body in ORDER]
+        keys += [(("pier", *each, method), "over_3d") for method in PLANES for each in planes]
+        ends = ("", "_low", "_high")
+        numbers += [tuple(f"{table.loc[key, name + end]:.2f}" for end in ends) for key, name in keys]
+    assert [match.groups() for match in RATIO.finditer(PAGE[: PAGE.index("On flat ground")])] == numbers
+    for match in RATIO.finditer(PAGE):
         ratio, low, high = map(float, match.groups())
         if low < 1.0 < high and abs(ratio - 1.0) > 0.05:
-            assert "includes 1" in page[match.end() : match.end() + 20]
+            assert "includes 1" in PAGE[match.end() : match.end() + 20]
 
 
 def test_claims_on_flat_ground_match_their_table() -> None:
-    page = " ".join((PUBLISHED / "README.md").read_text(encoding="utf-8").split())
     tables = [pd.read_csv(PUBLISHED / f"flat-{engine}.csv") for engine in ("mujoco", "pybullet")]
-    stated = re.findall(r"(\d+\.\d+) b \((\d+\.\d+) to (\d+\.\d+)\)", page)
+    stated = re.findall(r"(\d+\.\d+) b \((\d+\.\d+) to (\d+\.\d+)\)", PAGE)
     ends = ("displacement", "displacement_low", "displacement_high")
     rows = [row for table in tables for _, row in table.iterrows()]
     assert stated == [tuple(f"{row[name]:.2f}" for name in ends) for row in rows]
     for table in tables:
         assert list(table["prestress"]) == list(PRESTRESS)
         overturned = ", ".join(str(each) for each in table["overturned"])
-        assert f"{overturned} of {table['motions'].iloc[0]} overturn" in page
+        assert f"{overturned} of {table['motions'].iloc[0]} overturn" in PAGE
 
 
-def test_more_prestress_takes_more_to_overturn(medians: pd.DataFrame) -> None:
-    for (_, stiffness, method), rows in medians.groupby(level=["body", "stiffness", "method"]):
+def test_more_prestress_takes_more_to_overturn() -> None:
+    for (_, stiffness, method), rows in medians("p695").groupby(level=["body", "stiffness", "method"]):
         if method == "recess model" and stiffness == 0.0:
             assert rows["median"].is_monotonic_increasing
 
@@ -106,10 +87,9 @@ def test_many_motions_are_counted_at_levels_about_the_median() -> None:
 
 
 def test_claims_on_highest_levels_match_their_table() -> None:
-    page = " ".join((PUBLISHED / "README.md").read_text(encoding="utf-8").split())
-    rows = _medians("2000")["median"]
-    of_g = [rows[body, 0.0, 1.0, "recess model"] * BODIES[body].tan_alpha for body in _ORDER]
-    assert "peaks of {:.1f}, {:.1f}, {:.1f} and {:.1f} g".format(*of_g) in page
+    rows = medians("2000")["median"]
+    of_g = [rows[body, 0.0, 1.0, "recess model"] * BODIES[body].tan_alpha for body in ORDER]
+    assert "peaks of {:.1f}, {:.1f}, {:.1f} and {:.1f} g".format(*of_g) in PAGE
 
 
 @pytest.mark.slow

@@ -68,7 +68,7 @@ def scaled_argument(function: str, call: str, keyword: str, factor: float) -> Ch
 
 
 def wrapped(function: str, text: str) -> Change:
-    """Puts the definition `text`, which calls the one that it replaces as `without_fault`, around a function."""
+    """Puts the definition `text`, which calls the replaced one as `without_fault`, around a function."""
 
     def change(tree: ast.Module) -> None:
         original = function_in(tree, function)
