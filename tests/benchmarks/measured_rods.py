@@ -155,25 +155,11 @@ def kept(table: pd.DataFrame) -> pd.DataFrame:
         )
         A = (3.0 * b * b + 4.0 * h * h) / 12.0 + b * b + h * h
         delta = A * (1.0 - middle_2) / (b * (1.0 + middle_2))
-        rows.append(
-            {
-                "diameter_mm": diameter,
-                "length_mm": length,
-                "tracks": tracks.ngroups,
-                "passes": len(rod),
-                "at_pass": middle,
-                "at_pass_low": low,
-                "at_pass_high": high,
-                "pass_to_pass": middle_2,
-                "pass_to_pass_low": low_2,
-                "pass_to_pass_high": high_2,
-                "small": small,
-                "large": large,
-                "housner": housner,
-                "times_housner": (1.0 - middle_2) / (1.0 - housner),
-                "delta_mm": delta,
-            }
-        )
+        row = {"diameter_mm": diameter, "length_mm": length, "tracks": tracks.ngroups, "passes": len(rod)}
+        row |= {"at_pass": middle, "at_pass_low": low, "at_pass_high": high}
+        row |= {"pass_to_pass": middle_2, "pass_to_pass_low": low_2, "pass_to_pass_high": high_2}
+        row |= {"small": small, "large": large, "housner": housner}
+        rows.append(row | {"times_housner": (1.0 - middle_2) / (1.0 - housner), "delta_mm": delta})
     return pd.DataFrame(rows)
 
 
@@ -191,13 +177,7 @@ def main(arguments: Sequence[str]) -> int:
     columns = {"diameter_mm": ".0f", "length_mm": ".0f", "tracks": "d", "passes": "d"}
     for name in ("at_pass", "pass_to_pass"):
         columns |= {name: ".4f", f"{name}_low": ".3f", f"{name}_high": ".3f"}
-    columns |= {
-        "small": ".3f",
-        "large": ".3f",
-        "housner": ".4f",
-        "times_housner": ".2f",
-        "delta_mm": ".2f",
-    }
+    columns |= {"small": ".3f", "large": ".3f", "housner": ".4f", "times_housner": ".2f", "delta_mm": ".2f"}
     note = "Another potential, one camera without calibration: compared with measurement, not validated."
     show(kept(pd.read_csv(TABLE)), "Share of the tilt rate kept, with quartiles", columns, note)
     return 0

@@ -16,6 +16,7 @@ import itertools
 import math
 import sys
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -49,12 +50,8 @@ BODIES = {
     "tower": Cylinder(semidiagonal=10.0, tan_alpha=0.1),
 }
 PRESTRESS = (0.0, 0.25, 0.5, 1.0)
-STIFFNESS = (
-    0.0,
-    0.5,
-    1.0,
-    1.5,
-)  # over the neutral one: at it and beyond the couple brings it back from all tilts
+# over the neutral one: at it and beyond the couple brings it back from all tilts
+STIFFNESS = (0.0, 0.5, 1.0, 1.5)
 LEVELS = tuple(float(f"{level:.3g}") for level in np.geomspace(1.5, 60.0, 12))  # over g tan(alpha)
 # of many synthetic motions: prestress and stiffness, and what the medians grow by there, as those of P-695
 GROWTH = {
@@ -148,15 +145,9 @@ def _overturned(
     for motion in motions:
         scales = levels * 9.81 * body.tan_alpha / motion.peak
         for own, plane in zip(peaks.values(), planes, strict=True):
-            found = reduced.peak_tilts(
-                [body.semidiagonal],
-                body.tan_alpha,
-                motion,
-                scales,
-                plane=plane,
-                slab_mass_ratio=body.slab_mass_ratio,
-                tendon=tendon,
-            )
+            ratio = body.slab_mass_ratio
+            peak = partial(reduced.peak_tilts, plane=plane, slab_mass_ratio=ratio, tendon=tendon)
+            found = peak([body.semidiagonal], body.tan_alpha, motion, scales)
             own.append(found[0])
     tilts = {method: np.array(own) for method, own in peaks.items()}
     tilts["worse plane"] = np.maximum(tilts["planar x"], tilts["planar y"])

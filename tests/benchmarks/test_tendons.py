@@ -38,7 +38,7 @@ def test_each_ratio_of_the_page_is_that_of_its_table() -> None:
         keys = [((body, *each, "recess model"), "over_without") for each in without for body in ORDER]
         keys += [(("pier", *each, method), "over_3d") for method in PLANES for each in planes]
         ends = ("", "_low", "_high")
-        numbers += [tuple(f"{table.loc[key, name + end]:.2f}" for end in ends) for key, name in keys]
+        numbers += [tuple(f"{table[name + end][key]:.2f}" for end in ends) for key, name in keys]
     assert [match.groups() for match in RATIO.finditer(PAGE[: PAGE.index("On flat ground")])] == numbers
     for match in RATIO.finditer(PAGE):
         ratio, low, high = map(float, match.groups())
