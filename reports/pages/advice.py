@@ -76,11 +76,13 @@ def page_of(found: Advice) -> Page:
         "numbers": list(_numbers(found, findings)),
         "place": "recess" if support_named(facts["support"]).is_recess else "ground",
         "weight": " ".join(_said(findings.of("weight"))),
+        "weight_short": " ".join(statement(each, short=True) for each in findings.of("weight")),
         "demanded": list(_demand_rows(found, findings)),
         "demand_columns": list(_demand_columns(found)),
         "wall": " ".join(_said(each for each in findings.of("wall") if each.key not in _DEMAND_DETAILS)),
         "acting": " ".join(_said([*acting, *(each for each in findings if each.key == "demand.weaker")])),
         "steps": _steps(found, findings),
+        "next": next(iter(_steps(found, findings, short=True)), ""),
         "groups": _groups(found, findings),
         "perturbation": facts["perturbation"],
         "seed": facts["seed"],
@@ -174,9 +176,19 @@ def _demand_rows(found: Advice, findings: Findings) -> Iterator[Row]:
         row, name = rows[demand], lines_of(f"demand.{demand}")[0]
         if math.isnan(row["value"]):
             reason = missing[f"demand_{'moment' if demand == 'wall_force' else demand}"]
-            yield {"name": name, "value": _cell("not_given"), "of": sentence(reason, short=True)}
+            yield {
+                "name": name,
+                "demand": demand,
+                "value": _cell("not_given"),
+                "of": sentence(reason, short=True),
+            }
             continue
-        yield {"name": name, **_sizes(row, "kNm" if demand == "moment" else "kN"), "of": _of(found, row)}
+        yield {
+            "name": name,
+            "demand": demand,
+            **_sizes(row, "kNm" if demand == "moment" else "kN"),
+            "of": _of(found, row),
+        }
 
 
 def _sizes(row: Mapping[Any, Any], unit: str) -> Row:
@@ -216,11 +228,15 @@ def _ratios_of_tendon(found: Advice) -> dict[str, str]:
     return {f"tendon_{name}": f"{tendon[name]:.6g}" for name in ("prestress", "stiffness") if name in tendon}
 
 
-def _steps(found: Advice, findings: Findings) -> list[str]:
+def _steps(found: Advice, findings: Findings, *, short: bool = False) -> list[str]:
     """Lines of what to do next: words, and the whole command where there is one."""
     commands = _calls(found) if found.facts["options"] is None else _commands(found)
     return [
-        _cell("step", detail=statement(each)[:-1], code=commands.get(each.key.partition(".")[2], ""))
+        _cell(
+            "step",
+            detail=statement(each, short=short)[:-1],
+            code=commands.get(each.key.partition(".")[2], ""),
+        )
         for each in findings.of("step")
     ]
 

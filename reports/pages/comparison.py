@@ -100,10 +100,10 @@ def _case(view: CaseView, results: Comparison, *, many: bool) -> dict[str, objec
         "name": name,
         "lines": case_lines(view.case),
         "headline": headline(findings),
+        "short": [statement(each, short=True) for each in findings if each.key in _ANSWERS],
         "findings": [statement(each) for each in findings if each.key not in (*_HEADLINE, *_SUPPORTS)],
         "unusual": [statement(each) for each in findings if each.key not in _USUAL],
         "supports": [statement(each) for each in findings if each.key in _SUPPORTS],
-        "supports_short": [statement(each, short=True) for each in findings if each.key in _SUPPORTS],
         "diagnostics": run_diagnostics(view),
         "first": first_rows(rows),
         "rows": main_rows(view, results.causes[name]),
@@ -115,6 +115,7 @@ def _case(view: CaseView, results: Comparison, *, many: bool) -> dict[str, objec
 
 _MODES = tuple(f"mode.{name}" for name in words()["mode"])
 _HEADLINE = (*_MODES, *AGREE[0], *AGREE[1], "comparison.none")
+_ANSWERS = tuple(key for key in _HEADLINE if key != "mode.rocks")  # what a terminal says first
 _SUPPORTS = ("comparison.on_guide", "comparison.on_flat", "comparison.on_walls")
 # parts that a terminal leaves to the page
 _CAUSES = ("slides", "support", "walls", "pass", "near_passes", "distributions")

@@ -79,7 +79,7 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "contrasts": contrasts,
         "fallen": fallen,
         "remarks": list(map(statement, said("poor_fit", "failed", "no_curve"))),
-        "few": bool(said("few")),
+        "few": "".join(sentence(each, short=True) for each in said("few")),
         **_counts(found),
         "states": _states(found),
         "state_columns": [["method", "method", "words"]]

@@ -23,8 +23,10 @@ from typing import Literal
 
 from jinja2 import Environment
 from markdown_it import MarkdownIt
+from rich.cells import cell_len
 from rich.console import Console
 from rich.markdown import Markdown
+from rich.text import Text
 
 from ..figures.interactive import charts, colour_bar
 from ..figures.picture import Picture
@@ -54,13 +56,6 @@ class Details:
     """Beginning of the details under a title, or their end, which has none."""
 
     title: str
-
-
-@dataclass(frozen=True, slots=True)
-class Command:
-    """A command, in lines of its own, so that it can be copied."""
-
-    line: str
 
 
 Part = str | Picture | Table | MarkdownText | Details
@@ -176,29 +171,15 @@ class Page:
         console = console or Console()
         if not console.is_terminal:
             console.width = max(console.width, _LEAST_WIDTH)
-        parts = list(_with_commands(_unfold(self._parts("terminal", console.width), details)))
-        for place, part in enumerate(parts):
-            after = parts[place + 1] if place + 1 < len(parts) else None
+        before: str | Table = ""
+        for part in _unfold(self._parts("terminal", console.width), details):
+            if before and not (isinstance(before, str) and before.endswith(":")):
+                console.print()
             if isinstance(part, Table):
-                if place and isinstance(parts[place - 1], Table):
-                    console.print()
                 console.print(part.rich(console.width))
-                if isinstance(after, str):
-                    console.print()
-            elif isinstance(part, Command):
-                # a word that is longer than the line runs on: a break in it would be copied, too
-                for line in command_lines(part.line, console.width):
-                    console.print(line, markup=False, highlight=False, soft_wrap=True)
-                if after is not None and not str(after).startswith("- "):
-                    console.print()
             else:
-                with console.capture() as shown:
-                    console.print(Markdown(_HEADING.sub(r"**\1**", part)), highlight=False)
-                # a list begins with an empty line, which would part its items where one has a command
-                within = place and isinstance(parts[place - 1], Command) and part.startswith("- ")
-                console.out(shown.get().lstrip("\n") if within else shown.get(), end="", highlight=False)
-                if after is not None and not isinstance(after, Command):
-                    console.print()
+                _print_words(console, _HEADING.sub(r"**\1**", part))
+            before = part
 
     def _parts(self, output: Output, width: int = 0) -> list[Part]:
         """Return the rendered template, cut where a picture, a table, a block or a fold stands."""
@@ -254,21 +235,27 @@ def _unfold(parts: Iterable[Part], details: bool) -> Iterator[str | Table]:
             yield part
 
 
-def _with_commands(parts: Iterable[str | Table]) -> Iterator[str | Table | Command]:
-    """Yield the parts of a terminal, with a command at the end of a line as a part."""
-    for part in parts:
-        if isinstance(part, Table):
-            yield part
-            continue
-        words, *rest = _COMMAND.split(part)
-        # words before it, its lead, its line, and so on
-        pieces = [words]
-        for lead, line, more in zip(rest[::3], rest[1::3], rest[2::3], strict=True):
-            yield f"{pieces.pop()}{lead}".strip("\n")
-            yield Command(line)
-            pieces.append(more)
-        if last := pieces.pop().strip("\n"):
-            yield last
+def _print_words(console: Console, text: str) -> None:
+    """Print Markdown; a command at the end of a line stays whole, behind its words where there is room."""
+    words, *rest = _COMMAND.split(text)
+    for lead, command, more in zip(rest[::3], rest[1::3], rest[2::3], strict=True):
+        shown = _as_printed(console, f"{words}{lead}")
+        room = console.width - cell_len(Text.from_ansi(shown).plain.rpartition("\n")[2])
+        console.out(shown, end="", highlight=False)
+        # a word that is longer than the line runs on: a break in it would be copied, too
+        whole = [f" {command}"] if len(command) < room else ["", *command_lines(command, console.width)]
+        for line in whole:
+            console.print(line, markup=False, highlight=False, soft_wrap=True)
+        words = more.lstrip("\n")
+    if words:
+        console.out(_as_printed(console, words), highlight=False)
+
+
+def _as_printed(console: Console, text: str) -> str:
+    with console.capture() as shown:
+        console.print(Markdown(text), highlight=False)
+    # a list begins with an empty line, and ends in spaces
+    return shown.get().strip("\n").rstrip()
 
 
 def _worded(picture: Picture) -> Picture:

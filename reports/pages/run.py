@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rockwobble.models import Diagnostic, Trace
+from rockwobble.models.finding import Finding, Findings
 from rockwobble.studies.advice.demands import overturning_time
 from rockwobble.studies.single_run import SingleRun
 
@@ -13,6 +14,7 @@ from .page import Page
 from .wording import sentence, statement
 
 _DOUBT = "run.not_reproducible"
+_DETAILS = ("quantity.closest", "quantity.computing_time")  # which a terminal leaves to the page
 
 
 def page_of(found: SingleRun) -> Page:
@@ -20,17 +22,25 @@ def page_of(found: SingleRun) -> Page:
     trace, said, findings = found.trace, remarks(_limits(found.trace)), found.findings()
     sizes = findings.of("quantity")
     doubts = [each for each in findings if each.key == _DOUBT]
+    answers = [each for each in findings if each not in (*sizes, *doubts)]
     values = {
         "title": f"{trace.case.name}, {found.facts['run']}: {trace.outcome}",
-        "statements": [statement(each) for each in findings if each not in (*sizes, *doubts)],
+        "label": f"{found.facts['run'][0].upper()}{found.facts['run'][1:]}",
+        "statements": list(map(statement, answers)),
+        "answers": [statement(each) for each in answers if each.key != "mode.rocks"],
         "said": f"{said[0].upper()}{said[1:]}." if said else "",
         "warnings": [*map(statement, doubts)],
         "answer": found.facts.get("single_trace", {}).get("answer", ""),
-        "rows": [dict(zip(("name", "value"), sentence(each).split(": ", 1), strict=True)) for each in sizes],
+        "rows": _rows(sizes),
+        "rows_short": _rows([each for each in sizes if each.key not in _DETAILS]),
         "lines": case_lines(trace.case),
         "about": found.manifest,
     }
     return Page(name="run", template="runs/run", values=values, pictures=pictures(trace))
+
+
+def _rows(sizes: Findings | list[Finding]) -> list[dict[str, str]]:
+    return [dict(zip(("name", "value"), sentence(each).split(": ", 1), strict=True)) for each in sizes]
 
 
 def _limits(trace: Trace) -> list[Diagnostic]:

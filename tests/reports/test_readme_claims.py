@@ -130,7 +130,7 @@ def test_the_readme_shows_the_terminal_output_of_the_published_advice(
     assert answer is not None
     verdict, _, *table = answer[1].splitlines()
     assert len(table) == 6
-    assert shown[0] == verdict
+    assert shown[0].startswith(f"{verdict}.")
     start = shown.index(table[0])
     assert shown[start : start + len(table)] == table
 
