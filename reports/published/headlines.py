@@ -143,9 +143,9 @@ def median_of(counts: pd.DataFrame) -> float:
         z = (np.log(x) - at[0]) / math.exp(at[1])
         return -float((k * norm.logcdf(z) + (n - k) * norm.logsf(z)).sum())
 
-    found = minimize(loss, [float(np.log(x).mean()), -0.5], method="Nelder-Mead",
+    fit = minimize(loss, [float(np.log(x).mean()), -0.5], method="Nelder-Mead",
                      options={"xatol": 1e-8, "fatol": 1e-10})  # fmt: skip
-    return math.exp(found.x[0])
+    return math.exp(fit.x[0])
 
 
 def check_fragility() -> None:

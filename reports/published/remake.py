@@ -187,16 +187,16 @@ def _ungrouped(drawn: bytes) -> bytes:
 
 def _short(path: re.Match[bytes]) -> bytes:
     """Return a path of segments relative to their start, in tenths of a point: an eighth of a pixel."""
-    found, here, last = b"", (0, 0), b""
+    segments, here, last = b"", (0, 0), b""
     for letter, numbers in _SEGMENT.findall(path[0]):
         tenths = [round(10.0 * float(number)) for number in numbers.split()]
         places = list(zip(tenths[::2], tenths[1::2], strict=True))
         x, y = (0, 0) if letter == b"M" else here
         offsets = b" ".join(b"%s %s" % (_tenths(to_x - x), _tenths(to_y - y)) for to_x, to_y in places)
         told = b" " if letter == last != b"M" else letter if letter == b"M" else letter.lower()
-        found += told + offsets
+        segments += told + offsets
         here, last = places[-1] if places else here, letter
-    return found.replace(b" -", b"-")
+    return segments.replace(b" -", b"-")
 
 
 def _tenths(count: int) -> bytes:

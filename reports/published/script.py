@@ -64,11 +64,11 @@ def run(
     given = parser.parse_args()
     if given.check:
         try:
-            found = kind.load(folder)
+            results = kind.load(folder)
         except ValueError as error:
             print(f"{folder.name}: not checked, {error}")
             return 0
-        rows = _checked(folder, found, page_of, claims)
+        rows = _checked(folder, results, page_of, claims)
         print(*rows, sep="\n", end="\n" if rows else "")
         return int(any(row.startswith("FAULT") for row in rows))
     if given.redraw:
@@ -76,10 +76,10 @@ def run(
             (folder / name).write_bytes(content)
         return 0
     command = f"python reports/published/{folder.name}/make.py"
-    found = measure(given).made_by(shlex.join([*command.split(), *sys.argv[1:]]))
-    pages = page_of(found).files()
-    found.save(folder, pages=pages)
-    print(f"Written to {folder}: {', '.join([*pages, *found.tables])}")
+    results = measure(given).made_by(shlex.join([*command.split(), *sys.argv[1:]]))
+    pages = page_of(results).files()
+    results.save(folder, pages=pages)
+    print(f"Written to {folder}: {', '.join([*pages, *results.tables])}")
     return 0
 
 

@@ -77,11 +77,11 @@ def rows(path: Path) -> pd.DataFrame:
         "python": platform.python_version(),
         "numpy": np.__version__,
     }
-    found = [
+    differences = [
         about | _differences(one, other) | {"case": one["name"], "word": compare_entries(one, other).word}
         for one, other in zip(old, repeat(subject, old), strict=True)
     ]
-    return pd.DataFrame(found, columns=list(COLUMNS))
+    return pd.DataFrame(differences, columns=list(COLUMNS))
 
 
 def _differences(one: Entry, other: Sample) -> dict[str, float]:

@@ -70,11 +70,11 @@ def motions_of(name: str) -> Sequence[GroundMotion]:
     return synthetic_motions(int(name), peak=1.0, seed=SEED)
 
 
-def overturning(found: Fragility) -> pd.DataFrame:
+def overturning(study: Fragility) -> pd.DataFrame:
     """Return medians with intervals, and ratios to the pier alone, to the equivalent cylinder, to 3D."""
     import pandas as pd
 
-    blocks = blocks_of(found.runs, found.points, [_OVERTURNED], str(found.facts["measure"]))
+    blocks = blocks_of(study.runs, study.points, [_OVERTURNED], str(study.facts["measure"]))
     count = len(blocks.motions)
     weights = resamples(count, RESAMPLES, SEED)
     curves = [curves_of(blocks), curves_of(blocks, weights)]
@@ -106,14 +106,14 @@ def needs(motions: Sequence[GroundMotion], support: str = "recess") -> Iterator[
     """Yield for each ratio the medians, over the motions that do not overturn it, of what it asks for."""
     threshold = 9.81 * PIER.tan_alpha
     for ratio in RATIOS:
-        found = []
+        demands = []
         for motion in motions[:_NEEDS_MOTIONS]:
             trace = reduced.simulate(
                 Case(deck(ratio), motion.scaled(_NEEDS_LEVEL * threshold / motion.peak)), support=support
             )
             if trace.outcome == "stands":
                 at_top = trace.top_contact_force if ratio else np.full((1, 3), math.nan)
-                found.append(
+                demands.append(
                     (
                         trace.peak_tilt / PIER.alpha,
                         float(np.nanmax(trace.friction_needed)),
@@ -124,8 +124,8 @@ def needs(motions: Sequence[GroundMotion], support: str = "recess") -> Iterator[
                     )
                 )
         names = ("peak_tilt", "friction_base", "friction_top", "least_load_base", "least_load_top", "moment")
-        yield {"slab_mass_ratio": ratio, "motions": len(found)} | dict(
-            zip(names, np.median(np.array(found), axis=0), strict=True)
+        yield {"slab_mass_ratio": ratio, "motions": len(demands)} | dict(
+            zip(names, np.median(np.array(demands), axis=0), strict=True)
         )
 
 
@@ -170,9 +170,9 @@ def main(arguments: Sequence[str]) -> int:
         tables = {path.stem: pd.read_csv(path) for path in sorted(PUBLISHED.glob("*.csv"))}
     else:
         motions = motions_of(options.motions)
-        found = fragility(bodies(), motions, methods=METHODS, levels=LEVELS, resamples=RESAMPLES, seed=SEED)
+        study = fragility(bodies(), motions, methods=METHODS, levels=LEVELS, resamples=RESAMPLES, seed=SEED)
         tables = {
-            f"medians-{options.motions}": overturning(found),
+            f"medians-{options.motions}": overturning(study),
             f"needs-{options.motions}": pd.DataFrame(needs(motions)),
         }
         if options.out is not None:

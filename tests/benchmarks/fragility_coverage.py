@@ -84,14 +84,14 @@ def coverage(kind: Kind, studies: int, draws: int = RESAMPLES, seed: int = 1) ->
     for place in range(studies):
         weights = resamples(kind.motions, draws, int(random.integers(2**31)))
         ours, theirs = kind.draw(random)
-        found, other, drawn, others = (
+        one, other, drawn, others = (
             each.curves(drawing) for drawing in (once, weights) for each in (ours, theirs)
         )
         with np.errstate(invalid="ignore"):
-            ratio, ratios = found.centre[0] - other.centre[0], drawn.centre - others.centre
+            ratio, ratios = one.centre[0] - other.centre[0], drawn.centre - others.centre
         held_and_true = (
-            (interval(float(found.centre[0]), drawn.centre, kind.motions), math.log(MEDIAN)),
-            (spread_interval(float(found.dispersion[0]), drawn.dispersion, kind.motions), kind.whole),
+            (interval(float(one.centre[0]), drawn.centre, kind.motions), math.log(MEDIAN)),
+            (spread_interval(float(one.dispersion[0]), drawn.dispersion, kind.motions), kind.whole),
             (interval(float(ratio), ratios, kind.motions), 0.0),
         )
         for column, (held, truth) in enumerate(held_and_true):

@@ -98,12 +98,12 @@ class Frame:
 
     def ground(self, steps: int, step: float) -> Array:
         """Return the ground acceleration before and after each step (steps + 1, 3) [m/s^2]."""
-        found, times = np.zeros((steps + 1, 3)), step * np.arange(steps + 1)
+        accelerations, times = np.zeros((steps + 1, 3)), step * np.arange(steps + 1)
         if self.motion is not None:
             at = np.arange(len(self.motion.acceleration)) * self.motion.time_step
-            for row, column in zip(found.T, self.motion.acceleration.T, strict=False):
+            for row, column in zip(accelerations.T, self.motion.acceleration.T, strict=False):
                 row[:] = np.interp(times, at, column)
-        return found
+        return accelerations
 
     def start(self) -> tuple[Array, Array, Array, Array]:
         """Return positions, quaternions, velocities and spins, each (n + 1, .), the slab last."""

@@ -40,7 +40,7 @@ def fragilities() -> pd.DataFrame:
     motions = rw.synthetic_motions(MOTIONS, peak=1.0, seed=SEED)
     tables = []
     for share in SHARES:
-        found = rw.fragility(
+        study = rw.fragility(
             PIER,
             motions,
             methods=["recess", "flat"],
@@ -49,7 +49,7 @@ def fragilities() -> pd.DataFrame:
             resamples=500,
             rolling_resistance=share * PIER.base_radius,
         )
-        tables.append(found.fits.assign(delta_b=share))
+        tables.append(study.fits.assign(delta_b=share))
     names = ["delta_b", "method", "limit", "runs", "exceeded", "failed", "median", "median_low"]
     return pd.concat(tables)[[*names, "median_high", "dispersion"]]
 
@@ -66,8 +66,8 @@ def _cases(share: float) -> Iterator[rw.Case]:
 
 
 def _agreement(case: rw.Case, reference: rw.Trace, trial: rw.Trace) -> tuple[float, bool]:
-    found = agreement_time(make_pair(case.cylinder, reference, trial), broken=trial.outcome == "failed")
-    return found.end - reference.uplift_time, found.diverged
+    agreement = agreement_time(make_pair(case.cylinder, reference, trial), broken=trial.outcome == "failed")
+    return agreement.end - reference.uplift_time, agreement.diverged
 
 
 def agreements() -> pd.DataFrame:

@@ -71,16 +71,16 @@ def passes_of(track: NDArray[np.float64]) -> Iterator[tuple[int, float, float, f
 
 def _minima(radius: NDArray[np.float64]) -> list[int]:
     """Return the samples nearest to the centre, one for each crossing."""
-    found: list[int] = []
+    minima: list[int] = []
     for i in range(1, len(radius) - 1):
         if radius[i] > radius[max(i - 6, 0) : i + 7].min():
             continue
-        if found and radius[found[-1] : i + 1].max() < _BETWEEN * max(radius[found[-1]], radius[i]):
-            if radius[i] < radius[found[-1]]:
-                found[-1] = i
+        if minima and radius[minima[-1] : i + 1].max() < _BETWEEN * max(radius[minima[-1]], radius[i]):
+            if radius[i] < radius[minima[-1]]:
+                minima[-1] = i
             continue
-        found.append(i)
-    return found
+        minima.append(i)
+    return minima
 
 
 def _speed(track: NDArray[np.float64], at: int, turning: int) -> float:
@@ -100,10 +100,10 @@ def table_of(folder: Path) -> pd.DataFrame:
 
     paths = sorted(folder.glob("**/*deg.txt"), key=lambda path: path.name)
     contents = [path.read_bytes() for path in paths]
-    found = hashlib.sha256(b"".join(contents)).hexdigest()
-    if found != TRACKS_SHA256:
+    digest = hashlib.sha256(b"".join(contents)).hexdigest()
+    if digest != TRACKS_SHA256:
         raise ValueError(
-            f"the tracks must have the SHA-256 {TRACKS_SHA256}, got {found} of {len(paths)} tracks"
+            f"the tracks must have the SHA-256 {TRACKS_SHA256}, got {digest} of {len(paths)} tracks"
         )
     rows = []
     for i, path in enumerate(paths):

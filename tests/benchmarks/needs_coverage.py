@@ -43,7 +43,7 @@ def coverage(
     random, counts = np.random.default_rng(seed), []
     stage = stages(tell, [1.0] * len(stated))
     for row in stated.to_dict("records"):
-        found = []
+        covered = []
         with stage(f"tan alpha {row['tan_alpha']:g}, {row['intensity']:g} g tan alpha"):
             for size in np.exp(random.uniform(math.log(sizes[0]), math.log(sizes[1]), draws)):
                 cylinder = Cylinder(semidiagonal=float(size), tan_alpha=row["tan_alpha"])
@@ -52,15 +52,15 @@ def coverage(
                 run = reduced.simulate(Case(cylinder, motion, friction=AMPLE), rtol=1e-7)
                 if run.peak_tilt > 0.0 and run.outcome not in ("overturned", "failed"):
                     assert run.assumptions is not None
-                    found.append(
+                    covered.append(
                         (
                             run.assumptions.largest_friction_needed <= row["friction"] * row["tan_alpha"],
                             run.assumptions.largest_restraining_moment
                             <= row["moment"] * cylinder.base_radius,
                         )
                     )
-        friction, moment = np.array(found, dtype=int).reshape(-1, 2).sum(axis=0)
-        counts.append({"standing": len(found), "friction_covered": friction, "moment_covered": moment})
+        friction, moment = np.array(covered, dtype=int).reshape(-1, 2).sum(axis=0)
+        counts.append({"standing": len(covered), "friction_covered": friction, "moment_covered": moment})
     return stated.assign(**{name: [row[name] for row in counts] for name in counts[0]})
 
 
@@ -85,15 +85,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     for_all = {"friction": given.friction, "moment": given.moment}
     stated = needs(tables).assign(**{name: need for name, need in for_all.items() if need is not None})
-    found = coverage(stated, (float(mapped.min()), float(mapped.max())), motions, given.draws, given.seed)
+    table = coverage(stated, (float(mapped.min()), float(mapped.max())), motions, given.draws, given.seed)
     for name in ("friction", "moment"):
         print(f"\nStated {name} and the share of motions for which it suffices, by intensity [g tan alpha]")
-        for tan_alpha, own in found.groupby("tan_alpha"):
+        for tan_alpha, own in table.groupby("tan_alpha"):
             print(f"tan alpha {tan_alpha:g}")
             for row in own.to_dict("records"):
                 covered, count = row[f"{name}_covered"], row["standing"]
                 print(f"{row['intensity']:8g}{row[name]:10.3g}{covered / count:9.1%}  {covered} of {count}")
-        print(f"all: {found[f'{name}_covered'].sum()} of {found['standing'].sum()}")
+        print(f"all: {table[f'{name}_covered'].sum()} of {table['standing'].sum()}")
     return 0
 
 

@@ -526,10 +526,10 @@ def printed(name: str, variant: str, what: str = "motion") -> None:
     if what == "cost":
         print(json.dumps(cost(world)))
         return
-    found: dict[str, Any] = {"version": package and version(package.partition("[")[0]), "time_step": step}
-    found |= turned(world, step)
-    found["wrong"] = uplifts(lambda: simulator(step, best), step) if world.stands else None
-    print(json.dumps(found))
+    answer: dict[str, Any] = {"version": package and version(package.partition("[")[0]), "time_step": step}
+    answer |= turned(world, step)
+    answer["wrong"] = uplifts(lambda: simulator(step, best), step) if world.stands else None
+    print(json.dumps(answer))
 
 
 if __name__ == "__main__":

@@ -82,7 +82,7 @@ def medians(motions: Sequence[GroundMotion]) -> Iterator[dict[str, float | str]]
     for name, body in BODIES.items():
         without: list[dict[Key, Curves]] = []
         for stiffness, prestress in itertools.product(STIFFNESS, PRESTRESS):
-            found = fragility(
+            study = fragility(
                 {name: body},
                 motions,
                 methods=METHODS,
@@ -93,7 +93,7 @@ def medians(motions: Sequence[GroundMotion]) -> Iterator[dict[str, float | str]]
                 tendon_prestress=prestress,
                 tendon_stiffness=stiffness * neutral_stiffness(body),
             )
-            blocks = blocks_of(found.runs, found.points, [_OVERTURNED], str(found.facts["measure"]))
+            blocks = blocks_of(study.runs, study.points, [_OVERTURNED], str(study.facts["measure"]))
             curves = [curves_of(blocks), curves_of(blocks, weights)]
             without = without or curves
             for method in blocks.methods:
@@ -147,8 +147,8 @@ def _overturned(
         for own, plane in zip(peaks.values(), planes, strict=True):
             ratio = body.slab_mass_ratio
             peak = partial(reduced.peak_tilts, plane=plane, slab_mass_ratio=ratio, tendon=tendon)
-            found = peak([body.semidiagonal], body.tan_alpha, motion, scales)
-            own.append(found[0])
+            of_scales = peak([body.semidiagonal], body.tan_alpha, motion, scales)
+            own.append(of_scales[0])
     tilts = {method: np.array(own) for method, own in peaks.items()}
     tilts["worse plane"] = np.maximum(tilts["planar x"], tilts["planar y"])
     x = np.broadcast_to(np.log(levels), (len(motions), len(levels)))
@@ -177,10 +177,10 @@ def on_flat_ground(motions: Sequence[GroundMotion], engine: str) -> Iterator[dic
             fallen += trace.outcome == _OVERTURNED
             if trace.outcome == "stands":
                 left.append(float(np.hypot(*trace.centre_of_mass[-1, :2])) / PIER.base_radius)
-        found = quantile_interval(np.array(left), 0.5)
+        interval = quantile_interval(np.array(left), 0.5)
         yield {
             **{"engine": engine, "prestress": prestress, "motions": len(motions), "overturned": fallen},
-            **found.columns("displacement"),
+            **interval.columns("displacement"),
         }
 
 
@@ -244,9 +244,9 @@ def _table(rows: Iterator[dict[str, float | str]], count: int) -> pd.DataFrame:
     """Return rows as a table, and say on standard error how many there are."""
     import pandas as pd
 
-    found = []
+    table = []
     for number, row in enumerate(rows, start=1):
-        found.append(row)
+        table.append(row)
         print(f"\r{number} of {count} rows", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
-    return pd.DataFrame(found)
+    return pd.DataFrame(table)

@@ -27,12 +27,12 @@ def test_the_sentences_are_those_of_the_tables() -> None:
     ratios = table.pivot(index="delta_b", columns="method", values="median")
     rises = {share: (100.0 * (ratios.loc[share] / ratios.loc[0.0] - 1.0)).round() for share in SHARES}
     assert [sorted(rises[share]) for share in SHARES[1:]] == [[1, 1], [8, 10], [21, 25]]
-    found = by_length(stored("agreement")).set_index(["trial", "delta_b"])
-    medians = found.loc["1 %"]["median"]
+    agreements = by_length(stored("agreement")).set_index(["trial", "delta_b"])
+    medians = agreements.loc["1 %"]["median"]
     assert "medians {}, {}, {} and {} s after".format(*(f"{medians[share]:.1f}" for share in SHARES)) in words
-    assert (found.loc["1 %"]["diverged"] == 12).all()
+    assert (agreements.loc["1 %"]["diverged"] == 12).all()
     for trial, form in (("1e-6", "in {}, {}, {} and {} of 12"), ("mujoco", "in {}, {}, {} and {} of 3")):
-        assert form.format(*(found.loc[trial]["diverged"][share] for share in SHARES)) in words
+        assert form.format(*(agreements.loc[trial]["diverged"][share] for share in SHARES)) in words
 
 
 def test_the_command_prints_them() -> None:

@@ -39,14 +39,14 @@ def test_a_known_loss_is_found_by_both_estimators() -> None:
     names += ["speed_before_px_s", "speed_after_px_s"]
     table = pd.DataFrame(passes_of(made_track()), columns=names)
     assert len(table) > 15
-    found = kept(table.assign(diameter_mm=6, length_mm=80, release_deg=0)).iloc[0]
-    assert found["at_pass"] == pytest.approx(KEPT, abs=FITTED)
-    assert found["pass_to_pass"] == pytest.approx(KEPT, abs=FITTED)
+    rod = kept(table.assign(diameter_mm=6, length_mm=80, release_deg=0)).iloc[0]
+    assert rod["at_pass"] == pytest.approx(KEPT, abs=FITTED)
+    assert rod["pass_to_pass"] == pytest.approx(KEPT, abs=FITTED)
     # the load takes nothing here, so the length is that of the pass: kept = (A - delta b)/(A + delta b)
     b, h = 3.0, 40.0
     A = b * b / 4.0 + h * h / 3.0 + b * b + h * h
-    expected = (A - found["delta_mm"] * b) / (A + found["delta_mm"] * b)
-    assert found["pass_to_pass"] == pytest.approx(expected, rel=1e-12)  # rounding
+    expected = (A - rod["delta_mm"] * b) / (A + rod["delta_mm"] * b)
+    assert rod["pass_to_pass"] == pytest.approx(expected, rel=1e-12)  # rounding
 
 
 def test_the_table_of_rods_matches_its_description() -> None:
@@ -55,7 +55,7 @@ def test_the_table_of_rods_matches_its_description() -> None:
     assert TRACKS_SHA256 in told
     table = pd.read_csv(TABLE)
     assert f"{len(table)} passes" in told
-    found = kept(table)
-    assert len(found) == 12
-    assert found["tracks"].sum() == table.groupby(["diameter_mm", "length_mm", "release_deg"]).ngroups
+    shares = kept(table)
+    assert len(shares) == 12
+    assert shares["tracks"].sum() == table.groupby(["diameter_mm", "length_mm", "release_deg"]).ngroups
     assert main([]) == 0

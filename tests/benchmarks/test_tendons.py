@@ -68,9 +68,9 @@ def test_more_prestress_takes_more_to_overturn() -> None:
 def test_many_motions_are_counted_at_levels_about_the_median() -> None:
     motions = synthetic_motions(3, peak=1.0, seed=3)
     rows = itertools.islice(medians_of_many(motions), 8)  # without a tendon, and with half a weight
-    found = pd.DataFrame(rows)
-    assert list(found["prestress"]) == [0.0] * 4 + [0.5] * 4
-    assert found["highest_level"].to_list() == pytest.approx([3.8 * 3.2] * 4 + [1.5 * 3.8 * 3.2] * 4)
+    table = pd.DataFrame(rows)
+    assert list(table["prestress"]) == [0.0] * 4 + [0.5] * 4
+    assert table["highest_level"].to_list() == pytest.approx([3.8 * 3.2] * 4 + [1.5 * 3.8 * 3.2] * 4)
     own = [
         reduced.simulate(
             Case(
@@ -83,7 +83,7 @@ def test_many_motions_are_counted_at_levels_about_the_median() -> None:
         == "overturned"
         for motion in motions
     ]
-    assert found["overturned_there"][4] == sum(own) / 3.0
+    assert table["overturned_there"][4] == sum(own) / 3.0
 
 
 def test_claims_on_highest_levels_match_their_table() -> None:

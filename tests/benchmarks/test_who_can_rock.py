@@ -44,8 +44,8 @@ def test_no_default_settings_do_all_three() -> None:
 
 @pytest.mark.parametrize("corners", [32, 64])
 def test_physx_does_what_a_prism_does(corners: int) -> None:
-    exact, found = row(f"prism-{corners}", "default"), row(f"physx-{corners}", "best")
-    for each in (exact, found):
+    exact, mesh = row(f"prism-{corners}", "default"), row(f"physx-{corners}", "best")
+    for each in (exact, mesh):
         assert (f"{each.turn:.2f}", f"{each.tilt:.3f}") in PAIRS
     cylinder, default = row("physx", "best"), row("physx", "default")
     assert (f"{cylinder.turn:.2f}", f"{cylinder.tilt:.3f}") in PAIRS
@@ -60,10 +60,10 @@ def test_the_loss_of_a_prism_is_halved_with_twice_the_corners() -> None:
 
 def test_a_prism_runs_as_the_table_says() -> None:
     step = 1e-3  # a landing is found up to a step late: 0.3 % of the tilt
-    found = worlds.turned(worlds.prism(step, False, 32), step)
+    measured = worlds.turned(worlds.prism(step, False, 32), step)
     kept = row("prism-32", "default")
-    assert found["tilt"] == pytest.approx(kept.tilt, abs=0.01)
-    assert math.radians(abs(found["turn"] - kept.turn)) < 0.02
+    assert measured["tilt"] == pytest.approx(kept.tilt, abs=0.01)
+    assert math.radians(abs(measured["turn"] - kept.turn)) < 0.02
 
 
 def test_simulators_that_move_no_rigid_body_are_named() -> None:

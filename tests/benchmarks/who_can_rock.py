@@ -78,7 +78,7 @@ def driven(engine: str) -> dict[str, Any]:
     trace = _released(engine)
     upright = int(trace.tilt[:1200].argmin())
     top = upright + int(trace.tilt[upright:].argmax())
-    found = {
+    answer = {
         "version": trace.version,
         "time_step": _STEP,
         "turn": math.degrees(float(trace.passes["angle_of_turn"].iloc[0])),
@@ -86,8 +86,8 @@ def driven(engine: str) -> dict[str, Any]:
         "wrong": None,
     }
     if not find_engine(engine).uplifts:
-        return found | {"remark": "cannot uplift"}
-    wrong = found["wrong"] = []
+        return answer | {"remark": "cannot uplift"}
+    wrong = answer["wrong"] = []
     for azimuth in math.tau * np.arange(worlds.DIRECTIONS) / worlds.DIRECTIONS:
         for share in (0.49, 0.51):
             push = share * worlds.G * np.array([math.cos(azimuth), math.sin(azimuth)])
@@ -96,7 +96,7 @@ def driven(engine: str) -> dict[str, Any]:
             trace = multibody.simulate(case, engine=engine, support="flat", time_step=_STEP)
             tilt, direction = float(trace.tilt[-1]), float(trace.rolling_angle[-1])
             wrong += worlds.misses(tilt, math.remainder(direction - azimuth - math.pi, math.tau), share)
-    return found
+    return answer
 
 
 def foreign(simulator: str, variant: str, python: str) -> dict[str, Any]:
@@ -125,12 +125,12 @@ def _answer(python: str, *words: str) -> Any:
     return json.loads(done.stdout.splitlines()[-1])
 
 
-def _row(simulator: str, settings: str, found: Mapping[str, Any]) -> dict[str, Any]:
+def _row(simulator: str, settings: str, answer: Mapping[str, Any]) -> dict[str, Any]:
     formulation, precision = KNOWN[simulator]
     row: dict[str, Any] = dict.fromkeys(_COLUMNS, math.nan) | {"version": "", "remark": ""}
     row |= {"simulator": simulator, "formulation": formulation, "precision": precision, "settings": settings}
-    row |= {name: value for name, value in found.items() if name in _COLUMNS}
-    wrong = found.get("wrong")
+    row |= {name: value for name, value in answer.items() if name in _COLUMNS}
+    wrong = answer.get("wrong")
     counted = Counter(wrong or ())
     row["uplift"] = (
         "–" if wrong is None else "; ".join(f"{n} × {what}" for what, n in counted.items()) or "holds"

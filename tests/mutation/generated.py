@@ -80,12 +80,12 @@ def faults_of(file: str, source: str) -> list[GeneratedFault]:
     """Return the faults of a file."""
     digest = hashlib.sha256(source.encode()).hexdigest()[:12]
     tree = ast.parse(source)
-    found = []
+    faults = []
     for place, (kind, node) in enumerate(_sites(tree)):
         line = getattr(node, "lineno", 0)
         words = f"line {line}, {kind}: {' '.join(ast.unparse(node).split())[:60]}"
-        found.append(GeneratedFault(file=file, place=place, change=words, sources=digest))
-    return found
+        faults.append(GeneratedFault(file=file, place=place, change=words, sources=digest))
+    return faults
 
 
 def applied(fault: GeneratedFault, source: str) -> str:
@@ -171,9 +171,9 @@ def near(root: Path, file: str) -> list[str]:
     )
     imported = re.compile(rf"^(from|import) .*\b{name}\b", re.MULTILINE)
     files = sorted((root / "tests").rglob("test_*.py"))
-    found = [each for each in files if imported.search(each.read_text(encoding="utf-8")) or name in each.name]
-    found = found or [each for each in files if each.parent.name == package]
-    order = sorted(found, key=lambda each: (each.parent.name != package, name not in each.name))
+    asked = [each for each in files if imported.search(each.read_text(encoding="utf-8")) or name in each.name]
+    asked = asked or [each for each in files if each.parent.name == package]
+    order = sorted(asked, key=lambda each: (each.parent.name != package, name not in each.name))
     return [each.relative_to(root).as_posix() for each in order[:_MOST]]
 
 
@@ -255,8 +255,8 @@ def run(checkout: Path, table: Path, *, count: int, seed: int, only: str) -> int
         counts = Counter(row.found_by for row in rows if row.file.startswith(f"{package}/"))
         shares = (f"{counts[name]} by {name}" for name in ("check", "tests", "nothing"))
         print(f"{package}: {', '.join(shares)}")
-    found = sum(row.found_by != "nothing" for row in rows)
-    print(f"{found} of {len(rows)} faults found")
+    score = sum(row.found_by != "nothing" for row in rows)
+    print(f"{score} of {len(rows)} faults found")
     return 0
 
 

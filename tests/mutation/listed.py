@@ -68,7 +68,7 @@ def _constants() -> list[Mutation]:
     changes = {name: at_assignment("body_of", "A", f"{symbol} *= 1.01") for name, symbol in made_of.items()}
     fields = ("A", "J", "C", "E", "g", "p2", "sin_alpha", "cos_alpha")
     changes |= {name: scaled_argument("body_of", "Body", name, 1.01) for name in fields}
-    found = [
+    constants = [
         Mutation(
             name=f"1 % off everywhere: {name}",
             faults=(Fault(file="body.py", change=change),),
@@ -87,7 +87,7 @@ def _constants() -> list[Mutation]:
         "return without_fault(dataclasses.replace(case, cylinder=other), **options)",
     )
     return [
-        *found,
+        *constants,
         Mutation(name="R 1 % off", faults=(size,), group="exact"),
     ]
 
@@ -176,7 +176,7 @@ def _tendons() -> list[Mutation]:
 
 
 def _engines() -> list[Mutation]:
-    found = [
+    settings = [
         Mutation(
             name="elastic contact, mujoco",
             group="order",
@@ -187,12 +187,12 @@ def _engines() -> list[Mutation]:
     here = [name for name in ("mujoco", "pybullet") if name in available_engines()]
     if "pybullet" in here:
         margin = {"collision_margin": 0.04}
-        found.append(
+        settings.append(
             Mutation(
                 name="default contact margin, pybullet", group="exact", engine="pybullet", settings=margin
             )
         )
-    return found + [
+    return settings + [
         Mutation(
             name=f"step ten times too large, {name}", group="exact", engine=name, settings={"time_step": 1e-3}
         )
@@ -237,9 +237,9 @@ def run(*, only: str = "") -> int:
         print(f"without a fault: {alarm.group}: {alarm.name} {alarm.note}")
     chosen = [mutation for mutation in mutations() if only in mutation.name]
     for mutation in chosen:
-        found = first_failure(mutation)
-        missed += found is None
-        where = "MISSED" if found is None else f"{found.group}: {found.name}"
+        failure = first_failure(mutation)
+        missed += failure is None
+        where = "MISSED" if failure is None else f"{failure.group}: {failure.name}"
         print(f"{mutation.name}: {where}", flush=True)
     print(f"{len(chosen) - missed} of {len(chosen)} faults found, in {time.monotonic() - begun:.0f} s")
     return 1 if missed or alarm is not None else 0

@@ -75,10 +75,10 @@ class Fault:
 
 def source_folder() -> Path:
     """Return the folder of the sources of the reduced models."""
-    found = find_spec("rockwobble.reduced")
-    assert found is not None
-    assert found.origin is not None
-    return Path(found.origin).parent
+    spec = find_spec("rockwobble.reduced")
+    assert spec is not None
+    assert spec.origin is not None
+    return Path(spec.origin).parent
 
 
 @contextmanager

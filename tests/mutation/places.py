@@ -18,25 +18,25 @@ ORIGINAL = "without_fault"
 
 def function_in(tree: ast.AST, name: str) -> ast.FunctionDef:
     """The function of a dotted name, such as "make_driver.integrate"."""
-    found: ast.AST = tree
+    scope: ast.AST = tree
     for part in name.split("."):
-        inside = {each.name: each for each in _below(found)}
-        found = _of(inside, part, f"a function {name!r}")
-    assert isinstance(found, ast.FunctionDef)
-    return found
+        inside = {each.name: each for each in _below(scope)}
+        scope = _of(inside, part, f"a function {name!r}")
+    assert isinstance(scope, ast.FunctionDef)
+    return scope
 
 
 def assignment_in(function: ast.FunctionDef, target: str) -> tuple[list[ast.stmt], int]:
     """The block and the place in it of the first assignment to `target`, written as in the source."""
-    found: dict[str, tuple[list[ast.stmt], int]] = {}
+    places: dict[str, tuple[list[ast.stmt], int]] = {}
     for block in _blocks(function):
         for index, statement in enumerate(block):
             if isinstance(statement, ast.Assign):
                 for each in statement.targets:
                     parts = each.elts if isinstance(each, ast.Tuple) else [each]
                     for part in parts:
-                        found.setdefault(ast.unparse(part), (block, index))
-    return _of(found, target, f"an assignment to {target!r} in {function.name}")
+                        places.setdefault(ast.unparse(part), (block, index))
+    return _of(places, target, f"an assignment to {target!r} in {function.name}")
 
 
 def argument_in(function: ast.FunctionDef, call: str, keyword: str) -> ast.keyword:
@@ -88,10 +88,10 @@ def appended(text: str) -> Change:
     return change
 
 
-def _of(found: dict[str, Named], name: str, wanted: str) -> Named:
-    if name not in found:
-        raise ValueError(f"the source must have {wanted}, got {', '.join(found) or 'none'}")
-    return found[name]
+def _of(named: dict[str, Named], name: str, wanted: str) -> Named:
+    if name not in named:
+        raise ValueError(f"the source must have {wanted}, got {', '.join(named) or 'none'}")
+    return named[name]
 
 
 def _below(node: ast.AST) -> Iterator[ast.FunctionDef | ast.ClassDef]:

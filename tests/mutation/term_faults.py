@@ -69,25 +69,25 @@ def term_faults(factor: float) -> Iterator[TermFault]:
 
 def _assignments(tree: ast.Module) -> list[list[tuple[str, ast.expr]]]:
     """Names and values of every assignment; those of tuples one by one."""
-    found = []
+    assignments = []
     for node in ast.walk(tree):
         if isinstance(node, ast.Assign) and len(node.targets) == 1:
             target, value = node.targets[0], node.value
             if isinstance(target, ast.Name):
-                found.append([(target.id, value)])
+                assignments.append([(target.id, value)])
             elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
                 pairs = zip(target.elts, value.elts, strict=True)
-                found.append([(each.id, part) for each, part in pairs if isinstance(each, ast.Name)])
-    return found
+                assignments.append([(each.id, part) for each, part in pairs if isinstance(each, ast.Name)])
+    return assignments
 
 
 def _terms(value: ast.expr) -> list[ast.expr]:
     """Operands of all sums and differences in an expression, those that are sums themselves left out."""
-    found = []
+    terms = []
     for node in ast.walk(value):
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
-            found += [operand for operand in (node.left, node.right) if not _is_sum(operand)]
-    return found
+            terms += [operand for operand in (node.left, node.right) if not _is_sum(operand)]
+    return terms
 
 
 def _is_sum(node: ast.expr) -> bool:

@@ -27,9 +27,9 @@ def short_motions(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("mutation", mutations(), ids=lambda mutation: mutation.name)
 def test_a_fault_is_found(mutation: Mutation) -> None:
-    found = first_failure(mutation)
-    assert found is not None
-    assert found.group == mutation.group
+    failure = first_failure(mutation)
+    assert failure is not None
+    assert failure.group == mutation.group
 
 
 def test_a_copy_without_a_fault_passes() -> None:

@@ -108,8 +108,8 @@ def released(pier: Pier, tilt: float, spin: float, times: Array) -> Array:
         return np.array([y[1], turned[0], y[3], turned[1]])
 
     start = np.array([tilt, 0.0, 0.0, spin])
-    found = solve_ivp(rates, (0.0, times[-1]), start, "DOP853", times, rtol=1e-12, atol=1e-13)
-    return np.asarray(found.y[[0, 2]])
+    solution = solve_ivp(rates, (0.0, times[-1]), start, "DOP853", times, rtol=1e-12, atol=1e-13)
+    return np.asarray(solution.y[[0, 2]])
 
 
 def inertia_about_the_vertical(pier: Pier, tilt: float) -> float:

@@ -63,9 +63,9 @@ def rolled(pier: Pier, tilt: float, spin: float, times: Array) -> tuple[Array, A
     centre = contact - pier.b * _lowest(axis) + pier.h * axis
     w = spin * (_UP - axis)
     start = np.concatenate([centre, turn.ravel(), np.cross(w, centre - contact), w])
-    found = solve_ivp(
+    solution = solve_ivp(
         lambda _, y: _rates(pier, y), (0.0, times[-1]), start, "DOP853", times, rtol=1e-11, atol=1e-12
     )
-    axes = found.y[3:12].reshape(3, 3, -1)[:, 2]
-    base = found.y[:3] - pier.h * axes
+    axes = solution.y[3:12].reshape(3, 3, -1)[:, 2]
+    base = solution.y[:3] - pier.h * axes
     return np.arctan2(np.hypot(axes[0], axes[1]), axes[2]), np.linalg.norm(base, axis=0)

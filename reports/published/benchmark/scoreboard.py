@@ -24,7 +24,7 @@ def entries() -> list[dict[str, Any]]:
         path.parent.name: hashlib.sha256(path.read_bytes()).hexdigest()
         for path in HERE.glob("cases/*/reference.json")
     }
-    found = []
+    results = []
     for about in sorted(HERE.glob("results/*/about.json")):
         cases = {}
         for path in sorted(about.parent.glob("*.json")):
@@ -43,11 +43,11 @@ def entries() -> list[dict[str, Any]]:
                 "not_given": [one["name"] for one in result["criteria"] if not one["run"]],
                 "likely_mistakes": result["likely_mistakes"],
             }
-        found.append({**json.loads(about.read_text("utf-8")), "cases": cases})
+        results.append({**json.loads(about.read_text("utf-8")), "cases": cases})
     most: dict[str, int] = {}
-    for entry in found:
+    for entry in results:
         most[entry["code"]] = max(passes(entry), most.get(entry["code"], 0))
-    return sorted(found, key=lambda entry: (-most[entry["code"]], entry["code"], entry["settings"]))
+    return sorted(results, key=lambda entry: (-most[entry["code"]], entry["code"], entry["settings"]))
 
 
 def passes(entry: dict[str, Any]) -> int:
@@ -75,7 +75,7 @@ def cell(entry: dict[str, Any], case: str) -> str:
     return f"{one['verdict']} ({name} {worst['error']:.1e} {worst['unit']}{limit})"
 
 
-def rows(found: list[dict[str, Any]]) -> list[list[str]]:
+def rows(results: list[dict[str, Any]]) -> list[list[str]]:
     """Return the table: a line for each entry, its share of passes first, and a column for each case."""
     titles = {
         path.parent.name: json.loads(path.read_text("utf-8"))["title"]
@@ -88,15 +88,15 @@ def rows(found: list[dict[str, Any]]) -> list[list[str]]:
             f"{passes(entry)} of {len(entry['cases'])}",
             *(cell(entry, case) for case in sorted(titles)),
         ]
-        for entry in found
+        for entry in results
     ]
     return [head, *body]
 
 
-def makers(found: list[dict[str, Any]]) -> list[list[str]]:
+def makers(results: list[dict[str, Any]]) -> list[list[str]]:
     """Return the table of what was run: a line for each entry."""
     lines = [["code", "version", "settings", "time step", "processor time of a step", "machine", "commits"]]
-    for entry in found:
+    for entry in results:
         cost = entry["seconds_a_step"]
         told = [str(entry.get(key, "")) for key in ("code", "version", "settings", "time_step")]
         spent = "" if cost is None else f"{1e6 * cost:.1f} µs"
@@ -130,9 +130,9 @@ def page(table: list[list[str]]) -> str:
 
 def main() -> None:
     """Write the three files."""
-    found = entries()
-    table, made = rows(found), makers(found)
-    lines = ",\n ".join(map(json.dumps, found))
+    results = entries()
+    table, made = rows(results), makers(results)
+    lines = ",\n ".join(map(json.dumps, results))
     (HERE / "scoreboard.json").write_text(f"[\n {lines}\n]\n", "utf-8")
     words = (
         "Passes: of the cases that a code ran. "

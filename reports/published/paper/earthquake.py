@@ -193,12 +193,12 @@ def statements(data: Shaken) -> list[Statement]:
     }
     smooth = verdict_of(*(test(strong, weak) for test in tests.values()))
     back = verdict_of(trace.outcome == "stands", away < RESIDUAL, twist == 0.0)
-    found = [
+    judged = [
         ("abrupt", abrupt, verdict_of(strong.abrupt > 0, 2 * strong.abrupt > strong.passes)),
         ("smooth", both | counts | {"neighbours": len(data.neighbours), "until": data.strong_end}, smooth),
         ("place", place, back),
     ]
-    return [Statement(figure=5, name=name, numbers=n, verdict=verdict) for name, n, verdict in found]
+    return [Statement(figure=5, name=name, numbers=n, verdict=verdict) for name, n, verdict in judged]
 
 
 def _quasi_free(strong: Part, weak: Part) -> bool:

@@ -54,7 +54,7 @@ def measure(given: argparse.Namespace) -> Paper:
     """Run figures 3 to 6."""
     curves, modes, shaken = free.periods(), free.free_modes(), earthquake.shaken()
     spectrum = overturning.spectrum_of(given.grid)
-    found = [
+    statements = [
         *free.period_statements(curves),
         *free.mode_statements(modes),
         *earthquake.statements(shaken),
@@ -64,7 +64,7 @@ def measure(given: argparse.Namespace) -> Paper:
         "figure-3": curves,
         "figure-4": free.to_frame(modes),
         "figure-5": free.drawn_samples(shaken.trace, _SAMPLES),
-        "statements": to_frame(found),
+        "statements": to_frame(statements),
         **spectrum.tables,
     }
     return Paper(tables=tables, facts=spectrum.facts)
@@ -73,19 +73,19 @@ def measure(given: argparse.Namespace) -> Paper:
 def page_of(paper: Paper) -> Page:
     """Return the page of the figures."""
     tables, spectrum = paper.tables, OverturningSpectrum(tables=paper.tables, facts=paper.facts)
-    found = {each.name: each for each in from_frame(paper.statements)}
-    shaken = {**found["abrupt"].numbers, "time_step": spectrum.maps.motion.time_step}
+    by_name = {each.name: each for each in from_frame(paper.statements)}
+    shaken = {**by_name["abrupt"].numbers, "time_step": spectrum.maps.motion.time_step}
     return Page(
         name="paper",
         template=Path(__file__).with_name("page.md.j2"),
         values={
             **spectrum_values(spectrum),
-            "statements": found,
-            "judgements": {name: _judgement(each) for name, each in found.items()},
-            "linear_range": _linear_range(found["housner"].numbers),
-            "copy_agreement": _copy_agreement(found["abrupt"].numbers),
-            "at_the_end": _at_the_end(found["place"].numbers),
-            "lower_from": _lower_from(found["large_equal"].numbers),
+            "statements": by_name,
+            "judgements": {name: _judgement(each) for name, each in by_name.items()},
+            "linear_range": _linear_range(by_name["housner"].numbers),
+            "copy_agreement": _copy_agreement(by_name["abrupt"].numbers),
+            "at_the_end": _at_the_end(by_name["place"].numbers),
+            "lower_from": _lower_from(by_name["large_equal"].numbers),
             "cylinder": PIER,
             "release": free.RELEASE,
             "about": paper.manifest,

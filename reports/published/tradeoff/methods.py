@@ -281,8 +281,8 @@ def rates_of(case: Case, *, compiled: bool) -> RatesFunction:
 
     if not compiled:
         return rates
-    found: RatesFunction = numba.njit()(rates)
-    return found
+    function: RatesFunction = numba.njit()(rates)
+    return function
 
 
 def _departure(case: Case) -> float:

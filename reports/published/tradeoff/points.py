@@ -245,7 +245,7 @@ def engine_factors(points: pd.DataFrame) -> tuple[float, float]:
 
     In computing times of the recess model at its default tolerance, as everywhere.
     """
-    found = costs(points)
-    engines = ~found["family"].isin(("reduced", "scipy")) & (found["support"] == RECESS)
-    ratios = found.loc[engines, "ratio"]
+    table = costs(points)
+    engines = ~table["family"].isin(("reduced", "scipy")) & (table["support"] == RECESS)
+    ratios = table.loc[engines, "ratio"]
     return float(ratios.min()), float(ratios.max())

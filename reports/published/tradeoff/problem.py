@@ -185,22 +185,22 @@ def sampling_distance(problem: Problem, support: str) -> float:
 
     No method needs to be better than that, because another earthquake changes more.
     """
-    found = np.concatenate(problem.references[support].quantities)
+    answers = np.concatenate(problem.references[support].quantities)
     random = np.random.default_rng(0)
-    samples = np.sort(random.choice(found, (2, _DRAWS, len(found))), axis=2)
+    samples = np.sort(random.choice(answers, (2, _DRAWS, len(answers))), axis=2)
     return float(np.median(np.abs(samples[0] - samples[1]).mean(axis=1)))
 
 
 def _with_answers(problem: Problem) -> Problem:
     """Fill in the answers that have to be computed, and how far they have converged."""
-    found = dict(problem.references)
+    references = dict(problem.references)
     for name in SUPPORTS:
         runs = _reference_runs(name, min(problem.few_steps))
-        if name not in found and runs:
+        if name not in references and runs:
             best, other = ([_answer(problem, case, run) for case in problem.cases] for run in runs)
             source = "tight" if name in reduced.SUPPORTS else "half_step"
-            found[name] = Reference(quantities=best, doubt=problem.distance(other, best), source=source)
-    return replace(problem, references=found)
+            references[name] = Reference(quantities=best, doubt=problem.distance(other, best), source=source)
+    return replace(problem, references=references)
 
 
 def _reference_runs(support: str, finest: float) -> list[Run]:
@@ -246,13 +246,13 @@ def _peak(trace: Trace) -> Array:
     return np.array([min(trace.peak_tilt / trace.case.cylinder.alpha, 1.0)])
 
 
-def _largest(found: Sequence[Array], reference: Sequence[Array]) -> float:
-    pairs = list(zip(found, reference, strict=True))
+def _largest(answers: Sequence[Array], reference: Sequence[Array]) -> float:
+    pairs = list(zip(answers, reference, strict=True))
     if any(ours.shape != theirs.shape for ours, theirs in pairs):
         return math.nan
     return max(float(np.abs(ours - theirs).max()) for ours, theirs in pairs)
 
 
-def _wasserstein(found: Sequence[Array], reference: Sequence[Array]) -> float:
-    ours, theirs = (np.sort(np.concatenate(list(values))) for values in (found, reference))
+def _wasserstein(answers: Sequence[Array], reference: Sequence[Array]) -> float:
+    ours, theirs = (np.sort(np.concatenate(list(values))) for values in (answers, reference))
     return float(np.abs(ours - theirs).mean())

@@ -31,17 +31,17 @@ def measure(engine: str, *, sweep: bool = True) -> dict[str, Any]:
     The uplift sweep, which takes most of the time, may be left out.
     """
     started = time.perf_counter()
-    found: dict[str, Any] = {"version": find_engine(engine).version()}
+    row: dict[str, Any] = {"version": find_engine(engine).version()}
     figures: list[tuple[str, Callable[[str], Any]]] = [("turn", _turn), ("release", _release)]
     figures += [("el_centro", _shaken), *([("uplift", _uplift)] if sweep else [])]
     for name, figure in figures:
         try:
-            found[name] = figure(engine)
+            row[name] = figure(engine)
         # whatever an old version raises is what there is to say of it
         except Exception as error:
-            found[name], line = math.nan, (str(error).splitlines() or [""])[0]
-            found.setdefault("remarks", []).append(f"{name}: {type(error).__name__}: {line}")
-    return found | {"seconds": time.perf_counter() - started}
+            row[name], line = math.nan, (str(error).splitlines() or [""])[0]
+            row.setdefault("remarks", []).append(f"{name}: {type(error).__name__}: {line}")
+    return row | {"seconds": time.perf_counter() - started}
 
 
 def _turn(engine: str) -> float:

@@ -141,12 +141,12 @@ def _row(engine: str, version: str, folder: Path, *, sweep: bool) -> dict[str, A
     if done.returncode:
         said = done.stderr.strip().splitlines() or ["crashes without a word"]
         return row | {"remark": said[-1]}
-    found = json.loads(done.stdout.splitlines()[-1])
-    if found.pop("version") != version:
+    answer = json.loads(done.stdout.splitlines()[-1])
+    if answer.pop("version") != version:
         return row | {"remark": "another version was found in its place"}
     # most of the time one reason keeps all figures from running
-    reasons = dict.fromkeys(remark.partition(": ")[2] for remark in found.pop("remarks", []))
-    row.update(remark="; ".join(reasons), **found)
+    reasons = dict.fromkeys(remark.partition(": ")[2] for remark in answer.pop("remarks", []))
+    row.update(remark="; ".join(reasons), **answer)
     return row
 
 
