@@ -12,7 +12,7 @@ from rockwobble.models.frames import pd
 from rockwobble.models.mode import REST, SLIDES, expected_mode
 from rockwobble.models.support import EXTERNAL, SUPPORTS
 
-from ..external.loss import ENERGY_LOSS
+from ..external.mistakes import ENERGY_LOSS
 from ..external.verdict import mistakes_of
 from ..metrics.mode import mode_findings, slide_finding
 from ..metrics.pair import make_pair

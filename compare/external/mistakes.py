@@ -1,55 +1,89 @@
-"""Mistakes in a trajectory, of units, order of columns, clock and axes, and what takes them back."""
+"""Likely mistakes in a trajectory, of units, order of columns, clock and axes, and what takes them back.
+
+A table of plain ones is tried: another reading of the columns, another clock, the axes turned by quarter
+turns or mirrored, and of the path also its unit and its origin. One is named only where the trajectory
+follows the reference without it and did not with it; what none explains is a difference of the body, its
+start, the ground motion or the method.
+"""
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
 
-from .motion import Motion
+from .motion import SAME_TIME, Difference, Motion, Reference, explains, on_samples_of
 from .table import POSITION, QUATERNION, Values
 
 DEGREES = math.degrees(1.0)
 CLOCK_FACTORS = tuple(factor**sign for factor in (2.0, 3.0, 4.0, 5.0, 8.0, 10.0) for sign in (1, -1))
-LENGTH_FACTORS = (1e3, 1e2, 1e-2, 1e-3)
 # order and signs in place of qw, qx, qy, qz; where z is reversed the axis of the body points down
 QUATERNION_ORDERS = {
     "quaternion_scalar_last": ("qz", "qw", "qx", "qy"),
     "quaternion_inverse": ("qw", "-qx", "-qy", "-qz"),
     "z_reversed": ("-qx", "qw", "qz", "-qy"),
 }
-
-TURNS = {math.pi: "turned_back"}
-MIRRORS = {
-    0.0: "y_reversed",
-    math.pi: "x_reversed",
-    0.5 * math.pi: "axes_exchanged",
-    -0.5 * math.pi: "axes_exchanged_reversed",
+# what brings a lean into the axes of the reference: a turn by the angle, of its mirror image if mirrored. In
+# planar motion both do the same, and the turn is named
+FRAMES: Mapping[tuple[float, bool], str] = {
+    (math.pi, False): "turned_back",
+    (0.5 * math.pi, False): "turned_clockwise",
+    (-0.5 * math.pi, False): "turned_counterclockwise",
+    (0.0, True): "y_reversed",
+    (math.pi, True): "x_reversed",
+    (0.5 * math.pi, True): "axes_exchanged",
+    (-0.5 * math.pi, True): "axes_exchanged_reversed",
 }
-AXES_WORDS = {
-    "turned_back": "turned by 180 deg, as where the side that lifts is given for the side it leans to, or "
-    "the ground acceleration has the other sign",
-    "x_reversed": "mirrored: x has the other sign",
-    "y_reversed": "mirrored: y has the other sign, or azimuths are counted clockwise",
-    "axes_exchanged": "mirrored: x and y are exchanged, or azimuths are counted clockwise from y (north)",
-    "axes_exchanged_reversed": "mirrored: x and y are exchanged and have the other sign, as where x is "
-    "north, y east and z down",
-}
-WORDS = {
-    "z_reversed": "z points down",
-    "y_up": "y points up",
-    "quaternion_scalar_last": "the quaternion has its scalar last, not first",
-    "quaternion_inverse": "the quaternion is inverse: from world to body",
-}
-LENGTH_WORDS = {
+ENERGY_LOSS, ROLLING_RESISTANCE = "energy_loss", "rolling_resistance"
+LENGTHS = {
     1e3: "in mm, read as m",
     1e2: "in cm, read as m",
     1e-2: "in m, read as cm",
     1e-3: "in m, read as mm",
 }
+# words of each code, or those of a value below 1 and above it
+WORDS: Mapping[str, str | tuple[str, str]] = {
+    "time_offset": "its clock is off: an offset of {value:.3f} s takes that back",
+    "time_scale": "it takes {value:.4f} times as long, as with R {size:+.2f} %, g {weight:+.2f} % or another "
+    "slenderness",
+    "clock": (
+        "it runs in fast motion: times are {value:g} of the right ones",
+        "it runs in slow motion: times are {value:g} times too long",
+    ),
+    "spin": "it spins about its axis by {value:.3g} deg/s, so that its base must slip",
+    "time_unit": ("times are in s, read as ms", "times are in ms, read as s"),
+    "angle_unit": ("{its} in radians, read as degrees", "{its} in degrees, read as radians"),
+    "length_unit": "x, y and z are {length}",
+    "origin": "x, y and z are counted from a point {value:.3g} m from the original base centre",
+    "turned_back": "{its} turned by 180 deg, as where the side that lifts is given for the side it leans "
+    "to, or the ground acceleration has the other sign",
+    "turned_clockwise": "{its} turned by 90 deg clockwise",
+    "turned_counterclockwise": "{its} turned by 90 deg counter-clockwise",
+    "x_reversed": "{its} mirrored: x has the other sign",
+    "y_reversed": "{its} mirrored: y has the other sign, or azimuths are counted clockwise",
+    "axes_exchanged": "{its} mirrored: x and y are exchanged, or azimuths are counted clockwise from y "
+    "(north)",
+    "axes_exchanged_reversed": "{its} mirrored: x and y are exchanged and have the other sign, as where x "
+    "is north, y east and z down",
+    "z_reversed": "z points down",
+    "y_up": "y points up",
+    "quaternion_scalar_last": "the quaternion has its scalar last, not first",
+    "quaternion_inverse": "the quaternion is inverse: from world to body",
+    ENERGY_LOSS: "it loses energy, {percent:.2g} % of its tilt from each swing to the next",
+    ROLLING_RESISTANCE: "as with a rolling resistance of {value:.2g} m",
+}
+# how much more motion must agree without the mistake, and how far it must lean while it does, in bounds
+MORE_MOTION, LEANING = 4.0, 5.0
+LONG = 3.0  # how long it must agree, over the time scale of rocking, or up to the end
+SHORTEST_OFFSET = 0.01  # offset of a clock that is named, over the time scale
+# smallest and largest relative difference of a time scale that is named
+SMALLEST_RATE, LARGEST_RATE = 2.5e-3, 0.15
+# share of the tilt difference of a release left by the right clock: another tilt or spin leaves a fifth
+SAME_MOTION = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,13 +93,11 @@ class Mistake:
     Attributes
     ----------
     code : str
-        "time_offset" (value: to be added to the times [s]), "time_scale" (value: the motion is slower by
-        this factor), "clock" (value: times are too large by this factor), "spin" (value: [deg/s]),
-        "time_unit", "angle_unit", "length_unit" (value: too large by this factor), "turned"
-        (by value [deg], counter-clockwise), "turned_back" (by half a turn), "x_reversed", "y_reversed",
-        "axes_exchanged", "axes_exchanged_reversed", "mirrored" (value: azimuth of the line [deg]),
-        "z_reversed", "y_up", "quaternion_scalar_last", "quaternion_inverse", "origin" (value: its distance
-        from the right one [m]).
+        One of `WORDS`. With a value: "time_offset" (to be added to the times [s]), "time_scale" (the motion
+        is slower by this factor), "clock" (times are too large by this factor), "spin" [deg/s], "time_unit",
+        "angle_unit", "length_unit" (too large by this factor), "origin" (distance from the right one [m]);
+        and losses that the model does not have: "energy_loss" (share of the tilt from one maximum to the
+        next), "rolling_resistance" [m].
     concerns : str
         "time", "tilt", "azimuth", "tilt and azimuth", "quaternion", "path", "twist", or "axes": azimuth
         and path.
@@ -86,35 +118,12 @@ class Mistake:
     def words(self) -> str:
         """The mistake in words."""
         value, concerns = self.value, self.concerns
+        words = WORDS.get(self.code, self.code)  # an older result may name another
         its = f"its {concerns} {'are' if ' and ' in concerns or concerns == 'axes' else 'is'}"
-        match self.code:
-            case "time_offset":
-                late = "late" if value < 0.0 else "early"
-                return f"its clock is {abs(value):.3f} s {late}: an offset of {value:.3f} s takes that back"
-            case "time_scale":
-                size, weight = 100.0 * (value**2 - 1.0), 100.0 * (value**-2 - 1.0)
-                rate = f"{100.0 * abs(value - 1.0):.2f} % {'slower' if value > 1.0 else 'faster'}"
-                return f"it moves {rate}, as with R {size:+.2f} %, g {weight:+.2f} % or another slenderness"
-            case "clock":
-                factor, way = max(value, 1.0 / value), "long" if value > 1.0 else "short"
-                motion = "slow" if value > 1.0 else "fast"
-                return f"it runs in {motion} motion: times are {factor:g} times too {way}"
-            case "spin":
-                return f"it spins about its axis by {value:.3g} deg/s, so that its base must slip"
-            case "time_unit":
-                return f"times are in {'ms, read as s' if value > 1.0 else 's, read as ms'}"
-            case "angle_unit":
-                return f"{its} in {'degrees, read as radians' if value > 1.0 else 'radians, read as degrees'}"
-            case "length_unit":
-                return f"x, y and z are {LENGTH_WORDS[value]}"
-            case "origin":
-                return f"x, y and z are counted from a point {value:.3g} m from the original base centre"
-            case "turned":
-                return f"{its} turned by {value:.1f} deg (counter-clockwise)"
-            case "mirrored":
-                return f"{its} mirrored in the line at {value:.1f} deg, so that it rolls the other way round"
-            case code:
-                return WORDS.get(code) or f"{its} {AXES_WORDS[code]}"
+        size, weight = 100.0 * (value**2 - 1.0), 100.0 * (value**-2 - 1.0) if value else math.nan
+        return (words if isinstance(words, str) else words[value > 1.0]).format(
+            value=value, its=its, size=size, weight=weight, percent=100.0 * value, length=LENGTHS.get(value)
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,10 +133,23 @@ class Change:
     mistake: Mistake
     values: Callable[[Values], Values] = field(default=lambda values: values)
     motion: Callable[[Motion], Motion] = field(default=lambda motion: motion)
-    frame: Frame | None = None  # axes that lean and path have in common
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Explanation:
+    """Mistakes that explain a difference all together, if any, and what is left without them."""
+
+    changes: tuple[Change, ...]
+    left: Difference
+
+    @property
+    def mistakes(self) -> tuple[Mistake, ...]:
+        """The likely mistakes."""
+        return tuple(change.mistake for change in self.changes)
 
 
 Read = Callable[[Values], Motion | None]  # the motion that columns tell; None where they tell none
+Changed = tuple[tuple[Change, ...], Motion]  # changes, and the motion after them
 
 
 def correct(values: Values, read: Read, changes: Sequence[Change]) -> Motion | None:
@@ -135,11 +157,10 @@ def correct(values: Values, read: Read, changes: Sequence[Change]) -> Motion | N
     for change in changes:
         values = change.values(values)
     motion = read(values)
-    return None if motion is None else with_changes(motion, changes)
+    return None if motion is None else _with_changes(motion, changes)
 
 
-def with_changes(motion: Motion, changes: Sequence[Change]) -> Motion:
-    """Return a motion after those of some changes that concern the motion."""
+def _with_changes(motion: Motion, changes: Sequence[Change]) -> Motion:
     for change in changes:
         motion = change.motion(motion)
     return motion
@@ -169,7 +190,7 @@ def readings(values: Values) -> Iterator[Change]:
             yield in_order(code, "quaternion", dict(zip(QUATERNION, own, strict=True)))
     elif by_position:
         yield in_order("z_reversed", "path", {"z": "-z"})
-        for factor in LENGTH_FACTORS:
+        for factor in LENGTHS:
             yield in_unit("length_unit", "path", POSITION, factor)
     else:
         for names in (("tilt", "azimuth"), ("azimuth",), ("tilt",)):
@@ -184,17 +205,162 @@ def readings(values: Values) -> Iterator[Change]:
         yield in_unit("clock", "time", ("time",), factor)
 
 
-def spinning(rate: float) -> Change:
-    """Correction of a steady spin about the axis [rad/s]."""
+def in_time_scale(rate: float) -> Change:
+    """Correction of a motion that is slower by a factor."""
+    mistake = Mistake(code="time_scale", concerns="time", value=rate)
+    return Change(mistake=mistake, motion=partial(Motion.with_clock, rate=1.0 / rate))
+
+
+def _in_frame(frame: tuple[float, bool], concerns: str) -> Change:
+    """Correction of the axes of "azimuth", "path", or both ("axes")."""
 
     def correct(motion: Motion) -> Motion:
-        assert motion.twist is not None
-        return replace(motion, twist=motion.twist - rate * (motion.time - motion.time[0]))
+        other = motion.rotated(frame[0], mirrored=frame[1])
+        if concerns == "azimuth":
+            return replace(motion, lean=other.lean, twist=other.twist)
+        return replace(motion, path=other.path) if concerns == "path" else other
 
-    return Change(mistake=Mistake(code="spin", concerns="twist", value=math.degrees(rate)), motion=correct)
+    return Change(mistake=Mistake(code=FRAMES[frame], concerns=concerns), motion=correct)
 
 
-def of_path(reading: Change) -> Change:
+def explanations(values: Values, read: Read, reference: Reference) -> Iterator[Explanation]:
+    """Explanations of a difference between columns and a reference, the likeliest first.
+
+    The last explains the least, maybe nothing; there is none where the columns tell no motion.
+    """
+    motion = read(values)
+    if motion is None:
+        return
+    for changes, other in _tilts_explained(values, read, reference, motion):
+        for more, frame in _azimuths_explained(values, read, reference, changes, other):
+            whole = (*changes, *more)
+            turned = correct(values, read, whole) if more else other
+            assert turned is not None
+            of_axes = _path_explained(reference, turned, frame)
+            if frame is not None and "axes" not in (change.mistake.concerns for change in of_axes):
+                of_axes = (_in_frame(frame, "azimuth"), *of_axes)
+            of_axes += _spin_explained(reference, _with_changes(turned, of_axes))
+            left = reference.difference(_with_changes(turned, of_axes))
+            yield Explanation(changes=(*whole, *of_axes), left=left)
+
+
+def _tilts_explained(values: Values, read: Read, reference: Reference, motion: Motion) -> Iterator[Changed]:
+    """Yield a change with which the tilt follows the reference, the closest first; last none at all."""
+    before = reference.difference(motion)
+    if before.tilt.differs:
+        others = [(change, read(change.values(values))) for change in readings(values)]
+        others += [(change, change.motion(motion)) for change in _clocks(reference, motion)]
+        tried = [
+            (reference.difference(other), change, other) for change, other in others if other is not None
+        ]
+        for after, change, other in sorted(tried, key=lambda one: one[0].tilt.size):
+            fitted = reference.is_free and change.mistake.code in ("time_scale", "time_offset")
+            if _follows(reference, before, after, other, fitted=fitted):
+                more, frame = next(_azimuths_explained(values, read, reference, (change,), other))
+                # two motions that differ may have tilts that agree longer by chance, but not azimuths, too
+                if after.azimuth is None or not after.azimuth.differs or more or frame is not None:
+                    yield (change,), other
+            elif fitted:
+                break  # no clock makes another motion the same
+    yield (), motion
+
+
+def _follows(
+    reference: Reference, before: Difference, after: Difference, motion: Motion, *, fitted: bool
+) -> bool:
+    """Whether the tilts agree for so much longer that it cannot be by chance."""
+    if after.agreed_peak < LEANING * after.tilt.bound * reference.alpha:
+        return False
+    # over as much of the run as was compared before
+    to_the_end = not after.tilt.differs and after.compared >= 0.5 * before.compared
+    if fitted:
+        noise = (1.0 + 3.0 / math.sqrt(2.0 * len(motion.time))) * motion.noise / reference.alpha
+        return to_the_end and after.tilt.size <= math.hypot(SAME_MOTION * before.tilt.size, noise)
+    long_enough = to_the_end or after.length >= LONG * reference.time_scale
+    return long_enough and after.agreed_motion >= MORE_MOTION * before.agreed_motion
+
+
+def _clocks(reference: Reference, motion: Motion) -> Iterator[Change]:
+    """Yield an offset of the clock, by the first passage of half the peak, and the rate of a free motion."""
+
+    def size(other: Motion, model: Motion) -> float:
+        return (
+            replace(reference, motion=model)
+            .difference(replace(other, lean=None, path=None, twist=None))
+            .tilt.size
+        )
+
+    whole, unit = replace(reference.motion, lean=None, path=None, twist=None), reference.time_scale
+    level = 0.5 * float(whole.tilt.max(initial=0.0))
+    passages = [np.flatnonzero(np.diff(each.tilt > level)) for each in (whole, motion)]
+    if all(map(len, passages)):
+        offset = float(whole.time[passages[0][0]] - motion.time[passages[1][0]])
+        for width in (0.1, 0.03, 0.01, 0.003, 0.001):
+            tried = offset + width * unit * np.linspace(-1.0, 1.0, 7)
+            offset = float(min(tried, key=lambda at: size(motion.with_clock(offset=float(at)), whole)))
+        # a clock that is off by less than a sample cannot be told from what a model and noise make of samples
+        if abs(offset) > max(motion.step, SHORTEST_OFFSET * unit):
+            mistake = Mistake(code="time_offset", concerns="time", value=offset)
+            yield Change(mistake=mistake, motion=partial(Motion.with_clock, offset=offset))
+    if reference.is_free:
+        rate, width = 1.0, LARGEST_RATE
+        for window in (3.0, 6.0, 12.0, math.inf, math.inf):  # in longer windows, over the time scale
+            model = whole.at(whole.time[whole.time <= reference.start + window * unit])
+            rates = rate + width * np.linspace(-1.0, 1.0, 41)
+            rate = float(min(rates, key=lambda one: size(motion.with_clock(rate=1.0 / one), model)))
+            width *= 0.3
+        if abs(rate - 1.0) > SMALLEST_RATE:
+            yield in_time_scale(rate)
+
+
+def _azimuths_explained(
+    values: Values, read: Read, reference: Reference, changes: tuple[Change, ...], motion: Motion
+) -> Iterator[tuple[tuple[Change, ...], tuple[float, bool] | None]]:
+    """Yield columns read otherwise, or axes, with which the azimuth follows; last none at all."""
+    before = reference.difference(motion).azimuth
+    if before is not None and before.differs:
+        # columns are read otherwise once
+        if all(change.mistake.concerns == "time" for change in changes):
+            for one in readings(values):
+                if one.mistake.concerns in ("quaternion", "azimuth"):
+                    other = correct(values, read, (*changes, one))
+                    if other is not None and explains(before, reference.difference(other).azimuth):
+                        yield (one,), None
+        for frame in FRAMES:
+            if explains(before, reference.difference(_in_frame(frame, "azimuth").motion(motion)).azimuth):
+                yield (), frame
+    yield (), None
+
+
+def _path_explained(
+    reference: Reference, motion: Motion, axes: tuple[float, bool] | None
+) -> tuple[Change, ...]:
+    """The fewest changes that explain a path; what is wrong with the axes of the lean is expected."""
+    before = reference.difference(motion)
+    part = before.path
+    if motion.path is None or part is None or not (part.differs or axes):
+        return ()
+    own = [
+        (_of_path(one),)
+        for one in readings(dict.fromkeys(POSITION, motion.time))
+        if one.mistake.concerns != "time"
+    ]
+    passing: list[tuple[float, float, tuple[Change, ...]]] = []
+    for frame, reading, moved in itertools.product((None, *FRAMES), ((), *own), (False, True)):
+        turn = [] if frame is None else [_in_frame(frame, "axes" if frame == axes else "path")]
+        # y up is no horizontal axis
+        changes = tuple(sorted((*turn, *reading), key=lambda one: one.mistake.code != "y_up"))
+        if moved:
+            changes += (_origin(reference, _with_changes(motion, changes), before.covered),)
+        left = reference.difference(_with_changes(motion, changes)).path
+        if left is not None and not left.differs and (explains(part, left) or not part.differs):
+            # a constant offset has three numbers to fit: it comes after what has none
+            count = (frame not in (None, axes)) + len(reading) + 1.5 * moved
+            passing.append((count, left.size, changes))
+    return min(passing, key=lambda one: one[:2])[2] if passing else ()
+
+
+def _of_path(reading: Change) -> Change:
     """Return the change of the path alone that corresponds to another reading of its columns."""
     mistake = replace(reading.mistake, concerns="path")
 
@@ -207,41 +373,36 @@ def of_path(reading: Change) -> Change:
     return Change(mistake=mistake, motion=correct)
 
 
-def in_time_scale(rate: float) -> Change:
-    """Correction of a motion that is slower by a factor."""
-    mistake = Mistake(code="time_scale", concerns="time", value=rate)
-    return Change(mistake=mistake, motion=partial(Motion.with_clock, rate=1.0 / rate))
+def _origin(reference: Reference, motion: Motion, end: float) -> Change:
+    """Return the change that corrects another origin of the path."""
+    wanted, own = on_samples_of(reference.motion, motion)
+    assert wanted.path is not None
+    assert own.path is not None
+    origin = np.median((own.path - wanted.path)[wanted.time <= end + SAME_TIME], axis=0)
+
+    def correct(given: Motion) -> Motion:
+        assert given.path is not None
+        return replace(given, path=given.path - origin)
+
+    mistake = Mistake(code="origin", concerns="path", value=float(np.linalg.norm(origin)))
+    return Change(mistake=mistake, motion=correct)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Frame:
-    """Change of a motion into the axes of the reference: y reversed if mirrored, then a turn.
+def _spin_explained(reference: Reference, motion: Motion) -> tuple[Change, ...]:
+    """The steady spin about the axis that explains what turn is left, if one does."""
+    before = reference.difference(motion)
+    if before.twist is None or not before.twist.differs:
+        return ()
+    model, trial = on_samples_of(reference.motion, motion)
+    assert model.twist is not None
+    assert trial.twist is not None
+    within = model.time <= before.covered + SAME_TIME
+    time, apart = (model.time - model.time[0])[within], (trial.twist - model.twist)[within]
+    rate = float(time @ apart / (time @ time))
 
-    A turn by beta multiplies the lean by exp(i beta); axes of the other sense, such as x and y exchanged, an
-    azimuth counted clockwise or a mirrored table, conjugate it first. In planar motion both do the same.
-    The angle is counter-clockwise, in (-pi, pi] [rad].
-    """
+    def correct(given: Motion) -> Motion:
+        assert given.twist is not None
+        return replace(given, twist=given.twist - rate * (given.time - given.time[0]))
 
-    angle: float = 0.0
-    mirrored: bool = False
-
-    def apply(self, motion: Motion) -> Motion:
-        """Return the motion in the axes of the reference."""
-        return motion.rotated(self.angle, mirrored=self.mirrored)
-
-    def change(self, concerns: str) -> Change:
-        """Correction of the mistake in "azimuth", "path", or both ("axes")."""
-        named = MIRRORS if self.mirrored else TURNS
-        code = named.get(self.angle, "mirrored" if self.mirrored else "turned")
-        value = {"turned": -math.degrees(self.angle), "mirrored": 0.5 * math.degrees(self.angle)}.get(
-            code, math.nan
-        )
-
-        def correct(motion: Motion) -> Motion:
-            other = self.apply(motion)
-            if concerns == "azimuth":
-                return replace(motion, lean=other.lean, twist=other.twist)
-            return replace(motion, path=other.path) if concerns == "path" else other
-
-        mistake = Mistake(code=code, concerns=concerns, value=value)
-        return Change(mistake=mistake, motion=correct, frame=self if concerns == "axes" else None)
+    change = Change(mistake=Mistake(code="spin", concerns="twist", value=math.degrees(rate)), motion=correct)
+    return (change,) if explains(before.twist, reference.difference(correct(motion)).twist) else ()

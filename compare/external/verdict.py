@@ -10,17 +10,20 @@ from typing import Any, Protocol
 import numpy as np
 
 from rockwobble.models import AGREEMENT, Case, Trace
+from rockwobble.models.case import MOST_RESISTANCE
 from rockwobble.models.frames import pd
 
 from ..metrics.pair import TILTED, start_of
-from .explanation import explanations
-from .loss import CODES as LOSSES
-from .loss import Loss, losses
-from .mistakes import Mistake
-from .motion import Motion, Part, Reference, exceeds, motion_at
-from .table import Values
+from ..runs.execution import simulate_run
+from .mistakes import ENERGY_LOSS, ROLLING_RESISTANCE, Mistake, explanations
+from .motion import Difference, Motion, Part, Reference, exceeds, motion_at
+from .table import Array, Values
 from .trajectory import external_motion, measurement, trajectory_of, twist_since_start
 
+LEAST_LOSS = 5e-3  # smallest relative loss of a maximum from swing to swing that is reported
+FEWEST_MAXIMA = 3
+LESS_DIFFERENCE = 0.25  # largest share of the tilt difference left by a resistance that explains it
+LEAST_RESISTANCE = 1e-4  # smallest resistance tried, over b
 # standard deviations of the noise: the first of some hundred samples that is above a tilt is sought
 CONFIDENCE = 4.0
 
@@ -133,6 +136,68 @@ def judge(trajectory: Trace, reference: Trace, case: Case) -> Row:
     return row
 
 
+def losses(
+    motion: Motion, reference: Reference, trace: Trace, case: Case
+) -> tuple[tuple[Mistake, ...], Difference]:
+    """Return the loss that explains how the tilts differ, if one does, and what differs without it.
+
+    The models of recess and flat ground lose nothing: over still ground each maximum of the tilt is as high
+    as the one before, whatever becomes of the azimuths in the passes between. `trace` is that of the model.
+    """
+    before, share = reference.difference(motion), loss_of(motion, reference)
+    if not (before.tilt.differs and share > LEAST_LOSS and trace.run.is_model):
+        return (), before
+    loss = Mistake(code=ENERGY_LOSS, concerns="tilt", value=share)
+    radius = case.cylinder.base_radius
+
+    def difference(length: float) -> Difference:
+        other = simulate_run(replace(case, rolling_resistance=length), trace.run)
+        moved = motion_at(other.time, other.tilt, other.rolling_angle, other.centre_of_mass)
+        return replace(reference, motion=moved).difference(motion)
+
+    low, high, count = LEAST_RESISTANCE * radius, MOST_RESISTANCE * radius, 17
+    for _ in range(4):
+        lengths = np.geomspace(low, high, count).tolist()
+        tried = [difference(length) for length in lengths]
+        best = min(range(count), key=lambda at: tried[at].tilt.size)
+        low, high, count = lengths[max(best - 1, 0)], lengths[min(best + 1, count - 1)], 7
+    if tried[best].tilt.size > LESS_DIFFERENCE * before.tilt.size:
+        return (loss,), before
+    return (loss, Mistake(code=ROLLING_RESISTANCE, concerns="tilt", value=lengths[best])), tried[best]
+
+
+def loss_of(motion: Motion, reference: Reference) -> float:
+    """Return the share of a maximum of the tilt that is lost to the next, the median; 0 where none is known.
+
+    That of a release on still ground alone: elsewhere the ground makes and takes energy. 0 too where a
+    maximum is higher than the one before by more than noise.
+    """
+    if not reference.is_free:
+        return 0.0
+    height = maxima(motion.tilt, 5.0 * motion.noise + 1e-3 * float(motion.tilt.max(initial=0.0)))
+    if len(height) < FEWEST_MAXIMA:
+        return 0.0
+    lost = 1.0 - height[1:] / height[:-1]
+    return float(np.median(lost)) if lost.min() > -0.5 * LEAST_LOSS else 0.0
+
+
+def maxima(tilt: Array, least: float) -> Array:
+    """Return the maxima of a tilt from which it falls by more than `least` [rad], the first included."""
+    entries: list[float] = []
+    highest, lowest = float(tilt[0]), math.inf
+    for value in tilt.tolist():
+        if lowest == math.inf:  # rising, or just behind a maximum
+            highest = max(highest, value)
+            if value < highest - least:
+                entries.append(highest)
+                lowest = value
+        else:
+            lowest = min(lowest, value)
+            if value > lowest + least:
+                highest, lowest = value, math.inf
+    return np.array(entries)
+
+
 def uplift_differences(trajectory: Trace, reference: Trace) -> tuple[Part | None, Part | None]:
     """Return time [s] and azimuth [rad] at which a trajectory leans first, minus those of a model.
 
@@ -189,10 +254,7 @@ class ExternalSummaryRow(Protocol):
 def mistakes_of(row: ExternalSummaryRow) -> tuple[Mistake, ...]:
     """Likely mistakes of a verdict."""
     columns = zip(row.likely_mistake, row.likely_mistake_in, row.likely_mistake_value, strict=True)
-    return tuple(
-        (Loss if code in LOSSES else Mistake)(code=code, concerns=part, value=value)
-        for code, part, value in columns
-    )
+    return tuple(Mistake(code=code, concerns=part, value=value) for code, part, value in columns)
 
 
 def lists_in_words(verdicts: pd.DataFrame) -> pd.DataFrame:
@@ -208,4 +270,8 @@ def _join(cell: Sequence[str | float]) -> str:
 
 def lists_of_file(verdicts: pd.DataFrame) -> pd.DataFrame:
     """Verdicts that were stored, with their lists as tuples again."""
-    return verdicts.assign(**{name: verdicts[name].map(tuple) for name in LISTS})
+
+    def restored(cell: Sequence[str | float | None]) -> tuple[str | float, ...]:
+        return tuple(math.nan if each is None else each for each in cell)
+
+    return verdicts.assign(**{name: verdicts[name].map(restored) for name in LISTS})

@@ -109,7 +109,7 @@ STILL_KEPT = ("contrasts.parquet", "counts.parquet")
 CONTROLS = {"fragility/half-step": (*STILL_KEPT, MANIFEST)}
 
 # modules of compare/external that need numpy alone: check.py of the benchmark imports them
-_EXTERNAL = ("__init__.py", "table.py", "motion.py", "mistakes.py", "explanation.py")
+_EXTERNAL = ("__init__.py", "table.py", "motion.py", "mistakes.py")
 
 # what `compact` looks for in an SVG
 _DRAWN = b'<g id="figure_1">'  # as matplotlib begins, which has its name no more once it is compact

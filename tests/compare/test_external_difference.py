@@ -5,8 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from rockwobble.compare.external.explanation import fitted_frames, fitted_offsets, fitted_rate
-from rockwobble.compare.external.mistakes import Frame
 from rockwobble.compare.external.motion import AZIMUTH_BOUND, Motion, Part, Reference, explains
 from rockwobble.models import Cylinder
 
@@ -67,55 +65,6 @@ def test_an_azimuth_near_the_upright_position_and_after_the_agreement_means_noth
     assert held(motion(TILT, TIME), motion(TILT, TIME + np.where(TIME > 2.9, 2.0, 0.0))).differs_in == (
         "azimuth",
     )
-
-
-def test_a_turn_that_comes_with_a_pass_is_none_of_the_axes():
-    azimuth, angle = TIME.copy(), math.radians(25.0)
-    lean = motion(TILT, azimuth)
-
-    def fits(reference, other):
-        found = fitted_frames(model(reference), other, start=0.0, end=4.0)
-        mistakes = [fit.change("azimuth").mistake for fit in found]
-        return [(mistake.code, mistake.value) for mistake in mistakes]
-
-    assert fits(lean, motion(TILT, azimuth + angle)) == [("turned", pytest.approx(25.0))]
-    assert fits(lean, motion(TILT, azimuth + angle * (TIME > 1.0))) == []
-    # the first swing drowns in noise, and there is but one after it
-    small = np.where(TIME < 2.0, swings(0.1, 0.1), 1e-4)
-    small[TIME < 1.0] *= 0.005
-    late = motion(small, azimuth + angle * (TIME > 1.0), noise=1e-3)
-    assert fits(motion(small, azimuth), late) == []
-    # nor is one more enough
-    two = np.where(TIME < 1.0, 0.005 * TILT, TILT)
-    two = np.where(TIME > 3.0, 1e-4, two)
-    assert fits(motion(two, azimuth), motion(two, azimuth + angle * (TIME > 1.0), noise=1e-3)) == []
-
-
-def test_a_frame_takes_back_what_it_names():
-    azimuth = 0.3 + 0.8 * TIME
-    reference = motion(TILT, azimuth)
-    for frame in (Frame(angle=0.4), Frame(angle=1.1, mirrored=True), Frame(angle=math.pi)):
-        wrong = motion(TILT, (frame.angle - azimuth) if frame.mirrored else azimuth - frame.angle)
-        (found,) = fitted_frames(model(reference), wrong, start=0.0, end=4.0)
-        assert found.mirrored == frame.mirrored
-        assert found.angle == pytest.approx(frame.angle)
-        assert np.abs(found.apply(wrong).lean - reference.lean).max() < 1e-12
-
-
-@pytest.mark.parametrize("offset", [0.2, 0.7, -0.4])
-def test_an_offset_is_found_where_the_beginning_is_missing(offset):
-    tilt = 0.05 * (1.0 - np.cos(2.0 * TIME)) + 0.02 * TIME
-    began = TIME >= 0.6
-    file = motion(tilt[began], TIME[began], time=TIME[began] - offset)
-    found = fitted_offsets(model(motion(tilt, TIME)), file)
-    assert found == [pytest.approx(offset, abs=1e-3)]  # linear between samples
-
-
-@pytest.mark.parametrize("slower", [1.005, 0.9, 1.08])
-def test_a_rate_is_found(slower):
-    tilt = 0.05 * (1.0 + np.cos(5.0 * TIME))
-    other = motion(0.05 * (1.0 + np.cos(5.0 * TIME / slower)), TIME)
-    assert fitted_rate(model(motion(tilt, TIME)), other) == pytest.approx(slower, abs=1e-4)  # as above
 
 
 def test_a_difference_that_is_only_just_gone_is_not_explained():

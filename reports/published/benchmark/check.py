@@ -24,8 +24,15 @@ from numpy.typing import NDArray
 
 # modules that read, compare and explain trajectories: beside this file in an archive, else in the checkout
 sys.path.append(str(Path(__file__).resolve().parent / "../../../compare"))
-from external.explanation import Explanation, explanations
-from external.mistakes import Change, Mistake, correct, in_time_scale, readings
+from external.mistakes import (
+    Change,
+    Explanation,
+    Mistake,
+    correct,
+    explanations,
+    in_time_scale,
+    readings,
+)
 from external.motion import Motion, Reference, exceeds, motion_at, pose_of
 from external.table import Array, Table, Values, name_list, read_tables
 
