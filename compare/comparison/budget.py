@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, RockingBody, Run, Trace
-from rockwobble.models.frames import pd
+from rockwobble.models.frames import column_meanings, pd
 from rockwobble.models.shown import CompactRepr
 from rockwobble.models.support import RECESS
 from rockwobble.multibody.engines.registry import engine_facts
@@ -65,21 +65,7 @@ _UNCERTAIN = 0.1
 # planar in the x z plane, with the loss of a base that lands flat
 _IMPACT = Run(None, RECESS, plane=0.0, restitution="momentum")
 # name: (unit, meaning), beside case, run and reference
-BUDGET_COLUMNS: Mapping[str, tuple[str, str]] = {
-    "whole_rms": ("alpha", "RMS of the tilt difference until 80 % of the agreement"),
-    "model_form_rms": ("alpha", "of it: reduced model of the support minus the reference"),
-    "numerics_rms": ("alpha", "of it: engine minus the engine extrapolated to a step of zero"),
-    "unexplained_rms": ("alpha", "of it: engine extrapolated minus reduced model of its support"),
-    "unexplained_share": ("", "unexplained over whole; above 0.2 it is a finding"),
-    "limit_error": ("alpha", "uncertainty of the extrapolation"),
-    "step_order": ("", "order of the engine in its step, as measured from the three finest runs"),
-    "finest_step": ("s", "smallest time step that the extrapolation rests on"),
-    "not_split": (
-        "",
-        "why numerics and unexplained are not stated: unresolved_pass, order (below a half) or error (larger "
-        "than both)",
-    ),
-}
+BUDGET_COLUMNS = column_meanings("rockwobble.compare", "budget")
 Simulate = Callable[[list[Job]], list[Trace]]
 Key = tuple[str, str]
 

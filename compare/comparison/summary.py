@@ -15,7 +15,7 @@ import numpy as np
 
 from rockwobble.models import AGREEMENT, Case, Run, Trace
 from rockwobble.models.diagnostic import cell_of
-from rockwobble.models.frames import pd
+from rockwobble.models.frames import column_meanings, pd
 
 from ..external.verdict import ExternalSummaryRow, Row, judge
 from ..metrics.pair import (
@@ -42,84 +42,7 @@ from .prediction import Prediction, close_pass, verdict
 
 KEYS = ["case", "run", "reference"]  # columns that name a row in each table
 # name: (unit, meaning); the order is that of the table
-SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
-    "case": ("", "name of the case"),
-    "engine": ("", 'multibody engine, or "reduced"'),
-    "support": ("", "what holds the cylinder in place: recess, flat or ring"),
-    "reference_engine": ("", 'what the run is compared with: an engine, or "reduced"'),
-    "reference_support": ("", 'its support; "planar" of the planar model'),
-    "time_step": ("s", "time step of the engine"),
-    "outcome": ("", "how the run ended: stands, overturned or failed"),
-    "reference_outcome": ("", "how the reference ended"),
-    "diagnostics": ("", "codes of what ended or limits the run: see `rockwobble.models.diagnostic`"),
-    "peak_tilt": ("alpha", "largest tilt of the run, and of a swing that goes on when it ends"),
-    "reference_peak_tilt": ("alpha", "largest tilt of the reference"),
-    "peak_tilt_difference": ("alpha", "run minus reference"),
-    "tilt_rms": ("alpha", "root mean square of the tilt difference"),
-    "tilt_rms_relative": ("", "the same over the root mean square of the reference's tilt"),
-    "contact_rms": ("b", "RMS of the contact-point difference where both tilts exceed 5 % of the peak"),
-    "turn_difference": (
-        "deg",
-        "how far apart the contact points have rolled at the end of agreement, or at a pass unresolved",
-    ),
-    "uplift_time_difference": ("s", "run minus reference"),
-    "uplift_direction_difference": ("rad", "azimuth of the contact point at uplift or release"),
-    "agreement_time": (
-        "s",
-        "from uplift or release to the first tilt difference above 1 % of alpha; of a slide, or a difference "
-        "of the displacement above 1 % of its peak",
-    ),
-    "diverged": ("", "whether there was such a difference; if not, the time is the length of the run"),
-    "agreed_passes": ("", "passes within the agreement"),
-    "predicted_agreement_time": ("s", "when the traces have to diverge, from the reduced models alone"),
-    "displacement_difference": (
-        "",
-        "largest distance of the base centres over the peak displacement of a slide",
-    ),
-    "residual_displacement": ("b", "distance of the base centre from its old place at the end"),
-    "residual_twist": ("deg", "turn of the cylinder about its axis at the end"),
-    "energy_loss": ("", "energy lost by the run over the largest energy reached"),
-    "wall_time": ("s", "computing time of the run"),
-    "time_ratio": ("", "the same over that of the reference, both without loading or compiling"),
-    "largest_tilt_difference": ("alpha", "largest tilt difference until within_tolerance_until"),
-    "largest_contact_difference": (
-        "b",
-        "largest contact-point difference until then, where both tilts exceed 5 % of the peak",
-    ),
-    "largest_turn_difference": (
-        "deg",
-        "largest angle-of-turn difference there, up to whole turns after a pass unresolved",
-    ),
-    "mode": ("", "mode of motion: rest, slides, rocks, rocks in one plane, rocks and slides"),
-    "reference_mode": ("", "that of the reference"),
-    "reference_wall_time": ("s", "that of the reference: the least of its run and its perturbed copies"),
-    "contact_resolution": ("rad", "smallest minimum tilt of a pass that the engine resolves"),
-    "closest_pass": ("alpha", "smallest minimum tilt of the reference's passes within the agreement"),
-    "engine_version": ("", "version of the engine"),
-    "run": ("", "label of the run, as in the files of samples and in the figures"),
-    "reference": ("", "label of the reference"),
-    "predicted_by": ("", "what ends it within the tolerance: a pass, growth, model form; empty: nothing"),
-    "reference_uplift_time": ("s", "uplift or release of the reference; 0 where it stays at rest"),
-    "tolerance": ("alpha", "the smaller of 1 % of alpha and a tenth of the peak tilt, for the next five"),
-    "within_tolerance_until": ("s", "time of the run of the first tilt difference above it, or of the end"),
-    "left_tolerance": ("", "whether there was such a difference"),
-    "predicted_until": ("s", "time of the run of the predicted one, from the reduced models alone"),
-    "divergence": (
-        "",
-        "in time: within a factor of 2 of that prediction; later, much later: more than ten times, which "
-        "tests nothing; earlier, after it touched a wall, or too little motion to test anything",
-    ),
-    "estimated_error": (
-        "alpha",
-        "RMS error of the engine early on (the first second at R = 6 m), on which growth rests",
-    ),
-    "error": ("alpha", "error of the peak tilt: the largest of what error_source may name"),
-    "error_source": (
-        "",
-        "integration (a tolerance ten times as large), step (the engine's estimate, else its difference from "
-        "the model of its support), copies (input 1 % off) or model form (the reference)",
-    ),
-}
+SUMMARY_COLUMNS = column_meanings("rockwobble.compare", "summary")
 _UNKNOWN: Row = {**dict.fromkeys(SUMMARY_COLUMNS, math.nan), "error_source": ""}
 
 
@@ -361,18 +284,7 @@ def own_rows(summary: pd.DataFrame) -> pd.DataFrame:
 
 
 # columns of the agreement matrix, likewise
-MATRIX_COLUMNS: Mapping[str, tuple[str, str]] = {
-    "case": SUMMARY_COLUMNS["case"],
-    "support": ("", "of both"),
-    "run": ("", "label of an engine's run, or of the reduced model of the support"),
-    "other": ("", "label of what it is compared with"),
-    "tilt_rms": SUMMARY_COLUMNS["tilt_rms"],
-    "tilt_rms_relative": ("", "the same over the root mean square of the other's tilt"),
-    "peak_tilt_difference": ("alpha", "run minus other"),
-    "agreement_time": ("s", "from uplift or release to the first tilt difference above 1 % of alpha"),
-    "diverged": ("", "whether there was such a difference"),
-    "other_uplift_time": ("s", "uplift or release of the other; 0 where it stays at rest"),
-}
+MATRIX_COLUMNS = column_meanings("rockwobble.compare", "matrix")
 
 
 def agreement_matrix(

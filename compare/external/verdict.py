@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, Protocol
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from rockwobble.models import AGREEMENT, Case, Trace
 from rockwobble.models.case import MOST_RESISTANCE
-from rockwobble.models.frames import pd
+from rockwobble.models.frames import column_meanings, pd
 
 from ..metrics.pair import TILTED, start_of
 from ..runs.execution import simulate_run
@@ -29,32 +29,7 @@ CONFIDENCE = 4.0
 
 Row = dict[str, Any]  # row of a summary
 # columns of an external trajectory besides case, run and reference: unit, meaning
-VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = {
-    "differs_in": ("", "tilt, azimuth, path, twist, uplift_time, uplift_direction"),
-    "not_compared": (
-        "",
-        "azimuth or path, where not given or where the tilts agree over too little motion",
-    ),
-    "not_given": ("", "those of them that the file does not give"),
-    "azimuth_rms": ("deg", "difference of the azimuths while the tilts agree, weighted by the tilt"),
-    "azimuth_differs_from": ("s", "time of the first difference of the azimuths above its bound"),
-    "path_rms": ("b", "distance of the mass centres while the tilts agree"),
-    "path_differs_from": ("s", "time of the first distance above its bound"),
-    "twist_rms": ("deg", "difference of the turns about the axis while the tilts agree"),
-    "twist_differs_from": ("s", "time of the first difference of these turns above its bound"),
-    "tilt_bound": ("alpha", "tilt difference that ends the agreement: 1 % of alpha, and more with noise"),
-    "noise": ("alpha", "standard deviation of the scatter of the samples"),
-    "uplift_time_uncertainty": (
-        "s",
-        "uncertainty of the difference of the uplift times",
-    ),
-    "uplift_direction_uncertainty": ("rad", "that of the directions"),
-    "likely_mistake": ("", "codes of what explains the differences: see `Mistake`"),
-    "likely_mistake_in": ("", "what each of them concerns"),
-    "likely_mistake_value": ("", "their values, in the units of the codes"),
-    "differs_without_mistake": ("", "what still differs, of tilt, azimuth, path and twist"),
-    "agreement_without_mistake": ("s", "from uplift or release, as it would be without them"),
-}
+VERDICT_COLUMNS = column_meanings("rockwobble.compare", "verdict")
 # columns that hold a tuple
 LISTS = (
     *("differs_in", "not_compared", "not_given", "differs_without_mistake"),

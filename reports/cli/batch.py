@@ -17,6 +17,7 @@ from rockwobble.studies.plans import Copies, FragilityPlan, SpectrumPlan
 
 from ..console import echo, interruptible, save_with_page, show_and_save, shown_progress, user_input
 from ..pages.cases import case_lines, case_warnings, record_lines, warnings_about
+from ..pages.table import span
 from ..pages.wording import written
 from . import options
 from .command import takes_options
@@ -430,17 +431,12 @@ def _echo(plan: rw.Grid | rw.Suite) -> list[str]:
         "Cylinders: "
         + ", ".join(
             (
-                f"b = {_span([c.base_radius for c in ends])} m",
-                f"2h = {_span([2.0 * c.half_height for c in ends])} m",
-                f"alpha = {_span([math.degrees(c.alpha) for c in ends])} deg",
+                f"b = {span([c.base_radius for c in ends], '.4g')} m",
+                f"2h = {span([2.0 * c.half_height for c in ends], '.4g')} m",
+                f"alpha = {span([math.degrees(c.alpha) for c in ends], '.4g')} deg",
             )
         ),
         f"Runs: {runs:,} ({what})",
         *record_lines(plan.motions if isinstance(plan, rw.Grid) else [case.motion for case in plan.cases]),
         *warnings(doubts),
     ]
-
-
-def _span(numbers: list[float]) -> str:
-    low, high = min(numbers), max(numbers)
-    return f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"

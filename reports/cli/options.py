@@ -125,14 +125,13 @@ def panel(title: str) -> Callable[..., object]:
     return option
 
 
-def whole(least: int, most: float = math.inf) -> Callable[[int | None], int | None]:
-    """Return the callback of a whole number: one out of range is refused in a line that says both."""
-    allowed = f"at least {least}" if most == math.inf else f"from {least} to {most}"
+def whole(least: int) -> Callable[[int | None], int | None]:
+    """Callback of a whole number: one out of range is refused in a line that says both."""
 
     def checked(value: int | None) -> int | None:
-        if value is None or least <= value <= most:
+        if value is None or least <= value:
             return value
-        raise typer.BadParameter(f"must be {allowed}, got {value}")
+        raise typer.BadParameter(f"must be at least {least}, got {value}")
 
     return checked
 

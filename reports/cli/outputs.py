@@ -96,7 +96,7 @@ def require_own_file(option: str, path: Path, plan: str, plan_in: Callable[[byte
     except (ValueError, AttributeError):
         there = None
     if there not in ("", plan):
-        what = "something else" if there is None else "what this command has made with other options"
+        what = "something else than this command with these options makes"
         raise ValueError(f"{option} {path} holds {what}: name another file, or replace it by --overwrite")
 
 

@@ -26,6 +26,7 @@ from rockwobble.studies.plans import (
 )
 
 from ..pages.command_line import command_line
+from ..pages.wording import written
 from . import options
 
 if TYPE_CHECKING:
@@ -271,10 +272,7 @@ class Steel(Plan):
         area, stress, force = self.tendon_area, self.tendon_yield_stress, self.tendon_yield_force
         if stress is not None:
             if area is None or force is not None:
-                other = (
-                    "needs --tendon-area as well" if area is None else "got --tendon-yield-force beside it"
-                )
-                raise ValueError(f"--tendon-yield-stress {other}")
+                raise ValueError("--tendon-yield-stress needs --tendon-area, and no --tendon-yield-force")
             force = stress * area  # MPa mm2
         return rw.Tendon.from_steel(
             prestress=self.tendon_force or 0.0,
@@ -383,7 +381,6 @@ class Problem(Release, Record, Restraint, Body):
         """
         initial, cylinder = self.initial(), self.cylinder()
         motion = self.motion(still=initial is not None)
-        scaled = f" × {self.scale:g}" if self.scale != 1.0 else ""
         return rw.Case(
             cylinder,
             motion,
@@ -393,8 +390,14 @@ class Problem(Release, Record, Restraint, Body):
             friction=self.friction,
             rolling_resistance=self.rolling_resistance,
             tendon=self.tendon(cylinder, self.gravity),
-            name="free response" if motion is None else motion.name + scaled,
+            name="free response" if motion is None else named(motion, self.scale),
         )
+
+
+def named(motion: rw.GroundMotion, scale: float) -> str:
+    """Name of a case: that of its ground motion, with its scale."""
+    factor = scale if scale != 1.0 else None
+    return written("motions.scaled", {"name": motion.name, "factor": factor}, {})
 
 
 def unread(problem: Problem) -> Problem:

@@ -35,6 +35,7 @@ from .problem import Problem, given_options, refuse
 
 if TYPE_CHECKING:
     from rockwobble.compare.storage.manifest import Manifest
+    from rockwobble.models.finding import Value
 
 Store = Annotated[Path, typer.Argument(help="Folder of results.", show_default=False)]
 Json = Annotated[bool, options.output("Print everything as JSON.", "--json")]
@@ -67,8 +68,8 @@ def show(store: Store, as_json: Json = False) -> None:
         for made, files in zip(found, states, strict=True):
             _print(store, made, files)
         for each in going:
-            far = f"{each['done']} of {each['total']} tasks"
-            print(f"{store}: {each['kind']}, not finished: {far}; the same command resumes")
+            values: dict[str, Value] = {"count": each["done"], "count_all": each["total"]}
+            print(f"{store}: {written('progress.unfinished', values | {'detail': each['kind']}, {})}")
     if any(state != "whole" for files in states for state in files.values()):
         raise typer.Exit(1)
 
@@ -84,9 +85,9 @@ def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
         if not isinstance(value, Mapping) and name not in ("inputs", "seed")  # which follow
     }
     lines |= {
-        "made by": made.command or "a program",
+        "made by": written("progress.made_by", {"detail": made.command}, {}),
         "made on": f"{made.date}, {made.processor}",
-        "commit": made.commit or "of an installed package",
+        "commit": written("progress.commit", {"detail": made.commit}, {}),
         "hash of the inputs": made.inputs,
         "seeds": ", ".join(f"{name} {seed}" for name, seed in made.seeds.items()),
         "versions": ", ".join(f"{name} {version}" for name, version in made.versions.items()),
@@ -103,7 +104,7 @@ def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
 
 def _drawn_by(made: Manifest) -> str:
     """Release that draws the pages of a kind that this one does not know."""
-    return f"the release that made them, rockwobble {made.versions.get('rockwobble', '(not stated)')}"
+    return written("progress.drawn_by", {"detail": made.versions.get("rockwobble")}, {})
 
 
 def _text(value: object) -> str:

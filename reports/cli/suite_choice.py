@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
+from rockwobble.models.finding import Value
 
 from ..console import complain
 from ..pages.cases import case_warnings, group_of, record_lines
+from ..pages.wording import written
 from .problem import PROBLEM, refuse
 
 if TYPE_CHECKING:
@@ -93,8 +95,10 @@ def suite_lines(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> 
 
     groups = Counter(group_of(case.name) for case in cases)
     yield f"Suite {name}: {len(cases)} cases x {len(runs)} runs = {len(cases) * len(runs)} runs of engines"
-    counted = (f"{group} ({count})" if count > 1 else group for group, count in groups.items())
-    yield f"Cases: {', '.join(counted)}"
+    counted: Iterator[Mapping[str, Value]] = (
+        {"name": group, "count": count if count > 1 else None} for group, count in groups.items()
+    )
+    yield f"Cases: {', '.join(written('motions.group', each, {}) for each in counted)}"
     yield f"Runs: {', '.join(run_labels(runs))}"
     yield from record_lines(case.motion for case in cases)
     yield from case_warnings(cases)

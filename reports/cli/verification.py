@@ -242,8 +242,7 @@ def _run(subject: Subject, only: list[str] | None) -> Checks:
 
     for group in only or ():
         require_one_of("--only", group, tuple(GROUPS))
-    what = "engine runs" if "suite" in subject else "checks"
-    with shown_progress(what, heading="checking", each="suite" in subject) as progress:
+    with shown_progress("checks", heading="checking", each="suite" in subject) as progress:
         found = check(**subject, only=only, progress=progress)
     print_checks(Console(), found)
     return found

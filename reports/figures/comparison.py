@@ -10,7 +10,7 @@ import numpy as np
 
 from rockwobble.compare import TILTED, Comparison
 from rockwobble.compare.metrics.pair import balance_of, make_pair
-from rockwobble.models import AGREEMENT, Trace
+from rockwobble.models import Trace
 from rockwobble.models.support import Support
 from rockwobble.reduced import limiting_angle_of_turn
 
@@ -73,10 +73,7 @@ def _tilts(view: CaseView, runs: Sequence[str], support: Support) -> Panel:
 
 def _differences(view: CaseView, reference: str) -> Panel:
     pairs = [each for each in view.pairs() if each[0].reference == reference]
-    bounds = {
-        row.tolerance: "1 % of α" if row.tolerance >= AGREEMENT else "a tenth of the peak"
-        for row, *_ in pairs
-    }
+    bounds = {row.tolerance: f"{100.0 * row.tolerance:.2g} % of α" for row, *_ in pairs}
     layers: list[Layer] = [
         Rule(at=max(bound, SMALLEST), axis="y", text=text, side="right") for bound, text in bounds.items()
     ]
@@ -247,7 +244,7 @@ def _bars(runs: list[str], values: Array, colours: list[str], x: Axis, unit: str
     known = np.nan_to_num(values)
     # room for the numbers beside the bars
     high = 1.45 * (float(known.max(initial=0.0)) or 1.0)
-    texts = [f"{value:.3g} {unit}" if math.isfinite(value) else "unknown" for value in values]
+    texts = [f"{value:.3g} {unit}".replace("nan", "–") for value in values]
     bars = Bars(places=places, start=0.0 * known, end=known, colours=colours, texts=texts)
     return Panel(
         x=Axis(label=x.label, unit=x.unit, low=0.0, high=high),

@@ -26,7 +26,13 @@ _TICKS = (0.1, 0.2, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0, 50.0)
 _RATIOS = (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0)
 _LINE = 0.42  # inch for a pair of methods
 _EDGE = 1.02  # a mark keeps so far within the ends of a logarithmic axis
-_MEDIAN = Style(colour=ORDER[0], dash="none", symbol="diamond")
+# symbol of a ratio and its name: within the axis, and beyond its left or right end
+_MARKS = {
+    (False, False): ("diamond", "ratio of the medians"),
+    (True, False): ("triangle-left", "beyond the axis"),
+    (False, True): ("triangle-right", "beyond the axis"),
+}
+_TITLES: Mapping[str | None, str] = {ALL: "Mean of all cylinders"}
 
 
 def pictures(results: Fragility) -> list[Picture]:
@@ -66,13 +72,11 @@ def _ratios(results: Fragility) -> Picture | None:
         x = np.clip([row["ratio_low"], row["ratio_high"]], low, high)
         y = np.full(2, float(place))
         layers.append(Line(x=x, y=y, name="95 % interval", style=Style(colour=ORDER[0]), width=3.0))
-        # beyond the axis a triangle at its end
-        side = "left" if row["ratio"] < low else "right" if row["ratio"] > high else ""
+        symbol, name = _MARKS[bool(row["ratio"] < low), bool(row["ratio"] > high)]
         x = np.clip([row["ratio"]], low * _EDGE, high / _EDGE)
-        mark = Style(colour=ORDER[0], dash="none", symbol=f"triangle-{side}") if side else _MEDIAN
-        name = "beyond the axis" if side else "ratio of the medians"
+        mark = Style(colour=ORDER[0], dash="none", symbol=symbol)
         layers.append(Line(x=x, y=y[:1], name=name, style=mark))
-    title = "Mean of all cylinders" if cylinder == ALL else ""
+    title = _TITLES.get(cylinder, "")
     panel = Panel(x=x_axis, y=y_axis, layers=layers, title=title, height=_LINE * len(pairs) + 1.0)
     return Picture(
         name="fragility-ratios",

@@ -369,12 +369,9 @@ def _contact(table: pd.DataFrame, uplift: float) -> Picture:
     groups = {f"damping ratio {damping:g}": rows for damping, rows in known.groupby("damping")}
     softness = Axis(label="contact time constant × p", unit="-", log=True)
     lost: Array = column(table[failed], "softness")
-    crosses = Line(
-        x=lost,
-        y=np.full(len(lost), float(known["ratio"].min()) if len(known) else 1.0),
-        name="failed" if len(lost) else "",
-        style=Style(colour=DARK, dash="none", symbol="x"),
-    )
+    low = float(known["ratio"].min()) if len(known) else 1.0
+    cross = Style(colour=DARK, dash="none", symbol="x")
+    crosses = [Line(x=lost, y=np.full(len(lost), low), name="failed", style=cross)] if len(lost) else []
     return Picture(
         name="contact",
         caption=caption("contact", intensity=STRONG * uplift),
@@ -382,7 +379,7 @@ def _contact(table: pd.DataFrame, uplift: float) -> Picture:
             Panel(
                 x=softness,
                 y=Axis(label=_PEAK_RATIO, unit="-"),
-                layers=[_ONE, *group_lines(groups, "softness", "ratio", lines=False), crosses],
+                layers=[_ONE, *group_lines(groups, "softness", "ratio", lines=False), *crosses],
             ),
             Panel(
                 x=softness,

@@ -35,6 +35,9 @@ _DEMANDS = (
 )
 # units in the box, where W is the weight that its head names
 _UNITS = {"-": "", "weights": " W", "weights × b": " W b"}
+# what moves at the top, of a frame and of a cylinder; what carries it, a recess and none
+_TOP = {True: "slab", False: "top"}
+_BELOW = {True: "recess", False: "ground"}
 # motions that are told among what was asked, not before all else
 _PLAIN = ("mode.rest", "mode.rocks", "mode.rocks_in_one_plane", "mode.no_friction_given")
 _OPENING = ("mode", "vertical", "rest", "steel")
@@ -72,9 +75,9 @@ def page_of(found: Advice) -> Page:
             | {each: sentence(criterion(topic, each)) for each in GRADES}
             for topic, grade in found.grades.items()
         ],
-        "part": "slab" if "columns" in facts["cylinder"] else "top",
+        "part": _TOP["columns" in facts["cylinder"]],
         "numbers": list(_numbers(found, findings)),
-        "place": "recess" if support_named(facts["support"]).is_recess else "ground",
+        "place": _BELOW[support_named(facts["support"]).is_recess],
         "weight": " ".join(_said(findings.of("weight"))),
         "weight_short": " ".join(statement(each, short=True) for each in findings.of("weight")),
         "demanded": list(_demand_rows(found, findings)),

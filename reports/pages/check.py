@@ -146,8 +146,7 @@ def _row(result: Result) -> Row:
 
 
 def _measurement(result: Result) -> str:
-    known = math.isfinite(result.value)
-    return f"{number(result.value, '.2g')} {result.unit}".strip() if known else "none"
+    return f"{number(result.value, '.2g')} {result.unit}".strip()
 
 
 def _bound(result: Result) -> str:

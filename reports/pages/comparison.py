@@ -35,7 +35,7 @@ from .diagnostics import code_counts, remarks
 from .page import Page
 from .sentences import fragment
 from .table import Row, enumeration
-from .wording import lines_of, statement, words
+from .wording import lines_of, some_of, statement, words
 
 # up to so many cases each has a part of the report of its own
 SINGLY = 3
@@ -60,7 +60,7 @@ def page_of(results: Comparison) -> Page:
     values: dict[str, object] = {
         "many": many,
         "about": results.manifest,
-        "title": views[0].case.name if len(views) == 1 else f"{len(views)} problems",
+        "title": some_of([view.case.name for view in views[:1]], len(views) - 1),
         "overview_pictures": [] if bars is None else [bars.name],
         "cases": [
             {
@@ -356,4 +356,4 @@ def _cell(rows: pd.DataFrame) -> str:
 
 
 def _short(label: str, support: str) -> str:
-    return "model" if label == str(Run(None, support)) else label.removesuffix(f" {support}")
+    return {str(Run(None, support)): "model"}.get(label, label.removesuffix(f" {support}"))

@@ -29,7 +29,7 @@ def warnings(doubts: Iterable[Facts]) -> list[str]:
     for doubt in doubts:
         fields = {name: value for name, value in doubt.items() if name != "record"}
         text = sentence(Diagnostic(**fields))
-        lines.append(f"Warning: {doubt['record']}: {text}{'' if text.endswith('?') else '.'}")
+        lines.append(f"Warning: {doubt['record']}: {text}.".replace("?.", "?"))
     return lines
 
 

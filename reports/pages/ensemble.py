@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from rockwobble.compare.metrics.statistics import POWER, value_if_enough
 from rockwobble.models.diagnostic import codes_in
 from rockwobble.studies import Ensemble
 
 from ..figures.ensemble import pictures
 from .page import Page
-from .table import number
+from .table import span
 from .wording import lines_of, sentence, statement
 
 _ANSWERS = tuple(f"ensemble.{name}" for name in ("no_pairs", "equivalent", "different", "undecided", "few"))
@@ -30,8 +28,8 @@ def page_of(found: Ensemble) -> Page:
     one_column = any("one_column" in codes_in(cell) for cell in found.members["diagnostics"])
     values = {
         "facts": found.facts,
-        "sizes": _range_of(found.facts["semidiagonal"]),
-        "slenderness": _range_of(found.facts["tan_alpha"]),
+        "sizes": span([found.facts["semidiagonal"][end] for end in ("from", "to")]),
+        "slenderness": span([found.facts["tan_alpha"][end] for end in ("from", "to")]),
         "count": found.members["member"].nunique(),
         "methods": found.methods.to_dict("records"),
         "contrasts": rows,
@@ -45,8 +43,3 @@ def page_of(found: Ensemble) -> Page:
         "about": found.manifest,
     }
     return Page(name="ensemble", template="ensemble", values=values, pictures=pictures(found))
-
-
-def _range_of(values: Mapping[str, float]) -> str:
-    """A number that all members have, or the first and the last of several."""
-    return " to ".join(number(values[end]) for end in ("from", "to")[: 1 + (values["count"] > 1)])

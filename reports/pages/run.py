@@ -9,7 +9,6 @@ from rockwobble.studies.single_run import SingleRun
 
 from ..figures.trace import pictures
 from .cases import case_lines
-from .diagnostics import remarks
 from .page import Page
 from .wording import sentence, statement
 
@@ -19,7 +18,8 @@ _DETAILS = ("quantity.closest", "quantity.computing_time")  # which a terminal l
 
 def page_of(found: SingleRun) -> Page:
     """Return the page of a run."""
-    trace, said, findings = found.trace, remarks(_limits(found.trace)), found.findings()
+    trace, findings = found.trace, found.findings()
+    said = " ".join(statement(each.finding()) for each in _limits(trace))
     sizes = findings.of("quantity")
     doubts = [each for each in findings if each.key == _DOUBT]
     answers = [each for each in findings if each not in (*sizes, *doubts)]
@@ -28,7 +28,7 @@ def page_of(found: SingleRun) -> Page:
         "label": f"{found.facts['run'][0].upper()}{found.facts['run'][1:]}",
         "statements": list(map(statement, answers)),
         "answers": [statement(each) for each in answers if each.key != "mode.rocks"],
-        "said": f"{said[0].upper()}{said[1:]}." if said else "",
+        "said": said,
         "warnings": [*map(statement, doubts)],
         "answer": found.facts.get("single_trace", {}).get("answer", ""),
         "rows": _rows(sizes),

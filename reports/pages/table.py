@@ -89,6 +89,11 @@ def interval_form(form: str, *numbers: object) -> str:
     return f".{max(min(places + 1 + math.floor(math.log10(abs(value))), shown), whole)}g"
 
 
+def span(values: Sequence[float], form: str = ".3g") -> str:
+    """The least and the largest of some numbers; one where all are the same."""
+    return " to ".join(dict.fromkeys(number(each, form) for each in (min(values), max(values))))
+
+
 def enumeration(words: Sequence[str]) -> str:
     """Return words with commas and, before the last, "and"."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
@@ -323,7 +328,7 @@ class Table:
                 parts.append(Text(name, style="bold"))
             parts.append(self._rich(columns, widths, rows))
         if gone := len(self.columns) - len(columns):
-            parts.append(Text(f"{gone} more column{'s' if gone > 1 else ''} on the page", style="dim"))
+            parts.append(Text(f"columns on the page: {gone} more", style="dim"))
         return Group(*parts)
 
     def _width(self, columns: Sequence[Column], **look: bool) -> int:

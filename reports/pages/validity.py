@@ -174,7 +174,7 @@ def _rings(table: pd.DataFrame) -> list[dict[str, object]]:
             {
                 "support": SUPPORTS[str(support)].words,
                 "clearance": clearance,
-                "inclination": "α" if inclination == 0.0 else inclination,
+                "inclination": {"0.0": "α"}.get(str(inclination), inclination),
                 "friction": friction,
                 "least": ratio.min(),
                 "largest": ratio.max(),

@@ -121,10 +121,10 @@ def filled(line: str, values: Mapping[str, Value], units: Mapping[str, str]) -> 
 def _variant(key: str, values: Mapping[str, Value]) -> str:
     group, _, line = key.partition(".")
     for name, value in values.items():
-        if isinstance(value, float) and not math.isfinite(value):
-            variant = f"{line}:{name} {'unknown' if math.isnan(value) else 'infinite'}"
-            if variant in words()[group]:
-                return f"{group}.{variant}"
+        state = "infinite" if value in (math.inf, -math.inf) else "unknown"
+        variant = f"{line}:{name} {state}"
+        if variant in words()[group] and (state == "infinite" or not _is_known(value)):
+            return f"{group}.{variant}"
     return key
 
 

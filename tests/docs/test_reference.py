@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import inspect
 import json
 import re
 import runpy
+from fnmatch import filter as fnmatch_filter
+from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
@@ -14,16 +17,19 @@ import typer
 
 import rockwobble
 from rockwobble import compare, reduced
+from rockwobble.compare.storage.manifest import read_manifests
 from rockwobble.models import Case, Cylinder, InitialState, Run
+from rockwobble.models.finding import GRADES
 from rockwobble.models.suites.tables import TABLES
 from rockwobble.models.trace_file import COLUMNS, OF_FRAMES, OF_TENDONS, PASS_COLUMNS
 from rockwobble.reports.cli.main import app
 from rockwobble.reports.pages.wording import words
-from rockwobble.reports.registry import COMMANDS
+from rockwobble.reports.registry import COMMANDS, KINDS
 
 pytestmark = pytest.mark.checkout
 
-DOCS = Path(__file__).parents[2] / "docs"
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
 API = DOCS / "reference" / "api"
 PACKAGES = ["models", "reduced", "multibody", "compare", "compare.check", "studies"]
 PARTS = {"models", "reduced", "multibody", "compare", "studies", "reports"}
@@ -143,6 +149,61 @@ def test_every_group_of_findings_is_on_its_page_once() -> None:
     listed = [group for line in re.findall(r"\{findings-table\} (.*)", page) for group in line.split()]
     labels = {"word", "diagnostic", "figure", "number", "motions", "progress"}  # which nothing decides
     assert sorted(listed) == sorted({*words()} - labels)
+
+
+def stated_levels() -> dict[str, set[str]]:
+    """Levels of each key or pattern of keys on the page of findings, in its order."""
+    page = (DOCS / "reference" / "findings.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (`.*`) \| (.*) \|$", page.partition("## Levels")[2], re.MULTILINE)
+    return {key: set(levels.split(", ")) for keys, levels in rows for key in re.findall(r"`(.*?)`", keys)}
+
+
+def levels_of(key: str) -> set[str]:
+    """Levels that the page states of a key."""
+    stated = stated_levels()
+    return next((stated[each] for each in stated if fnmatch(key, each)), {"note"})
+
+
+def constants(node: ast.AST) -> set[str]:
+    """Texts of an expression."""
+    return {
+        each.value for each in ast.walk(node) if isinstance(each, ast.Constant) if isinstance(each.value, str)
+    }
+
+
+def test_levels_of_keys_on_their_page_are_those_of_the_code() -> None:
+    decided = 0
+    for path in (path for part in ("compare", "studies") for path in (ROOT / part).rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not (isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Finding"):
+                continue
+            given = {each.arg: each.value for each in node.keywords}
+            keys = {key for key in constants(given["key"]) if re.fullmatch(r"\w+\.\w+", key)}
+            levels = constants(given["level"]) & {"note", *GRADES} if "level" in given else {"note"}
+            if keys and levels:  # both are constants there
+                assert set().union(*map(levels_of, keys)) == levels, ast.unparse(node)
+                decided += len(keys)
+    assert decided > 60
+    lines = {f"{group}.{name.partition(':')[0]}" for group, names in words().items() for name in names}
+    assert [each for each in stated_levels() if not fnmatch_filter(lines, each)] == []
+
+
+@pytest.mark.slow
+def test_published_findings_have_the_levels_of_their_page() -> None:
+    seen: set[str] = set()
+    for folder in (
+        "advice/pier",
+        "advice/tower",
+        "ensemble/p695-2",
+        "fragility/p695",
+        "risk/p695",
+        "validity",
+    ):
+        path = ROOT / "reports" / "published" / folder
+        findings = KINDS[read_manifests(path)[0].kind].results_class().load(path).findings()
+        assert [each for each in findings if each.level not in levels_of(each.key)] == []
+        seen |= {each.level for each in findings}
+    assert seen == {"note", *GRADES}
 
 
 def test_every_comparison_file_and_manifest_key_is_documented(tmp_path: Path) -> None:

@@ -173,7 +173,7 @@ BAD = {
         "--records . --record good.csv": "--records names all ground motions, got --record",
         "--units g": "--units belongs to a record, give --record-x and --record-y as well",
         "--out none/explore.html": "--out must be a file in a folder that exists, got none",
-        "--out good.csv": "--out good.csv holds something else: name another file, or replace it by",
+        "--out good.csv": "--out good.csv holds something else than this command",
     },
     "check": {
         "--only equation": "--only must be one of equations, exact, conserved, ",
