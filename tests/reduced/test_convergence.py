@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from stating import solve
 
-from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble import reduced
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 TOLERANCES = 10.0 ** np.arange(-5.0, -10.5, -1.0)
@@ -23,16 +23,20 @@ PROBLEMS = {
     "free response": {"initial": InitialState(0.5 * PIER.alpha, rolling_rate=0.05), "duration": 20.0},
     "El Centro": {"motion": el_centro_1940(), "duration": 12.0},
     "one-sine pulse": {"motion": pulse(), "duration": 15.0},
+    "resisted": {
+        "initial": InitialState(0.5 * PIER.alpha, rolling_rate=0.05),
+        "duration": 8.0,
+        "rolling_resistance": 0.01,
+    },
 }
 
 
 @pytest.mark.parametrize("model", ["recess", "flat"])
 @pytest.mark.parametrize("problem", PROBLEMS)
 def test_error_is_proportional_to_the_tolerance(model, problem):
-    options = PROBLEMS[problem]
-    exact = solve(PIER, rtol=1e-13, model=model, **options)
-    errors = [
-        np.abs(solve(PIER, rtol=rtol, model=model, **options).tilt - exact.tilt).max() for rtol in TOLERANCES
-    ]
+    options, method = PROBLEMS[problem], reduced.MODELS[model]
+    case = Case(PIER, **options)
+    exact = reduced.simulate(case, rtol=1e-13, **method).tilt
+    errors = [np.abs(reduced.simulate(case, rtol=rtol, **method).tilt - exact).max() for rtol in TOLERANCES]
     slope = np.polyfit(np.log10(TOLERANCES), np.log10(errors), 1)[0]
     assert slope == pytest.approx(1.0, abs=0.2)

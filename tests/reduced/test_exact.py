@@ -1,12 +1,11 @@
 """The exact solutions: limits, invariances, where they end, steady wobble, tables made without this code."""
 
-import csv
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
+from stating import table
 
 from rockwobble.models import Cylinder, InitialState
 from rockwobble.reduced.body import Body, body_of
@@ -24,8 +23,6 @@ from rockwobble.reduced.exact import (
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 ROUNDING = 1e-14  # relative; some tens of operations in double precision
 SLENDERNESS = [1e-3, 0.05, 0.2, 1.0, 5.0, 1e3]
-REFERENCE = Path(__file__).parents[1] / "reference"
-SIX_DECIMALS = 0.5e-6 + 1e-9  # the table is rounded to 6 decimals; ours adds rounding of order 1e-13
 FOUR_DECIMALS = 0.5e-4 + 1e-9  # the same for a table of 4 decimals
 TABLE_ROUNDING = 1e-13  # of a quarter period, next to half a unit in the last printed digit
 FLATTEST = 1e-9  # height over radius standing for the table's disc of no height: changes the turn by 1e-16
@@ -93,16 +90,6 @@ def test_four_times_the_size_takes_twice_the_time_to_the_last_bit(tan_alpha: flo
         assert period(large, 0.4 * large.alpha) == 2.0 * period(small, 0.4 * small.alpha)
 
 
-@pytest.mark.parametrize(("size", "gravity"), [(1e-3, 9.81), (1e3, 9.81), (6.0, 0.1), (6.0, 30.0)])
-def test_exact_solutions_scale_with_size_and_gravity(size: float, gravity: float) -> None:
-    cylinder = Cylinder(semidiagonal=size, tan_alpha=0.2)
-    time = math.sqrt(size / 6.0 * 9.81 / gravity)  # Froude
-    expected = free_response(PIER, release(PIER, 0.5, 0.3))
-    found = free_response(cylinder, release(cylinder, 0.5, 0.3 / time), gravity=gravity)
-    assert found.angle_of_turn == pytest.approx(expected.angle_of_turn, rel=ROUNDING)
-    assert found.period == pytest.approx(expected.period * time, rel=ROUNDING)
-
-
 def test_mirror_image() -> None:
     left, right = (free_response(PIER, release(PIER, 0.5, spin)) for spin in (-0.3, 0.3))
     assert left.angle_of_turn == -right.angle_of_turn
@@ -143,24 +130,13 @@ def test_every_point_of_the_cycle_has_the_same_response(
         assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=budget), name
 
 
-def test_small_rocking() -> None:
-    # constant restoring moment: theta = tilt - (p^2 sin alpha) t^2/2
-    p2 = body_of(PIER, 9.81).p2
-    tilt = 1e-12 * PIER.alpha
-    expected = math.sqrt(2.0 * tilt / (p2 * math.sin(PIER.alpha)))
-    assert planar_quarter_period(PIER, tilt) == pytest.approx(expected, rel=1e-11)
-
-
-@pytest.mark.parametrize("tilt_rate", [-0.05, 0.05])
-def test_planar_release_in_motion(tilt_rate: float) -> None:
-    response = free_response(PIER, release(PIER, 0.3, 0.0, tilt_rate))
-    back = free_response(PIER, InitialState(tilt=response.maximum_tilt))
-    assert back.energy == pytest.approx(response.energy, rel=ROUNDING)
-    assert back.period == pytest.approx(response.period, rel=ROUNDING)
-    assert response.maximum_tilt > 0.3 * PIER.alpha
-
-
-def test_planar_release_in_motion_keeps_small_tilts() -> None:
+def test_a_planar_release_in_motion_rises_to_the_tilt_of_its_energy() -> None:
+    for tilt_rate in (-0.05, 0.05):
+        response = free_response(PIER, release(PIER, 0.3, 0.0, tilt_rate))
+        back = free_response(PIER, InitialState(tilt=response.maximum_tilt))
+        assert back.energy == pytest.approx(response.energy, rel=ROUNDING)
+        assert back.period == pytest.approx(response.period, rel=ROUNDING)
+        assert response.maximum_tilt > 0.3 * PIER.alpha
     tilt, tilt_rate = 1e-13, 1e-13
     p2 = body_of(PIER, 9.81).p2
     expected = tilt + tilt_rate**2 / (2.0 * p2 * math.sin(PIER.alpha))
@@ -174,14 +150,9 @@ def test_planar_release_in_motion_keeps_small_tilts() -> None:
         (1.0, 0.0, 0.0),
         (1.0, 0.0, 1e-15),
         (1.2, -0.1, 0.1),
-        (0.5, 0.5, 0.0),
-        (0.5, 0.5, 0.1),
         (0.5, -0.5, 0.1),
         (0.5, 0.0, 2.0),
-        (0.99, 0.0, 1.0),
-        (0.99, 1e-3, 0.3),
         (1e-9, 1.0, 0.0),
-        (1e-9, 1.0, 1.0),
     ],
 )
 def test_a_release_that_overturns_has_no_next_maximum(fraction: float, tilt_rate: float, spin: float) -> None:
@@ -226,21 +197,6 @@ def test_overturning_begins_where_the_energy_passes_the_barrier(
         free_response(cylinder, fast)
 
 
-def test_the_barrier_is_where_the_period_grows_without_bound() -> None:
-    tilt = 0.95 * PIER.alpha  # steady wobble is unstable here
-    rate = steady_wobble_rate(PIER, tilt)
-    periods = [
-        free_response(PIER, InitialState(tilt=tilt, rolling_rate=rate * (1 - d))).period
-        for d in (1e-4, 1e-6, 1e-8)
-    ]
-    steps = np.diff(periods)
-    assert steps[1] == pytest.approx(steps[0], rel=0.02)  # logarithmic
-    with pytest.raises(ValueError, match="overturn"):
-        free_response(PIER, InitialState(tilt=tilt, rolling_rate=rate * (1 + 1e-8)))
-    with pytest.raises(ValueError, match="overturn"):
-        free_response(PIER, InitialState(tilt=tilt, rolling_rate=rate))
-
-
 @pytest.mark.parametrize(
     "function", [planar_quarter_period, rocking_period, steady_wobble_rate, wobbling_period]
 )
@@ -258,11 +214,6 @@ def test_over_an_array_of_tilts(function) -> None:  # type: ignore[no-untyped-de
     )
 
 
-def test_standing_has_no_free_response() -> None:
-    with pytest.raises(ValueError, match="tilt above 0"):
-        free_response(PIER, InitialState(tilt=0.0))
-
-
 @pytest.mark.parametrize(
     "function", [planar_quarter_period, rocking_period, steady_wobble_rate, wobbling_period]
 )
@@ -270,6 +221,8 @@ def test_standing_has_no_free_response() -> None:
 def test_tilt_is_checked(function, tilt) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(ValueError, match="tilt must be above 0 and below alpha"):
         function(PIER, tilt)
+    with pytest.raises(ValueError, match="tilt above 0"):
+        free_response(PIER, InitialState(tilt=0.0))
 
 
 @pytest.mark.parametrize("tan_alpha", SLENDERNESS)
@@ -290,33 +243,6 @@ def test_steady_wobble_is_where_the_turning_tilts_meet(tan_alpha: float) -> None
         assert 0.1 * abs(change) < (moved / tilt - 1.0) / math.copysign(1.0, change) < 10.0 * abs(change)
 
 
-def test_momentum_of_steady_wobble_has_one_maximum_between_upright_and_alpha() -> None:
-    # the search for the overturning barrier rests on it
-    random = np.random.default_rng(7)
-    fractions = np.concatenate([np.geomspace(1e-6, 0.5, 300), 1.0 - np.geomspace(0.5, 1e-6, 300)[1:]])
-    for _ in range(300):
-        transverse = 10.0 ** random.uniform(-5.0, 1.0)
-        axial = 2.0 * transverse * 10.0 ** random.uniform(-5.0, 0.0)
-        cylinder = Cylinder(
-            semidiagonal=1.0,
-            tan_alpha=10.0 ** random.uniform(-3.0, 3.0),
-            transverse_inertia=transverse,
-            axial_inertia=axial,
-        )
-        body = body_of(cylinder, 9.81)
-        tilt = fractions * body.alpha
-        t = np.tan(0.5 * tilt)
-        momentum = (
-            np.sin(tilt) ** 2
-            * (body.J + 2.0 * body.E * t + body.C * t * t)
-            * steady_wobble_rate(cylinder, tilt)
-        )
-        rising = np.diff(momentum) > 0.0
-        assert rising[0]
-        assert not rising[-1]
-        assert np.count_nonzero(np.diff(rising)) == 1
-
-
 @pytest.mark.parametrize("tan_alpha", [0.05, 0.2, 1.0, 5.0])
 def test_wobbling_period_is_equation_24_corrected(tan_alpha: float) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
@@ -333,73 +259,13 @@ def test_wobbling_period_is_equation_24_corrected(tan_alpha: float) -> None:
     np.testing.assert_allclose(wobbling_period(cylinder, tilt), expected, rtol=1e-12)
 
 
-def test_steady_wobble_of_a_thin_disc() -> None:
-    radius, flatness = 0.1, 1e-9  # the height of the mass centre enters to first order
-    disc = Cylinder(
-        semidiagonal=radius,
-        tan_alpha=1.0 / flatness,
-        transverse_inertia=radius**2 / 4,
-        axial_inertia=radius**2 / 2,
-    )
-    for tilt in (1e-3, 0.3, 1.2):
-        expected = math.sqrt(
-            4.0 * 9.81 * math.cos(tilt) / (radius * math.sin(tilt) * (6.0 - 5.0 * math.cos(tilt)))
-        )
-        assert steady_wobble_rate(disc, tilt) == pytest.approx(expected, rel=20.0 * flatness)
-
-
-@pytest.mark.parametrize("tan_alpha", SLENDERNESS)
-def test_steady_wobble_is_held_up_to_the_largest_momentum(tan_alpha: float) -> None:
-    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
-    alpha, body = cylinder.alpha, body_of(cylinder, 9.81)
-    crest = minimize_scalar(
-        lambda fraction: -inertia(body, fraction * alpha) * steady_wobble_rate(cylinder, fraction * alpha),
-        bounds=(0.3, 0.95),
-        method="bounded",
-        options={"xatol": 1e-9},  # a maximum is found to the square root of rounding
-    ).x
-    tilt = crest * (1.0 - 1e-4) * alpha
-    wobble = free_response(
-        cylinder, InitialState(tilt=tilt, rolling_rate=(1.0 + 1e-10) * steady_wobble_rate(cylinder, tilt))
-    )
-    assert wobble.maximum_tilt == pytest.approx(tilt, rel=1e-5)
-    beyond = crest * (1.0 + 1e-4) * alpha
-    with pytest.raises(ValueError, match="overturns"):
-        free_response(
-            cylinder,
-            InitialState(tilt=beyond, rolling_rate=(1.0 + 1e-10) * steady_wobble_rate(cylinder, beyond)),
-        )
-
-
-def table(name: str) -> list[dict[str, str]]:
-    lines = (REFERENCE / name).read_text().splitlines()
-    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
-
-
-def cylinder_of(h_over_b: float) -> Cylinder:
-    return Cylinder.from_dimensions(base_radius=1.0, height=2.0 * h_over_b)
-
-
 def half_unit(printed: str) -> float:
     return 0.5 * 10.0 ** -len(printed.partition(".")[2])
 
 
-@pytest.mark.parametrize(
-    "row", table("finite_release.csv"), ids=lambda row: f"{row['h_over_b']}-{row['phi_rate']}"
-)
-def test_finite_release(row: dict[str, str]) -> None:
-    cylinder = cylinder_of(float(row["h_over_b"]))
-    initial = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=float(row["phi_rate"]))
-    response = free_response(cylinder, initial)
-    assert math.degrees(response.angle_of_turn) == pytest.approx(
-        float(row["recess_turn_deg"]), rel=0, abs=SIX_DECIMALS
-    )
-    assert response.period == pytest.approx(float(row["recess_period_s"]), rel=0, abs=SIX_DECIMALS)
-
-
 @pytest.mark.parametrize("row", table("angle_of_turn_limit.csv"), ids=lambda row: row["h_over_b"])
 def test_angle_of_turn_in_the_limit_of_vanishing_spin(row: dict[str, str]) -> None:
-    cylinder = cylinder_of(max(float(row["h_over_b"]), FLATTEST))
+    cylinder = Cylinder.from_dimensions(base_radius=1.0, height=2.0 * max(float(row["h_over_b"]), FLATTEST))
     expected = pytest.approx(float(row["turn_deg"]), rel=0, abs=FOUR_DECIMALS)
     assert math.degrees(cylinder.alpha) == pytest.approx(float(row["alpha_deg"]), rel=0, abs=1e-3)
     assert math.degrees(limiting_angle_of_turn(cylinder)) == expected

@@ -25,26 +25,13 @@ def simulate(*arguments, **options):
     return response
 
 
-def first_turn(response):
-    return math.degrees(response.passes.angle_of_turn[0])
-
-
-def test_zero_spin_turns_by_pi_and_tiny_spin_by_the_limit():
-    still = simulate(PIER, initial=InitialState(0.5 * PIER.alpha), duration=10.0)
-    assert abs(first_turn(still)) == pytest.approx(180.0, abs=1e-12)
-    spun = simulate(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=1e-15), duration=10.0)
-    limit = math.degrees(reduced.limiting_angle_of_turn(PIER))
-    assert first_turn(spun) == pytest.approx(limit, abs=1e-5)  # 1e-8 relative at the default tolerance
-    mirrored = simulate(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=-1e-15), duration=10.0)
-    assert first_turn(mirrored) == -first_turn(spun)
-    # the tilt of vanishing spin is that of no spin
+def test_zero_spin_turns_by_pi_and_tilts_as_tiny_spin_does():
+    still, spun = (
+        simulate(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=spin), duration=10.0)
+        for spin in (0.0, 1e-15)
+    )
+    assert abs(still.passes.angle_of_turn[0]) == pytest.approx(math.pi, abs=1e-14)
     assert np.abs(spun.tilt - still.tilt).max() <= 1e-6 * PIER.alpha
-
-
-@pytest.mark.parametrize("spin", [1e-90, 1e-110, 1e-300])
-def test_spins_that_no_number_can_resolve_end_all_the_same(spin):
-    response = simulate(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=spin), duration=10.0)
-    assert abs(first_turn(response)) == pytest.approx(181.33, abs=1.34)  # pi or the limit
 
 
 def test_rocking_period_at_tiny_tilt_scales_with_its_square_root():
@@ -99,80 +86,36 @@ def test_extreme_slenderness_keeps_the_exact_turn_and_period(tan_alpha):
     assert response.passes.time[0] == pytest.approx(exact.half_period, rel=1e-8)
 
 
-@pytest.mark.parametrize("semidiagonal", [1e-3, 1e3])
-@pytest.mark.parametrize("gravity", [0.1, 30.0])
-def test_extreme_size_and_gravity_follow_froude(semidiagonal, gravity):
-    cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=0.2)
-    time = math.sqrt(semidiagonal / 6.0 * 9.81 / gravity)
-    reference = simulate(PIER, initial=InitialState(0.1, rolling_rate=0.3), duration=10.0)
-    scaled = simulate(
-        cylinder,
-        initial=InitialState(0.1, rolling_rate=0.3 / time),
-        duration=10.0 * time,
-        sample_step=0.01 * time,
-        gravity=gravity,
-    )
-    assert np.abs(scaled.tilt - reference.tilt).max() <= 1e-10 * PIER.alpha
+def wave(peak, turn):
+    """Shaking that swells to `peak` and dies out, while its direction turns from 0.3 rad."""
+    shape, angle = np.sin(np.linspace(0.0, math.pi, 1001)), 0.3 + np.linspace(0.0, turn, 1001)
+    return GroundMotion(peak * np.column_stack([shape * np.cos(angle), shape * np.sin(angle)]), 0.01)
 
 
-def plane_wave(peak, sample_count=1001, time_step=0.01):
-    """Shaking of constant direction 0.3 rad that swells to `peak` and dies out."""
-    shape = np.sin(np.linspace(0.0, math.pi, sample_count))
-    return GroundMotion(peak * np.outer(shape, [math.cos(0.3), math.sin(0.3)]), time_step)
-
-
-def turning_wave(peak, sample_count=1001, time_step=0.01):
-    shape = np.sin(np.linspace(0.0, math.pi, sample_count))
-    angle = np.linspace(0.0, 2.0, sample_count)
-    return GroundMotion(peak * np.column_stack([shape * np.cos(angle), shape * np.sin(angle)]), time_step)
-
-
-@pytest.mark.parametrize("wave", [plane_wave, turning_wave])
-def test_a_hair_under_the_threshold_stands_and_a_hair_over_uplifts(wave):
-    under = simulate(PIER, wave(THRESHOLD * (1.0 - 1e-12)))
+@pytest.mark.parametrize("turn", [0.0, 2.0])
+def test_a_hair_under_the_threshold_stands_and_a_hair_over_uplifts(turn):
+    under = simulate(PIER, wave(THRESHOLD * (1.0 - 1e-12), turn))
     assert under.rests
     assert under.peak_tilt == 0.0
     assert math.isnan(under.uplift_time)
-    assert math.isnan(under.uplift_time)
-    over = simulate(PIER, wave(THRESHOLD * (1.0 + 1e-9)))
+    over = simulate(PIER, wave(THRESHOLD * (1.0 + 1e-9), turn))
     assert over.uplift_time == pytest.approx(5.0, abs=0.01)
     # f is at most 1e-9 g tan(alpha) for some 1e-4 s: next to nothing
     assert 0.0 < over.peak_tilt < 1e-9 * PIER.alpha
 
 
-def test_zero_motion_stands():
-    response = simulate(PIER, GroundMotion(np.zeros((100, 2)), 0.01))
-    assert response.rests
-    assert not response.energy.any()
-    assert np.array_equal(response.contact_force[:, 2], np.ones(100))
-
-
-def test_a_hundred_g_overturns():
-    motion = el_centro_1940().scaled(100.0 * 9.81 / el_centro_1940().peak)
-    response = simulate(PIER, motion)
-    assert response.outcome == "overturned"
-
-
-def test_samples_of_1e_5_s_act_as_a_velocity_jump():
+# of samples shorter than 1e-6/p the uplift may be one late, a half of which is a half percent of the pulse
+@pytest.mark.parametrize(("size", "time_step", "late"), [(6.0, 1e-5, 0.0), (1000.0, 2e-6, 0.005)])
+def test_a_pulse_far_shorter_than_the_motion_is_a_velocity_jump(size, time_step, late):
     """A pulse much shorter than 1/p is a jump of velocity: theta' = p^2 cos(alpha) dv/g."""
-    acceleration = np.zeros((201, 2))
+    body, acceleration = Cylinder(semidiagonal=size, tan_alpha=0.2), np.zeros((201, 2))
     acceleration[50:150, 0] = -2.0e3
-    response = simulate(PIER, GroundMotion(acceleration, 1e-5), duration=1.0, sample_step=1e-3)
-    kick = response.source.problem.body.p2 * math.cos(PIER.alpha) * 2.0e3 * 1e-3 / 9.81
-    at_end = response.tilt_rate[2]
-    # the restoring moment takes off its part in 1 ms: tan(alpha)/200 of it
-    assert at_end == pytest.approx(kick, rel=2e-3)
-
-
-def test_interpolating_half_second_samples_does_not_change_the_motion():
-    coarse = GroundMotion(el_centro_1940().acceleration[::50] * 1.2, 0.5)
-    fine_time = np.arange(round(coarse.duration / 0.005) + 1) * 0.005
-    at = np.arange(len(coarse.acceleration)) * 0.5
-    fine = GroundMotion(np.column_stack([np.interp(fine_time, at, c) for c in coarse.acceleration.T]), 0.005)
-    few = simulate(PIER, coarse, rtol=1e-10, duration=20.0)
-    many = simulate(PIER, fine, rtol=1e-10, duration=20.0)
-    assert few.peak_tilt > 0.1 * PIER.alpha
-    assert few.peak_tilt == pytest.approx(many.peak_tilt, rel=1e-6)
+    response = simulate(body, GroundMotion(acceleration, time_step), duration=1.0, sample_step=1e-3)
+    p2, jump = response.source.problem.body.p2, 2.0e3 * 100 * time_step
+    # the restoring moment takes off its part in 2 ms
+    slowed = p2 * math.sin(body.alpha) * (2e-3 - 50 * time_step)
+    kick = p2 * math.cos(body.alpha) * jump / 9.81
+    assert response.tilt_rate[2] == pytest.approx(kick * (1.0 - late) - slowed, rel=5e-4)
 
 
 def test_a_record_of_a_million_samples_has_an_outcome():
@@ -185,28 +128,27 @@ def test_a_record_of_a_million_samples_has_an_outcome():
 
 
 @pytest.mark.slow
-def test_chatter_without_a_seating_rule_ends_as_failed_with_words():
-    weak = turning_wave(THRESHOLD * (1.0 + 1e-6))
+def test_chatter_without_a_seating_rule_ends_as_failed_and_is_masked_in_grids():
+    weak = wave(THRESHOLD * (1.0 + 1e-6), 2.0)
     response = reduced.simulate(Case(PIER, weak), rest_tilt=0.0)
     assert response.outcome == "failed"
     assert math.isnan(response.peak_tilt)
     assert [fact.code for fact in response.facts] == ["step_budget"]
     assert np.isfinite(response.tilt).all()
     assert len(response.time) == len(response.tilt)
-    seated = simulate(PIER, weak)
-    assert seated.peak_tilt < 1e-6 * PIER.alpha
+    assert simulate(PIER, weak).peak_tilt < 1e-6 * PIER.alpha
+    (peaks,) = reduced.peak_tilts([6.0], 0.2, weak, [0.9, 1.0], rest_tilt=0.0)
+    assert peaks[0] == 0.0
+    assert math.isnan(peaks[1])
 
 
 @pytest.mark.parametrize(
     ("options", "words"),
     [
         ({"rtol": 0.0}, "rtol"),
-        ({"rtol": math.nan}, "rtol"),
         ({"rest_tilt": -1.0}, "rest_tilt"),
-        ({"gravity": -9.81}, "gravity"),
         ({"sample_step": 0.0}, "sample_step"),
         ({"sample_step": 1e-12}, "sample_step must be at least"),
-        ({"duration": -1.0}, "duration"),
         ({"support": "sliding"}, "recess"),
         ({"restitution": 0.9}, "planar"),
         ({"model": "planar", "restitution": 1.1}, "restitution"),

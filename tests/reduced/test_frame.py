@@ -18,8 +18,6 @@ THREE_DECIMALS = 0.5e-3  # of the published limits [deg]
 ROUNDING = 1e-14  # relative, of some ten operations
 TIGHT = {"rtol": 1e-11}
 INTEGRATED = 1e-8  # relative, what a tolerance of 1e-11 leaves in a swing
-# of its maximum; a central difference of 2e-4 s leaves h^2/12 times the fourth derivative: measured 7e-5
-DIFFERENCE = 5e-4
 
 
 def shaken(ratio: float, support: str = "recess", **options: float) -> Trace:
@@ -51,7 +49,7 @@ def test_a_frame_of_boxes_is_the_planar_rocking_frame(ratio: float, tan_alpha: f
 
 
 @pytest.mark.parametrize("ratio", [0.0, 0.7, 20.0])
-@pytest.mark.parametrize("column", [PIER, SQUAT])
+@pytest.mark.parametrize("column", [PIER, SQUAT, Cylinder(semidiagonal=2.0, tan_alpha=2.0)])
 def test_restitution_is_that_of_impulses_on_column_and_slab(column: Cylinder, ratio: float) -> None:
     """Both bodies by themselves: unknown are the rate after and the impulses at the new contacts."""
     b, h = column.base_radius, column.mass_centre_height
@@ -70,14 +68,6 @@ def test_restitution_is_that_of_impulses_on_column_and_slab(column: Cylinder, ra
     assert reduced.restitution_from_momentum(WobblingFrame(column, ratio)) == pytest.approx(
         max(after, 0.0), rel=1e-12, abs=1e-15
     )
-
-
-def test_under_a_heavy_slab_a_column_is_a_link_without_mass() -> None:
-    heavy = 1e9  # relative error of the limit
-    body = body_of(WobblingFrame(PIER, heavy), 9.81)
-    assert body.p2 == pytest.approx(9.81 / (2.0 * PIER.semidiagonal), rel=2.0 / heavy)
-    limit = math.pi / math.cos(PIER.alpha)
-    assert reduced.limiting_angle_of_turn(WobblingFrame(PIER, heavy)) == pytest.approx(limit, rel=2.0 / heavy)
 
 
 @pytest.mark.parametrize("options", [{}, {"support": "flat"}, {"plane": 0.3, "restitution": "momentum"}])
@@ -106,47 +96,6 @@ def test_free_response_is_the_quadrature(column: Cylinder, ratio: float) -> None
     assert trace.energy[0] == pytest.approx(exact.energy, rel=1e-12)
 
 
-@pytest.mark.parametrize("ratio", [0.3, 10.0])
-def test_steady_wobble_and_planar_rocking_keep_their_periods(ratio: float) -> None:
-    frame = WobblingFrame(PIER, ratio)
-    tilt = 0.4 * frame.alpha
-    steady = InitialState(tilt, rolling_rate=reduced.steady_wobble_rate(frame, tilt))
-    trace = reduced.simulate(Case(frame, initial=steady, duration=4.0), **TIGHT)
-    assert np.abs(trace.tilt - tilt).max() < INTEGRATED * tilt
-    period = reduced.rocking_period(frame, tilt)
-    planar = reduced.simulate(Case(frame, initial=InitialState(tilt), duration=1.1 * period), **TIGHT)
-    assert planar.extrema[4, 0] == pytest.approx(period, rel=INTEGRATED)
-
-
-@pytest.mark.parametrize("support", ["recess", "flat"])
-def test_energy_is_conserved_and_no_slab_makes_the_same_motion(support: str) -> None:
-    # squat, so that the twist of flat ground matters
-    frame, release = WobblingFrame(SQUAT, 2.0), InitialState(0.3, rolling_rate=0.8)
-    case = Case(frame, initial=release, duration=6.0)
-    trace = reduced.simulate(case, support=support, **TIGHT)
-    assert len(trace.passes) > 2
-    assert np.ptp(trace.energy) < INTEGRATED * trace.energy[0]
-    alone = reduced.simulate(Case(SQUAT, initial=release, duration=6.0), support=support, **TIGHT)
-    assert np.abs(alone.tilt - trace.tilt).max() > 0.1
-
-
-@pytest.mark.parametrize("support", ["recess", "flat"])
-def test_force_on_the_slab_is_what_its_motion_takes(support: str) -> None:
-    """Newton's law of the slab, from its displacement alone."""
-    h = 2e-4
-    trace = shaken(1.0, support, sample_step=h, **TIGHT)
-    ground = el_centro_1940(vertical=True)
-    at = np.arange(len(ground.acceleration)) * ground.time_step
-    shaking = np.column_stack([np.interp(trace.time, at, column) for column in ground.acceleration.T])
-    moves = trace.slab_displacement
-    acceleration = (moves[2:] - 2.0 * moves[1:-1] + moves[:-2]) / h**2
-    force = (acceleration + shaking[1:-1]) / 9.81 + [0.0, 0.0, 1.0]
-    smooth = (trace.tilt > 0.02 * PIER.alpha)[1:-1]  # at passes and uplifts it bends within h
-    error = np.abs(force - trace.top_contact_force[1:-1])[smooth]
-    assert error.max() < DIFFERENCE * np.abs(force).max()
-    assert smooth.sum() > 10_000
-
-
 def test_assumptions_are_those_of_the_end_that_asks_for_more() -> None:
     trace = shaken(0.05, sample_step=1e-3)
     held = trace.assumptions
@@ -167,13 +116,3 @@ def test_displacement_of_the_slab() -> None:
     assert np.hypot(*trace.slab_displacement[:, :2].T) == pytest.approx(lean, rel=1e-12)
     rise = 2.0 * (b * np.sin(theta) - h * (1.0 - np.cos(theta)))
     assert trace.slab_displacement[:, 2] == pytest.approx(rise, abs=1e-14 * h)
-
-
-def test_peak_tilts_are_those_of_single_runs() -> None:
-    motion = el_centro_1940()
-    for options in ({}, {"plane": 0.0}, {"support": "flat"}):
-        found = reduced.peak_tilts([4.0, 6.0], 0.2, motion, [1.0], slab_mass_ratio=1.5, **options)
-        for size, peak in zip([4.0, 6.0], found[:, 0], strict=True):
-            frame = WobblingFrame(Cylinder(semidiagonal=size, tan_alpha=0.2), 1.5)
-            single = reduced.simulate(Case(frame, motion), rtol=1e-7, **options)
-            assert peak == single.peak_tilt

@@ -1,19 +1,20 @@
 """Free response: conserved quantities, the reference tables, the paper's printed equations."""
 
-import csv
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from accuracy_table import is_stated
 from paper_equations import PaperModel
+from stating import table
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, InitialState
 from rockwobble.reduced.equations import energy
 
-TABLES = Path(__file__).parents[1] / "reference"
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+COUNT = 200
+SIX_DECIMALS = 0.5e-6 + 1e-9  # the table is rounded to 6 decimals; exact solutions add rounding of 1e-13
 SPINS = [1.0, 1e-1, 1e-3, 1e-6, 1e-9, 1e-12]
 
 
@@ -36,34 +37,45 @@ def test_energy_and_momentum_are_conserved_in_every_step(spin):
     assert response.outcome == "stands"
 
 
-def rows_of_finite_release():
-    lines = [line for line in (TABLES / "finite_release.csv").read_text().splitlines() if line[0] != "#"]
-    return list(csv.DictReader(lines))
-
-
 @pytest.mark.parametrize("model", ["recess", "flat"])
 @pytest.mark.parametrize(
-    "row", rows_of_finite_release(), ids=lambda row: f"{row['h_over_b']}-{row['phi_rate']}"
+    "row", table("finite_release.csv"), ids=lambda row: f"{row['h_over_b']}-{row['phi_rate']}"
 )
 def test_turn_and_period_of_the_reference_table(model, row):
-    h = float(row["h_over_b"])
-    column = {"flat": "rolling"}.get(model, model)  # as the table names it
-    cylinder = Cylinder.from_dimensions(base_radius=1.0, height=2.0 * h)
+    name = {"flat": "rolling"}.get(model, model)  # as the table has it
+    turn, period = float(row[f"{name}_turn_deg"]), float(row[f"{name}_period_s"])
+    cylinder = Cylinder.from_dimensions(base_radius=1.0, height=2.0 * float(row["h_over_b"]))
     # the table's release: at rest in tilt, rolling rate phi_rate
-    initial = release(cylinder, float(row["phi_rate"]))
-    response = reduced.simulate(
-        Case(cylinder, initial=initial, duration=4.0), rtol=1e-12, **reduced.MODELS[model]
-    )
+    case = Case(cylinder, initial=release(cylinder, float(row["phi_rate"])), duration=4.0)
+    response = reduced.simulate(case, rtol=1e-12, **reduced.MODELS[model])
     maxima = response.extrema[response.extrema[:, 3] > 0.0]
     # the table has six decimals: half a digit, and as much again for the tolerance
-    assert math.degrees(response.passes.angle_of_turn[0]) == pytest.approx(
-        float(row[f"{column}_turn_deg"]), abs=2e-6
-    )
-    assert maxima[1, 0] - maxima[0, 0] == pytest.approx(float(row[f"{column}_period_s"]), abs=2e-6)
+    assert math.degrees(response.passes.angle_of_turn[0]) == pytest.approx(turn, abs=2e-6)
+    assert maxima[1, 0] - maxima[0, 0] == pytest.approx(period, abs=2e-6)
+    if model == "recess":
+        exact = reduced.free_response(cylinder, case.initial)
+        assert math.degrees(exact.angle_of_turn) == pytest.approx(turn, rel=0.0, abs=SIX_DECIMALS)
+        assert exact.period == pytest.approx(period, rel=0.0, abs=SIX_DECIMALS)
 
 
-@pytest.mark.parametrize("tan_alpha", [0.1, 0.2, 1.0, 3.0])
-@pytest.mark.parametrize("tilt_over_alpha", [0.3, 0.8])
+def test_period_and_turn_are_as_close_as_the_readme_says():
+    """Of random cylinders, released at rest in tilt with spins from 1e-8 to that of steady wobble."""
+    rng, errors = np.random.default_rng(0), []
+    for _ in range(COUNT):
+        tan_alpha, size = np.exp(rng.uniform(np.log([0.05, 0.1]), np.log([5.0, 50.0])))
+        cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
+        tilt = rng.uniform(0.1, 0.9) * cylinder.alpha
+        fastest = 0.9 * reduced.steady_wobble_rate(cylinder, tilt)
+        initial = InitialState(tilt, rolling_rate=math.exp(rng.uniform(math.log(1e-8), math.log(fastest))))
+        exact = reduced.free_response(cylinder, initial)
+        case = Case(cylinder, initial=initial, duration=1.01 * exact.period)
+        response = reduced.simulate(case, rtol=1e-10, rest_tilt=0.0)
+        maxima = response.extrema[response.extrema[:, 3] > 0.0]
+        errors += [maxima[1, 0] / exact.period - 1.0, maxima[1, 2] / exact.angle_of_turn - 1.0]
+    assert is_stated(np.max(np.abs(errors)), f"{COUNT} random cylinders", r"within (\S+)")
+
+
+@pytest.mark.parametrize(("tan_alpha", "tilt_over_alpha"), [(0.1, 0.8), (0.2, 0.3), (1.0, 0.8), (3.0, 0.3)])
 def test_recess_follows_the_printed_equations(tan_alpha, tilt_over_alpha):
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
     initial = release(cylinder, 0.5, tilt_over_alpha)
@@ -79,11 +91,11 @@ def test_recess_follows_the_printed_equations(tan_alpha, tilt_over_alpha):
 def test_steady_wobble_stays_at_its_tilt():
     tilt = 0.6 * PIER.alpha
     rate = float(2.0 * math.pi / reduced.wobbling_period(PIER, tilt))
-    response = reduced.simulate(
-        Case(PIER, initial=InitialState(tilt=tilt, rolling_rate=rate), duration=30.0), rtol=1e-11
-    )
+    case = Case(PIER, initial=InitialState(tilt=tilt, rolling_rate=rate), duration=30.0)
+    response = reduced.simulate(case, rtol=1e-11)
     # an error of the tolerance in the balance makes the tilt oscillate by as much
     assert np.abs(response.tilt - tilt).max() <= 1e-9 * tilt
+    assert response.rolling_angle[-1] == pytest.approx(30.0 * rate, rel=1e-9)
     assert len(response.passes) == 0
 
 

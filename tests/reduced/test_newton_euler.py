@@ -5,6 +5,7 @@ upright where the equations are badly conditioned. Every other problem is a fram
 its share of the slab are bodies of their own.
 """
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import mpmath as mp
@@ -149,7 +150,7 @@ def polar(force: Vector, phi: float) -> Vector:
     return vector(force[0] * c + force[1] * s, force[1] * c - force[0] * s, force[2])
 
 
-def assert_close(found: tuple[float, ...], expected: tuple[Any, ...], scale: tuple[Any, ...]) -> None:
+def assert_close(found: Sequence[float], expected: Sequence[Any], scale: Sequence[Any]) -> None:
     errors = [float(abs(f - e) / s) for f, e, s in zip(found, expected, scale, strict=True)]
     assert max(errors) < AGREEMENT, errors
 
@@ -176,128 +177,58 @@ def scales_of(given: Sample, state: State) -> Scales:
     )
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(16))
-def test_recess(seed: int) -> None:
-    given = sample(seed, twisting=False)
-    body = given.body
-    with mp.workdps(DIGITS):
-        state = state_of(given)
-        motion = newton_euler(given.column, state, vector(*given.ground), True, given.slab)
-        Lambda_rate, _ = momenta_rates(given, state, motion)
-        scale = scales_of(given, state)
-        found = recess_rhs(body, given.theta, given.omega, given.phi, given.Lambda, *given.ground)
-        assert_close(
-            found,
-            (state.theta_rate, motion.theta, state.phi_rate, Lambda_rate),
-            (abs(state.theta_rate), scale.theta, abs(state.phi_rate), scale.Lambda),
-        )
-        found = contact_force(
-            body, given.theta, given.omega, given.phi, given.Lambda, 0.0, *given.ground, False
-        )
-        expected = (part / carried(given) for part in (*polar(motion.force, given.phi), motion.moment))
-        assert_close(found, expected, (scale.force, scale.force, scale.force, scale.moment))
+# with a length that matters where there is rolling resistance, and contact in most of the samples
+KINDS = [
+    *(pytest.param(seed, True, 0.0, id=f"recess-{seed}", marks=pytest.mark.slow) for seed in range(16)),
+    *(pytest.param(seed, False, 0.0, id=f"flat-{seed}") for seed in range(100, 116)),
+    *(
+        pytest.param(seed, recess, share, id=f"resisted-{seed}-{recess}", marks=pytest.mark.slow)
+        for seed, share in zip(range(140, 148), 2 * (0.01, 0.01, 0.51, 0.51), strict=True)
+        for recess in (True, False)
+    ),
+]
 
 
-@pytest.mark.parametrize("seed", range(100, 116))
-def test_rolling(seed: int) -> None:
-    given = sample(seed, twisting=True)
-    body = given.body
-    with mp.workdps(DIGITS):
-        state = state_of(given)
-        motion = newton_euler(given.column, state, vector(*given.ground), False, given.slab)
-        assert motion.moment == 0
-        Lambda_rate, S_rate = momenta_rates(given, state, motion)
-        tau_rate = state.phi_rate + state.psi_rate
-        scale = scales_of(given, state)
-        found = flat_rhs(body, given.theta, given.omega, given.phi, given.Lambda, 0.3, given.S, *given.ground)
-        assert_close(
-            found,
-            (state.theta_rate, motion.theta, state.phi_rate, Lambda_rate, tau_rate, S_rate),
-            (
-                abs(state.theta_rate),
-                scale.theta,
-                abs(state.phi_rate),
-                scale.Lambda,
-                abs(tau_rate),
-                scale.moment,
-            ),
-        )
-        found = contact_force(
-            body, given.theta, given.omega, given.phi, given.Lambda, given.S, *given.ground, True
-        )
-        assert_close(
-            found,
-            (*(part / carried(given) for part in polar(motion.force, given.phi)), mp.mpf(0)),
-            (scale.force, scale.force, scale.force, scale.moment),
-        )
-
-
-@pytest.mark.parametrize("seed", range(100, 116))
-def test_the_momentum_of_the_rolling_angle(seed: int) -> None:
-    given = sample(seed, twisting=True)
-    with mp.workdps(DIGITS):
-        state = state_of(given)
-        B, G, _ = quadratic_form(given.column, given.slab.share, state.theta)
-        scale = abs(given.Lambda) + abs(G * (state.phi_rate + state.psi_rate))
-        found = rolling_momentum(given.body, given.theta, given.Lambda, given.S)
-        assert_close((found,), (B * state.phi_rate,), (scale,))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("recess", [True, False])
-@pytest.mark.parametrize("seed", range(140, 148))
-def test_rolling_resistance(seed: int, recess: bool) -> None:
+@pytest.mark.parametrize(("seed", "recess", "share"), KINDS)
+def test_accelerations_and_forces_of_a_random_state(seed: int, recess: bool, share: float) -> None:
     free = sample(seed, twisting=not recess)
-    # a length that matters, and contact in most of the samples
-    given = resisted(free, 0.01 + 0.5 * (seed // 2 % 2))
+    given = resisted(free, share)
     body, ground, started = given.body, given.ground, (given.theta, given.omega, given.phi, given.Lambda)
     with mp.workdps(DIGITS):
         state = state_of(given)
-        eps = mp.mpf(creep(given))
+        eps = mp.mpf(creep(given)) if share else mp.mpf(0)
         motion = newton_euler(given.column, state, vector(*ground), recess, given.slab, eps)
-        if pressed(motion) <= 0:  # without contact there is no couple
+        if share and pressed(motion) <= 0:  # without contact there is no couple
             motion = newton_euler(free.column, state, vector(*ground), recess, given.slab)
             assert pressed(motion) <= 0
         Lambda_rate, S_rate = momenta_rates(given, state, motion)
-        scale = scales_of(given, state)
-        rolling = mp.sqrt(state.theta_rate**2 + (mp.sin(state.theta) * state.psi_rate) ** 2)
-        power = body.delta * max(pressed(motion), 0) * rolling**2 / mp.sqrt(rolling**2 + eps**2)
-        power /= 1 + 2 * given.slab.share
-        per_power = body.delta * scale.force * rolling
-        if recess:
-            found = RESISTED_RECESS.derivative(body, (*started, 0.0), ground)
-            expected = (motion.theta, Lambda_rate, power)
-            assert_close((found[1], found[3], found[4]), expected, (scale.theta, scale.Lambda, per_power))
+        tau_rate, scale = state.phi_rate + state.psi_rate, scales_of(given, state)
+        if share:
+            system = RESISTED_RECESS if recess else RESISTED_FLAT
+            rest = () if recess else (0.3, given.S, 0.0, 0.0)
+            rates = system.derivative(body, (*started, *rest, 0.0), ground)
+        elif recess:
+            rates = recess_rhs(body, *started, *ground)
         else:
-            found = RESISTED_FLAT.derivative(body, (*started, 0.3, given.S, 0.0, 0.0, 0.0), ground)
-            expected = (motion.theta, Lambda_rate, S_rate, power)
-            assert_close(
-                (found[1], found[3], found[5], found[8]),
-                expected,
-                (scale.theta, scale.Lambda, scale.moment, per_power),
-            )
-        found = contact_force(body, *started, given.S, *ground, not recess)
-        expected = (part / carried(given) for part in (*polar(motion.force, given.phi), motion.moment))
-        assert_close(found, expected, (scale.force, scale.force, scale.force, scale.moment))
-
-
-@pytest.mark.parametrize("side", [1.0, -1.0])
-@pytest.mark.parametrize("seed", range(210, 215))
-def test_rolling_resistance_in_a_plane(seed: int, side: float) -> None:
-    given = resisted(sample(seed, twisting=False)._replace(Lambda=0.0), 0.2)
-    body = given.body
-    omega, ground = 0.5 * side * abs(given.omega), (0.3 * given.ground[0], 0.0, 0.3 * given.ground[2])
-    with mp.workdps(DIGITS):
-        state = State(mp.mpf(given.theta), mp.mpf(omega), mp.mpf(0), mp.mpf(0), mp.mpf(0))
-        eps = mp.mpf(creep(given))
-        motion = newton_euler(given.column, state, vector(*ground), True, given.slab, eps)
-        assert pressed(motion) > 0
-        found = RESISTED_RECESS.derivative(body, (given.theta, omega, 0.0, 0.0, 0.0), ground)
-        power = body.delta * pressed(motion) * omega**2 / mp.sqrt(omega**2 + eps**2)
-        power /= 1 + 2 * given.slab.share
-        scale = scales_of(given, state)
-        assert_close((found[1], found[4]), (motion.theta, power), (scale.theta, power))
+            rates = flat_rhs(body, *started, 0.3, given.S, *ground)
+        expected = [state.theta_rate, motion.theta, state.phi_rate, Lambda_rate]
+        sizes = [abs(state.theta_rate), scale.theta, abs(state.phi_rate), scale.Lambda]
+        if not recess:
+            assert motion.moment == 0
+            expected += [tau_rate, S_rate]
+            sizes += [abs(tau_rate), scale.moment]
+            B, G, _ = quadratic_form(given.column, given.slab.share, state.theta)
+            found = rolling_momentum(body, given.theta, given.Lambda, given.S)
+            assert_close([found], [B * state.phi_rate], [abs(given.Lambda) + abs(G * tau_rate)])
+        assert_close(rates[: len(expected)], expected, sizes)
+        if share:
+            rolling = mp.sqrt(state.theta_rate**2 + (mp.sin(state.theta) * state.psi_rate) ** 2)
+            power = body.delta * max(pressed(motion), 0) * rolling**2 / mp.sqrt(rolling**2 + eps**2)
+            power /= 1 + 2 * given.slab.share
+            assert_close(rates[-1:], [power], [body.delta * scale.force * rolling])
+        force = contact_force(body, *started, given.S, *ground, not recess)
+        expected = [part / carried(given) for part in (*polar(motion.force, given.phi), motion.moment)]
+        assert_close(force, expected, [scale.force, scale.force, scale.force, scale.moment])
 
 
 @pytest.mark.parametrize("seed", range(200, 210))

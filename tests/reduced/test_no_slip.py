@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, InitialState, Trace, WobblingFrame, el_centro_1940
@@ -28,20 +29,9 @@ Array = NDArray[np.float64]
 
 def rotations(trace: Trace) -> Array:
     """Return the matrices (n, 3, 3) from the axes of the body to those of the world."""
-
-    def about_vertical(angle: Array) -> Array:
-        c, s, zero, one = np.cos(angle), np.sin(angle), np.zeros_like(angle), np.ones_like(angle)
-        return np.array([[c, -s, zero], [s, c, zero], [zero, zero, one]]).transpose(2, 0, 1)
-
-    c, s, zero, one = (
-        np.cos(trace.tilt),
-        np.sin(trace.tilt),
-        np.zeros_like(trace.tilt),
-        np.ones_like(trace.tilt),
-    )
-    leaning = np.array([[c, zero, s], [zero, one, zero], [-s, zero, c]]).transpose(2, 0, 1)
     # phi + psi is the twist, so psi turns the body about its axis
-    return about_vertical(trace.rolling_angle) @ leaning @ about_vertical(trace.twist - trace.rolling_angle)
+    angles = [trace.rolling_angle, trace.tilt, trace.twist - trace.rolling_angle]
+    return np.asarray(Rotation.from_euler("ZYZ", np.transpose(angles)).as_matrix())
 
 
 def slip_velocities(trace: Trace) -> tuple[Array, Array]:

@@ -181,23 +181,6 @@ def test_the_default_rest_threshold_keeps_the_peaks():
     assert len(off) <= 1
 
 
-@pytest.mark.parametrize("restitution", [0.0, 0.5, 0.93, "momentum"])
-def test_impacts_lose_energy_and_nothing_else_does(restitution):
-    """On still ground each maximum after an impact stands as high as its tilt rate carries it."""
-    factor = reduced.restitution_from_momentum(PIER) if restitution == "momentum" else restitution
-    initial = InitialState(0.5 * PIER.alpha)
-    response = reduced.simulate(
-        Case(PIER, initial=initial, duration=8.0), plane=0.0, restitution=restitution, rtol=1e-11
-    )
-    maxima = response.extrema[response.extrema[:, 3] > 0.0, 1]
-    heights = 2.0 * np.sin(0.5 * maxima) * np.sin(PIER.alpha - 0.5 * maxima)  # potential energy over g R
-    heights = heights[heights > 1e-6 * heights[0]]
-    assert heights[1:] == pytest.approx(factor**2 * heights[:-1], rel=1e-7)
-    assert len(heights) >= (1 if factor == 0.0 else 4)
-    if factor < 0.6:
-        assert response.rests
-
-
 def test_impacts_under_shaking_end_and_converge():
     for seed in range(24):
         given = problem(seed, models=("planar",), slenderness=(0.05, 1.0))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from reference.slides import TABLE, shaking
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import solve_ivp
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Tendon, Trace, WobblingFrame
@@ -36,23 +36,6 @@ def test_rectangular_pulse_slides_by_its_closed_form() -> None:
     assert trace.followed_until == pytest.approx(size * length / (friction * G), rel=EXACT)
     assert trace.rests
     np.testing.assert_allclose(trace.energy_lost, friction * G * trace.slip, rtol=EXACT, atol=1e-13)
-
-
-def test_half_sine_slides_by_its_closed_form() -> None:
-    size, rate, friction = 6.0, 5.0, 0.3
-    time = np.linspace(0.0, math.pi / rate, 20_001)
-    start = math.asin(friction * G / size) / rate
-
-    end, slows = math.pi / rate, friction * G
-    speed = size / rate * (math.cos(rate * start) + 1.0) - slows * (end - start)
-    pushed = size / rate * (math.cos(rate * start) * (end - start) + math.sin(rate * start) / rate)
-    way = pushed - 0.5 * slows * (end - start) ** 2 + 0.5 * speed**2 / slows
-    samples = np.column_stack([np.zeros_like(time), size * np.sin(rate * time)])
-    trace = slide(samples, time[1], friction)
-    assert trace.peak_displacement == pytest.approx(
-        way, rel=1e-7
-    )  # linear between samples: their step squared
-    assert trace.residual_displacement == trace.peak_displacement
 
 
 def test_circling_ground_slides_at_constant_speed() -> None:
@@ -146,45 +129,6 @@ def test_slide_starts_by_its_equations_of_speed_and_direction(
     np.testing.assert_allclose(np.sqrt(2.0 * trace.energy[at]), speed, rtol=off[0])
     np.testing.assert_allclose(np.arctan2(-pushed[:, 1], -pushed[:, 0]), direction, rtol=0.0, atol=off[1])
     np.testing.assert_allclose(trace.slip[at], path, rtol=1e-6)
-
-
-def test_slide_under_a_constant_force_stops_by_its_hodograph() -> None:
-    """v = v0 (sin d0/sin d) (tan(d/2)/tan(d0/2))^(n/f), d the angle from the force f < n, d' = -f sin d/v."""
-    friction = 0.3
-    samples = -np.array([[2.0, 6.0], [1.0, 0.5], [1.0, 0.5], [1.0, 0.5], [1.0, 0.5]])
-    trace = slide(samples, 1.0, friction)
-    f, n, v0 = math.hypot(1.0, 0.5), friction * G, math.sqrt(2.0 * trace.energy[1])
-    pushed = -trace.contact_force[1]
-    d0 = math.atan2(pushed[1], pushed[0]) - math.atan2(0.5, 1.0)
-
-    def over(part: str) -> float:
-        def rate(d: float) -> float:
-            v = v0 * math.sin(d0) / math.sin(d) * (math.tan(0.5 * d) / math.tan(0.5 * d0)) ** (n / f)
-            return (
-                v * {"along": v * math.cos(d), "across": v * math.sin(d), "path": v}[part] / (f * math.sin(d))
-            )
-
-        return quad(rate, 0.0, d0, epsabs=0.0, epsrel=1e-13)[0]
-
-    axis = np.array([1.0, 0.5]) / f
-    way = over("along") * axis + over("across") * np.array([-axis[1], axis[0]])
-    np.testing.assert_allclose(trace.displacement[4] - trace.displacement[1], way, rtol=1e-11)
-    assert trace.slip[4] - trace.slip[1] == pytest.approx(over("path"), rel=1e-11)
-    fine = reduced.simulate(trace.case, support="flat", sample_step=0.05)
-    moved = np.diff(fine.slip[20:])
-    assert fine.slip[20] == pytest.approx(trace.slip[1], rel=1e-11)
-    assert (np.diff(moved) <= 1e-14).all()
-    assert moved[0] < 0.5 * over("path")
-
-
-def test_slide_barely_over_friction_stops_by_its_closed_form() -> None:
-    friction, over = 0.3, 0.005
-    peak = friction * G + over
-    trace = slide(np.outer([0.0, peak, 0.0], [0.6, 0.8]), 1.0, friction)
-    rise = over / peak
-    fall = (1.0 + math.sqrt(2.0)) * rise
-    way = peak * (rise**3 + 3.0 * rise**2 * fall + 3.0 * rise * fall**2 - fall**3) / 6.0
-    assert trace.peak_displacement == pytest.approx(way, rel=1e-9)
 
 
 def test_without_friction_the_ground_moves_below() -> None:

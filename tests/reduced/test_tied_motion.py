@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 from tendon import Pier
@@ -33,8 +31,9 @@ def model_of(case: rw.Case, plane: float | None) -> Model:
 
 @pytest.mark.parametrize("slab", [0.0, 1.3], ids=["column", "frame"])
 @pytest.mark.parametrize("share", [0.0, 0.01], ids=["lossless", "resisted"])
-@pytest.mark.parametrize("plane", [None, 0.0], ids=["recess", "planar"])
-@pytest.mark.parametrize("tan_alpha", [0.15, 0.5])
+@pytest.mark.parametrize(
+    ("plane", "tan_alpha"), [(None, 0.15), (None, 0.9), (0.0, 0.15), (0.0, 0.5)], ids=str
+)
 def test_a_release(tan_alpha: float, plane: float | None, share: float, slab: float) -> None:
     column = rw.Cylinder(semidiagonal=3.0, tan_alpha=tan_alpha)
     body = rw.WobblingFrame(column, slab) if slab else column
@@ -70,20 +69,3 @@ def test_under_a_record(plane: float | None, share: float, slab: float) -> None:
     same = np.searchsorted(trace.time, times - 1e-9)
     assert trace.tilt.max() > 0.2 * PIER.alpha
     assert np.abs(trace.tilt[same] - own[:, 0]).max() < 1e-7 * PIER.alpha
-
-
-def test_the_exit_from_a_fall_changes_no_answer_with_rolling_resistance() -> None:
-    motion, scales = rw.el_centro_1940(vertical=True), np.geomspace(3.0, 30.0, 8)
-    for stiffness in (0.0, 1.0, 4.0):
-        tendon = rw.Tendon(prestress=0.5, stiffness=stiffness)
-        options = {"tendon": tendon, "rolling_resistance": 0.02}
-        peaks = reduced.peak_tilts([PIER.semidiagonal], 0.2, motion, scales, **options)[0]
-        for scale, peak in zip(scales, peaks, strict=True):
-            # a pulse at the very end keeps the exit out of reach
-            late = np.zeros((502, 3))
-            late[500, 0] = 1e4
-            a = np.vstack([motion.acceleration * scale, late])
-            open_end = rw.GroundMotion(a, motion.time_step, "open")
-            case = rw.Case(PIER, open_end, duration=motion.duration, **options)
-            trace = reduced.simulate(case, rtol=1e-7)
-            assert (peak == 0.5 * math.pi) == (trace.outcome == "overturned")

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
 Array = NDArray[np.float64]
 
@@ -98,18 +97,6 @@ def accelerations(pier: Pier, tilt: float, rate: float, spin: float, ground: Arr
     force -= (pushed(tilt + d, azimuth) - pushed(tilt - d, azimuth)) / (2 * d)
     torque = -(pushed(tilt, azimuth + d) - pushed(tilt, azimuth - d)) / (2 * d)
     return np.array([(0.5 * slope * spin**2 + force) / inertia, (torque - slope * rate * spin) / turning])
-
-
-def released(pier: Pier, tilt: float, spin: float, times: Array) -> Array:
-    """Return tilt and azimuth (2, n) after a release on still ground, to the differences' 1e-9 or so."""
-
-    def rates(_: float, y: Array) -> Array:
-        turned = accelerations(pier, y[0], y[1], y[3], np.zeros(3), y[2])
-        return np.array([y[1], turned[0], y[3], turned[1]])
-
-    start = np.array([tilt, 0.0, 0.0, spin])
-    solution = solve_ivp(rates, (0.0, times[-1]), start, "DOP853", times, rtol=1e-12, atol=1e-13)
-    return np.asarray(solution.y[[0, 2]])
 
 
 def inertia_about_the_vertical(pier: Pier, tilt: float) -> float:
