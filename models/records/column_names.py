@@ -26,11 +26,7 @@ Kind = Literal["time", "index", "acceleration", "velocity", "displacement", "oth
 _LETTERS = str.maketrans(
     {"ł": "l", "ø": "o", "đ": "d", "ı": "i", "æ": "ae", "ð": "d", "þ": "th", "œ": "oe", "№": "no"}
 )
-_MOST_LINES, _LONGEST_LINE, _LONGEST_NAME = (
-    60,
-    400,
-    80,
-)  # lines of a header at each of its ends, and characters
+_MOST_LINES, _LONGEST_LINE, _LONGEST_NAME = 60, 400, 80  # lines at each end of a header, and characters
 _LEAST_STEP, _LARGEST_STEP, _SAME_STEP = 1e-5, 2.0, 3e-3  # [s], and relative: 0.0167 for 1/60
 _BRACKETS = re.compile(r"[\[({<]([^\[\](){}<>]*)[\])}>]")
 _QUADRANT = re.compile(r"\b[NS]\s?\d{1,2}\s?[EW]\b")
@@ -338,10 +334,6 @@ def refuse_header(
                 f"{file.name} {why}, it says {wrong[0].strip()[:60]!r}: write accelerations "
                 "alone, as columns of one file"
             )
-
-
-def _is_known(token: str) -> bool:
-    return _kind(token) is not None or token in _meanings("senses") or token in _meanings("others")
 
 
 def _quantities(line: str) -> set[str]:

@@ -14,7 +14,6 @@ import numpy as np
 from ..argument_kinds import with_argument_kinds
 from ..ground_motion import GroundMotion
 from ..record_source import ComponentSource, RecordSource
-from .clocks import equally_long, require_same_clock, resampled
 from .component import METRES_PER_SECOND_SQUARED, Component, Direction, open_record
 from .directions import NORTH, at_the_surface, for_place, in_order, turned_to_north
 from .formats import read_components
@@ -24,6 +23,12 @@ from .units import factor
 
 ZERO = "zero"  # stands for a file: planar motion
 _G = METRES_PER_SECOND_SQUARED["g"]
+# over a whole record two components may drift apart by this part of a step, the rounding of printed times
+_DRIFT = 0.05
+_MOST_PARTS = 20  # samples per smallest step; a longer resampled record indicates a mistake in the time steps
+# components may differ in length by this part, and by more where what is left out is below this part of
+# the peak
+_LEFT_OUT, _STILL = 0.01, 0.05
 
 
 @with_argument_kinds
@@ -117,11 +122,11 @@ def record_of(
     else:
         components, notes = _read_each(x_path, y_path, z_path, reading), ()
     if reading.resample:
-        components = resampled(components)
+        components = _resampled(components)
     first = max(components, key=lambda part: part.path.name != ZERO)
-    require_same_clock([first, *(part for part in components if part is not first)])
+    _require_same_clock([first, *(part for part in components if part is not first)])
     units_used = ["" if part.path.name == ZERO else _unit(part, reading.units) for part in components]
-    components, changes = equally_long(components, reading.lengths)
+    components, changes = _equally_long(components, reading.lengths)
     with np.errstate(over="ignore"):  # GroundMotion refuses what is not finite
         samples = np.column_stack(
             [
@@ -258,6 +263,103 @@ def _read_station(
         raise
     left = ", ".join(each for each, _ in refusals)
     return placed, (*notes, *((f"not read: {left[:80]}",) if left else ()))
+
+
+def _require_same_clock(components: Sequence[Component]) -> None:
+    """Refuse components of different time steps, or that start at different times.
+
+    Raises
+    ------
+    ValueError
+        Naming two files that differ.
+    """
+    length = min(len(part.values) for part in components)
+    first = components[0]
+    tolerance = _DRIFT * first.time_step
+    for other in components[1:]:
+        if abs(other.time_step - first.time_step) * length > tolerance:
+            raise ValueError(
+                f"the components of a record must have one time step, got {first.time_step:g} s in "
+                f"{first.path.name} and {other.time_step:g} s in {other.path.name}: resample (--resample) "
+                "takes both at a step that divides them, which changes neither"
+            )
+        # an AT2 file gives no times: its first sample is taken as that of the others
+        if first.start is not None and other.start is not None and abs(other.start - first.start) > tolerance:
+            raise ValueError(
+                f"the components of a record must start at one time, got {first.start:g} s in "
+                f"{first.path.name} and {other.start:g} s in {other.path.name}"
+            )
+
+
+def _equally_long(
+    components: Sequence[Component], lengths: str | None
+) -> tuple[list[Component], tuple[str, ...]]:
+    """Components of one length, and what was done to them.
+
+    Parameters
+    ----------
+    components : sequence of Component
+    lengths : {"pad", "cut"} or None
+        Fill the shorter with zeros, or cut the longer. None: cut where what is left out is as good as over.
+
+    Raises
+    ------
+    ValueError
+        If one would be cut in the middle of its motion and `lengths` does not say so: half a record is
+        another record.
+    """
+    counts = [len(part.values) for part in components]
+    shortest, longest = min(counts), max(counts)
+    if shortest == longest:
+        return list(components), ()
+    if lengths == "pad":
+        padded = [
+            replace(part, values=np.pad(part.values, (0, longest - len(part.values)))) for part in components
+        ]
+        return padded, (f"components of {shortest} samples filled with zeros",)
+    for part in components if lengths is None else ():
+        rest, peak = np.abs(part.values[shortest:]), np.abs(part.values).max()
+        if len(rest) > _LEFT_OUT * len(part.values) and rest.max() > _STILL * peak:
+            raise ValueError(
+                f"the components of a record must be equally long, got {len(part.values)} samples in "
+                f"{part.path.name} and {shortest} in another: what would be left out has "
+                f"{100.0 * rest.max() / peak:.0f} % of its peak; --lengths pad (lengths=) fills the shorter "
+                "with zeros, --lengths cut cuts the longer"
+            )
+    cut = [replace(part, values=part.values[:shortest]) for part in components]
+    return cut, (f"components of up to {longest} samples cut to {shortest}",)
+
+
+def _resampled(components: Sequence[Component]) -> list[Component]:
+    """Components at the largest time step that divides the steps of all, linear between samples.
+
+    That changes no record: each is linear between its samples, and all of them stay.
+
+    Raises
+    ------
+    ValueError
+        If no such step is at least a twentieth of the smallest one.
+    """
+    finest = min(components, key=lambda each: each.time_step)
+    for parts in range(1, _MOST_PARTS + 1):
+        step = finest.time_step / parts
+        counts = [round(each.time_step / step) for each in components]
+        pairs = list(zip(components, counts, strict=True))
+        if all(abs(each.time_step - n * step) * len(each.values) <= _DRIFT * step for each, n in pairs):
+            return [_refine(each, count, step) for each, count in pairs]
+    coarsest = max(components, key=lambda each: each.time_step)
+    raise ValueError(
+        f"components are resampled to a step that divides all, at least 1/{_MOST_PARTS} of the smallest: "
+        f"{finest.time_step:g} s in {finest.path.name} and {coarsest.time_step:g} s in {coarsest.path.name} "
+        "have none"
+    )
+
+
+def _refine(component: Component, count: int, step: float) -> Component:
+    """Component with each of its time steps cut into `count` of `step` [s]."""
+    values = component.values
+    places = np.arange((len(values) - 1) * count + 1) / count
+    return replace(component, values=np.interp(places, np.arange(len(values)), values), time_step=step)
 
 
 # provenance and orientation: records/README.md

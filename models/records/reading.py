@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from ..argument_kinds import with_argument_kinds
 from ..number_checks import require_finite, require_one_of, require_positive
-from .clocks import LENGTHS
 from .component import STEP_OPTION
 from .directions import NORTH
 from .units import given_unit
 
+LENGTHS = ("pad", "cut")
 _SAME_STEP = 3e-3  # relative: 0.0167 for 1/60
 
 
@@ -27,9 +27,8 @@ class Reading:
         not say its unit; where it does, both must agree.
     columns : str or sequence of str or int, optional
         Columns of time, x, y and z in this order, by name or number from 1, such as "Zeit,Ost,Nord" or
-        [1, 4, 3, 2]; the words "time,x,y,z" (and "-" for a column to leave out) name those of a file without
-        names, in the order of the file. "values": all numbers are one component, row by row. Of a network's
-        file of several channels: those of x, y and z.
+        [1, 4, 3, 2]. "values": all numbers are one component, row by row. Of a network's file of several
+        channels: those of x, y and z.
     time_step : float, optional
         Time step of files that give no times [s].
     lengths : {"pad", "cut"}, optional
@@ -78,7 +77,7 @@ class Reading:
             except ValueError:
                 raise ValueError(f"rotate must be an angle [deg] or {NORTH!r}, got {self.rotate!r}") from None
         if self.columns is not None and not (self.column_texts and all(self.column_texts)):
-            raise ValueError(f"columns must be names or numbers, as time,x,y or 1,3,2, got {self.columns!r}")
+            raise ValueError(f"columns must be names or numbers, as Zeit,E,N or 1,3,2, got {self.columns!r}")
 
     @property
     def column_texts(self) -> tuple[str, ...]:

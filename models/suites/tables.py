@@ -31,8 +31,8 @@ from pydantic import (
 
 from ..bounds import Bounds
 from ..case import WAYS_TO_A_STEP, TimeStep
-from ..records.clocks import LENGTHS
 from ..records.component import UNITS
+from ..records.reading import LENGTHS
 from ..support import RECESS
 from ..synthetic import PULSES
 from .errors import KeyedError, brief, nearest

@@ -103,11 +103,10 @@ READ: Mapping[str, tuple[str | bytes, Mapping[str, Values], dict[str, Any]]] = {
         {},
     ),
     "iso_8601.csv": (stamped("timestamp,E [gal],N [gal],Z [gal]", "2023-02-06T", "Z"), ALL, {}),
-    "epoch.csv": (table("time,E [gal],N [gal]", EAST, NORTH, first=APP), TWO, {"time_step": STEP}),
-    "two_clocks.csv": (
+    "epoch.csv": (
         table("time,seconds_elapsed,E [gal],N [gal]", TIME, EAST, NORTH, first=1e9 * APP),
         TWO,
-        {},
+        {"columns": "seconds_elapsed,E,N"},
     ),
     "sample_numbers.csv": (
         table("# fs = 100 Hz\nsample,E [gal],N [gal]", EAST, NORTH, first=np.arange(60.0)),
@@ -119,8 +118,7 @@ READ: Mapping[str, tuple[str | bytes, Mapping[str, Values], dict[str, Any]]] = {
         ONE,
         {},
     ),
-    "values.txt": ("dt = 0.01 sec, acc in gal\n" + lines(EAST, 8), ONE, {}),
-    "values_with_a_step.txt": (lines(EAST, 7), ONE, {"units": "gal", "time_step": STEP}),
+    "values.txt": ("dt = 0.01 sec, acc in gal\n" + lines(EAST, 8), ONE, {"columns": "values"}),
     "values_alone.txt": (table("", EAST, first=None), ONE, {"units": "gal", "time_step": STEP}),
     "option.csv": (
         table("time,Hoch,Laengs,Quer", UP, NORTH, EAST),
@@ -128,7 +126,6 @@ READ: Mapping[str, tuple[str | bytes, Mapping[str, Values], dict[str, Any]]] = {
         {"units": "gal", "columns": "time,Quer,Laengs"},
     ),
     "numbers.csv": (table("H1,H2", NORTH, EAST), TWO, {"units": "gal", "columns": [1, 3, 2]}),
-    "words.txt": (table("", UP, EAST, NORTH, separator=" "), TWO, {"units": "gal", "columns": "time,-,x,y"}),
     "row_by_row.txt": (lines(EAST, 3), ONE, {"units": "gal", "time_step": STEP, "columns": "values"}),
     "spaced.csv": (table(GAL, EAST, NORTH).replace(",", " , ").replace("\n", ",\n") + "# end\n", TWO, {}),
 }
@@ -142,6 +139,8 @@ REFUSED: Mapping[str, tuple[str | bytes, str]] = {
     "one_direction.csv": (table("time (s),E (gal),E (gal)", EAST, NORTH), "two columns have one direction"),
     "no_names.txt": (table("", *MOTION.T, separator=" "), "--record-columns"),
     "epoch_alone.csv": (table("time,E [gal],N [gal]", EAST, NORTH, first=APP), "epoch.*--record-step"),
+    "two_clocks.csv": (table("time,seconds_elapsed,E [g],N [g]", TIME, EAST, NORTH), "may be times"),
+    "rows.txt": (lines(EAST, 3), "--record-columns.*or all as values"),
     "uneven.csv": (table(GAL, EAST, NORTH, first=TIME**1.1), "line .*even steps.*--resample"),
     "numbers_alone.csv": (
         table("sample,E [gal],N [gal]", EAST, NORTH, first=np.arange(60.0)),

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..clocks import even_samples, is_counting, rises_evenly, since_epoch
 from ..column_names import (
     ColumnName,
     comparison_key,
@@ -29,12 +28,13 @@ from ..units import stated_unit, unit_of
 
 NAME, VALUES = "columns", "values without times"
 _AXES: tuple[Direction, ...] = ("x", "y", "z")
-_ROW_BY_ROW = ("values",)
-_MOST_COLUMNS = 4  # limit for a table without names; more numbers in a row are samples
 _LEAST_COUNT, _LARGEST_STEP = 10, 0.1  # samples and step [s] that may stand in front; of fewer it is chance
-_SEEN = 50  # rows whose first numbers tell whether they are times
 _MANY_DIGITS = re.compile(r"(?<![\d.])\d{17}")  # more than a double holds: whole numbers that touch
+_EPOCH = 1e6  # [s], 11 days: no record begins so late, times since 1970 do
 _QUANTITIES = ("acceleration", "velocity", "displacement")
+# printed times are rounded, as 0.0167 for 1/60: a sample may stand this much of a step off its place
+_UNEVENNESS = 0.05
+_LONGEST_GAP = 2.0  # median steps; more are missing samples
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,10 +48,10 @@ class _Columns:
 
     def doubt(self, why: str) -> ValueError:
         """Refusal of columns that names do not settle."""
-        listed = ", ".join(f"{at} {name.text[:16] or '(no name)'}" for at, name in enumerate(self.names, 1))
+        listed = ", ".join(f"{at} {name.text[:16]}".strip() for at, name in enumerate(self.names, 1))
         return ValueError(
-            f"{self.file.name}: {why}: name them by {COLUMNS_OPTION}, such as time,x,y or 1,2,3 (without "
-            f"times: with {STEP_OPTION}); it has {listed[:110]}"
+            f"{self.file.name}: {why}: name them by {COLUMNS_OPTION}, time, x and y such as 1,2,3 (without "
+            f"times: with {STEP_OPTION}), or all as values; it has {listed[:90]}"
         )
 
     def by_names(self) -> tuple[int | None, dict[int, ColumnName]]:
@@ -73,61 +73,43 @@ class _Columns:
         return time, values
 
     def _time(self) -> int | None:
-        kinds = [name.kind for name in self.names]
+        """Column that is named as times, else the first if it rises as times do."""
+        kinds, first = [name.kind for name in self.names], self.values[:, 0]
         times = [at for at, kind in enumerate(kinds) if kind == "time"]
-        if len(times) > 1:  # apps write times since 1970 and since the start
-            exact = [at for at in times if self.names[at].seconds == 1.0]
-            starts = {at: self.values[0, at] * (self.names[at].seconds or 1.0) for at in times}
-            times = exact if len(exact) == 1 else [at for at in times if not since_epoch(starts[at])]
-        elif not times:
-            unsaid = [at for at, kind in enumerate(kinds) if kind in ("unknown", "index")]
-            rising = [at for at in unsaid if rises_evenly(self.values[:, at])]
-            counting = [at for at in rising if is_counting(self.values[:, at])]
-            times = [at for at in rising if at not in counting]
-            if len(kinds) == 2 and kinds[0] == "unknown" and not (times and 0 in counting):
-                steps = np.diff(self.values[:, 0])
-                if 0 in counting and self.reading.time_step is None:
-                    raise self.doubt("column 1 rises by 1, as sample numbers do")
-                if (steps >= 0.0).all() or (steps <= 0.0).all():  # uneven times are refused with their line
-                    return 0
-            if times and any(kinds[at] == "unknown" for at in counting):
-                raise self.doubt("two columns may be times")
-        if len(times) > 1:
-            raise self.doubt(f"columns {times[0] + 1} and {times[1] + 1} both may be times")
-        return times[0] if times else None
+        unsaid = [at for at, kind in enumerate(kinds) if kind in ("unknown", "index")]
+        rising = [at for at in unsaid if _rises_evenly(self.values[:, at])]
+        counts, pair = _is_counting(first), len(kinds) == 2 and kinds[0] == "unknown"
+        if not times and pair and 0 in rising and not counts:
+            return 0
+        if len(times) > 1 or (not times and max(rising, default=0) > 0):
+            raise self.doubt(f"column {(times or rising)[-1] + 1} may be times, too")
+        if times:
+            return times[0]
+        if counts and pair and self.reading.time_step is None:
+            raise self.doubt("column 1 rises by 1, as sample numbers do")
+        steps = np.diff(first)
+        ordered = (steps >= 0.0).all() or (steps <= 0.0).all()  # uneven times are refused with their line
+        return 0 if (rising and not counts) or (pair and ordered) else None
 
     def by_option(self, stated: float | None) -> tuple[int | None, dict[int, ColumnName]]:
         """Column of times (None without one) and columns of accelerations that the user has named."""
-        given, width = self.reading.column_texts, len(self.names)
-        found = [self._place(text) for text in given]
-        places = [at for at in found if at is not None]
-        if len(places) < len(given):  # the words time, x, y and z of each column in its order
-            words = ["time" if text.casefold() == "t" else text.casefold() for text in given]
-            if not set(words) <= {"time", *_AXES, "-"}:
-                raise self.doubt(f"it has no column {given[found.index(None)][:30]!r}")
-            if len(words) != width or any(words.count(role) > 1 for role in ("time", *_AXES)):
-                raise self.doubt(f"{','.join(words)[:60]} must name each column once, in their order")
-            time = words.index("time") if "time" in words else None
-            return time, {
-                at: self._as(at, axis) for axis in _AXES for at in range(width) if words[at] == axis
-            }
-        if len(set(places)) < len(places) or len(places) > len(_AXES) + 1:
-            raise self.doubt(f"{','.join(given)[:60]} must name each of time, x, y and z once")
-        kind, timeless = self.names[places[0]].kind, (self.reading.time_step or stated) is not None
-        rises = kind in ("unknown", "index") and rises_evenly(self.values[:, places[0]])
-        timed = len(places) > 1 and (kind == "time" or rises or not timeless or len(places) > len(_AXES))
-        time, places = (places[0], places[1:]) if timed else (None, places)
-        other = [at for at in places if self.names[at].kind not in ("acceleration", "unknown")]
+        chosen = [self._place(text) for text in self.reading.column_texts]
+        if len(set(chosen)) < len(chosen) or len(chosen) > len(_AXES) + 1:
+            raise self.doubt(f"{','.join(self.reading.column_texts)[:60]} must name time, x, y and z once")
+        kind, timeless = self.names[chosen[0]].kind, (self.reading.time_step or stated) is not None
+        rises = kind in ("unknown", "index") and _rises_evenly(self.values[:, chosen[0]])
+        timed = kind == "time" or rises or not timeless or len(chosen) > len(_AXES)
+        time = chosen.pop(0) if len(chosen) > 1 and timed else None
+        other = [at for at in chosen if self.names[at].kind not in ("acceleration", "unknown")]
         if other:
             raise self.doubt(f"column {other[0] + 1} is no acceleration")
-        axes = _AXES if len(places) > 1 else (None,)
-        return time, {at: self._as(at, axis) for at, axis in zip(places, axes, strict=False)}
+        pairs = zip(chosen, _AXES if len(chosen) > 1 else (None,), strict=False)
+        return time, {
+            at: replace(self.names[at], direction=axis, sign=1.0, azimuth=None) for at, axis in pairs
+        }
 
-    def _as(self, place: int, axis: Direction | None) -> ColumnName:
-        return replace(self.names[place], direction=axis, sign=1.0, azimuth=None)
-
-    def _place(self, text: str) -> int | None:
-        """Column of a number or a name; None where there is none."""
+    def _place(self, text: str) -> int:
+        """Column of a number or a name."""
         names = [name.text for name in self.names]
         if text.isdecimal() and text not in names and 0 < int(text[:9]) <= len(names):
             return int(text) - 1
@@ -135,7 +117,7 @@ class _Columns:
             matches = [at for at, name in enumerate(names) if form(name) == form(text)]
             if len(matches) == 1:
                 return matches[0]
-        return None
+        raise self.doubt(f"it has no column {text[:30]!r}")
 
 
 def recognizes(file: RecordFile) -> bool:
@@ -154,17 +136,13 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
     """
     table = table_of(file)
     rows, header, width = table.rows, table.header, table.width
-    names, others = names_of(header, width)
-    timeless = names and names[0].kind in _QUANTITIES and not any(name.kind == "time" for name in names)
-    if timeless and width > 1 and rises_evenly(rows[:, 0]) and not is_counting(rows[:, 0]):
-        names, others = None, header  # a sentence that looks like names
-    names = names or [ColumnName()] * width
-    row_by_row = _is_row_by_row(table, names, reading)
+    row_by_row = width == 1 or reading.column_texts == ("values",)
+    time: int | None
     if row_by_row:
-        _refuse_others_than_samples(file, table, reading)
-        unit = next(iter(names_of(header, 1)[0] or names)).unit
-        values = {0: ColumnName(unit="" if quantity_of_unit(unit) == "time" else unit)}
-        time, samples, others = None, table.values[:, np.newaxis], header
+        _refuse_others_than_samples(file, table)
+        names, others, time = names_of(header, 1)[0] or [ColumnName()], header, None
+        values = {0: ColumnName(unit="" if quantity_of_unit(names[0].unit) == "time" else names[0].unit)}
+        samples = table.values[:, np.newaxis]
     else:
         if len(rows) < 2 or rows.size < len(table.values):
             raise ValueError(
@@ -172,10 +150,13 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
                 f"{COLUMNS_OPTION} values takes all as one component, row by row"
             )
         wanted = [text for text in reading.column_texts if not text.isdecimal()]
-        names = (names_of(header, width, wanted)[0] if wanted else None) or names
+        known, others = names_of(header, width)
+        timeless = known and known[0].kind in _QUANTITIES and not any(name.kind == "time" for name in known)
+        if timeless and _rises_evenly(rows[:, 0]) and not _is_counting(rows[:, 0]):
+            known, others = None, header  # a sentence that looks like names
+        names = (names_of(header, width, wanted)[0] if wanted else None) or known or [ColumnName()] * width
         columns = _Columns(file, rows, names, reading)
-        stated = stated_step(file, header)
-        time, values = columns.by_option(stated) if reading.columns else columns.by_names()
+        time, values = columns.by_option(stated_step(file, header)) if reading.columns else columns.by_names()
         samples = np.column_stack([name.sign * rows[:, at] for at, name in values.items()])
     units = _units(file, table, list(values.values()), others)
     notes: tuple[str, ...]
@@ -202,25 +183,14 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
     ]
 
 
-def _is_row_by_row(table: Table, names: Sequence[ColumnName], reading: Reading) -> bool:
-    """Whether rows hold one number, more than a table of components would, or the last is shorter."""
-    if table.width == 1 or reading.column_texts == _ROW_BY_ROW:
-        return True
-    if reading.columns or any(name.kind in ("time", "index") or name.direction for name in names):
-        return False
-    return table.width > _MOST_COLUMNS or table.rows.size < len(table.values)
-
-
-def _refuse_others_than_samples(file: RecordFile, table: Table, reading: Reading) -> None:
+def _refuse_others_than_samples(file: RecordFile, table: Table) -> None:
     """Refuse values among which stand their number, times or numbers of lines, or that touch."""
-    values, rows, count = table.values, table.rows, len(table.values) - 1
-    pairs, in_front, several = values[: len(values) // 2 * 2 : 2], values[:2].tolist(), table.width > 1
+    values, count, in_front = table.values, len(table.values) - 1, table.values[:2].tolist()
     counted = values[0] == count or (count - 1 in in_front and 0.0 < min(in_front) <= _LARGEST_STEP)
-    numbered = several and len(rows) > 2 and is_counting(rows[:, -1])
-    timed = several and not reading.columns and len(rows) > 2 and rises_evenly(rows[:_SEEN, 0])
-    paired = several and count >= _LEAST_COUNT and rises_evenly(pairs) and not rises_evenly(values)
+    numbered = table.width > 1 and len(table.rows) > 2 and _is_counting(table.rows[:, -1])
+    paired = table.width > 1 and _rises_evenly(values[: len(values) // 2 * 2 : 2])
     touch = _MANY_DIGITS.search("\n".join(file.text))
-    if (counted and count > _LEAST_COUNT) or numbered or timed or paired or touch:
+    if (count > _LEAST_COUNT and (counted or paired)) or numbered or touch:
         raise ValueError(
             f"{file.name} holds more than the samples of one component, such as their number, times or "
             "numbers of lines: write one a line alone, or columns below their names"
@@ -243,16 +213,14 @@ def _timed(
     if doubt is not None or math.isnan(seconds):
         words = (doubt or name.text).strip()[:60]
         raise ValueError(f"{file.name} says {words!r}: allowed are times in s, ms, us and ns, as 'time [ms]'")
-    counts = name.seconds is None and given != 1.0 and is_counting(time)
-    epoch = since_epoch(time[0] * seconds)
-    if given is not None and (counts or epoch):
+    if given is not None and name.seconds is None and given != 1.0 and _is_counting(time):
         return samples, given, None, ("time step as given",)
-    samples, step, notes = even_samples(file, time, samples, table.lines, resample=reading.resample)
-    if epoch:
+    if abs(time[0] * seconds) > _EPOCH:
         raise ValueError(
-            f"{file.name}: its times begin at {time[0]:.12g}, as times since an epoch do: give times from "
-            f"the start of the record, or the step by {STEP_OPTION}"
+            f"{file.name}: its times begin at {time[0]:.12g}, as times since an epoch do: name the other "
+            f"columns by {COLUMNS_OPTION} and give the step by {STEP_OPTION}"
         )
+    samples, step, notes = _even_samples(file, table, time, samples, resample=reading.resample)
     step = float(f"{step * seconds:.12g}")  # 0.01 and not 0.010000000000000002
     return samples, reading.settled_step(file.name, step), float(time[0]) * seconds, notes
 
@@ -273,3 +241,49 @@ def _units(
         raise ValueError(f"{file.name} states two units: {next(filter(None, own))} and {stated}")
     alike = next(iter(known)) if len(known := {unit for unit in own if unit}) == 1 else None
     return [unit or stated or alike for unit in own]
+
+
+def _rises_evenly(time: NDArray[np.float64]) -> bool:
+    """Whether numbers rise in even steps, as times do."""
+    return len(time) > 1 and _uneven(time)[0] is None
+
+
+def _is_counting(time: NDArray[np.float64]) -> bool:
+    """Whether numbers are whole and rise by 1, as row numbers do."""
+    return bool((np.diff(time) == 1.0).all() and (time[0] == round(time[0])))
+
+
+def _uneven(time: NDArray[np.float64]) -> tuple[int | None, float]:
+    """Place of the largest jump of the step, None where all are even, and the mean step."""
+    # halves, because the difference of two large floats overflows
+    step = 2.0 * float(0.5 * time[-1] - 0.5 * time[0]) / (len(time) - 1)
+    if not 0.0 < step < np.inf:
+        return 0, step
+    with np.errstate(over="ignore", invalid="ignore"):  # an infinite distance is refused like any other
+        off = np.abs((time - time[0]) / step - np.arange(len(time)))
+        # the place where the step changes, not the one where the error has grown largest
+        jump = np.abs(np.diff(time) / step - 1.0)
+    even = off.max() <= _UNEVENNESS and jump.max() <= 2.0 * _UNEVENNESS
+    return (None if even else int(jump.argmax())), step
+
+
+def _even_samples(
+    file: RecordFile, table: Table, time: NDArray[np.float64], samples: NDArray[np.float64], *, resample: bool
+) -> tuple[NDArray[np.float64], float, tuple[str, ...]]:
+    """Samples (n, columns) at even times, their step in the unit of the times, and a note of changes."""
+    at, step = _uneven(time)
+    if at is None:
+        return samples, step, ()
+    if not 0.0 < step < np.inf:
+        raise ValueError(f"{file.name}: times must rise [s], got {time[0]:g} s first and {time[-1]:g} s last")
+    steps = np.diff(time)
+    median = float(np.median(steps))
+    if not resample or not 0.0 < steps.min() <= steps.max() <= _LONGEST_GAP * median:
+        raise ValueError(
+            f"{file.name}, line {table.lines[at + 1]}: times must rise in even steps, got {time[at + 1]:g} s "
+            f"after {time[at]:g} s where the mean step is {step:.6g} s: --resample (resample=) takes samples "
+            f"at even times where no step exceeds {_LONGEST_GAP:g} times the median"
+        )
+    even = time[0] + median * np.arange(int((time[-1] - time[0]) / median * (1.0 + 1e-12)) + 1)
+    taken = np.column_stack([np.interp(even, time, column) for column in samples.T])
+    return taken, median, (f"uneven times (steps of {steps.min():.6g} to {steps.max():.6g}) resampled",)
