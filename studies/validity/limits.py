@@ -1,9 +1,10 @@
-"""The limits of the model as numbers, each a function of the measured tables alone."""
+"""The limits of the model: numbers of tables and maps, and findings, from the measured tables alone."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -13,27 +14,24 @@ from rockwobble.compare.comparison.prediction import IN_TIME
 from rockwobble.compare.metrics.contrast import log_ratios, pairs_in
 from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.metrics.statistics import MARGIN, quantile_interval
+from rockwobble.models.finding import Finding, Findings, Level
 from rockwobble.models.support import FLAT, RECESS, RECESSES_FIRST, RING, SUPPORTS
 from rockwobble.models.trace import NO_PEAK
 
-from .measurements import FREE, HALVED, PERTURBED
-from .plan import EL_CENTRO, RELEASE
+from .plan import EL_CENTRO, FREE, HALVED, PERTURBED, RELEASE, Structure
 from .plan import POINT as POINT_NAMES
 
 Tables = Mapping[str, "pd.DataFrame"]
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-Numbers = dict[str, float]
 
 POINT = list(POINT_NAMES)
-# two methods that are compared, and the name of their ratio; the last says how far a ring has converged
-_NAMES: Mapping[tuple[str, str], str] = {
-    **{(support, RECESS.model): support for support in RECESSES_FIRST},
-    (FLAT.model, RECESS.model): "model",
-    (PERTURBED, RECESS.model): "copy",
-    (HALVED, RING): "halved",
-}
-CONTRASTS = tuple(_NAMES)
+# two methods that are compared; the last shows how far a recess with clearance has converged
+CONTRASTS = (
+    *((support, RECESS.model) for support in RECESSES_FIRST),
+    (FLAT.model, RECESS.model),
+    (PERTURBED, RECESS.model),
+    (HALVED, RING),
+)
 _SHARE = 0.9
 FEWEST = 10  # nine in ten of fewer motions is all of them
 # [b], or of alpha, in one period: less is the creep of a contact that never lets go
@@ -49,46 +47,34 @@ _CONTRADICTS = 1e-3
 _ROUNDING = 1e-9  # relative, of a peak that was stored over alpha
 
 
-def column(table: pd.DataFrame, name: str) -> Array:
-    """Return a column as numbers."""
-    return table[name].to_numpy(dtype=np.float64)
+def largest(values: pd.Series[float]) -> float:
+    """Largest finite value; NaN where there is none."""
+    return float(values[np.isfinite(values)].max())
 
 
-def quotient(table: pd.DataFrame, name: str = "peak", by: str = "recess_peak") -> Array:
-    """Return a column over another."""
-    return column(table, name) / column(table, by)
-
-
-def largest(values: Array) -> float:
-    """Return the largest finite value; NaN where there is none."""
-    finite = values[np.isfinite(values)]
-    return float(finite.max()) if len(finite) else math.nan
-
-
-def least(values: Array) -> float:
-    """Return the least finite value; NaN where there is none."""
+def least(values: pd.Series[float]) -> float:
+    """Least finite value; NaN where there is none."""
     return -largest(-values)
 
 
-def quantile_reached(values: Array, share: float) -> float:
-    """Return a value that a share of all does not exceed, infinite ones included; NaN of nothing."""
-    known = values[~np.isnan(values)]
+def quantile_reached(values: pd.Series[float], share: float) -> float:
+    """Value that a share of all does not exceed, infinite ones included; NaN of nothing."""
+    known = values.dropna()
     return float(np.quantile(known, share, method="inverted_cdf")) if len(known) else math.nan
 
 
-def limit_of(points: Array, holds: Flags) -> tuple[float, float]:
-    """Return the largest point up to which every point holds, and the least that does not.
+def limit_of(points: pd.Series[float], holds: pd.Series[bool]) -> tuple[float, float]:
+    """Largest point up to which every point holds, and the least that does not.
 
     Several rows may share a point, which holds where all of its rows do. NaN where already the first does
     not hold, and where all do.
     """
-    every = pd.Series(holds).groupby(points).all()
-    held, failing = every.index[every.cummin()], every.index[~every]
-    return float(held.max()), float(failing.min())
+    every = holds.groupby(points).all()
+    return float(every.index[every.cummin()].max()), float(every.index[~every].min())
 
 
 def contrasts(tables: Tables) -> pd.DataFrame:
-    """Return the contrasts of the methods with one another at each point, member by member.
+    """Contrasts of the methods with one another at each point, member by member.
 
     Returns
     -------
@@ -100,53 +86,21 @@ def contrasts(tables: Tables) -> pd.DataFrame:
     rows = []
     for point, runs in tables["records"].groupby(POINT, sort=False):
         for method, against in CONTRASTS:
-            found = pairs_in(runs, method, against, member="motion", peak="peak").contrast()
-            if found is not None:
+            contrast = pairs_in(runs, method, against, member="motion", peak="peak").contrast()
+            if contrast is not None:
                 at = dict(zip(POINT, point, strict=True)) | {"method": method, "against": against}
-                rows.append(at | found.columns())
+                rows.append(at | contrast.columns())
     return pd.DataFrame(rows)
 
 
-def records(tables: Tables) -> Numbers:
-    """Return the range over the points of the contrasts of each method.
-
-    NAME_least and NAME_largest, of the median ratio to the recess model; NAME_05_least to NAME_95_largest, of
-    what 5 % and 95 % of the records of a point do not exceed; NAME_within and NAME_beyond, the number of
-    points where the median is known to be within the margin, and beyond it. NAME "halved" is the ring at half
-    the step against itself; under a slab neither is there.
-    """
-    table, runs = contrasts(tables), tables["records"]
-    numbers: Numbers = {
-        "members": float(table["count"].max()),
-        "points": float(len(table[POINT].drop_duplicates())),
-    }
-    for (method, against), name in _NAMES.items():
-        if not {method, against} <= set(runs["method"]):  # under a slab there is no ring
-            continue
-        own = table[(table["method"] == method) & (table["against"] == against)]
-        for share in ("", "_05", "_95"):
-            numbers[f"{name}{share}_least"] = float(own[f"ratio{share}"].min())
-            numbers[f"{name}{share}_largest"] = float(own[f"ratio{share}"].max())
-        for verdict in ("within", "beyond"):
-            numbers[f"{name}_{verdict}"] = float((own["verdict"] == verdict).sum())
-    touched = runs[(runs["method"] != HALVED) & (runs["contact_time"] > 0.0)]
-    standing = column(runs[(runs["method"] == RING) & (runs["outcome"] == "stands")], "peak")
-    strays = table[table["against"] == RECESS.model]
-    return numbers | {
-        "undecided": float((runs["outcome"] == "undecided").sum()),
-        "ring_standing": float(len(standing)),
-        "ring_passed": float((standing >= 1.0).sum()),
-        "ring_passed_largest": largest(standing),
-        "strays_bounded": float(np.isfinite(column(strays, "ratio_95_high")).sum()),
-        "touched": float(len(touched)),
-        "ring_loss_worst": largest(column(touched, "loss")),
-        "failed": float(runs["outcome"].isin(NO_PEAK).sum()),
-        "runs": float(len(runs)),
-    }
+def _ends(table: pd.DataFrame, method: str, name: str = "ratio") -> tuple[float, float]:
+    """Least and largest of a column of the contrasts of a method over the points; NaN without any."""
+    values = table.loc[table["method"] == method, name]
+    return float(values.min()), float(values.max())
 
 
 def cells(tables: Tables) -> pd.DataFrame:
-    """Return the maps of the reduced models: one row for each slenderness, size and intensity.
+    """Maps of the reduced models: one row for each slenderness, size and intensity.
 
     Returns
     -------
@@ -165,73 +119,47 @@ def cells(tables: Tables) -> pd.DataFrame:
         row = dict(zip(POINT, point, strict=True)) | {
             "members": len(members),
             "rocked": int((members[RECESS] > 0.0).sum()),
-            "overturned": float(_fell(members, RECESS).mean()),
+            "overturned": _fell(members, RECESS).mean(),
         }
         for name in (FLAT, "copy"):
-            logarithms = _changes(members, name)
-            logarithms = logarithms[~np.isnan(logarithms)]
-            median = quantile_interval(logarithms, 0.5).exponential()
+            logarithms = _changes(members, name).dropna()
+            median = quantile_interval(np.asarray(logarithms, dtype=np.float64), 0.5).exponential()
             row |= {
                 f"{name}_ratio": median.value,
                 f"{name}_low": median.low,
                 f"{name}_high": median.high,
-                f"{name}_90": math.exp(quantile_reached(np.abs(logarithms), _SHARE)),
-                f"{name}_overturned": float(_fell(members, name).mean()),
+                f"{name}_90": math.exp(quantile_reached(logarithms.abs(), _SHARE)),
+                f"{name}_overturned": _fell(members, name).mean(),
             }
-        normal = column(members, "least_normal")
-        known = normal[~np.isnan(normal)]
+        normal = members["least_normal"]
         row |= {
-            "standing": len(known),
-            "friction_90": _nine_in_ten(column(members, "friction")) / members["tan_alpha"].iloc[0],
+            "standing": normal.count(),
+            "friction_90": _nine_in_ten(members["friction"]) / members["tan_alpha"].iloc[0],
             "normal_10": -_nine_in_ten(-normal),
-            "moment_90": _nine_in_ten(column(members, "moment")),
-            "lost": float((known <= 0.0).mean()) if len(known) else math.nan,
+            "moment_90": _nine_in_ten(members["moment"]),
+            "lost": (normal.dropna() <= 0.0).mean(),
         }
         if "tension" in members:
-            row["tension_90"] = _nine_in_ten(column(members, "tension"))
+            row["tension_90"] = _nine_in_ten(members["tension"])
         rows.append(row)
     return pd.DataFrame(rows)
 
 
-def _nine_in_ten(values: Array) -> float:
+def _nine_in_ten(values: pd.Series[float]) -> float:
     """90th percentile of the known values; NaN of too few."""
-    enough = np.count_nonzero(~np.isnan(values)) >= FEWEST
-    return quantile_reached(values, _SHARE) if enough else math.nan
+    return quantile_reached(values, _SHARE) if values.count() >= FEWEST else math.nan
 
 
 def _fell(table: pd.DataFrame, name: str) -> Flags:
     """Whether the peaks of a column, over alpha, are those of overturned runs."""
-    tilts = column(table, name) * np.arctan(column(table, "tan_alpha"))
+    tilts = (table[name] * np.arctan(table["tan_alpha"])).to_numpy(dtype=np.float64)
     return overturned(tilts * (1.0 + _ROUNDING))
 
 
-def _changes(table: pd.DataFrame, name: str) -> Array:
-    """Return the logarithms of the peaks of a column over those of the recess model, see `log_ratios`."""
-    return log_ratios(column(table, name), column(table, RECESS), _fell(table, name), _fell(table, RECESS))
-
-
-def vertical(tables: Tables) -> Numbers:
-    """Return the change of the peak by the vertical component of El Centro, beside a record 1 % stronger.
-
-    NAME_apart counts the cells whose peak changes by more than the margin, those that overturn by one alone
-    included; NAME_least and NAME_largest are of the others.
-    """
-    table = tables["peaks"]
-    table = table[table["vertical"].notna()]
-    fell = _fell(table, RECESS)
-    numbers: Numbers = {"cells": float(len(table)), "fell": float(fell.sum())}
-    for name in ("vertical", "copy"):
-        theirs, logarithms = _fell(table, name), _changes(table, name)
-        # the ratio is infinite or zero where one model alone overturns, undefined where both do
-        numbers |= {
-            f"{name}_compared": float((~np.isnan(logarithms)).sum()),
-            f"{name}_apart": float((np.abs(logarithms) > math.log1p(MARGIN)).sum()),
-            f"{name}_least": math.exp(least(logarithms)),
-            f"{name}_largest": math.exp(largest(logarithms)),
-            f"{name}_fell": float(theirs.sum()),
-            f"{name}_other": float((theirs != fell).sum()),
-        }
-    return numbers
+def _changes(table: pd.DataFrame, name: str) -> pd.Series[float]:
+    """Logarithms of the peaks of a column over those of the recess model, see `log_ratios`."""
+    peaks, recess = (table[each].to_numpy(dtype=np.float64) for each in (name, RECESS))
+    return pd.Series(log_ratios(peaks, recess, _fell(table, name), _fell(table, RECESS)))
 
 
 def needs(tables: Tables) -> pd.DataFrame:
@@ -259,250 +187,346 @@ def needs(tables: Tables) -> pd.DataFrame:
     )
 
 
-def friction(tables: Tables) -> Numbers:
-    """Return the friction needed over tan(alpha), and where the engine slips with less than needed."""
-    slip = tables["slip"]
-    share = column(slip, "share")
-    # slip is counted at the base; under a slab it shows as a tilt that errs, or as energy that ends the run
-    slipped = (slip[["slip", "tilt_rms"]] > SLIPPED).any(axis="columns") | slip["outcome"].isin(NO_PEAK)
-    slips_at, sticks = largest(share[slipped]), share[~slipped]
-    sticks = sticks[~(sticks <= slips_at)]  # a base that slips at one release does not stick at all
-    nearest = slip[share == slips_at]
-    return {
-        "free_response": largest(quotient(tables["free_response"], "friction", "tan_alpha")),
-        "shaken": largest(quotient(tables["peaks"], "friction", "tan_alpha")),
-        "slips_at": slips_at,
-        "holds_from": least(sticks),
-        "tilt_error": largest(column(nearest, "tilt_rms")),
-        "slip": largest(column(nearest, "slip")),
-    }
+def vertical(tables: Tables) -> pd.DataFrame:
+    """Change of the peak by the vertical component of El Centro, beside a record 1 % stronger.
 
-
-def contact(tables: Tables) -> Numbers:
-    """Return the least normal force [weights], and from which slenderness and intensity contact is lost."""
-    free, moving = tables["free_response"], tables["peaks"].dropna(subset="least_normal")
-    tan_alpha, normal = column(moving, "tan_alpha"), column(moving, "least_normal")
-    in_free = column(free, "least_normal")
-    lost = moving[normal <= 0.0]
-    held, lost_from = limit_of(tan_alpha, normal > 0.0)
-    return {
-        "lost_from": lost_from,
-        "lost_intensity": float(lost["intensity"].min()),
-        "least_held": float(moving["least_normal"][tan_alpha <= held].min()),
-        "least": float(np.concatenate([normal, in_free]).min()),
-        "lost": float(len(lost)),
-        "runs": float(len(moving)),
-        "free_least": float(in_free.min()),
-        "free_lost_from": limit_of(column(free, "tan_alpha"), in_free > 0.0)[1],
-        "shaken_least": least(normal),
-        "free_least_tan_alpha": float(column(free, "tan_alpha")[int(np.nanargmin(in_free))]),
-    }
-
-
-def restraining_moment(tables: Tables) -> Numbers:
-    """Return the restraining moment over weight and base radius."""
-    moving = tables["peaks"].dropna(subset="moment")
-    needed = column(moving, "moment")
-    slight, _ = limit_of(column(moving, "tan_alpha"), needed <= SLIGHT)
-    return {
-        "free_response": largest(column(tables["free_response"], "moment")),
-        "shaken": largest(needed),
-        "slight_up_to": slight,
-    }
-
-
-def tendon(tables: Tables) -> Numbers:
-    """Return the largest tension of a tendon [weights of a column]."""
-    parts = {"free_response": "free_response", "shaken": "peaks"}
-    return {name: largest(column(tables[part], "tension")) for name, part in parts.items()}
-
-
-def free_response(tables: Tables) -> Numbers:
-    """Return the difference of recess and flat ground in a pass, and the releases that an engine decides.
-
-    Without a flat-ground model there is no difference.
+    Returns
+    -------
+    DataFrame
+        A row for vertical, for copy, and for the recess model without either: cells, all; overturned;
+        compared, those that do not overturn twice; apart, those whose peak changes by more than the margin,
+        those that overturn by one alone included; least and largest factor of the others; other, cells that
+        overturn by one alone.
     """
-    table = tables["free_response"]
-    if table["flat_turn"].isna().all():
-        return _confirmations(tables["verification"])
-    off = np.abs(column(table, "flat_turn") - column(table, "turn"))
-    turns = np.abs(quotient(table, "flat_turn", "turn") - 1.0)
-    periods = np.abs(quotient(table, "flat_period", "period") - 1.0)
-    alike, _ = limit_of(column(table, "tan_alpha"), (turns <= ALIKE) & (periods <= ALIKE))
-    worst = table.iloc[int(np.nanargmax(off))]
-    return {
-        "alike_up_to": alike,
-        "turn_largest": largest(turns),
-        "turn_largest_deg": math.degrees(largest(off)),
-        **{f"worst_{name}": float(worst[name]) for name in RELEASE},
-        "period_largest": largest(periods),
-        "peak_gain": max(largest(column(table, "flat_peak")) - 1.0, 0.0),
-        **_confirmations(tables["verification"]),
-    }
+    table = tables["peaks"].dropna(subset="vertical")
+    fell = _fell(table, RECESS)
+    rows = {}
+    for name in ("vertical", "copy"):
+        logarithms = _changes(table, name)
+        rows[name] = {
+            "cells": len(table),
+            "compared": logarithms.count(),
+            "apart": (logarithms.abs() > math.log1p(MARGIN)).sum(),
+            "least": math.exp(least(logarithms)),
+            "largest": math.exp(largest(logarithms)),
+            "other": (_fell(table, name) != fell).sum(),
+            "overturned": _fell(table, name).sum(),
+        }
+    rows[RECESS] = {"cells": len(table), "overturned": fell.sum()}
+    return pd.DataFrame.from_dict(rows, orient="index")
 
 
-def _confirmations(table: pd.DataFrame) -> Numbers:
-    """Count the runs that confirm their model, those that contradict it, and all whose pass is resolved.
+def traces(tables: Tables) -> pd.DataFrame:
+    """Agreement of single traces of the engine with each model.
 
-    One that failed decides nothing: it has said so itself. Where there is one model it is confirmed by what
-    does not contradict it.
+    Returns
+    -------
+    DataFrame
+        A row for each support and reference_support: low and high, least and largest agreement time [s];
+        runs; whole, those that agree to their end; alike, those whose peak is that of the model within 1 %,
+        and worst, the largest relative difference of the peak.
     """
-    decides = table["resolved"].astype(bool) & ~table["outcome"].isin(NO_PEAK)
-    resolved = table.assign(apart=model_difference(table))[decides]
-    error = np.abs(column(resolved, "engine_turn") - column(resolved, "turn"))
-    turn_off = error / np.abs(column(resolved, "turn"))
-    period_off = np.abs(quotient(resolved, "engine_half_period", "half_period") - 1.0)
-    contradicts = ~((turn_off <= _CONTRADICTS) & (period_off <= _CONTRADICTS))
-    apart = column(resolved, "apart")
-    confirms = ~contradicts & (np.isnan(apart) | (error < CONFIRMS * apart))
-    return {
-        "confirmed": float(confirms.sum()),
-        "contradicted": float(contradicts.sum()),
-        "points": float(len(resolved)),
-        "releases": float(len(resolved[list(RELEASE)].drop_duplicates())),
-    }
+    table = tables["following"]
+    off = (table["peak_tilt"] / table["reference_peak_tilt"] - 1.0).abs()
+    table = table.assign(whole=~table["diverged"].astype(bool), off=off, alike=off <= ALIKE)
+    return table.groupby(["support", "reference_support"], as_index=False).agg(
+        low=("agreement_time", "min"),
+        high=("agreement_time", "max"),
+        runs=("whole", "size"),
+        whole=("whole", "sum"),
+        alike=("alike", "sum"),
+        worst=("off", "max"),
+    )
 
 
-def model_difference(table: pd.DataFrame) -> Array:
+def early(tables: Tables) -> int:
+    """Number of traces that diverge earlier than predicted."""
+    table = tables["following"]
+    before = table["agreement_time"] * IN_TIME < table["predicted_agreement_time"]
+    return int((table["diverged"].astype(bool) & before).sum())
+
+
+def model_difference(table: pd.DataFrame) -> pd.Series[float]:
     """Difference of the angles of turn of the recess and flat models in the release of each row.
 
     NaN where there is one of them alone.
     """
     turns = table.groupby(list(RELEASE))["turn"]
-    apart = turns.transform(lambda each: np.ptp(each.to_numpy())).to_numpy(dtype=np.float64)
-    return np.where(turns.transform("size") > 1, apart, math.nan)
+    apart = turns.transform("max") - turns.transform("min")
+    return apart.where(turns.transform("size") > 1)
 
 
-def traces(tables: Tables) -> Numbers:
-    """Return agreement times [s] of engine and model, and the count that diverge earlier than predicted.
+def _confirmations(table: pd.DataFrame) -> dict[str, int]:
+    """Runs whose pass is resolved, their releases, and those that confirm and that contradict their model.
 
-    NAME and NAME_longest: the shortest and the longest; NAME_whole, runs that agree to their end.
+    One that failed decides nothing: it has said so itself. Where there is one model it is confirmed by what
+    does not contradict it.
     """
-    table = tables["following"]
-    numbers: Numbers = {"duration": largest(column(table, "duration")), "comparisons": float(len(table))}
-    compared = {RECESS: (RECESS, RECESS), FLAT: (FLAT, RECESS), "own": (FLAT, FLAT)}
-    for name, (support, reference) in compared.items():
-        own = table[(table["support"] == support) & (table["reference_support"] == reference)]
-        off = np.abs(quotient(own, "peak_tilt", "reference_peak_tilt") - 1.0)
-        numbers |= {
-            name: least(column(own, "agreement_time")),
-            f"{name}_longest": largest(column(own, "agreement_time")),
-            f"{name}_runs": float(len(own)),
-            f"{name}_whole": float((~own["diverged"].to_numpy(dtype=bool)).sum()),
-            f"{name}_peak_alike": float((off <= ALIKE).sum()),
-            f"{name}_peak_worst": largest(off),
-        }
-    early = column(table, "agreement_time") * IN_TIME < column(table, "predicted_agreement_time")
-    return numbers | {"early": float((table["diverged"].to_numpy(dtype=bool) & early).sum())}
-
-
-def rings(tables: Tables) -> Numbers:
-    """Return the effects of a ring: peaks as ratios, place [b], twist [rad], energy where it is touched."""
-    table = tables["rings"]
-    ring = table[table["support"].map({name: support.walls for name, support in SUPPORTS.items()})]
-    touched, shaken = ring[ring["contact_time"] > 0.0], ring[ring["motion"] != FREE]
-    by_support = dict(list(table[table["motion"] != FREE].groupby("support")))
-    numbers: Numbers = {
-        "touched": float(len(touched)),
-        "runs": float(len(ring)),
-        "failed": float(table["outcome"].isin(NO_PEAK).sum()),
-        "loss_worst": largest(column(touched, "loss")),
-        "rolled": largest(column(shaken, "rolled_out")),
-        "flat_rolled": largest(column(by_support[FLAT], "rolled_out")),
-        "twist": largest(np.abs(column(shaken, "twist"))),
-        "free_twist": largest(np.abs(column(ring[ring["motion"] == FREE], "twist"))),
-    }
-    for support in (each for each in RECESSES_FIRST if each in by_support):  # stored tables know no new one
-        ratio = quotient(by_support[support])
-        numbers |= {f"{support}_least": least(ratio), f"{support}_largest": largest(ratio)}
-    halved = np.abs(quotient(shaken, "halved_peak", "peak") - 1.0)
-    best = shaken.groupby("clearance")["at_end"].max()
-    # the one whose peak is farthest from that of the recess model; walls of inclination 0 lean by alpha
-    known = shaken[shaken["outcome"] != "failed"]
-    with np.errstate(divide="ignore"):
-        far = int(np.nanargmax(np.abs(np.log(quotient(known)))))
-    names = ("tan_alpha", "turn", "clearance", "inclination", "friction")
-    numbers |= {f"worst_{name}": float(known[name].iloc[far]) for name in names}
-    numbers["worst_inclination"] = numbers["worst_inclination"] or math.nan
-    numbers["worst_ratio"] = float(quotient(known)[far])
-    return numbers | {
-        "halved_alike": float((halved <= SMALL).sum()),
-        "halved_known": float(np.isfinite(halved).sum()),
-        "halved_worst": largest(halved),
-        "tightest": float(str(best.idxmin())) if len(best) else math.nan,
-        "tightest_at_end": float(best.min()),
+    known = table.assign(apart=model_difference(table))
+    known = known[table["resolved"].astype(bool) & ~table["outcome"].isin(NO_PEAK)]
+    error = (known["engine_turn"] - known["turn"]).abs()
+    period_off = (known["engine_half_period"] / known["half_period"] - 1.0).abs()
+    agrees = (error / known["turn"].abs() <= _CONTRADICTS) & (period_off <= _CONTRADICTS)
+    nearer = known["apart"].isna() | (error < CONFIRMS * known["apart"])
+    return {
+        "runs": int((agrees & nearer).sum()),
+        "runs_all": len(known),
+        "count": len(known[list(RELEASE)].drop_duplicates()),
+        "runs_contradicted": int((~agrees).sum()),
     }
 
 
-def _soft_contacts(tables: Tables) -> pd.DataFrame:
-    """The runs with other contact settings: failed, ratio of the peaks, loss; NaN where one failed."""
+def soft_contacts(tables: Tables) -> pd.DataFrame:
+    """Runs with other contact settings: failed, ratio of the peaks, loss; NaN where one failed."""
     table = tables["contact"]
     failed = table[["free_outcome", "outcome"]].isin(NO_PEAK).any(axis="columns")
-    known = table.assign(ratio=quotient(table))[["ratio", "loss"]].mask(failed)
+    known = table.assign(ratio=table["peak"] / table["recess_peak"])[["ratio", "loss"]].mask(failed)
     return table.assign(failed=failed, **known)
 
 
-def soft_contact(tables: Tables) -> Numbers:
-    """Return the largest softness of contact (time constant times p) that does not change the peak."""
-    table = _soft_contacts(tables)
-    known = table[~table["failed"]]
-    # one contact is one point, though its softness differs by slenderness in the third digit
-    softness, constant = column(known, "softness"), column(known, "time_constant")
-    off = np.abs(column(known, "ratio") - 1.0)
-    held, left = limit_of(constant, off <= SMALL)
-    within = constant <= held  # none where it is NaN
-    stiff = table[column(table, "time_constant") <= held]
-    failed = stiff[stiff["failed"]]
-    return {
-        "held_runs": float(len(stiff)),
-        "held_ended": float(len(stiff) - len(failed)),
-        "failed_up_to": largest(column(failed, "softness")),
-        "failed_damping_least": least(column(failed, "damping")),
-        "failed_damping_largest": largest(column(failed, "damping")),
-        "held_up_to": least(softness[constant == held]),
-        "left_from": least(softness[constant == left]),
-        "held_peak": largest(off[within]),
-        "held_loss": max(largest(column(known, "loss")[within]), 0.0),
-        "failed": float(table["failed"].sum()),
-        "points": float(len(table)),
-    }
-
-
 def damping(tables: Tables) -> pd.DataFrame:
-    """Return the least and largest ratio of the peak, and the largest loss, by the damping of contact."""
-    return (
-        _soft_contacts(tables)
-        .groupby("damping", as_index=False)
-        .agg(
-            points=("failed", "size"),
-            failed=("failed", "sum"),
-            least=("ratio", "min"),
-            largest=("ratio", "max"),
-            loss=("loss", "max"),
-        )
+    """Least and largest ratio of the peak, and the largest loss, by the damping of contact."""
+    by_damping = soft_contacts(tables).groupby("damping", as_index=False)
+    return by_damping.agg(
+        points=("failed", "size"),
+        failed=("failed", "sum"),
+        least=("ratio", "min"),
+        largest=("ratio", "max"),
+        loss=("loss", "max"),
     )
 
 
-# every limit, by the name of its function
-LIMITS: Mapping[str, Callable[[Tables], Numbers]] = {
-    limit.__name__: limit
-    for limit in (
-        *(records, traces, free_response, friction, contact),
-        *(restraining_moment, tendon, rings, soft_contact, vertical),
-    )
-}
+def limits_of(tables: Tables, structure: Structure) -> pd.DataFrame:
+    """Every number of the findings, of `vertical` and of `traces`: limit, number, value."""
+    models = traces(tables)
+    models.index = models.pop("support") + "_" + models.pop("reference_support")
+    numbers: dict[str, Mapping[Any, Any]] = {
+        **{each.key: each.values for each in findings_of(tables, structure)},  # noqa: PD011
+        **{f"vertical.{name}": row for name, row in vertical(tables).to_dict("index").items()},
+        **{f"traces.{name}": row for name, row in models.to_dict("index").items()},
+    }
+    rows = [(limit, name, value) for limit, values in numbers.items() for name, value in values.items()]
+    return pd.DataFrame(rows, columns=["limit", "number", "value"]).astype({"value": float})
 
 
-def limits_of(tables: Tables) -> dict[str, Numbers]:
-    """Return the numbers of all limits by name.
+def findings_of(tables: Tables, structure: Structure) -> Findings:
+    """Findings by group: limit_scope, limit_model, limit_requirement and so on.
 
     Parameters
     ----------
     tables : mapping of DataFrame
-        Of each part by its name, as `measure_all` returns them: without rings there is no limit of them, nor
-        of a tendon without one.
+        Of each part by its name, as `measure_all` returns them: without rings there is no finding of them,
+        nor of a tendon without one.
+    structure : Structure
     """
-    lacking = {rings.__name__} - set(tables)
-    if "tension" not in tables["peaks"]:
-        lacking.add(tendon.__name__)
-    return {name: limit(tables) for name, limit in LIMITS.items() if name not in lacking}
+    table = contrasts(tables)
+    groups = [_scope(structure), _model(tables, table), _requirements(tables), _records(tables, table)]
+    groups += [_releases(tables), _forces(tables, structure), _rings(tables)]
+    return Findings(each for group in groups for each in group)
+
+
+def _scope(structure: Structure) -> Iterator[Finding]:
+    if structure.slab_mass_ratio:
+        yield Finding(key="limit_scope.slab", values={"ratio": structure.slab_mass_ratio})
+    if tendon := structure.tendon:
+        given = {"given": tendon.prestress, "given_stiffness": tendon.stiffness, "factor": structure.uplift}
+        yield Finding(key="limit_scope.tendon", values=given)
+
+
+def _model(tables: Tables, table: pd.DataFrame) -> Iterator[Finding]:
+    """Verdict on the reduced model in an ideal recess, by an engine in one.
+
+    It is contradicted where one release is that of another motion, or where the median ratio of the peaks at
+    one point is known to be beyond the margin; established where the median is known to be within the margin
+    at some point, and beyond it at none.
+    """
+    members, points = int(table["count"].max()), len(table[POINT].drop_duplicates())
+    decided = _confirmations(tables["verification"])
+    verdicts = table.loc[table["method"] == RECESS, "verdict"]
+    within, beyond = (int((verdicts == each).sum()) for each in ("within", "beyond"))
+    if contradicted := decided["runs_contradicted"] or beyond:
+        runs = {"runs": decided["runs_contradicted"] or math.nan, "runs_all": decided["runs_all"]}
+        counts = {"count": beyond or math.nan, "count_all": points}
+        yield Finding(key="limit_model.contradicted", level="not satisfied", values={**runs, **counts})
+    else:
+        lowest, highest = _ends(table, RECESS)
+        key = "established" if within else "undecided"
+        level: Level = "satisfied" if within else "not tested"
+        counts = {"count": within, "count_all": points, "share": MARGIN}
+        ends = {"runs": members, "ratio_least": lowest, "ratio_largest": highest}
+        yield Finding(key=f"limit_model.{key}", level=level, values={**ends, **counts})
+    bands: dict[str, str] = {**dict(zip(RECESSES_FIRST, RECESSES_FIRST, strict=True)), "copy": PERTURBED}
+    strays = {
+        f"ratio_{name}_{end}": value
+        for name, method in bands.items()
+        for end, value in zip(("least", "largest"), _ends(table, method, "ratio_95"), strict=True)
+    }
+    if not contradicted and not all(map(math.isnan, strays.values())):
+        yield Finding(key="limit_model.strays", level="caution", values={**strays, "runs": members})
+        if not np.isfinite(table.loc[table["against"] == RECESS.model, "ratio_95_high"]).any():
+            yield Finding(key="limit_model.unbounded", level="caution")
+    # False without such recesses, and of too few records to know
+    if strays[f"ratio_{RING}_largest"] > 1.0:
+        yield Finding(key="limit_clearance.unconservative", level="caution")
+
+
+def _requirements(tables: Tables) -> Iterator[Finding]:
+    peaks = tables["peaks"]
+    moving = peaks.dropna(subset="least_normal")
+    friction = {"ratio": largest(peaks["friction"] / peaks["tan_alpha"])}
+    yield Finding(key="limit_requirement.friction", values=friction)
+    normal, tan_alpha = moving["least_normal"], moving["tan_alpha"]
+    kept, lost_from = limit_of(tan_alpha, normal > 0.0)
+    values = {"runs": len(moving), "bound": float(normal[tan_alpha <= kept].min())}
+    if lost := int((normal <= 0.0).sum()):
+        weakest = float(moving.loc[normal <= 0.0, "intensity"].min())
+        values |= {"runs_lost": lost, "ratio": lost_from, "factor": weakest}
+    key = "contact_lost" if lost else "contact"
+    yield Finding(key=f"limit_requirement.{key}", values=values)
+    yield Finding(key="limit_requirement.recess", values={"ratio": largest(peaks["moment"])})
+    if "tension" in peaks:
+        yield Finding(key="limit_requirement.tendon", values={"ratio": largest(peaks["tension"])})
+    yield _stiffness(soft_contacts(tables))
+    yield Finding(key="limit_requirement.question")
+
+
+def _stiffness(table: pd.DataFrame) -> Finding:
+    """Finding on the largest softness of contact (time constant times p) that does not change the peak."""
+    known = table[~table["failed"]]
+    off = (known["ratio"] - 1.0).abs()
+    # one contact is one point, though its softness differs by slenderness in the third digit
+    held, _ = limit_of(known["time_constant"], off <= SMALL)
+    stiff = table[table["time_constant"] <= held]  # none where it is NaN
+    failed = stiff[stiff["failed"]]
+    values = {
+        "bound": least(known.loc[known["time_constant"] == held, "softness"]),
+        "share": largest(off[known["time_constant"] <= held]),
+        "runs": len(stiff),
+        "runs_ended": len(stiff) - len(failed),
+        "ratio": largest(failed["softness"]),
+        "given_least": least(failed["damping"]),
+        "given_largest": largest(failed["damping"]),
+    }
+    return Finding(key="limit_requirement.stiffness", values=values)
+
+
+def _records(tables: Tables, table: pd.DataFrame) -> Iterator[Finding]:
+    runs = tables["records"]
+    tails = _ends(table, HALVED, "ratio_95")
+    if math.isfinite(tails[0]):
+        # nine in ten have the same peak at half the step
+        low = _ends(table, HALVED, "ratio_05")[0]
+        converged = low >= 1.0 / (1.0 + MARGIN) and tails[1] <= 1.0 + MARGIN
+        names = ("ratio_least", "ratio_largest", "ratio_95_least", "ratio_95_largest")
+        key = "converged" if converged else "not_converged"
+        level: Level = "note" if converged else "caution"
+        values = dict(zip(names, (*_ends(table, HALVED), *tails), strict=True))
+        yield Finding(key=f"limit_records.{key}", level=level, values=values)
+    ring = runs["method"] == RING
+    if ring.any():
+        standing = runs.loc[ring & (runs["outcome"] == "stands"), "peak"]
+        if passed := int((standing >= 1.0).sum()):
+            values = {"runs": passed, "runs_all": len(standing), "peak": largest(standing)}
+            yield Finding(key="limit_records.beyond_alpha", level="caution", values=values)
+        touched = runs[(runs["method"] != HALVED) & (runs["contact_time"] > 0.0)]
+        values = {"runs": len(touched), "share": largest(touched["loss"])}
+        yield Finding(key="limit_records.touched", values=values)
+    if failed := int(runs["outcome"].isin(NO_PEAK).sum()):
+        undecided = int((runs["outcome"] == "undecided").sum())
+        values = {"runs": len(runs), "count": failed - undecided, "count_undecided": undecided}
+        yield Finding(key="limit_records.left_out", values=values)
+
+
+def _releases(tables: Tables) -> Iterator[Finding]:
+    table, engine = tables["free_response"], _confirmations(tables["verification"])
+    values = {**engine, "runs_contradicted": engine["runs_contradicted"] or math.nan}
+    if table["flat_turn"].isna().all():
+        yield Finding(key="limit_release.confirmed", values=values)
+        return
+    off = (table["flat_turn"] - table["turn"]).abs()
+    turns = (table["flat_turn"] / table["turn"] - 1.0).abs()
+    periods = (table["flat_period"] / table["period"] - 1.0).abs()
+    alike, _ = limit_of(table["tan_alpha"], (turns <= ALIKE) & (periods <= ALIKE))
+    yield Finding(key="limit_release.alike", values={"ratio": alike})
+    worst = table.iloc[int(np.nanargmax(off))]
+    differences = {
+        "share_period": largest(periods),
+        "share_peak": max(largest(table["flat_peak"]) - 1.0, 0.0),
+        "share_turn": largest(turns),
+        "bound": math.degrees(largest(off)),
+        "ratio": float(worst["tan_alpha"]),
+        "peak": float(worst["release"]),
+        "factor": float(worst["spin"]),
+    }
+    yield Finding(key="limit_release.off", values=differences)
+    unsure = engine["runs_all"] - engine["runs"] - engine["runs_contradicted"]
+    yield Finding(key="limit_release.decided", values={**values, "runs_open": unsure or math.nan})
+
+
+def _forces(tables: Tables, structure: Structure) -> Iterator[Finding]:
+    free, peaks, slip = (tables[name] for name in ("free_response", "peaks", "slip"))
+    needed = {"ratio": largest(free["friction"] / free["tan_alpha"])}
+    yield Finding(key="limit_force.friction", values=needed)
+    # slip is counted at the base; under a slab it shows as a tilt that errs, or as energy that ends the run
+    slipped = (slip[["slip", "tilt_rms"]] > SLIPPED).any(axis="columns") | slip["outcome"].isin(NO_PEAK)
+    slips_at, sticks = largest(slip.loc[slipped, "share"]), slip.loc[~slipped, "share"]
+    # a base that slips at one release does not stick at all
+    values = {"share": slips_at, "bound": least(sticks[~(sticks <= slips_at)])}
+    if not structure.slab_mass_ratio:  # where slip at the base is not all
+        nearest = slip[slip["share"] == slips_at]
+        values |= {"ratio": largest(nearest["slip"]), "share_tilt": largest(nearest["tilt_rms"])}
+    yield Finding(key="limit_force.slip", values=values)
+    normal = free["least_normal"]
+    values = {
+        "bound": least(peaks["least_normal"]),
+        "bound_free": float(normal.min()),
+        "ratio": float(free["tan_alpha"].iloc[int(np.nanargmin(normal))]),
+        "ratio_lost": limit_of(free["tan_alpha"], normal > 0.0)[1],
+    }
+    yield Finding(key="limit_force.normal", values=values)
+    moving = peaks.dropna(subset="moment")
+    slight, _ = limit_of(moving["tan_alpha"], moving["moment"] <= SLIGHT)
+    yield Finding(key="limit_force.moment", values={"ratio": slight})
+
+
+def _rings(tables: Tables) -> Iterator[Finding]:
+    if "rings" not in tables:
+        return
+    table = tables["rings"]
+    ring = table[has_walls(table)]
+    free, touched = ring["motion"] == FREE, ring[ring["contact_time"] > 0.0]
+    shaken = ring[~free]
+    at_end = shaken.groupby("clearance")["at_end"].max()
+    values = {
+        "ratio": float(str(at_end.idxmin())) if len(at_end) else math.nan,
+        "ratio_end": float(at_end.min()),
+        "bound": largest(shaken["twist"].abs()),
+        "bound_free": largest(ring.loc[free, "twist"].abs()),
+    }
+    yield Finding(key="limit_ring.place", values=values)
+    values = {"runs": len(touched), "runs_all": len(ring), "share": largest(touched["loss"])}
+    yield Finding(key="limit_ring.touched", values=values)
+    # the one whose peak is farthest from that of the recess model
+    known = shaken[shaken["outcome"] != "failed"]
+    ratio = known["peak"] / known["recess_peak"]
+    with np.errstate(divide="ignore"):
+        far = int(np.nanargmax(np.abs(np.log(ratio))))
+    names = ("tan_alpha", "turn", "clearance", "inclination", "friction")
+    values = {"ratio": float(ratio.iloc[far])} | {
+        f"given_{name}": float(known[name].iloc[far]) for name in names
+    }
+    values["given_inclination"] = values["given_inclination"] or math.nan  # 0: they lean by alpha
+    yield Finding(key="limit_ring.worst", values=values)
+    halved = (shaken["halved_peak"] / shaken["peak"] - 1.0).abs()
+    values = {
+        "runs": int((halved <= SMALL).sum()),
+        "runs_all": int(np.isfinite(halved).sum()),
+        "share": largest(halved),
+        "count": int(table["outcome"].isin(NO_PEAK).sum()) or math.nan,
+    }
+    yield Finding(key="limit_ring.halved", values=values)
+
+
+def has_walls(table: pd.DataFrame) -> pd.Series[bool]:
+    """Mask of the runs whose support has walls."""
+    return table["support"].map({name: support.walls for name, support in SUPPORTS.items()})

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -15,58 +13,39 @@ from rockwobble.models import (
     GroundMotion,
     InitialState,
     RockingBody,
-    Tendon,
-    Trace,
     WobblingFrame,
     el_centro_1940,
     p695_far_field,
     synthetic_motions,
 )
 from rockwobble.models.records.p695 import missing_packages
-from rockwobble.models.support import MODELLED, Support
-from rockwobble.multibody import DEFAULT_ENGINE
+from rockwobble.models.support import RING
 from rockwobble.multibody.ring import RingSettings
 
-from ..plans import tendon_of
+from ..plans import TendonPlan
 
-# arguments of `Part.measure` by name: numbers, text, tuples of them and a `Structure`
-Inputs = Mapping[str, object]
-Row = dict[str, float | str | bool]
 # coordinates of a point, by name
 RELEASE = ("tan_alpha", "release", "spin")
 POINT = ("tan_alpha", "semidiagonal", "intensity")
-
-
-def inputs_at(names: Sequence[str], points: Iterable[tuple[float, ...]], **more: object) -> list[Inputs]:
-    """Return the inputs of tasks at points whose numbers have these names; `more` is the same in all."""
-    return [dict(zip(names, point, strict=True)) | more for point in points]
-
-
-def grid(**axes: Iterable[object]) -> list[Inputs]:
-    """Return the inputs of tasks at all combinations of values, the last name the fastest."""
-    return [dict(zip(axes, point, strict=True)) for point in itertools.product(*axes.values())]
+# motions and methods of tables
+FREE, EL_CENTRO = "free response", "El Centro 1940"
+PERTURBED = "perturbed copy"
+HALVED = f"{RING}, half the step"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Structure:
+class Structure(TendonPlan):
     """Slab and tendon of a column.
 
     Attributes
     ----------
+    tendon_prestress, tendon_stiffness : float
+        Prestress and stiffness of a tendon, see `Tendon`; both 0 are none.
     slab_mass_ratio : float
         Mass of a slab that only translates over that of the column under it; 0 is a cylinder alone.
-    tendon_prestress, tendon_stiffness : float
-        Tendon prestress and tendon stiffness of a tendon, see `Tendon`; both 0 are none.
     """
 
     slab_mass_ratio: float = 0.0
-    tendon_prestress: float = 0.0
-    tendon_stiffness: float = 0.0
-
-    @property
-    def tendon(self) -> Tendon | None:
-        """The tendon; None where it does not pull."""
-        return tendon_of(self.tendon_prestress, self.tendon_stiffness)
 
     @property
     def uplift(self) -> float:
@@ -74,45 +53,12 @@ class Structure:
         return 1.0 if self.tendon is None else self.tendon.uplift_factor(self.column(REFERENCE_SIZE, 1.0))
 
     def column(self, semidiagonal: float, tan_alpha: float) -> RockingBody:
-        """Return a cylinder alone, or the frame of one column under the slab."""
+        """Cylinder alone, or the frame of one column under the slab."""
         cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
         return WobblingFrame(cylinder, self.slab_mass_ratio, columns=1) if self.slab_mass_ratio else cylinder
 
 
 ALONE = Structure()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Part:
-    """One set of measurements.
-
-    Attributes
-    ----------
-    name : str
-        Name of its table.
-    tasks : callable
-        Returns the inputs of each task of an extent.
-    measure : callable
-        Returns the rows of one task; depends on nothing but its inputs.
-    keys : tuple of str
-        Inputs that are the first columns of every row.
-    cost : callable
-        Rough computing time of a task [s], of the same inputs.
-    engine : str, optional
-        The engine that it runs; empty where it runs the reduced models alone.
-    walls : bool, optional
-        Whether it is about a support with walls, which takes no slab.
-    """
-
-    name: str
-    tasks: Callable[[Extent], Iterable[Inputs]]
-    measure: Callable[..., list[Row]]
-    keys: tuple[str, ...]
-    cost: Callable[..., float]
-    engine: str = DEFAULT_ENGINE
-    walls: bool = False
-
-
 _RING = RingSettings(ring_inclination=0.0)
 
 
@@ -195,7 +141,7 @@ class Extent:
     structure: Structure = ALONE
 
     def of(self, structure: Structure) -> Extent:
-        """Return the extent for a structure: a tendon raises the intensities as it raises that of uplift.
+        """Extent for a structure: a tendon raises the intensities as it raises that of uplift.
 
         Raises
         ------
@@ -206,7 +152,7 @@ class Extent:
 
         def raised(points: tuple[tuple[float, float, float], ...]) -> tuple[tuple[float, float, float], ...]:
             strong = [(tan_alpha, size, _digits(factor * level)) for tan_alpha, size, level in points]
-            return tuple(point for point in strong if factor == 1.0 or point[0] * point[2] <= LARGEST_PEAK)
+            return tuple(point for point in strong if point[0] * point[2] <= LARGEST_PEAK)
 
         records, traces = raised(self.record_points), raised(self.trace_points)
         if not (records and traces):
@@ -214,17 +160,14 @@ class Extent:
                 f"a tendon must leave shaking of {LARGEST_PEAK:g} g something to rock, got one that raises "
                 f"uplift to {factor:.3g} g tan alpha"
             )
+        levels = tuple(_digits(factor * level) for level in self.intensities)
         return replace(
-            self,
-            structure=structure,
-            intensities=tuple(_digits(factor * level) for level in self.intensities),
-            record_points=records,
-            trace_points=traces,
+            self, structure=structure, intensities=levels, record_points=records, trace_points=traces
         )
 
 
 def _digits(value: float) -> float:
-    """Return a number that tables can show."""
+    """Number that tables can show."""
     return float(f"{value:.3g}")
 
 
@@ -295,7 +238,6 @@ FULL = Extent(
 )
 
 
-EL_CENTRO = "El Centro 1940"
 REFERENCE_SIZE = 6.0  # [m] of free responses: they scale with size (Froude)
 GRAVITY = 9.81
 AMPLE = 3.0  # friction, so that a squat cylinder uplifts and does not slip
@@ -303,9 +245,9 @@ _SYNTHETIC_SEED = 1940
 
 
 def release_case(
-    tan_alpha: float, release: float, spin: float, periods: float = 1.0, *, structure: Structure = ALONE
+    tan_alpha: float, release: float, spin: float, periods: float = 1.0, *, structure: Structure
 ) -> Case:
-    """Return a free response.
+    """Free response.
 
     Parameters
     ----------
@@ -316,7 +258,7 @@ def release_case(
         Rolling rate over that of steady wobble at the tilt; below 1 the release is a tilt maximum.
     periods : float, optional
         Length, in times from tilt maximum to next maximum of the recess model.
-    structure : Structure, optional
+    structure : Structure
     """
     cylinder, tendon = structure.column(REFERENCE_SIZE, tan_alpha), structure.tendon
     tilt = release * cylinder.alpha
@@ -324,35 +266,6 @@ def release_case(
     initial = InitialState(tilt=tilt, rolling_rate=spin * steady)
     period = reduced.free_response(cylinder, initial, tendon=tendon).period
     return Case(cylinder, initial=initial, duration=periods * period, tendon=tendon)
-
-
-def modelled(structure: Structure) -> tuple[Support, ...]:
-    """Return the supports of which there is a reduced model of a structure."""
-    return tuple(each for each in MODELLED if structure.tendon is None or each.guided)
-
-
-def record_names(members: int) -> list[str]:
-    """Return the names of an ensemble's motions: records where they are installed, else synthetic ones."""
-    kind = "synthetic" if missing_packages() else "record"
-    return [f"{kind} {number}" for number in range(1, members + 1)]
-
-
-def source_of(names: Iterable[str]) -> str:
-    """Return the source of the motions of an ensemble, in words."""
-    kinds = {name.rsplit(" ", 1)[0] for name in names}
-    return "FEMA P-695 far-field records" if kinds == {"record"} else "synthetic records"
-
-
-@cache
-def motion_named(name: str) -> GroundMotion:
-    """Return a motion: El Centro with its vertical component, "record n" or "synthetic n" without one."""
-    if name == EL_CENTRO:
-        return el_centro_1940(vertical=True)
-    kind, number = name.rsplit(" ", 1)
-    if kind == "record" and not missing_packages():
-        return p695_far_field(int(number))
-    # each with a seed of its own: a larger ensemble begins with a smaller one
-    return synthetic_motions(2, peak=1.0, seed=_SYNTHETIC_SEED + int(number))[0]
 
 
 def shaken_case(
@@ -366,41 +279,44 @@ def shaken_case(
     turn: float = 0.0,
     structure: Structure = ALONE,
 ) -> Case:
-    """Return a cylinder or frame at rest under a motion by name.
+    """Cylinder or frame at rest under a motion by name.
 
     Its peak resultant is `intensity` times g tan(alpha), and it is turned by an azimuth [rad].
     """
-    whole = motion_named(name)
-    motion = whole if vertical else GroundMotion(whole.acceleration[:, :2], whole.time_step, whole.name)
+    motion = motion_named(name)
+    if not vertical:
+        motion = GroundMotion(motion.acceleration[:, :2], motion.time_step, motion.name)
     motion = motion.scaled(intensity * GRAVITY * tan_alpha / motion.peak)
-    cylinder = structure.column(semidiagonal, tan_alpha)
     length = motion.duration if duration is None else min(duration, motion.duration)
     label = f"{name}, tan α {tan_alpha:g}, R {semidiagonal:g} m, {intensity:g} g tan α"
-    case = Case(cylinder, motion, duration=length, friction=AMPLE, tendon=structure.tendon, name=label)
-    return replace(case, motion=motion.rotated(turn)) if turn else case
+    return Case(
+        structure.column(semidiagonal, tan_alpha),
+        motion.rotated(turn) if turn else motion,
+        duration=length,
+        friction=AMPLE,
+        tendon=structure.tendon,
+        name=label,
+    )
 
 
-def needs_of(trace: Trace) -> dict[str, float]:
-    """Return the needs of the recess model of ground and recess in a run.
-
-    friction, least_normal [weights], moment, the restraining moment over weight and base radius; NaN where it
-    does not move or overturns. In a frame of base or top, whichever asks for more, over the weight that it
-    carries. With a tendon tension, its largest over the weight of a column.
-    """
-    needs = trace.assumptions
-    names = ("friction", "least_normal", "moment", *(() if trace.case.tendon is None else ("tension",)))
-    if needs is None or trace.outcome != "stands" or not trace.peak_tilt > 0.0:
-        return dict.fromkeys(names, math.nan)
-    found = {
-        "friction": needs.largest_friction_needed,
-        "least_normal": needs.least_normal_force,
-        "moment": needs.largest_restraining_moment / trace.case.cylinder.base_radius,
-        "tension": trace.peak_tendon_force,
-    }
-    return {name: found[name] for name in names}
+def record_names(members: int) -> list[str]:
+    """Names of an ensemble's motions: records where they are installed, else synthetic ones."""
+    kind = "synthetic" if missing_packages() else "record"
+    return [f"{kind} {number}" for number in range(1, members + 1)]
 
 
-def loss_of(trace: Trace) -> float:
-    """Return the energy that contact took over the largest that was reached; NaN where nothing moved."""
-    largest = float(trace.energy.max())
-    return -float(trace.energy_error[-1]) / largest if largest > 0.0 else math.nan
+def source_of(name: str) -> str:
+    """Source of the motions of which one has this name, in words."""
+    return "FEMA P-695 far-field records" if name.startswith("record") else "synthetic records"
+
+
+@cache
+def motion_named(name: str) -> GroundMotion:
+    """Motion: El Centro with its vertical component, "record n" or "synthetic n" without one."""
+    if name == EL_CENTRO:
+        return el_centro_1940(vertical=True)
+    kind, number = name.rsplit(" ", 1)
+    if kind == "record" and not missing_packages():
+        return p695_far_field(int(number))
+    # each with a seed of its own: a larger ensemble begins with a smaller one
+    return synthetic_motions(2, peak=1.0, seed=_SYNTHETIC_SEED + int(number))[0]

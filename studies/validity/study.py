@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
+from functools import cache
 from pathlib import Path
 from typing import ClassVar
 
@@ -21,46 +21,23 @@ from rockwobble.compare.storage.provenance import (
 from rockwobble.compare.storage.results import Results
 from rockwobble.models.finding import Findings
 from rockwobble.models.support import RECESSES_FIRST
+from rockwobble.multibody import DEFAULT_ENGINE
 
 from ..plans import ValidityPlan
 from ..study import Study
-from .findings import findings_of
-from .limits import limits_of, records
-from .measurements import (
-    CONTACT,
-    FOLLOWING,
-    FREE_RESPONSE,
-    PEAKS,
-    RECORDS,
-    RINGS,
-    SLIP,
-    VERIFICATION,
-)
-from .plan import (
-    ALONE,
-    FULL,
-    QUICK,
-    Extent,
-    Inputs,
-    Part,
-    Structure,
-    motion_named,
-    record_names,
-    release_case,
-    shaken_case,
-    source_of,
-)
+from . import measurements
+from . import plan as problems
+from .limits import contrasts, findings_of, limits_of
+from .measurements import PARTS, Task, tasks_of
+from .plan import FULL, QUICK, Extent, Structure, record_names, source_of
 
-PARTS: Mapping[str, Part] = {
-    part.name: part for part in (FREE_RESPONSE, VERIFICATION, PEAKS, SLIP, RINGS, CONTACT, FOLLOWING, RECORDS)
-}
 KIND = "validity"
-Task = tuple[str, Inputs]  # name of a part, and what is measured
+# of the contrasts over the points: column and end
 _ENDS = {
-    "least": "least median",
-    "largest": "largest median",
-    "95_least": "least of what 95 % of the records do not exceed",
-    "95_largest": "largest of what 95 % of the records do not exceed",
+    "least median": ("ratio", "min"),
+    "largest median": ("ratio", "max"),
+    "least of what 95 % of the records do not exceed": ("ratio_95", "min"),
+    "largest of what 95 % of the records do not exceed": ("ratio_95", "max"),
 }
 
 
@@ -71,8 +48,8 @@ class Validity(Results, kind=KIND):
     Attributes
     ----------
     free_response, verification, ... : DataFrame
-        What each of `PARTS` measured; every table ends with slab_mass_ratio, tendon_prestress and
-        tendon_stiffness, where they are not 0.
+        What each of `PARTS` measured; every table ends with tendon_prestress, tendon_stiffness and
+        slab_mass_ratio, where they are not 0.
     limits : DataFrame
         Every number of every limit, see `limits_of`: limit, number, value.
 
@@ -87,16 +64,16 @@ class Validity(Results, kind=KIND):
 
     def findings(self) -> Findings:
         """Findings of the limits."""
-        return findings_of(limits_of(self.tables), self.structure)
+        return findings_of(self.tables, self.structure)
 
     def headline(self) -> dict[str, Number]:
-        """Return the ratios of the peaks of the engine to those of the model, over the records."""
-        numbers = records(self.tables)
+        """Ratios of the peaks of the engine to those of the model, over the records."""
+        by_method = dict(iter(contrasts(self.tables).groupby("method")))
         return {
-            f"peak {support.place} over that of the model, {what}": numbers[f"{support}_{end}"]
+            f"peak {support.place} over that of the model, {what}": float(by_method[support][name].agg(end))
             for support in RECESSES_FIRST
-            for end, what in _ENDS.items()
-            if f"{support}_{end}" in numbers  # no recess with clearance takes a slab
+            for what, (name, end) in _ENDS.items()
+            if support in by_method  # no recess with clearance takes a slab
         }
 
     def _main_facts(self) -> dict[str, str]:
@@ -145,13 +122,7 @@ def measure_all(
     IncompleteError
         If a process ended in a task; what was finished is kept.
     """
-    structure = extent.structure
-    own = {} if structure == ALONE else {"structure": structure}
-    parts = {name: part for name, part in PARTS.items() if not (structure.slab_mass_ratio and part.walls)}
-    tasks: list[Task] = [
-        (name, {**inputs, **own}) for name, part in parts.items() for inputs in part.tasks(extent)
-    ]
-    return MeasureStudy(parts, tasks).run(folder=folder, workers=workers, progress=progress)
+    return MeasureStudy(tasks_of(extent)).run(folder=folder, workers=workers, progress=progress)
 
 
 @dataclass(frozen=True)
@@ -159,8 +130,6 @@ class MeasureStudy(Study[Task, dict[str, pd.DataFrame]]):
     """Measurements of the parts, task by task; its results are the table of each part."""
 
     kind: ClassVar[str] = KIND
-    cost: ClassVar[Callable[[Task], float] | None] = staticmethod(lambda task: PARTS[task[0]].cost(**task[1]))
-    parts: Mapping[str, Part]
     measured: Sequence[Task]
 
     def tasks(self) -> Sequence[Task]:
@@ -170,15 +139,12 @@ class MeasureStudy(Study[Task, dict[str, pd.DataFrame]]):
     @staticmethod
     def row(task: Task) -> pd.DataFrame:
         """Rows of a task."""
-        name, inputs = task
-        part = PARTS[name]
-        point = {key: inputs[key] for key in part.keys}
-        return pd.DataFrame([point | row for row in part.measure(**inputs)])
+        part, point, inputs = task
+        return pd.DataFrame([{**point, **row} for row in PARTS[part](**point, **inputs)])
 
     def key(self, task: Task) -> str:
         """Hash of what the table of a task depends on."""
-        part = PARTS[task[0]]
-        return result_fingerprint({"part": part.name, "inputs": task[1]}, _makers(part))
+        return result_fingerprint(task, _makers())
 
     def name(self, task: Task) -> str:
         """Name of the part of the report."""
@@ -186,39 +152,30 @@ class MeasureStudy(Study[Task, dict[str, pd.DataFrame]]):
 
     def results(self, tables: list[pd.DataFrame]) -> dict[str, pd.DataFrame]:
         """Table of each part."""
-        made: dict[str, list[pd.DataFrame]] = {name: [] for name in self.parts}
-        for (name, _), table in zip(self.measured, tables, strict=True):
-            made[name].append(table)
-        return {name: pd.concat(own, ignore_index=True) for name, own in made.items()}
+        by_part: dict[str, list[pd.DataFrame]] = {}
+        for (part, *_), table in zip(self.measured, tables, strict=True):
+            by_part.setdefault(part, []).append(table)
+        return {part: pd.concat(each, ignore_index=True) for part, each in by_part.items()}
 
 
 def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent) -> Validity:
-    """Return the results of what was measured here."""
-    limits = pd.DataFrame(
-        [
-            {"limit": limit, "number": number, "value": value}
-            for limit, numbers in limits_of(tables).items()
-            for number, value in numbers.items()
-        ]
+    """Results of what was measured here."""
+    stated = asdict(extent.structure)
+    source = source_of(record_names(1)[0])
+    terms = {name: value for name, value in stated.items() if value}
+    every = {**tables, "limits": limits_of(tables, extent.structure)}
+    return Validity(
+        tables={name: table.assign(**terms) for name, table in every.items()},
+        facts={"extent": extent.name, "records": source, **stated},
     )
-    facts = {
-        "extent": extent.name,
-        "records": source_of(record_names(extent.members)),
-        **asdict(extent.structure),
-    }
-    stated = {name: value for name, value in asdict(extent.structure).items() if value}
-    found = {name: table.assign(**stated) for name, table in {**tables, "limits": limits}.items()}
-    return Validity(tables=found, facts=facts)
 
 
-def _makers(part: Part) -> dict[str, str]:
-    """Versions and code on which a part depends."""
-    module = sys.modules[part.measure.__module__]
-    engine = engine_makers(part.engine) if part.engine else {}
+@cache
+def _makers() -> dict[str, str]:
+    """Versions and code on which the parts depend."""
     return {
         **reduced_makers(),
-        **engine,
-        # fields of the plan that state a problem; their number is no part of it
-        f"code of {part.name}": source_digest(module, Structure, release_case, motion_named, shaken_case),
-        "records": source_of(record_names(1)),
+        **engine_makers(DEFAULT_ENGINE),
+        "code of the measurements": source_digest(measurements, problems),
+        "records": source_of(record_names(1)[0]),
     }

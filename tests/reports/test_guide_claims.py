@@ -9,6 +9,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from rockwobble.studies.validity.limits import limits_of
+from rockwobble.studies.validity.study import Validity
+
 pytestmark = pytest.mark.checkout
 
 CHECKOUT = Path(__file__).parents[2]
@@ -65,19 +68,20 @@ def test_the_findings_of_the_ensembles_are_those_of_their_tables() -> None:
 
 
 def test_the_limits_on_one_screen_are_the_published_ones() -> None:
-    table = pd.read_parquet(PUBLISHED / "validity" / "limits.parquet")
-    number = table.set_index(["limit", "number"])["value"]
+    found = Validity.load(PUBLISHED / "validity")
+    number = limits_of(found.tables, found.structure).set_index(["limit", "number"])["value"]
     text = words("docs/guide/limits.md")
 
-    def ends(limit: str, low: str, high: str, form: str) -> str:
-        return f"{number[limit, low]:{form}} to {number[limit, high]:{form}}"
+    def ends(models: str, form: str) -> str:
+        return " to ".join(f"{number[f'traces.{models}', end]:{form}}" for end in ("low", "high"))
 
-    assert f"is {ends('records', 'ring_95_least', 'ring_95_largest', '.2g')}, by case" in text
-    assert f"{ends('traces', 'recess', 'recess_longest', '.0f')} s in a recess" in text
-    flat = f"{number['traces', 'flat']:.1f} to {number['traces', 'flat_longest']:.1f} s by the recess model"
-    assert (
-        f"on flat ground {flat}, {ends('traces', 'own', 'own_longest', '.0f')} s by the flat-ground" in text
+    low, high = (number["limit_model.strays", f"ratio_ring_{end}"] for end in ("least", "largest"))
+    assert f"is {low:.2g} to {high:.2g}, by case" in text
+    assert f"{ends('recess_recess', '.0f')} s in a recess" in text
+    flat = (
+        f"{ends('flat_recess', '.1f')} s by the recess model, {ends('flat_flat', '.0f')} s by the flat-ground"
     )
+    assert f"on flat ground {flat}" in text
     page = (PUBLISHED / "validity" / "validity.md").read_text(encoding="utf-8")
     rows = re.findall(r"\| engine, flat ground \| 22 \| \S+ \| (\S+) \| (\S+) \|", page)
     assert len(rows) == 12
@@ -88,7 +92,8 @@ def test_the_limits_on_one_screen_are_the_published_ones() -> None:
     )
     rows = re.findall(r"\| flat-ground model \| 22 \| \S+ \| (\S+) \|", page)
     assert f"from {min(map(float, rows)):.1f} by the flat-ground model" in text
-    changed = [number["vertical", name] for name in ("vertical_other", "cells", "copy_other")]
+    changed = [number["vertical.vertical", name] for name in ("other", "cells")]
+    changed.append(number["vertical.copy", "other"])
     assert (
         "changes {:.0f} of {:.0f} verdicts, as many as chance (a record 1 % stronger changes {:.0f})".format(
             *changed
@@ -99,7 +104,7 @@ def test_the_limits_on_one_screen_are_the_published_ones() -> None:
     assert known is not None
     assert known[0] in text
     # the same peak within a thousandth in the median
-    medians = [number["records", name] for name in ("recess_least", "recess_largest")]
+    medians = [number["limit_model.established", f"ratio_{end}"] for end in ("least", "largest")]
     assert max(abs(each - 1.0) for each in medians) < 1e-3
 
 
