@@ -11,67 +11,37 @@ from .argument_kinds import with_argument_kinds
 from .finding import Finding, Findings
 from .shown import CompactRepr
 
+# unit of size and bound, where they have one
+_UNITS = {
+    "weights": "weightless tension tendon_yield unlikely_tendon",
+    "steps": "step_budget solver",
+    "passes": "unresolved_pass missed_pass",
+    "alpha": "settled unsettled extrapolated",
+    "g": "large_peak gravity_in_record",
+    **{"rad": "turning_slide", "columns": "one_column", "g or m/s": "large_hazard", "s": "unlikely_step"},
+    **{"m": "unlikely_length", "m/s2": "unlikely_gravity", "t/m3": "unlikely_mass"},
+}
+_UNIT_OF = {code: unit for unit, codes in _UNITS.items() for code in codes.split()}
+
+
+def _with_units(codes: str) -> Mapping[str, str]:
+    return MappingProxyType({code: _UNIT_OF.get(code, "") for code in codes.split()})
+
+
 # code: unit of size and bound; why a run failed
-FAILURES: Mapping[str, str] = MappingProxyType(
-    {
-        "not_finite": "",
-        "energy_gain": "",
-        "penetration": "",
-        "wall_penetration": "",
-        "guide": "",
-        "warning": "",
-        "died": "",
-        "step_budget": "steps",
-        "tolerance": "",
-        "weightless": "weights",
-    }
+FAILURES = _with_units(
+    "not_finite energy_gain penetration wall_penetration guide warning died step_budget tolerance weightless"
 )
-# and of every diagnostic
-CODES: Mapping[str, str] = MappingProxyType(
-    {
-        **FAILURES,
-        # diagnostics that limit a run
-        "slip": "",
-        "lift_off": "",
-        "tension": "weights",
-        "friction_needed": "",
-        "wall_contact": "",
-        "energy": "",
-        "rolling_loss": "",
-        "undecided": "",
-        "solver": "steps",
-        "mode": "",
-        "unresolved_slide": "",
-        "turning_slide": "rad",
-        "impact_loss": "",
-        "early_uplift": "",
-        "unresolved_pass": "passes",
-        "settled": "alpha",
-        "unsettled": "alpha",
-        "extrapolated": "alpha",
-        "not_extrapolated": "",
-        "one_column": "columns",
-        "side": "",
-        "tendon_yield": "weights",
-        # doubts about a record of the ground
-        "large_peak": "g",
-        "unlike_components": "",
-        "same_components": "",
-        "large_hazard": "g or m/s",
-        # and a length, a gravity, a mass or a tendon
-        "unlikely_length": "m",
-        "unlikely_gravity": "m/s2",
-        "unlikely_mass": "t/m3",
-        "unlikely_tendon": "weights",
-        "offset": "",
-        "gravity_in_record": "g",
-        "unlikely_step": "s",
-        "ends_in_strong_motion": "",
-        "other_direction": "",
-        # doubts about an external trajectory
-        "note": "",
-        "missed_pass": "passes",
-    }
+# and of every diagnostic: what limits a run, and doubts about a record, a number that the user gave (length,
+# gravity, mass, tendon), and an external trajectory
+CODES = _with_units(
+    f"{' '.join(FAILURES)} slip lift_off tension friction_needed wall_contact energy rolling_loss undecided "
+    "solver mode unresolved_slide turning_slide impact_loss early_uplift unresolved_pass settled unsettled "
+    "extrapolated not_extrapolated one_column side tendon_yield "
+    "large_peak unlike_components same_components large_hazard "
+    "unlikely_length unlikely_gravity unlikely_mass unlikely_tendon "
+    "offset gravity_in_record unlikely_step ends_in_strong_motion other_direction "
+    "note missed_pass"
 )
 # code: why, as its detail says it
 REASONS: Mapping[str, tuple[str, ...]] = MappingProxyType(

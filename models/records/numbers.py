@@ -1,30 +1,33 @@
-"""Numbers as the files of records print them: Fortran exponents, columns that touch.
-
-Numbers that blanks part are read as they stand. Where some touch, as those of AT2 may, they are parted by
-what Fortran keeps the same in all numbers of a format: the decimals and the digits of the exponent.
-"""
+"""Numbers as files of records print them: in blocks, fixed columns and tables, and for missing samples."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .component import RecordFile
+from .component import Component, RecordFile
 
 # one way to match each text, so that no line takes more than linear time
 NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?\d+)?"
 _ALLOWED = b"0123456789+-.eE \t\n\r"
-_FOREIGN = re.compile(r"[^0-9+.eEdD \t\n\r-]")  # a character that stands in no number
-_ENDED = re.compile(r"\.(\d*)(?:[EeDd][-+]?(\d+))?(?=[\s,;+-]|\Z)")  # a number whose end is certain
-_TWO_POINTS = re.compile(r"\.[^\s,;+.-]*(?:(?<=[EeDd])[-+][^\s,;+.-]*)?\.")
-_SIGN_BEHIND = re.compile(r"(?<=[\d.])([-+])")
+# where columns touch by the sign of the next, or behind an exponent of two digits
+_TOUCHING = re.compile(r"(?<=[\d.])(?=[-+])|(?<=[EeDd][-+]\d\d)(?=\d?\.\d)")
 _LOST_E = re.compile(r"(?<=\d)([-+]\d{3})(?![\d.])")  # Fortran leaves out the E before three digits
 _MANY_DIGITS = re.compile(r"(?<![\d.])\d{17}")  # more than a double holds: whole numbers that touch
+# "(8F10.3)", "(1E15.6)", "(10I8)": repetitions and width
+_FORMAT = re.compile(r"\(?\b(\d{1,3})\s*[FEGI](\d{1,3})(?:\.\d{1,3})?\b", re.IGNORECASE)
+_CHUNK = 4096  # lines that are looked at together to find the one that is damaged
+_LONGEST_LINE = 200  # [characters]; bounds what a pattern can cost on a damaged line
+_FILL = re.compile(r"-?9{3,}(?:\.(?:9+|0))?|-12345\.0")
+_FAR = 5.0  # times the largest of all other samples
+_BEYOND = 1e6  # times the largest of all other samples: no record has such a spike, whatever its digits
+_LEAST = 999.0  # least size of a number that fills a place
 
 
 def parse_number(path: Path, line_number: int, token: str) -> float:
@@ -84,131 +87,208 @@ def widths_of(text: str) -> NDArray[np.int64]:
     return np.asarray(np.diff(before), dtype=np.int64)
 
 
-def separate(text: str) -> str | None:
-    """A text of numbers of which some touch with blanks between them; None if none or several ways do.
-
-    Lines stay lines. The numbers of the answer are still to be read by `plain_numbers`.
-
-    Examples
-    --------
-    >>> separate("914.828 944.8281001.724")
-    ' 914.828   944.828  1001.724 '
-    >>> separate("0.5 0.250.125") is None
-    True
-    """
-    if re.search("[EeDd]", text):
-        text = _LOST_E.sub(r"E\1", text)
-    elif _LOST_E.search(text) and "." in text:
-        return None  # an exponent or a whole number
-    if _TWO_POINTS.search(text) is None:  # signs alone part them
-        return _SIGN_BEHIND.sub(r" \1", text)
-    ends = set(_ENDED.findall(text))
-    shapes = {(len(decimals), len(exponent)) for decimals, exponent in ends}
-    if len(shapes) != 1:
-        return None
-    ((decimals, digits),) = shapes
-    exponent = rf"[EeDd][-+]?\d{{{digits}}}" if digits else ""
-    answer, count = re.subn(rf"[-+]?\d*\.\d{{{decimals}}}{exponent}", r" \g<0> ", text)
-    if len(answer.split()) != count:
-        return None
-    # numbers without exponents have the zero before the point all or none
-    mixed = not digits and all(re.search(style, answer) for style in (r"(?<![\d-])\.\d", r"(?<![\d-])0\.\d"))
-    return None if mixed else answer
-
-
 def block_of_numbers(file: RecordFile, first: int, last: int | None = None) -> NDArray[np.float64]:
-    """The numbers of lines `first` (counted from 0) to `last` (left out), in reading order.
+    """The numbers of lines `first` (counted from 0) to `last` (left out), in reading order (n,).
 
-    Parameters
-    ----------
-    file : RecordFile
-    first, last : int
-        Blank lines are passed over.
-
-    Returns
-    -------
-    ndarray, shape (n,)
+    Blanks part them, or what takes the place of a blank in the fixed columns of Fortran: the sign of a
+    number, or the end of an exponent.
 
     Raises
     ------
     ValueError
-        If a line holds something else, or a number that is not finite: the line is named. If numbers touch
-        and can be parted in no way, or in several.
+        If a line holds something else, numbers that touch, or a number that is not finite: the line is named.
     """
-    lines, begin = file.text[first:last], first + 1
-    text = "\n".join(lines)
-    whole = _MANY_DIGITS.search(text) is None
-    values = plain_numbers(text) if whole else None
+    lines = file.text[first:last]
+    values = _signed_numbers("\n".join(lines))
     if values is not None:
         return values
-    damaged = _damaged_line(lines)
-    if damaged is None:
-        length = sum(map(len, lines))
-        if length > _LONGEST_TOUCHING:
-            raise ValueError(
-                f"{file.name}: its numbers touch, which is read up to {_LONGEST_TOUCHING:,} characters, got "
-                f"{length:,}: write them with blanks between"
-            )
-        answer = separate(text) if whole else None
-        values = None if answer is None else plain_numbers(answer)
-        if values is not None:
-            return values
-        damaged = next(
-            (at for at, line in enumerate(lines) if plain_numbers(line) is None or _MANY_DIGITS.search(line)),
-            0,
-        )
-        raise ValueError(
-            f"{file.name}, line {begin + damaged}: its numbers touch, and no way to part them is the only "
-            f"one: write them with blanks between, got {lines[damaged].strip()[:60]!r}"
-        )
-    line = lines[damaged]
-    for token in line.split():
+    at = _first_damaged(len(lines), lambda a, b: _signed_numbers("\n".join(lines[a:b])) is not None)
+    for token in lines[at].split():
         if re.fullmatch(NUMBER, token):
-            parse_number(file.path, begin + damaged, token)
+            parse_number(file.path, first + 1 + at, token)
     raise ValueError(
-        f"{file.name}, line {begin + damaged}: expected accelerations, got {line.strip()[:60]!r}"
+        f"{file.name}, line {first + 1 + at}: expected accelerations that do not touch, got "
+        f"{lines[at].strip()[:60]!r}"
     )
 
 
-def _only_numbers(text: str) -> bool:
-    """Whether a text holds nothing but finite numbers, which may touch."""
-    left = re.sub(NUMBER, " ", text)
-    if left.strip() and re.sub(r"[\s.]", "", left):
-        return False
-    return all(math.isfinite(float(re.sub("[Dd]", "E", token))) for token in re.findall(NUMBER, text))
+def _signed_numbers(text: str) -> NDArray[np.float64] | None:
+    if _MANY_DIGITS.search(text):
+        return None
+    values = plain_numbers(text)
+    if values is None and not ("." in text and _LOST_E.search(text)):
+        values = plain_numbers(_TOUCHING.sub(" ", text))
+    return values
 
 
-def _first_non_numeric_line(text: str) -> int | None:
-    """The place of the first line with a character that stands in no number; None without one."""
-    foreign = _FOREIGN.search(text)
-    return None if foreign is None else text.count("\n", 0, foreign.start())
+def _first_damaged(count: int, is_whole: Callable[[int, int], bool]) -> int:
+    """First of `count` lines that is not whole; many at once, since a million one by one take seconds."""
+    chunks = range(0, count, _CHUNK)
+    begin = next((at for at in chunks if not is_whole(at, min(at + _CHUNK, count))), 0)
+    return next((at for at in range(begin, min(begin + _CHUNK, count)) if not is_whole(at, at + 1)), begin)
 
 
-_CHUNK = 4096  # lines that are read at once, to find the one that is damaged
+def stated_format(line: str, default: tuple[int, int]) -> tuple[int, int]:
+    """Count and width of the numbers of a line, from a format such as "(8F10.3)" in a header.
 
-
-def _damaged_line(lines: Sequence[str]) -> int | None:
-    """The place of the first line that holds anything but numbers; None without one.
-
-    Numbers may touch; of more such text than is parted no more is looked at.
+    Parameters
+    ----------
+    line : str
+    default : tuple of int
+        Default of a header that states none.
     """
-    at = _first_non_numeric_line("\n".join(lines))
-    if at is not None:
-        return at
-    touched = 0
-    for begin in range(0, len(lines), _CHUNK):
-        chunk = lines[begin : begin + _CHUNK]
-        text = "\n".join(chunk)
-        if plain_numbers(text) is not None:
-            continue
-        if not _only_numbers(text):
-            for at, line in enumerate(chunk, start=begin):
-                if plain_numbers(line) is None and not _only_numbers(line):
-                    return at
-        touched += len(text)
-        if touched > _LONGEST_TOUCHING:
-            return None
-    return None
+    match = _FORMAT.search(line[:_LONGEST_LINE])
+    return (int(match[1]), int(match[2])) if match and int(match[1]) * int(match[2]) else default
 
 
-_LONGEST_TOUCHING = 3_000_000  # characters: to part them takes a second
+def fixed_width_block(
+    file: RecordFile, first: int, count: int, shape: tuple[int, int]
+) -> NDArray[np.float64]:
+    """Return `count` numbers in fixed columns from line `first` (counted from 0) on.
+
+    Parameters
+    ----------
+    file : RecordFile
+    first : int
+        Line of the first number, counted from 0.
+    count : int
+        Numbers of the block.
+    shape : tuple of int
+        Numbers in a line, and characters of each.
+
+    Raises
+    ------
+    ValueError
+        If the file ends before, or a line holds something else: the line is named.
+    """
+    columns, width = shape
+    rows, size = -(-count // columns), columns * width
+    lines = file.text[first : first + rows]
+    if len(lines) < rows:
+        raise ValueError(
+            f"{file.name}, line {first + 1}: announces {count} samples, the file ends after "
+            f"{len(lines) * columns} of them"
+        )
+    text = "".join(line[:size].ljust(size) for line in lines)[: count * width]
+    values = _fields(text, width)
+    damaged = next((at for at, line in enumerate(lines) if len(line.rstrip()) > size), None)
+    if damaged is None and values is None:
+        damaged = _first_damaged(rows, lambda a, b: _fields(text[a * size : b * size], width) is not None)
+    if damaged is not None:
+        raise ValueError(
+            f"{file.name}, line {first + damaged + 1}: expected {min(columns, count - damaged * columns)} "
+            f"numbers of {width} characters, got {lines[damaged].strip()[:60]!r}"
+        )
+    assert values is not None
+    return values
+
+
+def _fields(text: str, width: int) -> NDArray[np.float64] | None:
+    """Return the numbers of a text of equal fields, None if one is no finite number."""
+    text = text.upper().replace("D", "E")  # Fortran writes D for the exponent of a double
+    if not text.isascii() or text.translate(_NO_NUMBER):
+        return None
+    try:
+        values = np.frombuffer(text.encode(), dtype=f"S{width}").astype(np.float64)
+    except ValueError:
+        return None
+    return values if np.isfinite(values).all() else None
+
+
+_NO_NUMBER = str.maketrans("", "", "0123456789.+-E ")
+
+
+def table_of_numbers(
+    file: RecordFile, first: int, columns: int, *, count: int | None = None, separator: str | None = None
+) -> NDArray[np.float64]:
+    """Return a table of numbers from line `first` (counted from 0) to the end; blank lines are passed over.
+
+    Parameters
+    ----------
+    file : RecordFile
+    first : int
+        Line of the first row, counted from 0.
+    columns : int
+        Numbers in a row.
+    count : int, optional
+        Rows that the file announces.
+    separator : str, optional
+        Between the numbers, in place of blanks.
+
+    Returns
+    -------
+    ndarray, shape (rows, columns)
+
+    Raises
+    ------
+    ValueError
+        If there are fewer or more rows, or a row holds something else: the line is named.
+    """
+    lines = [(at, line) for at, line in enumerate(file.text[first:], first + 1) if line.strip()]
+    rows = [line.strip().rstrip(separator or " ").split(separator) for _, line in lines]
+    values = _table(rows, columns)
+    if values is None:
+        at, line = lines[_first_damaged(len(rows), lambda a, b: _table(rows[a:b], columns) is not None)]
+        raise ValueError(f"{file.name}, line {at}: expected {columns} numbers, got {line.strip()[:60]!r}")
+    if not len(rows) or len(rows) != (count or len(rows)):
+        raise ValueError(f"{file.name}: announces {count or 'no'} samples, the file holds {len(rows)}")
+    return values
+
+
+def _table(rows: list[list[str]], columns: int) -> NDArray[np.float64] | None:
+    if any(len(row) != columns for row in rows):
+        return None
+    try:
+        values = np.array(rows, dtype=np.float64).reshape(-1, columns)
+    except ValueError:
+        return None
+    return values if np.isfinite(values).all() else None
+
+
+def without_fill(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+    """Return values without what fills the last line after the last sample, such as 9999.9, and a note of it.
+
+    Examples
+    --------
+    >>> without_fill(np.array([0.1, 0.2, -999.0, -999.0]))
+    (array([0.1, 0.2]), ('2 fill values of -999 after the last sample are left out',))
+    """
+    last = float(values[-1]) if len(values) else 0.0
+    others = np.flatnonzero(values != last)
+    if not _FILL.fullmatch(repr(last)) and not _is_beyond(last, values[others]):
+        return values, ()
+    count = len(values) - (int(others[-1]) + 1 if len(others) else 0)
+    note = f"{count} fill value{'s' * (count > 1)} of {last:g} after the last sample are left out"
+    return values[: len(values) - count], (note,)
+
+
+def without_filled_end(component: Component) -> Component:
+    """Return a component without fill values after its last sample.
+
+    Raises
+    ------
+    ValueError
+        If one stands among its samples: the sample is missing, and no other number would be right.
+    """
+    values, notes = without_fill(component.values)
+    if notes:
+        component = replace(component, values=values, notes=(*component.notes, *notes))
+    largest = float(np.abs(values).max())
+    if not largest >= _LEAST:
+        return component
+    at = int(np.abs(values).argmax())
+    fill = float(values[at])
+    rest = values[values != fill]
+    known = _FILL.fullmatch(repr(fill)) and len(rest) and largest > _FAR * float(np.abs(rest).max())
+    if known or _is_beyond(fill, rest):
+        raise ValueError(
+            f"{component.path.name}: sample {at + 1}{f' of {component.label}' * bool(component.label)} is "
+            f"{fill:g}, which stands for a missing one: give a whole record"
+        )
+    return component
+
+
+def _is_beyond(value: float, others: NDArray[np.float64]) -> bool:
+    """Return whether a number is too large to be a sample beside all others, some of which are not zero."""
+    largest = float(np.abs(others).max(initial=0.0))
+    return abs(value) >= _LEAST and 0.0 < largest < abs(value) / _BEYOND

@@ -121,8 +121,7 @@ def _read(path: Path) -> Suite:
     from pydantic import ValidationError
 
     from .build import build_suite
-    from .errors import first_line
-    from .tables import TABLES, SuiteTable
+    from .tables import SuiteTable, first_line
 
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -136,7 +135,7 @@ def _read(path: Path) -> Suite:
     try:
         table = SuiteTable.model_validate(content)
     except ValidationError as error:
-        raise ValueError(f"{path.name}: {first_line(error, TABLES)}") from None
+        raise ValueError(f"{path.name}: {first_line(error)}") from None
     try:
         return build_suite(table, path.parent)
     except ValueError as error:

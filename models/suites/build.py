@@ -18,8 +18,16 @@ from ..records.files import ZERO, el_centro_1940, read_record
 from ..records.p695 import p695_far_field
 from ..synthetic import MOST_STILL, SAMPLES_PER_PERIOD, pulse
 from ..tendon import Tendon
-from .errors import KeyedError, path_prefix
-from .tables import WAYS_OF_READING, CaseTable, CylinderTable, MotionTable, ReleaseTable, RunTable, SuiteTable
+from .tables import (
+    WAYS_OF_READING,
+    CaseTable,
+    KeyedError,
+    MotionTable,
+    ReleaseTable,
+    RunTable,
+    SuiteTable,
+    path_prefix,
+)
 
 # a slip in three ranges must not fill the memory
 _MOST_CASES = 10_000
@@ -40,16 +48,9 @@ def build_suite(table: SuiteTable, folder: Path) -> Suite:
     ValueError
         If a value is out of range or a record cannot be read; the message begins with the path of the key.
     """
-    cases: list[Case] = []
-    first: dict[str, int] = {}
-    for index, entry in enumerate(table.cases):
-        if entry.name in first:
-            raise ValueError(
-                f"cases[{index}].name: must differ from cases[{first[entry.name]}].name, "
-                f"got {entry.name!r} twice"
-            )
-        first[entry.name] = index
-        cases += _cases(entry, f"cases[{index}]", folder)
+    cases = [
+        case for index, entry in enumerate(table.cases) for case in _cases(entry, f"cases[{index}]", folder)
+    ]
     runs = [run for index, entry in enumerate(table.runs) for run in _runs(entry, f"runs[{index}]")]
     return Suite(cases, runs, table.bounds)
 
@@ -107,26 +108,21 @@ def _case(
         return {key: value for (place, key), value in values.items() if place == part}
 
     with path_prefix(f"{path}.cylinder"):
-        cylinder = _cylinder(table.cylinder, of("cylinder"))
+        make = Cylinder if table.cylinder.semidiagonal is not None else Cylinder.from_dimensions
+        cylinder = cylinder_of(of("cylinder"), make)
     own: dict[str, Any] = of("")
     motion = initial = None
     if table.motion is not None:
         with path_prefix(f"{path}.motion"):
             uplift = own.get("gravity", 9.81) * cylinder.tan_alpha
-            motion = build_motion(table.motion, of("motion"), folder, uplift, records)
+            motion = _motion(table.motion, of("motion"), folder, uplift, records)
     if table.release is not None:
         with path_prefix(f"{path}.release"):
             initial = _release(table.release, of("release"), cylinder)
-    tendon = None
-    if table.tendon is not None:
-        with path_prefix(f"{path}.tendon"):
-            tendon = Tendon(**of("tendon"))
+    with path_prefix(f"{path}.tendon"):
+        tendon = None if table.tendon is None else Tendon(**of("tendon"))
     with path_prefix(path):
         return Case(cylinder, motion, initial=initial, name=name, tendon=tendon, **own)
-
-
-def _cylinder(table: CylinderTable, values: dict[str, float]) -> RockingBody:
-    return cylinder_of(values, Cylinder if table.semidiagonal is not None else Cylinder.from_dimensions)
 
 
 def _release(table: ReleaseTable, values: dict[str, float], cylinder: RockingBody) -> InitialState:
@@ -145,32 +141,14 @@ def _release(table: ReleaseTable, values: dict[str, float], cylinder: RockingBod
 _ROUNDING = 1e-6
 
 
-def build_motion(
+def _motion(
     table: MotionTable,
     values: dict[str, float],
     folder: Path,
     uplift: float,
     records: dict[object, GroundMotion],
 ) -> GroundMotion:
-    """Return the motion of one combination of values.
-
-    Parameters
-    ----------
-    table : MotionTable
-    values : dict
-        One value for each number that the table gives, by its key.
-    folder : Path
-        Where relative paths start.
-    uplift : float
-        Acceleration that uplifts the cylinder of the case, g tan alpha [m/s^2].
-    records : dict
-        Records that were read so far, so that none is read twice; gets more.
-
-    Raises
-    ------
-    ValueError
-        If a record cannot be read, or a value does not suit it.
-    """
+    """Motion of one value for each number of a table; `uplift`: g tan alpha, `records`: those read so far."""
     if table.pulse is not None:
         return _pulse(table.pulse, values, uplift)
     source = (values.get("pair"), *(getattr(table, key) for key in _OF_A_RECORD))
@@ -196,10 +174,9 @@ def _record(table: MotionTable, values: dict[str, float], folder: Path) -> Groun
             raise KeyedError("pair", str(error)) from None
     if table.record is not None:
         return el_centro_1940(vertical=bool(table.vertical))
+    names = {"record_columns": "columns", "record_step": "time_step"}
     ways: dict[str, Any] = {
-        **{"units": table.units, "columns": table.record_columns, "time_step": table.record_step},
-        **{"lengths": table.lengths, "remove_mean": bool(table.remove_mean), "rotate": table.rotate},
-        **{"resample": bool(table.resample)},
+        names.get(key, key): getattr(table, key) for key in table.present(*WAYS_OF_READING)
     }
     if table.files is not None:
         return read_record(folder / table.files, **ways)

@@ -13,83 +13,105 @@ A number is one, a list, or a range; each becomes the tuple of its values.
 
 from __future__ import annotations
 
+import difflib
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import fields
 from types import MappingProxyType
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    model_validator,
-)
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic_core import ErrorDetails
 
 from ..bounds import Bounds
 from ..case import WAYS_TO_A_STEP, TimeStep
-from ..records.component import UNITS
-from ..records.reading import LENGTHS
 from ..support import RECESS
-from ..synthetic import PULSES
-from .errors import KeyedError, brief, nearest
 
 # more than a suite will ever hold: a slip such as step = 1e-9 must not fill the memory
 _MOST = 10_000
 _RANGE = ("from", "to", "step", "count", "spacing")
 # a step divides its range up to the rounding of decimal fractions
 _ROUNDING = 1e-9
-
-#: Refuses a value out of range.
-Check = Callable[[float], None]
-
-
-def any_number(_: float) -> None:
-    """Refuse nothing."""
-
-
-def positive(value: float) -> None:
-    """Refuse zero and below."""
-    if not value > 0.0:
-        raise ValueError(f"must be positive, got {value:g}")
+# messages of pydantic, in the words of the other messages
+_TABLE = "must be a table of keys and values, got {given}"
+_WORDS = {
+    "missing": "must be given",
+    "string_type": "must be text, got {given}",
+    "bool_type": "must be true or false, got {given}",
+    **dict.fromkeys(("list_type", "tuple_type"), "must be a list, got {given}"),
+    **dict.fromkeys(("dict_type", "model_type"), _TABLE),
+}
 
 
-def not_negative(value: float) -> None:
-    """Refuse what is below zero."""
-    if not value >= 0.0:
-        raise ValueError(f"must not be negative, got {value:g}")
+class KeyedError(ValueError):
+    """Something wrong at a key below the one that was being read.
+
+    Parameters
+    ----------
+    key : str
+        Relative to the table or value being read, such as "tilt" or "[2]".
+    message : str
+    """
+
+    def __init__(self, key: str, message: str) -> None:
+        super().__init__(message)
+        self.key = key
 
 
-def whole(value: float) -> None:
-    """Refuse fractions and what is below one."""
-    if not (value >= 1.0 and value == math.floor(value)):
-        raise ValueError(f"must be a positive whole number, got {value:g}")
+@contextmanager
+def path_prefix(path: str) -> Iterator[None]:
+    """Put the path of a key before the message of any ValueError of the block."""
+    try:
+        yield
+    except KeyedError as error:
+        raise ValueError(f"{join(path, error.key)}: {error}") from None
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
 
 
-def values_of(given: object, check: Check = any_number) -> tuple[float, ...]:
+def join(path: str, key: str) -> str:
+    """Return the path of a key below another."""
+    return f"{path}{'' if key.startswith('[') or not path else '.'}{key}"
+
+
+def nearest(key: str, allowed: Iterable[str]) -> str:
+    """Words on a key that is not allowed: the nearest one, or all."""
+    names = list(allowed)
+    close = difflib.get_close_matches(key, names, n=1, cutoff=0.65)
+    if key in ("slab_mass_ratio", "columns") and "cylinder" in names:
+        return "is not known here, it belongs into cylinder = { ... }"
+    hint = f"did you mean {close[0]}?" if close else f"allowed are {', '.join(names)}"
+    return f"is not known here, {hint}"
+
+
+#: Words of a condition on a number, and whether it holds.
+Allowed = tuple[str, Callable[[float], bool]]
+ANY: Allowed = ("be a number", lambda _: True)
+POSITIVE: Allowed = ("be positive", lambda value: value > 0.0)
+NOT_NEGATIVE: Allowed = ("not be negative", lambda value: value >= 0.0)
+WHOLE: Allowed = ("be a positive whole number", lambda value: value >= 1.0 and value == math.floor(value))
+
+
+def values_of(given: object, allowed: Allowed) -> tuple[float, ...]:
     """Return the values of a number, a list or a range.
 
     Raises
     ------
     KeyedError, ValueError
-        If it is none of them, a value is refused by `check`, or one stands there twice.
+        If it is none of them, a value is not allowed, or one stands there twice.
     """
     if isinstance(given, dict):
-        values = _range(given)
-        for value in values:
-            check(value)
-        return values
+        return tuple(_number(value, allowed) for value in _range(given))
     if not isinstance(given, list):
-        return (_number(given, check),)
+        return (_number(given, allowed),)
     if not given:
         raise ValueError("must hold at least one value, got []")
-    values = ()
+    values: tuple[float, ...] = ()
     for index, item in enumerate(given):
         try:
-            value = _number(item, check)
+            value = _number(item, allowed)
         except ValueError as error:
             raise KeyedError(f"[{index}]", str(error)) from None
         if value in values:
@@ -98,7 +120,7 @@ def values_of(given: object, check: Check = any_number) -> tuple[float, ...]:
     return values
 
 
-def _number(given: object, check: Check) -> float:
+def _number(given: object, allowed: Allowed) -> float:
     if isinstance(given, bool) or not isinstance(given, int | float):
         raise ValueError(  # noqa: TRY004 - a wrong type in a file is bad input like any other
             "must be a number, a list, or a range such as { from = 1, to = 3, step = 0.5 }, "
@@ -110,81 +132,55 @@ def _number(given: object, check: Check) -> float:
         value = math.inf
     if not math.isfinite(value):
         raise ValueError(f"must be a finite number, got {brief(given)}")
-    check(value)
+    words, holds = allowed
+    if not holds(value):
+        raise ValueError(f"must {words}, got {value:g}")
     return value
 
 
 def _range(given: Mapping[str, object]) -> tuple[float, ...]:
-    for key in given:
-        if key not in _RANGE:
-            raise KeyedError(key, nearest(key, _RANGE))
-    for key in ("from", "to"):
-        if key not in given:
-            raise KeyedError(key, "must be given in a range")
-    numbers = {}
-    for key in ("from", "to", "step", "count"):
-        if key in given:
-            try:
-                numbers[key] = _number(given[key], whole if key == "count" else any_number)
-            except ValueError as error:
-                raise KeyedError(key, str(error)) from None
-    low, high = numbers["from"], numbers["to"]
-    if not low < high:
-        raise KeyedError("to", f"must be above from = {low:g}, got {high:g}")
-    if ("step" in given) == ("count" in given):
-        raise ValueError(f"a range must have either step or count, got {brief(given)}")
+    keys = set(given)
+    if not {"from", "to"} <= keys <= set(_RANGE) or len(keys & {"step", "count"}) != 1:
+        raise ValueError(
+            f"a range must have from, to, either step or count, and maybe spacing, got {brief(given)}"
+        )
     spacing = given.get("spacing", "linear")
-    if spacing not in ("linear", "log"):
-        raise KeyedError("spacing", f"must be linear or log, got {brief(spacing)}")
+    if spacing != "linear" and (spacing != "log" or "step" in given):
+        raise ValueError(f"spacing of a range must be linear, or log with count, got {brief(given)}")
+    low, high = (_number(given[key], POSITIVE if spacing == "log" else ANY) for key in ("from", "to"))
+    if not low < high:
+        raise ValueError(f"the end of a range must be above its begin, {low:g}, got {high:g}")
     if "step" in given:
-        if spacing == "log":
-            raise KeyedError("spacing", "log needs count, not step")
-        count = _steps_in(low, high, numbers["step"]) + 1
+        step = _number(given["step"], POSITIVE)
+        intervals = (high - low) / step
+        if intervals > _MOST or abs(intervals - round(intervals)) > _ROUNDING * intervals:
+            raise ValueError(
+                f"step must divide the range from {low:g} to {high:g}, in at most {_MOST}, got {step:g}"
+            )
+        count = round(intervals) + 1
     else:
-        count = int(numbers["count"])
+        count = int(_number(given["count"], WHOLE))
         if not 2 <= count <= _MOST:
-            raise KeyedError("count", f"must be from 2 to {_MOST}, got {count}")
-    if spacing == "log" and low <= 0.0:
-        raise KeyedError("from", f"must be positive where spacing is log, got {low:g}")
+            raise ValueError(f"count must be from 2 to {_MOST}, got {count}")
     spaced = np.geomspace if spacing == "log" else np.linspace
     # 0.3 and not 0.30000000000000004
     return tuple(float(f"{value:.12g}") for value in spaced(low, high, count))
 
 
-def _steps_in(low: float, high: float, step: float) -> int:
-    if step <= 0.0:
-        raise KeyedError("step", f"must be positive, got {step:g}")
-    intervals = (high - low) / step
-    if intervals > _MOST:
-        raise KeyedError("step", f"must give at most {_MOST} values, got {intervals:.3g}")
-    if abs(intervals - round(intervals)) > _ROUNDING * intervals:
-        raise KeyedError("step", f"must divide the range from {low:g} to {high:g}, got {step:g}")
-    return round(intervals)
+def _values(allowed: Allowed) -> BeforeValidator:
+    return BeforeValidator(lambda given: values_of(given, allowed))
 
 
-def _values(check: Check) -> BeforeValidator:
-    return BeforeValidator(lambda given: values_of(given, check))
-
-
-Numbers = Annotated[tuple[float, ...], _values(any_number)]
-Positives = Annotated[tuple[float, ...], _values(positive)]
-NotNegatives = Annotated[tuple[float, ...], _values(not_negative)]
-Wholes = Annotated[tuple[float, ...], _values(whole)]
+Numbers = Annotated[tuple[float, ...], _values(ANY)]
+Positives = Annotated[tuple[float, ...], _values(POSITIVE)]
+NotNegatives = Annotated[tuple[float, ...], _values(NOT_NEGATIVE)]
+Wholes = Annotated[tuple[float, ...], _values(WHOLE)]
 
 
 WAYS_OF_READING = (
     *("units", "record_columns", "record_step", "lengths", "remove_mean", "rotate", "resample"),
 )
 RECORDS = ("el_centro_1940", "p695")
-
-
-def _one_of(*allowed: str) -> AfterValidator:
-    def check(value: str) -> str:
-        if value not in allowed:
-            raise ValueError(f"must be one of {', '.join(allowed)}, got {brief(value)}")
-        return value
-
-    return AfterValidator(check)
 
 
 class _Table(BaseModel):
@@ -241,30 +237,24 @@ class CylinderTable(_Table):
         return self
 
 
-def _one_positive(given: object) -> float:
-    if isinstance(given, list | dict):
-        raise ValueError(f"must be one number, got {brief(given)}")  # noqa: TRY004 (bad input)
-    return values_of(given, positive)[0]
-
-
 class MotionTable(_Table):
     """The ground motion: a record that ships, files of a record, or a pulse."""
 
-    record: Annotated[str, _one_of(*RECORDS)] | None = None
+    record: str | None = None
     vertical: bool | None = None
     pair: Wholes | None = None
     x: str | None = None
     y: str | None = None
     z: str | None = None
     files: str | None = None
-    units: Annotated[str, _one_of(*UNITS)] | None = None
+    units: str | None = None
     record_columns: str | None = None
-    record_step: Annotated[float, BeforeValidator(_one_positive)] | None = None
-    lengths: Annotated[str, _one_of(*LENGTHS)] | None = None
+    record_step: float | None = None
+    lengths: str | None = None
     remove_mean: bool | None = None
     rotate: float | str | None = None
     resample: bool | None = None
-    pulse: Annotated[str, _one_of(*PULSES)] | None = None
+    pulse: str | None = None
     amplitude: Positives | None = None
     period: Positives | None = None
     azimuth_deg: Numbers | None = None
@@ -276,7 +266,9 @@ class MotionTable(_Table):
     @model_validator(mode="after")
     def _keys_go_together(self) -> MotionTable:
         kind = "x" if self.present("x", "y") else self.require_one_of("record", "x", "files", "pulse")
-        self.refuse_others(kind)
+        self._refuse_others(kind)
+        if self.record not in (None, *RECORDS):
+            raise KeyedError("record", f"must be one of {', '.join(RECORDS)}, got {brief(self.record)}")
         if self.record == "p695" and not self.present("pair"):
             raise KeyedError("pair", "must be given: 1 to 22")
         if kind == "x":
@@ -291,25 +283,21 @@ class MotionTable(_Table):
             raise KeyedError("times_uplift", "must be left out: it replaces scale")
         return self
 
-    def refuse_others(self, kind: str) -> None:
+    def _refuse_others(self, kind: str) -> None:
         """Refuse the keys of the other kinds of motion."""
-        pulse = ("pulse", "amplitude", "period", "azimuth_deg")
-        if kind != "record":
-            self.refuse("belongs to a record that ships", "record", "vertical", "pair")
-        if kind != "x":
-            self.refuse("belongs to files of a record, with x and y", "x", "y", "z")
-        if kind not in ("x", "files"):
-            self.refuse("belongs to files of a record", *WAYS_OF_READING)
-        if kind != "files":
-            self.refuse("holds all components of a record: without x and y", "files")
-        if kind != "pulse":
-            self.refuse("belongs to a pulse", *pulse)
-        else:
-            self.refuse("belongs to a record; a pulse has amplitude and azimuth_deg", "scale", "rotation_deg")
-        if self.record != "p695":
-            self.refuse('belongs to record = "p695"', "pair")
-        if self.record != "el_centro_1940":
-            self.refuse('belongs to record = "el_centro_1940"', "vertical")
+        p695, el_centro = self.record == "p695", self.record == "el_centro_1940"
+        for belongs, reason, names in (
+            (kind == "record", "belongs to a record that ships", ("record", "vertical", "pair")),
+            (kind == "x", "belongs to files of a record, with x and y", ("x", "y", "z")),
+            (kind in ("x", "files"), "belongs to files of a record", WAYS_OF_READING),
+            (kind == "files", "holds all components of a record: without x and y", ("files",)),
+            (kind == "pulse", "belongs to a pulse", ("pulse", "amplitude", "period", "azimuth_deg")),
+            (kind != "pulse", "belongs to a record; a pulse has amplitude", ("scale", "rotation_deg")),
+            (p695 or kind != "record", 'belongs to record = "p695"', ("pair",)),
+            (el_centro or kind != "record", 'belongs to record = "el_centro_1940"', ("vertical",)),
+        ):
+            if not belongs:
+                self.refuse(reason, *names)
 
 
 class ReleaseTable(_Table):
@@ -368,7 +356,7 @@ def _steps(given: object) -> tuple[object, ...]:
     """Values of a time step; the ways to one are left to the engine."""
     if given in WAYS_TO_A_STEP:
         return (given,)
-    return values_of(given, positive)
+    return values_of(given, POSITIVE)
 
 
 Texts = Annotated[list[str], BeforeValidator(_texts), Field(min_length=1)]
@@ -395,15 +383,10 @@ def _bounds(given: object) -> object:
     if not isinstance(given, dict):
         return given
     names = [field.name for field in fields(Bounds)]
-    values: dict[str, Any] = {}
-    for key, value in given.items():
-        if key not in names:
-            raise KeyedError(key, nearest(key, names))
-        try:
-            values[key] = value if key == "reference" else _one_positive(value)
-        except ValueError as error:
-            raise KeyedError(key, str(error)) from None
-    return Bounds(**values)
+    unknown = next((key for key in given if key not in names), None)
+    if unknown is not None:
+        raise KeyedError(unknown, nearest(unknown, names))
+    return Bounds(**given)
 
 
 class SuiteTable(_Table):
@@ -426,3 +409,34 @@ TABLES: Mapping[str, type[BaseModel]] = MappingProxyType(
         "runs": RunTable,
     }
 )
+
+
+def first_line(error: ValidationError) -> str:
+    """Return the first error in one line, and how many more there are."""
+    errors = error.errors(include_url=False)
+    more = len(errors) - 1
+    also = f" (and {more} more error{'s' if more > 1 else ''})" if more else ""
+    return f"{_line(errors[0])}{also}"
+
+
+def _line(error: ErrorDetails) -> str:
+    place: Sequence[str | int] = error["loc"]
+    path = ""
+    for part in place:
+        path = join(path, f"[{part}]" if isinstance(part, int) else part)
+    if error["type"] == "extra_forbidden":
+        table = next((part for part in reversed(place[:-1]) if isinstance(part, str)), "")
+        return f"{path}: {nearest(str(place[-1]), TABLES[table].model_fields)}"
+    cause = error.get("ctx", {}).get("error")
+    if isinstance(cause, KeyedError):
+        return f"{join(path, cause.key)}: {cause}"
+    if isinstance(cause, ValueError):
+        return f"{path}: {cause}"
+    words = _WORDS.get(error["type"])
+    return f"{path}: {words.format(given=brief(error['input'])) if words else error['msg']}"
+
+
+def brief(value: object) -> str:
+    """Return a value for a message, short."""
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -131,7 +131,7 @@ def record(header: str = "NPTS= 6, DT= .01 SEC", title: str = UNITS, values: str
         (record("NPTS= 1, DT= .01", values=" .1\n"), r"x.txt must hold at least two samples, got 1"),
         (
             record(values=SIX.replace(".3000000E-01", "NaN")),
-            r"x.txt, line 5: expected accelerations, got '.*NaN.*'",
+            r"x.txt, line 5: expected accelerations .*, got '.*NaN.*'",
         ),
         (
             record(values=SIX.replace("E-01", "E+999")),

@@ -221,7 +221,7 @@ class TestRefusals:
         [
             ("a.v1", "UNCORRECTED ACCELEROGRAM DATA\nX\nUNIVERSIDAD DE CHILE - RENADIC\n", "RENADIC"),
             ("a.V1", "* VOL1DS FILE:  5520/01\n", "BHRC"),
-            ("a.v2", "CORRECTED ACCELEROGRAM  IIA001  40.1.0 COMP S00E\nDATA OF VOLUME I\n", "Volume II"),
+            ("a.v2", "CORRECTED ACCELEROGRAM  IIA001  40.1.0 COMP S00E\nDATA OF VOLUME I\n", "Volume I"),
             ("a.044", " SAMPLES/SEC=200 FILTER TYPE=BUTTERWORTH DATA TYPE=AC\n", "USGS"),
             ("a.VT2", "PEER\nX\nVELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 2, DT= .01\n 1 2\n", "VT2"),
             ("a.vol", "invented\n", "GeoNet"),

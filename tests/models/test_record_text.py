@@ -173,7 +173,7 @@ REFUSED: Mapping[str, tuple[str | bytes, str]] = {
         "list of",
     ),
     "python.py": (f"acc = np.array({json.dumps(EAST.tolist())})\n", "list of a program"),
-    "slist.txt": ("TIMESERIES XX_A__HNE_R, 60 samples, 100 sps, 2001, SLIST, FLOAT, G\n", "SAC or miniSEED"),
+    "slist.txt": ("TIMESERIES XX_A__HNE_R, 60 samples, 100 sps, 2001, SLIST, FLOAT, G\n", "TIMESERIES"),
     "pairs.json": (json.dumps([[t, a] for t, a in zip(TIME, EAST, strict=True)]), "JSON"),
     "sheet.xlsx": (b"PK\x03\x04" + bytes(300), "Excel"),
 }

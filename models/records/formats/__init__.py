@@ -36,7 +36,7 @@ from typing import Protocol
 
 from ..component import Component, RecordFile
 from ..directions import as_named
-from ..fill import without_filled_end
+from ..numbers import without_filled_end
 from ..reading import Reading
 from . import (
     afad,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from ..component import Component, RecordFile
-from ..fixed_width import table_of_numbers
 from ..headers import compare_peak, direction_of
+from ..numbers import table_of_numbers
 from ..reading import Reading
 
 NAME = "AFAD text"

@@ -6,8 +6,7 @@ import re
 
 from ..column_names import column_name
 from ..component import Component, RecordFile
-from ..fill import without_fill
-from ..numbers import NUMBER, block_of_numbers, parse_number
+from ..numbers import NUMBER, block_of_numbers, parse_number, without_fill
 from ..reading import Reading
 from ..units import stated_unit
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..component import Component, RecordFile
-from ..fixed_width import table_of_numbers
 from ..headers import direction_of
+from ..numbers import table_of_numbers
 from ..reading import Reading
 from ..units import stated_unit
 

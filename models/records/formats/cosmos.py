@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator
 
 from ..component import Component, Direction, RecordFile
-from ..fixed_width import fixed_width_block, stated_format
 from ..headers import TURNED_UP, azimuth_of, compare_peak, direction_at, direction_of
+from ..numbers import fixed_width_block, stated_format
 from ..reading import Reading
 
 NAME = "COSMOS V1/V2"

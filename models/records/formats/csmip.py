@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from ..component import Component, RecordFile
-from ..fixed_width import fixed_width_block, stated_format
 from ..headers import TURNED_UP, azimuth_of, compare_peak, direction_at, direction_of
+from ..numbers import fixed_width_block, stated_format
 from ..reading import Reading
 from ..units import stated_unit
 

@@ -7,8 +7,8 @@ import re
 import numpy as np
 
 from ..component import Component, RecordFile
-from ..fixed_width import fixed_width_block, stated_format
 from ..headers import compare_peak, direction_of
+from ..numbers import fixed_width_block, stated_format
 from ..reading import Reading
 from ..units import stated_unit
 

@@ -6,8 +6,8 @@ import re
 from itertools import takewhile
 
 from ..component import Component, RecordFile
-from ..fixed_width import table_of_numbers
 from ..headers import compare_peak, direction_of
+from ..numbers import table_of_numbers
 from ..reading import Reading
 from ..units import stated_unit
 

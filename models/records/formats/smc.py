@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ..component import Component, Direction, RecordFile
-from ..fixed_width import fixed_width_block
 from ..headers import TURNED_UP, compare_peak, direction_at
+from ..numbers import fixed_width_block
 from ..reading import Reading
 
 NAME = "SMC"
