@@ -28,7 +28,6 @@ was lost.
 
 from __future__ import annotations
 
-import itertools
 import math
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -40,7 +39,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-Rows = Iterator[tuple[int, list[str]]]  # number and cells of each line
+Rows = Sequence[tuple[int, list[str]]]  # number and cells of each line
 Stated = dict[str, tuple[int, str | None]]  # place and unit of each known column, by name
 Values = dict[str, Array]  # columns of one run by name, in SI units and radians
 
@@ -77,7 +76,7 @@ ENDS = {
         for at, name in enumerate(names)
     },
 }
-# columns that an option names in their order, by their number
+# columns that an option names, by their number, in this order
 IN_ORDER = {
     len(names): names
     for names in (
@@ -88,31 +87,7 @@ IN_ORDER = {
         ("time", *QUATERNION, *POSITION),
     )
 }
-# formats that are not read: text in the first lines, and what to do instead
-PROGRAMS = {
-    "an export of OptiTrack Motive": (
-        r"^Format Version",
-        "export quaternions with z up, and give --trajectory-columns by number, time first: 2,6,3,4,5",
-    ),
-    "an export of Vicon Nexus": (
-        r"^(Trajectories|Segments|Joints|Model Outputs)\b",
-        "turn RX, RY and RZ into a quaternion, in columns time, qw, qx, qy, qz",
-    ),
-    "an export of Qualisys": (
-        r"^NO_OF_FRAMES",
-        "turn the rotation matrix into a quaternion, in columns time, qw, qx, qy, qz",
-    ),
-    "an export of OpenSim": (
-        r"^endheader",
-        "drop the lines up to endheader, and turn the angles into a quaternion: time, qw, qx, qy, qz",
-    ),
-    "an export of rostopic": (r"^%time", "export a topic of type geometry_msgs/PoseStamped"),
-    "a TUM trajectory": (
-        r"\A(?:#.*\n)*[-+.\deE]+(?: +[-+.\deE]+){7}$",
-        "write time,x,y,z,qx,qy,qz,qw above it, and commas for the blanks",
-    ),
-}
-LISTED, LONGEST_NAME = 80, 40  # characters of a list of names in a message, and of one of them
+LISTED = 80  # characters of a list of names in a message
 FEWEST_SAMPLES = 3
 
 
@@ -167,9 +142,9 @@ def name_list(names: Sequence[str]) -> str:
     >>> name_list(["strain", "force"]), name_list(["strain"] * 20)[-26:]
     ('strain, force', 'strain, strain and 10 more')
     """
-    short = [name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 3]}..." for name in names]
-    count = next((n for n in range(len(short), 1, -1) if len(", ".join(short[:n])) <= LISTED), len(short[:1]))
-    return ", ".join(short[:count]) + (f" and {len(short) - count} more" if count < len(short) else "")
+    count = next((n for n in range(len(names), 1, -1) if len(", ".join(names[:n])) <= LISTED), len(names[:1]))
+    more = f" and {len(names) - count} more" if count < len(names) else ""
+    return ", ".join(name[:LISTED] for name in names[:count]) + more
 
 
 def read_tables(path: Path, angle_unit: str | None = None, columns: Sequence[str] = ()) -> dict[str, Table]:
@@ -190,56 +165,59 @@ def read_tables(path: Path, angle_unit: str | None = None, columns: Sequence[str
     """
     if angle_unit not in (None, *ANGLE_UNITS):
         raise ValueError(f"the unit of angles must be one of {', '.join(ANGLE_UNITS)}, got {angle_unit!r}")
-    lines = _lines(path)
-    header, stated, rows = _chosen(path.name, _rows(lines), columns) if columns else _named(path, lines)
-    known = _factors(path.name, stated, angle_unit)
-    column_of_run = header.index("run") if "run" in header else None
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "it is no text"
+        raise ValueError(f"cannot read the trajectory {path}: {reason}") from None
+    file, rows = path.name, list(_rows(lines))
+    header, stated, below = _chosen(file, rows, columns) if columns else _named(file, rows)
+    places = {name: (at, _factor(file, name, unit, angle_unit)) for name, (at, unit) in stated.items()}
+    run_at = header.index("run") if "run" in header else None
     samples: dict[str, list[tuple[int, list[float]]]] = {}
-    for number, cells in rows:
+    for number, cells in rows[below:]:
         if len(cells) != len(header):
             raise ValueError(
-                f"{path.name}, line {number}: expected {len(header)} cells as in the header, got {len(cells)}"
+                f"{file}, line {number}: expected {len(header)} cells as in the header, got {len(cells)}"
             )
-        values = [_number(path.name, number, header[at], cells[at]) * unit for at, unit in known.values()]
-        run = "" if column_of_run is None else cells[column_of_run]
-        samples.setdefault(run, []).append((number, values))
-    if not samples:
-        raise ValueError(f"{path.name} must hold at least {FEWEST_SAMPLES} samples, got 0")
-    read = {column_of_run, *(at for at, _ in known.values())}
+        values = [_number(file, number, header[at], cells[at]) * unit for at, unit in places.values()]
+        samples.setdefault("" if run_at is None else cells[run_at], []).append((number, values))
+    read = {run_at, *(at for at, _ in places.values())}
     ignored = tuple(title for at, title in enumerate(header) if title and at not in read)
-    return {run: _table(path.name, list(known), own, ignored) for run, own in samples.items()}
+    return {run: _table(file, list(places), own, ignored) for run, own in (samples or {"": []}).items()}
 
 
 def _table(
     name: str, columns: list[str], samples: list[tuple[int, list[float]]], ignored: tuple[str, ...]
 ) -> Table:
-    time = columns.index("time")
-    kept = [
-        (line, values)
-        for line, values in samples
-        if math.isnan(values[time])
-        or any(not math.isnan(value) for at, value in enumerate(values) if at != time)
-    ]
-    if len(kept) < FEWEST_SAMPLES:
-        raise ValueError(f"{name} must hold at least {FEWEST_SAMPLES} samples, got {len(kept)}")
-    arrays = np.array([values for _, values in kept], dtype=np.float64).T
-    values = dict(zip(columns, arrays, strict=True))
-    return Table(name, [line for line, _ in kept], values, ignored, len(samples) - len(kept))
+    arrays = np.array([values for _, values in samples]).reshape(-1, len(columns))
+    known = np.isfinite(arrays)
+    kept = ~known[:, columns.index("time")] | (known.sum(axis=1) > 1)
+    if np.count_nonzero(kept) < FEWEST_SAMPLES:
+        raise ValueError(f"{name} must hold at least {FEWEST_SAMPLES} samples, got {np.count_nonzero(kept)}")
+    values = dict(zip(columns, arrays[kept].T, strict=True))
+    lines = [line for (line, _), whole in zip(samples, kept, strict=True) if whole]
+    return Table(name, lines, values, ignored, len(samples) - len(lines))
 
 
-def _advice(lines: Sequence[str]) -> str:
-    """Return the program that wrote a file, by its first lines, and what to do; empty if none is known."""
-    start = "\n".join(lines[:20])
-    programs = (
-        f"is {name}: {advice}"
-        for name, (pattern, advice) in PROGRAMS.items()
-        if re.search(pattern, start, re.MULTILINE)
-    )
-    return next(programs, "")
+def _rows(lines: Sequence[str]) -> Iterator[tuple[int, list[str]]]:
+    """Yield number and cells of each line that is neither empty nor a comment."""
+    mark = ""
+    for number, line in enumerate(lines, start=1):
+        text = line.strip()
+        if text and not text.startswith("#"):
+            mark = mark or next((candidate for candidate in ";\t" if candidate in text), ",")
+            yield number, [cell.strip().strip('"').strip() for cell in line.split(mark)]
 
 
-def _chosen(file: str, rows: Rows, columns: Sequence[str]) -> tuple[list[str], Stated, Rows]:
-    """Return the header, place and unit of the columns that an option names, and the rows below it.
+def _title(text: str) -> tuple[str, str | None]:
+    """Return name and unit of a title, which stands in brackets; None without one."""
+    match = re.fullmatch(r"(.*?)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?", text.strip())
+    return (match[1], match[2]) if match else (text, None)
+
+
+def _chosen(file: str, rows: Rows, columns: Sequence[str]) -> tuple[list[str], Stated, int]:
+    """Return the header, place and unit of the columns that an option names, and the number of rows above.
 
     Raises
     ------
@@ -250,61 +228,34 @@ def _chosen(file: str, rows: Rows, columns: Sequence[str]) -> tuple[list[str], S
     if names is None:
         orders = "; ".join(", ".join(each) for each in IN_ORDER.values())
         raise ValueError(f"columns of a trajectory must be {orders}, got {len(columns)}")
-    by_number, header = all(name.isdecimal() for name, _ in asked), list[str]()
-    for number, cells in rows:
-        titles = [str(at + 1) if by_number else _title(cell)[0] for at, cell in enumerate(cells)]
+    by_number = all(name.isdecimal() for name, _ in asked)
+    header = list[str]()
+    for at, (_, cells) in enumerate(rows):
+        titles = [str(n + 1) if by_number else _title(cell)[0] for n, cell in enumerate(cells)]
         if all(titles.count(name) == 1 for name, _ in asked):
             places = [titles.index(name) for name, _ in asked]
-            if not by_number:
+            if by_number and len(header) != len(cells):
+                header = [""] * len(cells)
+            elif not by_number:
                 header = cells
-                break
-            if all(re.fullmatch(r"[-+]?\.?\d.*", cells[place]) for place in places):
-                header = header if len(header) == len(cells) else [""] * len(cells)
-                rows = itertools.chain([(number, cells)], rows)
-                break
+            if not by_number or all(re.fullmatch(r"[-+]?\.?\d.*", cells[place]) for place in places):
+                units = [
+                    unit or _title(header[place])[1] for (_, unit), place in zip(asked, places, strict=True)
+                ]
+                return (
+                    header,
+                    dict(zip(names, zip(places, units, strict=True), strict=True)),
+                    at + (not by_number),
+                )
         header = cells
-    else:
-        raise ValueError(f"{file} has no line with the columns {', '.join(columns)}, each once")
-    units = [unit or _title(header[place])[1] for (_, unit), place in zip(asked, places, strict=True)]
-    return header, dict(zip(names, zip(places, units, strict=True), strict=True)), rows
+    raise ValueError(f"{file} has no line with the columns {', '.join(columns)}, each once")
 
 
-def _title(text: str) -> tuple[str, str | None]:
-    """Return name and unit of a title, which stands in brackets; None without one."""
-    match = re.fullmatch(r"(.*?)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?", text.strip())
-    return (match[1], match[2]) if match else (text, None)
-
-
-def _lines(path: Path) -> list[str]:
-    try:
-        endless = path.is_char_device()
-        lines = [] if endless else path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "it is no text"
-        raise ValueError(f"cannot read the trajectory {path}: {reason}") from None
-    if endless:
-        raise ValueError(f"cannot read the trajectory {path}: not a regular file (a device)")
-    return lines
-
-
-def _rows(lines: Sequence[str]) -> Rows:
-    """Yield number and cells of each line that is neither empty nor a comment."""
-    mark = ""
-    for number, line in enumerate(lines, start=1):
-        text = line.strip()
-        if not text or text.startswith("#"):
-            continue
-        if not mark:
-            mark = next((candidate for candidate in ";\t" if candidate in text), ",")
-        yield number, [cell.strip().strip('"').strip() for cell in line.split(mark)]
-
-
-def _named(path: Path, lines: Sequence[str]) -> tuple[list[str], Stated, Rows]:
-    """Return the header, place and unit of its columns by name, and the rows below it."""
-    file, rows = path.name, _rows(lines)
-    header = next(rows, (0, []))[1]
-    if not header:
-        raise ValueError(f"the trajectory {path} is empty")
+def _named(file: str, rows: Rows) -> tuple[list[str], Stated, int]:
+    """Return the header, place and unit of its columns by name, and the number of rows above its samples."""
+    if not rows:
+        raise ValueError(f"the trajectory {file} is empty")
+    header = rows[0][1]
     own = set(OWN_TITLES) <= set(header)
     titles = [_title(OWN_TITLES.get(given, given) if own else given) for given in header]
     named = [(name.lower(), at) for at, (name, _) in enumerate(titles) if name.lower() in COLUMN_UNITS]
@@ -312,16 +263,12 @@ def _named(path: Path, lines: Sequence[str]) -> tuple[list[str], Stated, Rows]:
     for at, (title, _) in enumerate(titles):
         ends = (name for name, end in ENDS.items() if re.fullmatch(rf"(?:.*[\W_])?(?:{end})", title, re.I))
         named += [(name, at) for name in ends if name not in exact]
-    # some components of a quaternion or place without the others are other quantities
-    partial = {
-        name
-        for group in (QUATERNION, POSITION)
-        if not set(group) <= {name for name, _ in named}
-        for name in group
-    }
-    named = [(name, at) for name, at in named if name in exact or name not in partial]
     known: Stated = {}
     for name, at in named:
+        # some components of a quaternion or place without the others are other quantities
+        group = next((each for each in (QUATERNION, POSITION) if name in each), (name,))
+        if name not in exact and not set(group) <= {each for each, _ in named}:
+            continue
         if name in known:
             both = f"{header[known[name][0]]!r} and {header[at]!r}"
             raise ValueError(f"{file} must have each column once, got {name} as {both}: name them by columns")
@@ -334,38 +281,30 @@ def _named(path: Path, lines: Sequence[str]) -> tuple[list[str], Stated, Rows]:
         raise ValueError(f"{file} must have tilt where it has azimuth, got no tilt")
     if "time" not in known or not {"tilt", "qw", "x"} & set(known):
         raise ValueError(
-            f"{file} {advice}"
-            if (advice := _advice(lines))
-            else f"{file} must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x, y and z, "
+            f"{file} must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x, y and z, "
             f"got {name_list([each for each in header if each]) or 'none'}; --trajectory-columns names them"
         )
+    return header, known, 1
 
-    return header, known, rows
 
-
-def _factors(file: str, stated: Stated, angle_unit: str | None) -> dict[str, tuple[int, float]]:
-    """Return place and factor to SI units of each column, by name."""
-    factors: dict[str, tuple[int, float]] = {}
-    for name, (at, given) in stated.items():
-        unit = SILENT_UNITS.get(name, angle_unit) if given is None else given
-        if unit is None:
-            raise ValueError(
-                f"{file} does not say the unit of {name}: name the column '{name} [deg]' or "
-                f"'{name} [rad]', or give the unit of angles"
-            )
-        if unit.lower() not in COLUMN_UNITS[name]:
-            raise ValueError(f"{file}: {name} must be in {' or '.join(COLUMN_UNITS[name])}, got {unit!r}")
-        factors[name] = at, COLUMN_UNITS[name][unit.lower()]
-    return factors
+def _factor(file: str, name: str, given: str | None, angle_unit: str | None) -> float:
+    """Return the factor of a column to SI units."""
+    unit = SILENT_UNITS.get(name, angle_unit) if given is None else given
+    if unit is None:
+        raise ValueError(
+            f"{file} does not say the unit of {name}: name the column '{name} [deg]' or "
+            f"'{name} [rad]', or give the unit of angles"
+        )
+    if unit.lower() not in COLUMN_UNITS[name]:
+        raise ValueError(f"{file}: {name} must be in {' or '.join(COLUMN_UNITS[name])}, got {unit!r}")
+    return COLUMN_UNITS[name][unit.lower()]
 
 
 def _number(file: str, line: int, title: str, cell: str) -> float:
-    if not cell or cell.lower() == "nan":
-        return math.nan
     try:
-        value = float(cell)
+        value = float(cell or "nan")
     except ValueError:
         raise ValueError(f"{file}, line {line}: {title} must be a number, got {cell[:40]!r}") from None
-    if not math.isfinite(value):
+    if math.isinf(value):
         raise ValueError(f"{file}, line {line}: {title} must be finite, got {cell!r}")
     return value
