@@ -90,7 +90,8 @@ class CertificateItem(pytest.Item):
 
     def runtest(self) -> None:
         """Repeat the fingerprint, and raise if it changed."""
-        from rockwobble.compare.check.baseline import certificate_findings, read_certificate, verify
+        from rockwobble.compare.check.baseline import certificate_findings, verify
+        from rockwobble.compare.check.verdict import read_certificate
 
         from .pages.wording import joined
 

@@ -12,6 +12,7 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, el_centro_1940
 from rockwobble.models.cylinder import PIER
@@ -99,48 +100,48 @@ def fields(subject: Subject, support: str) -> Iterator[Result]:
 def release(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt, peak and passes of a release that passes the upright position."""
     found, model = _both(subject, RELEASE, support)
-    apart = _difference(found, model, RELEASE.length)
-    yield at_most("tilt and azimuth of a release", apart, subject.tolerance_bound(1.0, _CONTACT, "alpha"))
+    yield _followed(subject, found, model, "tilt and azimuth of a release", 1.0, _CONTACT)
+    bound = subject.tolerance_bound(10.0, "as the model", "s, rad")
     if "passes" in subject.knows:
         columns = ["time", "minimum_tilt", "angle_of_turn"]
-        own, other = (each.passes[columns].to_numpy(dtype=float) for each in (found, model))
-        off = largest(own - other) if own.shape == other.shape else math.nan
-        yield at_most("passes of a release", off, subject.tolerance_bound(10.0, "as the model", "s, rad"))
+        yield at_most(
+            "passes of a release", _apart(*(each.passes[columns] for each in (found, model))), bound
+        )
     if "extrema" in subject.knows:
-        own, other = found.extrema[:, :2], model.extrema[:, :2]
-        off = largest(own - other) if own.shape == other.shape else math.nan
-        bound = subject.tolerance_bound(10.0, "as the model", "s, rad")
+        off = _apart(found.extrema[:, :2], model.extrema[:, :2])
         yield at_most("turning points of a release", off, bound)
+
+
+def _apart(own: ArrayLike, other: ArrayLike) -> float:
+    """Return the largest difference of two tables; NaN where they have not as many rows."""
+    tables = np.asarray(own, dtype=float), np.asarray(other, dtype=float)
+    return largest(tables[0] - tables[1]) if tables[0].shape == tables[1].shape else math.nan
 
 
 def frame(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt of a release of a frame: one column under a slab that can only translate."""
-    found, model = _both(subject, FRAME_RELEASE, support)
-    apart = _difference(found, model, FRAME_RELEASE.length)
-    yield at_most("tilt and azimuth of a frame", apart, subject.tolerance_bound(1.0, _CONTACT, "alpha"))
+    both = _both(subject, FRAME_RELEASE, support)
+    yield _followed(subject, *both, "tilt and azimuth of a frame", 1.0, _CONTACT)
 
 
 def tendon(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt of a release with a tendon: a spring between points, whose stretch follows from the tilt."""
-    case = dataclasses.replace(RELEASE, tendon=TENDON)
-    found, model = _both(subject, case, support)
-    apart = _difference(found, model, case.length)
-    yield at_most("tilt and azimuth with a tendon", apart, subject.tolerance_bound(1.0, _CONTACT, "alpha"))
+    both = _both(subject, dataclasses.replace(RELEASE, tendon=TENDON), support)
+    yield _followed(subject, *both, "tilt and azimuth with a tendon", 1.0, _CONTACT)
 
 
 def ramp(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt after an uplift on a load that rises, as far as 1.5 times the load that lifts the pier."""
-    found, model = _both(subject, RAMP, support, 0.05)
-    bound = subject.tolerance_bound(5.0, "the base tips at the threshold", "alpha")
-    yield at_most("tilt and azimuth after an uplift", _difference(found, model, RAMP.length), bound)
+    both = _both(subject, RAMP, support, 0.05)
+    yield _followed(subject, *both, "tilt and azimuth after an uplift", 5.0, "the base tips at the threshold")
 
 
 def record(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt and azimuth under El Centro, of a case that reveals an error of 0.1 % in the size."""
-    found, model = _both(subject, RECORD, support)
+    both = _both(subject, RECORD, support)
     times = 1.0 if subject.run is None else 10.0  # an engine errs at uplift, and passes magnify that
-    bound = subject.tolerance_bound(times, "its accuracy, and what passes make of it", "alpha")
-    yield at_most("tilt and azimuth under El Centro", _difference(found, model, RECORD.length), bound)
+    reason = "its accuracy, and what passes make of it"
+    yield _followed(subject, *both, "tilt and azimuth under El Centro", times, reason)
 
 
 def ring(subject: Subject, support: str) -> Iterator[Result]:
@@ -170,10 +171,10 @@ def trajectory(subject: Subject, support: str) -> Iterator[Result]:
             off = abs(float(found.tilt[0]) - case.initial.tilt) / alpha
             yield at_most("tilt at release", off, subject.tolerance_bound(1.0, "as stated", "alpha"))
         end = _agreement(subject, case, support, model)
-        apart, bound = _difference(found, model, end), subject.tolerance_bound(1.0, "as asked for", "alpha")
-        yield at_most(f"tilt and azimuth up to {end:.4g} s", apart, bound)
+        name, reason = f"tilt and azimuth up to {end:.4g} s", "as asked for"
+        yield _followed(subject, found, model, name, 1.0, reason, end)
         peaks = [float(each.tilt[each.time <= end].max()) / alpha for each in (found, model)]
-        yield at_most("peak tilt", abs(peaks[0] - peaks[1]), bound)
+        yield at_most("peak tilt", abs(peaks[0] - peaks[1]), subject.tolerance_bound(1.0, reason, "alpha"))
 
 
 def walls(name: str, case: Case, trace: Trace) -> Iterator[Result]:
@@ -199,10 +200,13 @@ def _both(subject: Subject, case: Case, support: str, sample_step: float = 0.01)
     return found, model
 
 
-def _difference(found: Trace, model: Trace, end: float) -> float:
-    """Root mean square difference of the leans until a time, over sin(alpha)."""
-    apart = lean_difference(found, model, end)
-    return rms(apart) if len(apart) > 1 else math.inf
+def _followed(
+    subject: Subject, found: Trace, model: Trace, name: str, times: float, reason: str, end: float = math.inf
+) -> Result:
+    """Compare the leans to the end of the case, or until a time: root mean square over sin(alpha)."""
+    apart = lean_difference(found, model, min(end, model.case.length))
+    bound = subject.tolerance_bound(times, reason, "alpha")
+    return at_most(name, rms(apart) if len(apart) > 1 else math.inf, bound)
 
 
 def _agreement(subject: Subject, case: Case, support: str, model: Trace) -> float:

@@ -19,9 +19,9 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.models.case import RECESS_MODEL
@@ -35,6 +35,7 @@ from .fingerprint import as_json, fingerprint, repeat, short_cases
 from .measurement import NO_BASELINE, NOT_RUN, Bound, Result, at_most, not_run
 from .subject import Subject, engine, reduced_model
 from .verdict import (
+    FORMAT,
     KIND,
     SAME,
     Certificate,
@@ -44,8 +45,6 @@ from .verdict import (
     Sample,
     compare,
     compare_entries,
-    read,
-    require_whole,
 )
 
 _LONGEST = 4.0  # [s] cases of an engine, whose steps take time
@@ -65,7 +64,7 @@ class Baseline:
     """
 
     fingerprint: tuple[Entry, ...] = ()
-    reasons: tuple[Mapping[str, object], ...] = ()
+    reasons: tuple[Mapping[str, Any], ...] = ()
 
     @property
     def version(self) -> str:
@@ -75,9 +74,7 @@ class Baseline:
     @property
     def versions(self) -> Mapping[str, str]:
         """The versions of the packages that it was made with."""
-        found = self.reasons[-1]["versions"] if self.reasons else {}
-        assert isinstance(found, dict)
-        return found
+        return self.reasons[-1]["versions"] if self.reasons else {}
 
 
 def baseline_path(subject: Subject) -> Path:
@@ -162,18 +159,10 @@ def _share(verdict: FingerprintVerdict, old: Entry, new: Sample) -> float:
     """Return the difference of a case over the allowed one; NaN where a quantity is in one of both only."""
     if verdict.word != SAME:
         return verdict.difference / verdict.allowed
-    apart = [
-        np.abs(_numbers(wanted) - _numbers(new["signals"][name])) / np.array(old["allowed"][name])
-        for name, wanted in old["signals"].items()
-    ]
-    return float(np.nan_to_num(apart).max())
+    wanted, got = (np.array(list(each["signals"].values()), dtype=np.float64) for each in (old, new))
+    return float(np.nan_to_num(np.abs(wanted - got) / np.array(list(old["allowed"].values()))).max())
 
 
-def _numbers(values: list[float | None]) -> NDArray[np.float64]:
-    return np.array(values, dtype=np.float64)
-
-
-FORMAT = 3
 _RTOL = 1e-8  # the default of `reduced.simulate`
 # groups of checks that say nothing of the motion, but of a protocol or of a baseline
 NOT_CLAIMING = ("protocol", "baseline")
@@ -235,9 +224,8 @@ def subject_of(certificate: Certificate) -> Subject:
         If it is not installed.
     """
     given = certificate["method"]
-    if given["engine"] is None:
-        return models()
-    return engine(given["engine"], given["time_step"], **given["settings"])
+    name = given["engine"]
+    return models() if name is None else engine(name, given["time_step"], **given["settings"])
 
 
 def models(module: ModuleType = reduced) -> Subject:
@@ -294,23 +282,6 @@ def certificate_findings(certificate: Certificate, verdict: FingerprintVerdict) 
     )
     versions = Finding(key="certificate.versions", values={"names": others})
     return Findings([word, versions if others else Finding(key="certificate.same_versions")])
-
-
-def read_certificate(path: Path) -> Certificate:
-    """Read a certificate.
-
-    Raises
-    ------
-    ValueError
-        If the file cannot be read, is no certificate, or one of a later format.
-    """
-    if path.is_file() and path.read_bytes().lstrip()[:1] != b"{":
-        raise ValueError(f"{path} is not a certificate (JSON, written by rockwobble certify)")
-    found = read(path)
-    if found["format"] != FORMAT:
-        raise ValueError(f"{path} has format {found['format']}, this version reads {FORMAT}")
-    require_whole(found, path)
-    return found
 
 
 def write_certificate(certificate: Mapping[str, object], path: Path) -> None:

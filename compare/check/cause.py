@@ -3,7 +3,6 @@
 Each candidate scales one number that somebody may have wrong. The scale that fits best is found in a release
 and in a ramp of the ground together, since some cannot be told apart by one of them: gravity and size both
 change the rate of a release, and only gravity the threshold of uplift. What fits about as well is named, too.
-One candidate has no number: a body whose gyroscopic term is left out, which changes releases alone.
 """
 
 from __future__ import annotations
@@ -15,13 +14,10 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from rockwobble.models import Case, RockingBody, Trace
-from rockwobble.models.support import RECESS
-from rockwobble.reduced.body import body_of
-from rockwobble.reduced.equations import base_inertia, flat_rhs
 
 from ..metrics.pair import rms
 from .lagrange import shape_of
-from .measurement import Array, lean_difference
+from .measurement import lean_difference
 from .subject import Subject
 
 _WIDEST = 0.3  # logarithm of a scale
@@ -71,20 +67,18 @@ def likely_cause(subject: Subject, support: str, cases: Sequence[Case]) -> str:
     cases : sequence of Case
         A release, and motions from rest.
     """
-    found = [subject.simulate(case, support) for case in cases]
-    if any(not len(trace.time) or trace.outcome == "failed" for trace in found):
+    found, reference = [subject.simulate(case, support) for case in cases], subject.reference
+    if reference is None or any(not len(trace.time) or trace.outcome == "failed" for trace in found):
         return ""
 
     def models(changed: Sequence[Case]) -> list[Trace]:
-        assert subject.reference is not None
-        return [subject.reference(case, support=support, rtol=_RTOL) for case in changed]
+        return [reference(case, support=support, rtol=_RTOL) for case in changed]
 
     def left_by(change: Change, at: float) -> float:
         try:
-            changed = [change(case, at) for case in cases]
+            return _difference(found, models([change(case, at) for case in cases]))
         except ValueError:  # no body has such an inertia
             return math.inf
-        return _difference(found, models(changed))
 
     as_stated = models(cases)
     whole = _difference(found, as_stated)
@@ -99,49 +93,9 @@ def likely_cause(subject: Subject, support: str, cases: Sequence[Case]) -> str:
     rests = {f"{name} {100.0 * math.expm1(at):+.2g} %": rest for name, (at, rest) in fits.items()}
     share, rest = _lowest(lambda share: left_by(_with_loss, share), 0.0, _LARGEST_LOSS)
     rests[f"a loss as of a rolling resistance of {share:.2g} b"] = rest
-    turned = [_without_gyroscopic_term(trace, support == RECESS) for trace in as_stated]
-    rests["no gyroscopic term"] = _difference(found, turned)
     best = min(rests.values())
-    if best > _EXPLAINED * whole:
-        return ""
-    alike = max(_ALIKE * best, _SAME * whole)
+    alike = max(_ALIKE * best, _SAME * whole) if best <= _EXPLAINED * whole else -math.inf
     return ", or ".join(words for words in sorted(rests, key=rests.__getitem__) if rests[words] <= alike)
-
-
-def _without_gyroscopic_term(trace: Trace, recess: bool) -> Trace:
-    """Return a release without -omega x (I omega), which from rest is none.
-
-    With omega = phi' (z - n) + theta' e + tau' n, n the axis and e horizontal across the lean, the virtual
-    work of omega x (I omega) is (I2 - I1) (omega n) s (phi' dtheta - theta' dphi): nothing on tau.
-    """
-    from scipy.integrate import solve_ivp
-
-    case, start = trace.case, trace.case.initial
-    if start is None or case.motion is not None:
-        return trace
-    body = body_of(case.cylinder, case.gravity)
-
-    def rates(_: float, state: Array) -> list[float]:
-        theta, omega, phi, spin, tau, S = (float(value) for value in state)
-        S = 0.0 if recess else S
-        rate = list(flat_rhs(body, theta, omega, phi, spin, tau, S, 0.0, 0.0, 0.0))
-        t, s = math.tan(0.5 * theta), math.sin(theta)
-        about_axis = rate[4] - (1.0 - math.cos(theta)) * rate[2]
-        couple = (body.I2 - body.I1) * about_axis * s
-        rate[1] += couple * rate[2] / body.A
-        rate[3] -= couple * omega
-        ratio = (body.E + body.C * t) / (s * base_inertia(body, t))
-        rate[5] = 0.0 if recess else rate[5] - ratio * couple * omega
-        return rate
-
-    s, t = math.sin(start.tilt), math.tan(0.5 * start.tilt)
-    spin = s * s * base_inertia(body, t) * start.rolling_rate
-    first = [start.tilt, start.tilt_rate, start.rolling_angle, spin, 0.0, 0.0]
-    end = float(trace.time[-1])
-    found = solve_ivp(rates, (0.0, end), first, "DOP853", trace.time, rtol=_RTOL, atol=_RTOL)
-    if found.y.shape[1] < len(trace.time):
-        return trace
-    return dataclasses.replace(trace, tilt=found.y[0], rolling_angle=found.y[2])
 
 
 def _lowest(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from random import Random
 
 import numpy as np
@@ -36,7 +36,7 @@ from rockwobble.models.support import FLAT, RECESS, RING, SUPPORTS
 
 from ..runs.progress import ProgressCallback, stages
 from .measurement import FRAME, GRAVITY, SQUAT, release_case
-from .subject import Subject
+from .subject import SLAB, UPLIFT, Subject
 from .verdict import SAME, Entry, Sample, compare_entries
 
 Array = NDArray[np.float64]
@@ -79,31 +79,34 @@ def short_cases() -> tuple[ShortCase, ...]:
     """Return the cases, the simplest first."""
     # strong and long enough that a slab 1 % heavier exceeds the repeatability of an engine
     pushes = [[0.0, 0.0, 0.0], [2.6, 0.6, -1.2], [1.2, 2.2, 1.2]]
-    frame = _shaken("frame", "mass of the slab, in (18) and in the forces", pushes, 1.0, 3.5, body=FRAME)
+    tied = [[0.0, 0.0, 0.0], [2.6, 1.4, -1.2], [1.2, 2.2, 1.2]]
+    flat = "twist of the flat-ground model, N1, and terms in the radius b"
+    tendon = Tendon(prestress=0.3, stiffness=2.0)
+    # small and long, so that in an engine its impacts turn rounding into another motion
+    planar = Case(_SLENDER, initial=InitialState(0.5 * _SLENDER.alpha, 0.0, 0.3), duration=12.0)
     return (
         _release("tilting", "restoring moment p^2 sin(alpha - theta)", PIER, 0.0, 1.0),
         _release("rolling", "B and B'/2A of (18) and (19)", PIER, 0.8, 2.0),
         _release("near-pass", "J, the limit of B near upright", PIER, 1e-2, 2.0),
         _release("inertias", "I1 and I2 of (16)", _HOLLOW, 0.7, 2.0),
-        _release(
-            "flat-ground",
-            "twist of the flat-ground model, N1, and terms in the radius b",
-            _LOW,
-            1.5,
+        _release("flat-ground", flat, _LOW, 1.5, 1.0, FLAT),
+        _shaken("uplift", "uplift (25), (26) and a_r of (18)", [[0.0, 0.0], [1.6, 1.9]], 1.4, 1.4),
+        _shaken("turning-push", "a_t of (19)", [[0.0, 0.0], [2.2, 0.5], [1.0, 1.8]], 0.7, 1.4),
+        _shaken("vertical", "g + az", [[0.0, 0.0, 0.0], [2.2, 0.5, -1.0], [1.0, 1.8, 1.0]], 0.7, 1.4),
+        _shaken("frame", "mass of the slab, in (18) and in the forces", pushes, 1.0, 3.5, body=FRAME),
+        _shaken(
+            "tendon",
+            "prestress and stiffness of a tendon: uplift, couple, load and energy",
+            tied,
             1.0,
-            support=FLAT,
+            2.5,
+            tendon=tendon,
         ),
-        _shaken("uplift", "uplift (25), (26) and a_r of (18)", [[0.0, 0.0], [1.6, 1.9]], 1.4),
-        _shaken("turning-push", "a_t of (19)", [[0.0, 0.0], [2.2, 0.5], [1.0, 1.8]], 0.7),
-        _shaken("vertical", "g + az", [[0.0, 0.0, 0.0], [2.2, 0.5, -1.0], [1.0, 1.8, 1.0]], 0.7),
-        frame,
-        _with_tendon(),
         ShortCase(
             name="planar",
             claim="the planar model, with the loss of an impact",
             term="impact, by the momentum about the new pivot",
-            # small and long, so that in an engine its impacts turn rounding into another motion
-            case=Case(_SLENDER, initial=InitialState(0.5 * _SLENDER.alpha, 0.0, 0.3), duration=12.0),
+            case=planar,
             options={"plane": 0.3, "restitution": "momentum"},
         ),
         _record("el-centro", "all terms together", 1.4, 12.0),
@@ -126,14 +129,14 @@ def cases_of(subject: Subject, longest: float = math.inf) -> list[ShortCase]:
         for short in short_cases()
         if short.support in subject.supports
         and short.case.length <= longest
-        and (subject.uplifts or short.case.is_release)
-        and (subject.carries_slab or not short.case.cylinder.carries_slab)
-        and subject.terms.issuperset(short.case.terms)
+        and (UPLIFT in subject.features or short.case.is_release)
+        and (SLAB in subject.features or not short.case.cylinder.carries_slab)
+        and subject.features.issuperset(short.case.terms)
     ]
 
 
 def _release(
-    name: str, term: str, body: RockingBody, spin: float, length: float, *, support: str = RECESS
+    name: str, term: str, body: RockingBody, spin: float, length: float, support: str = RECESS
 ) -> ShortCase:
     start = InitialState(0.5 * body.alpha, 0.0, 0.3, spin)
     claim = f"free response {'by (18) and (19)' if SUPPORTS[support].guided else 'on flat ground'}"
@@ -146,22 +149,15 @@ def _shaken(
     term: str,
     samples: list[list[float]],
     step: float,
-    length: float | None = None,
+    length: float,
     *,
     body: RockingBody = PIER,
+    tendon: Tendon | None = None,
     **options: float,
 ) -> ShortCase:
-    motion = GroundMotion(np.array(samples), step)
-    case = Case(body, motion, duration=motion.duration if length is None else length)
+    case = Case(body, GroundMotion(np.array(samples), step), duration=length, tendon=tendon)
     claim = "uplift and motion under a ramp of the ground"
     return ShortCase(name=name, claim=claim, term=term, case=case, options=options)
-
-
-def _with_tendon() -> ShortCase:
-    pushes = [[0.0, 0.0, 0.0], [2.6, 1.4, -1.2], [1.2, 2.2, 1.2]]
-    term = "prestress and stiffness of a tendon: uplift, couple, load and energy"
-    short = _shaken("tendon", term, pushes, 1.0, 2.5)
-    return replace(short, case=replace(short.case, tendon=Tendon(prestress=0.3, stiffness=2.0)))
 
 
 def _record(name: str, term: str, strength: float, length: float) -> ShortCase:
@@ -187,17 +183,18 @@ def fingerprint(
 def entry_of(short: ShortCase, subject: Subject) -> Entry:
     """Return the entry of a case."""
     trace = _run(subject, short, short.case)
-    found, values = entry(short, trace), _signals(trace)
-    copies = [_signals(_run(subject, short, copy)) for copy in _copies(short.case, subject.tolerance)]
+    sample, values, share = entry(short, trace), _signals(trace), subject.tolerance
+    pairs = (1.0 + share, 1.0 + share), (1.0 - share, 1.0 + 0.5 * share)
+    copies = [_signals(_run(subject, short, perturbed(short.case, *pair))) for pair in pairs]
     spread = _BEYOND * np.array([_difference(copy, values) for copy in copies]).max(axis=0)
     lost = np.flatnonzero(spread[:, SIGNALS.index("tilt")] > AGREEMENT)
-    allowed = _REPEATS * subject.tolerance * np.maximum(1.0, np.abs(np.nan_to_num(values))) + spread
+    allowed = _REPEATS * share * np.maximum(1.0, np.abs(np.nan_to_num(values))) + spread
     if len(lost):  # copies are no measure from there on
         allowed[lost[0] :] = allowed[max(lost[0] - 1, 0)]
     whole: Entry = {
-        **found,
-        "agreement_time": found["time"][lost[0]] if len(lost) else None,
-        "repeats": _REPEATS * subject.tolerance,
+        **sample,
+        "agreement_time": sample["time"][lost[0]] if len(lost) else None,
+        "repeats": _REPEATS * share,
         "allowed": {name: _round(allowed[:, k], 3) for k, name in enumerate(SIGNALS)},
     }
     if len(lost):
@@ -244,8 +241,11 @@ def entry(short: ShortCase, trace: Trace) -> Sample:
 
 def copied_tilts(short: ShortCase, subject: Subject) -> list[list[float | None]]:
     """Return the tilts of many copies, over alpha."""
-    members = _members(short.case, _BEYOND * subject.tolerance)
-    return [_finite_list(_run(subject, short, member).tilt / member.cylinder.alpha) for member in members]
+    random, share, entries = Random(1940), _BEYOND * subject.tolerance, []
+    for _ in range(_MEMBERS):
+        copy = perturbed(short.case, *(1.0 + share * random.gauss(0, 1) for _ in range(2)))
+        entries.append(_finite_list(_run(subject, short, copy).tilt / copy.cylinder.alpha))
+    return entries
 
 
 def _signals(trace: Trace) -> Array:
@@ -272,16 +272,6 @@ def _difference(copy: Array, values: Array) -> Array:
     apart[:count] = np.nan_to_num(np.abs(copy[:count] - values[:count]))
     running = np.maximum.accumulate(apart, axis=0)  # a difference that is zero by chance says nothing
     return np.asarray(running, dtype=np.float64)
-
-
-def _copies(case: Case, share: float) -> list[Case]:
-    return [perturbed(case, 1.0 + share, 1.0 + share), perturbed(case, 1.0 - share, 1.0 + 0.5 * share)]
-
-
-def _members(case: Case, share: float) -> list[Case]:
-    random = Random(1940)
-    factors = [(1.0 + share * random.gauss(0, 1), 1.0 + share * random.gauss(0, 1)) for _ in range(_MEMBERS)]
-    return [perturbed(case, *pair) for pair in factors]
 
 
 def _finite_or_none(value: float) -> float | None:

@@ -10,7 +10,6 @@ import math
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import nullcontext
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
@@ -29,21 +28,21 @@ from rockwobble.multibody.engines.registry import engine_fault, engine_packages,
 
 from ..runs.choice import default_runs, require_runnable, run_labels, runs_here
 from ..runs.execution import Job
-from ..runs.progress import ProgressCallback, Stage, stages
+from ..runs.progress import ProgressCallback, stages
 from ..storage.provenance import package_versions
 from ..storage.results import Results
 from . import agreement, baseline, invariance, lagrange, laws, restraint
 from . import subject as subjects
 from .cause import likely_cause
 from .measurement import FAILED, PASSED, RELEASE, Bound, Result, at_most, not_run
-from .subject import TOLERANCE, Subject
+from .subject import FILES, REFERENCE, SLAB, TOLERANCE, UPLIFT, Subject
 from .suite import SuiteRuns, check_suite
 
 Measure = Callable[[Subject, str], Iterator[Result]]
 ENDS = Bound(0.0, "a check must reach its end")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Check:
     """One check, and the subjects that it is for.
 
@@ -55,40 +54,19 @@ class Check:
         Supports that it is for, as far as the subject has them; empty: the first of the subject.
     knows : tuple of str
         Fields of a trace without which it cannot run, and says so.
-    options : tuple of str
-        Options of the source without which it does not apply.
-    reference : bool
-        Whether it compares with an independent model: not for the reduced models themselves.
-    files : bool
-        Whether it is for trajectories of cases of their own.
-    from_rest : bool
-        Whether it starts from a cylinder that stands.
-    slab : bool
-        Whether it is for subjects that know a wobbling frame.
-    terms : tuple of str
-        Terms of a case without which a subject is not asked.
+    needs : tuple of str
+        Features of a subject without which it does not apply, see `Subject.features`.
     """
 
     measure: Measure
     supports: tuple[str, ...] = MODELLED
     knows: tuple[str, ...] = ()
-    options: tuple[str, ...] = ()
-    reference: bool = False
-    files: bool = False
-    from_rest: bool = False
-    slab: bool = False
-    terms: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
 
     def applies(self, subject: Subject) -> bool:
         """Return whether the check applies to a subject."""
-        return (
-            set(self.options) <= subject.options
-            and self.files == (subject.cases is not None)
-            and (subject.reference is not None or not self.reference)
-            and (subject.uplifts or not self.from_rest)
-            and (subject.carries_slab or not self.slab)
-            and subject.terms.issuperset(self.terms)
-        )
+        files = FILES in subject.features
+        return subject.features.issuperset(self.needs) and (FILES in self.needs) == files
 
     def run(self, subject: Subject) -> Iterator[Result]:
         """Yield its results, the name of each with its support; an exception is a result, too."""
@@ -103,87 +81,76 @@ class Check:
                     yield dataclasses.replace(result, name=f"{result.name}, {support}")
             except Exception as error:  # whatever a model or engine raises is said in its place
                 words = f"{type(error).__name__}: {' '.join(str(error).split())}"
-                if subject.options or subject.cases:  # a reduced model or a file read here must not fail
+                if subject.features & {
+                    "rtol",
+                    "stepper",
+                    FILES,
+                }:  # a reduced model or a file read here must not fail
                     yield at_most(f"{name}, {support}", math.nan, ENDS, note=words)
                 else:
                     yield not_run(f"{name}, {support}", words)
 
 
+_MODELS, _ANY = tuple(reduced.MODELS), tuple(SUPPORTS.values())
 GROUPS: Mapping[str, tuple[Check, ...]] = {
-    "equations": (Check(measure=lagrange.residual, supports=(RECESS,), options=("rtol",)),),
+    "equations": (Check(lagrange.residual, (RECESS,), needs=("rtol",)),),
     "exact": (
-        Check(measure=laws.free_response, supports=(RECESS,)),
-        Check(measure=laws.steady_wobble),
-        Check(measure=laws.vanishing_spin, supports=(RECESS,), options=("rtol",)),
-        Check(measure=laws.planar_rocking, supports=("planar",)),
+        Check(laws.free_response, (RECESS,)),
+        Check(laws.steady_wobble),
+        Check(laws.vanishing_spin, (RECESS,), needs=("rtol",)),
+        Check(laws.planar_rocking, ("planar",)),
     ),
     "conserved": (
-        Check(measure=lagrange.free_motion, knows=("energy",)),
-        Check(measure=lagrange.rolling_loss, supports=(RECESS,), terms=("rolling_resistance",)),
-        Check(measure=lagrange.work_of_the_ground, knows=("energy", "centre_of_mass")),
-        Check(
-            measure=lagrange.work_of_a_record,
-            supports=tuple(reduced.MODELS),
-            knows=("energy",),
-            options=("rtol",),
-        ),
+        Check(lagrange.free_motion, knows=("energy",)),
+        Check(lagrange.rolling_loss, (RECESS,), needs=("rolling_resistance",)),
+        Check(lagrange.work_of_the_ground, knows=("energy", "centre_of_mass")),
+        Check(lagrange.work_of_a_record, _MODELS, ("energy",), ("rtol",)),
     ),
     "rest": (
-        Check(measure=laws.stands, supports=tuple(reduced.MODELS), from_rest=True),
-        Check(measure=laws.uplift, knows=("uplift_time",), from_rest=True),
-        Check(measure=laws.force_at_rest, knows=("contact_force",), from_rest=True),
-        Check(measure=laws.falls, knows=("outcome",)),
-        Check(measure=laws.static_loads, supports=(), options=("stepper",), from_rest=True),
+        Check(laws.stands, _MODELS, needs=(UPLIFT,)),
+        Check(laws.uplift, knows=("uplift_time",), needs=(UPLIFT,)),
+        Check(laws.force_at_rest, knows=("contact_force",), needs=(UPLIFT,)),
+        Check(laws.falls, knows=("outcome",)),
+        Check(laws.static_loads, (), needs=("stepper", UPLIFT)),
     ),
     "invariance": (
-        Check(measure=invariance.frame, knows=("rolling_angle",)),
-        Check(measure=invariance.scale),
-        Check(measure=invariance.statement),
+        Check(invariance.frame, knows=("rolling_angle",)),
+        Check(invariance.scale),
+        Check(invariance.statement),
     ),
     "tendon": (
-        Check(measure=restraint.releases, supports=(RECESS,), terms=("tendon",)),
-        Check(measure=restraint.rocking, supports=("planar",), terms=("tendon",)),
-        Check(measure=restraint.stored_energy, supports=(RECESS,), knows=("energy",), terms=("tendon",)),
-        Check(
-            measure=restraint.load_at_rest, supports=(RECESS,), knows=("contact_force",), terms=("tendon",)
-        ),
-        Check(
-            measure=restraint.raised_uplift,
-            supports=(RECESS, "planar"),
-            knows=("uplift_time",),
-            terms=("tendon",),
-            from_rest=True,
-        ),
-        Check(measure=restraint.balance, supports=(RECESS,), knows=("outcome",), terms=("tendon",)),
+        Check(restraint.releases, (RECESS,), needs=("tendon",)),
+        Check(restraint.rocking, ("planar",), needs=("tendon",)),
+        Check(restraint.stored_energy, (RECESS,), ("energy",), ("tendon",)),
+        Check(restraint.load_at_rest, (RECESS,), ("contact_force",), ("tendon",)),
+        Check(restraint.raised_uplift, (RECESS, "planar"), ("uplift_time",), ("tendon", UPLIFT)),
+        Check(restraint.balance, (RECESS,), ("outcome",), ("tendon",)),
     ),
-    "order": (Check(measure=agreement.order, options=("stepper",), reference=True),),
+    "order": (Check(agreement.order, needs=("stepper", REFERENCE)),),
     "trace": (
-        Check(measure=laws.place, supports=(RECESS,), knows=("twist", "contact_point", "centre_of_mass")),
-        Check(measure=laws.slip, options=("stepper",)),
-        Check(measure=laws.turning, knows=("extrema", "passes")),
+        Check(laws.place, (RECESS,), ("twist", "contact_point", "centre_of_mass")),
+        Check(laws.slip, needs=("stepper",)),
+        Check(laws.turning, knows=("extrema", "passes")),
     ),
     "agreement": (
-        Check(measure=agreement.fields, knows=("twist", "centre_of_mass"), reference=True),
-        Check(measure=agreement.release, reference=True),
-        Check(measure=agreement.frame, reference=True, slab=True),
-        Check(measure=agreement.tendon, supports=(RECESS,), reference=True, terms=("tendon",)),
-        Check(measure=agreement.ramp, reference=True, from_rest=True),
-        Check(measure=agreement.record, reference=True, from_rest=True),
-        Check(measure=agreement.ring, supports=(RING,), options=("stepper",), reference=True),
-        Check(measure=agreement.trajectory, reference=True, files=True),
+        Check(agreement.fields, knows=("twist", "centre_of_mass"), needs=(REFERENCE,)),
+        Check(agreement.release, needs=(REFERENCE,)),
+        Check(agreement.frame, needs=(REFERENCE, SLAB)),
+        Check(agreement.tendon, (RECESS,), needs=(REFERENCE, "tendon")),
+        Check(agreement.ramp, needs=(REFERENCE, UPLIFT)),
+        Check(agreement.record, needs=(REFERENCE, UPLIFT)),
+        Check(agreement.ring, (RING,), needs=("stepper", REFERENCE)),
+        Check(agreement.trajectory, needs=(REFERENCE, FILES)),
     ),
-    "protocol": tuple(
-        Check(measure=measure, supports=tuple(SUPPORTS.values()), options=("stepper",))
-        for measure in (
-            invariance.description,
-            invariance.stepping,
-            invariance.time_grid,
-            invariance.repetition,
-        )
+    "protocol": (
+        Check(invariance.description, _ANY, needs=("stepper",)),
+        Check(invariance.stepping, _ANY, needs=("stepper",)),
+        Check(invariance.time_grid, _ANY, needs=("stepper",)),
+        Check(invariance.repetition, _ANY, needs=("stepper",)),
     ),
     "baseline": (
-        Check(measure=baseline.same_as_baseline, options=("rtol",)),
-        Check(measure=baseline.same_as_baseline, supports=tuple(SUPPORTS.values()), options=("stepper",)),
+        Check(baseline.same_as_baseline, needs=("rtol",)),
+        Check(baseline.same_as_baseline, _ANY, needs=("stepper",)),
     ),
 }
 # groups whose results become the claims of a certificate
@@ -215,12 +182,11 @@ TITLES = {
 }
 
 
+Part = tuple[Subject, str, Check]  # a check of a subject, and its group
+
+
 def run_checks(
-    subject: Subject,
-    groups: Sequence[str] | None = None,
-    *,
-    checks: Mapping[str, tuple[Check, ...]] | None = None,
-    stage: Stage | None = None,
+    subject: Subject, groups: Sequence[str] | None = None, *, progress: ProgressCallback | None = None
 ) -> Iterator[Result]:
     """Yield the results of the groups, in their order, as they are made.
 
@@ -232,10 +198,8 @@ def run_checks(
     subject : Subject
     groups : sequence of str, optional
         Some of `GROUPS`. Default: all.
-    checks : mapping, optional
-        The checks of each group. Default: all.
-    stage : callable, optional
-        Told of the start and the end of each check, see `stages`.
+    progress : callable, optional
+        Called at the start and the end of each check.
 
     Returns
     -------
@@ -246,29 +210,30 @@ def run_checks(
     ValueError
         If a group is unknown.
     """
-    for group, each in chosen_checks(subject, groups, checks=checks):
-        name = f"{subject.label}: {each.measure.__name__.replace('_', ' ')}"
-        with nullcontext() if stage is None else stage(name):
-            for result in each.run(subject):
-                yield dataclasses.replace(result, group=group, subject=subject.label)
-
-
-def chosen_checks(
-    subject: Subject,
-    groups: Sequence[str] | None = None,
-    *,
-    checks: Mapping[str, tuple[Check, ...]] | None = None,
-) -> list[tuple[str, Check]]:
-    """Return the checks of some groups, as in `run_checks`, that apply to a subject, each with its group."""
     for group in groups or ():
         require_one_of("a group", group, tuple(GROUPS))
-    return [
-        (group, each)
-        for group, chosen in (GROUPS if checks is None else checks).items()
-        if groups is None or group in groups
-        for each in chosen
-        if each.applies(subject)
-    ]
+    yield from _results(
+        [
+            part
+            for group in GROUPS
+            if groups is None or group in groups
+            for part in _parts(subject, group, GROUPS)
+        ],
+        progress,
+    )
+
+
+def _parts(subject: Subject, group: str, checks: Mapping[str, tuple[Check, ...]]) -> list[Part]:
+    """Return the checks of a group that apply to a subject."""
+    return [(subject, group, each) for each in checks.get(group, ()) if each.applies(subject)]
+
+
+def _results(parts: Sequence[Part], progress: ProgressCallback | None) -> Iterator[Result]:
+    stage = stages(progress, [1.0] * len(parts))
+    for subject, group, each in parts:
+        with stage(f"{subject.label}: {each.measure.__name__.replace('_', ' ')}"):
+            for result in each.run(subject):
+                yield dataclasses.replace(result, group=group, subject=subject.label)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -435,17 +400,14 @@ def check(
         faults = {name: engine_fault(name) for name in asked}
         results = [not_run(f"checks of {name}", fault) for name, fault in faults.items() if fault]
     by_default = not any(each is not None for each in given)
-    parts: list[tuple[Subject, str, Mapping[str, tuple[Check, ...]]]] = []
+    parts: list[Part] = []
     for group in (each for each in GROUPS if only is None or each in only):
         for each in chosen:
             checks: Mapping[str, tuple[Check, ...]] = GROUPS
             if by_default and each.run is not None:
                 checks = _OF_ENGINES if each.label in standard_engines() else _OF_EXTRAS
-            parts.append((each, group, checks))
-    count = sum(len(chosen_checks(each, [group], checks=checks)) for each, group, checks in parts)
-    stage = stages(progress, [1.0] * count)
-    for each, group, checks in parts:
-        results += run_checks(each, [group], checks=checks, stage=stage)
+            parts += _parts(each, group, checks)
+    results += _results(parts, progress)
     for each in chosen:
         results = with_cause(each, results)
     if not results:
@@ -464,7 +426,7 @@ def with_cause(subject: Subject, results: Sequence[Result]) -> list[Result]:
     can_tell = subject.reference is not None and subject.cases is None
     if support is None or not can_tell or not any(map(lacks, results)):
         return list(results)
-    cases = [RELEASE, agreement.LOW_RELEASE, *([agreement.RAMP] if subject.uplifts else [])]
+    cases = [RELEASE, agreement.LOW_RELEASE, *([agreement.RAMP] if UPLIFT in subject.features else [])]
     try:
         cause = likely_cause(subject, support, cases)
     except Exception:  # whatever a model raises is said by its checks

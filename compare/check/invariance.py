@@ -48,7 +48,7 @@ from .measurement import (
     polyline,
     refined,
 )
-from .subject import Subject
+from .subject import UPLIFT, Subject
 
 Lean = NDArray[np.complex128]
 # a pulse in both components, weak enough not to overturn the pier, which it meets as it rocks
@@ -104,7 +104,7 @@ def statement(subject: Subject, support: str) -> Iterator[Result]:
 
 def _cases(subject: Subject) -> tuple[Case, ...]:
     # the base of an engine tips on its corners, which no rotation leaves as they are
-    return (ROCKING,) if "stepper" in subject.options else (ROCKING, STANDING)
+    return (ROCKING,) if "stepper" in subject.features else (ROCKING, STANDING)
 
 
 def _motion(case: Case) -> GroundMotion:
@@ -183,7 +183,7 @@ def description(subject: Subject, support: str) -> Iterator[Result]:
         "setting": (released, {"support": support, "no_such_setting": 1.0}),
         "support": (released, {"support": "no_such_support"}),
     }
-    if not subject.uplifts:
+    if UPLIFT not in subject.features:
         refused["at rest"] = (Case(PIER, duration=0.01), {"support": support})
     for name, (case, options) in refused.items():
         try:

@@ -286,7 +286,7 @@ def residual(subject: Subject, support: str) -> Iterator[Result]:
     """
     bound = subject.tolerance_bound(1.0, _REASON, "of g (b + h), p and weights")
     for words, terms in _TERMS.items():
-        if not subject.terms.issuperset(terms):
+        if not subject.features.issuperset(terms):
             continue
         errors = {place: _residuals(subject, support, body, terms) for place, body in CYLINDERS.items()}
         for at, name in enumerate(NAMES):
@@ -381,7 +381,7 @@ def free_motion(subject: Subject, support: str) -> Iterator[Result]:
     Both from the energies of `lagrange` and the state where it is known; the energy also as it is stated.
     """
     cases = {"": RELEASE}
-    if "rtol" in subject.options:
+    if "rtol" in subject.features:
         cases |= {f", spin {spin:g} rad/s": release_case(0.5, spin, 5.0) for spin in _SPINS}
     bound = subject.tolerance_bound(10.0, "no loss; near passes magnify the error of a step")
     for words, case in cases.items():

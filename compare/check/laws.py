@@ -41,7 +41,7 @@ from .measurement import (
     steady,
     turning_points,
 )
-from .subject import Subject
+from .subject import SLAB, Subject
 
 _NODES = 64  # more of them come nearer to the ends, where rounding of the energies counts
 _BISECTIONS = 200
@@ -60,7 +60,7 @@ def free_response(subject: Subject, support: str) -> Iterator[Result]:
     Time and turn between two tilt maxima are those of the quadrature; without loss the tilt comes back.
     """
     for of, case in _RELEASES.items():
-        if case.cylinder.carries_slab and not subject.carries_slab:
+        if case.cylinder.carries_slab and SLAB not in subject.features:
             continue
         yield from returns(subject, support, case, of)
 
@@ -318,7 +318,7 @@ def slip(subject: Subject, support: str) -> Iterator[Result]:
 
 def turning(subject: Subject, support: str) -> Iterator[Result]:
     """Turning points, passes and peak are those of the sampled tilt: vertices of polynomials through it."""
-    case = RELEASE if "stepper" in subject.options else _SHAKEN
+    case = RELEASE if "stepper" in subject.features else _SHAKEN
     trace = subject.simulate(case, support, sample_step=_SAMPLE, rest_tilt=0.0)
     moving = np.flatnonzero(np.isfinite(trace.rolling_angle))
     turns = turning_points(*(values[moving] for values in (trace.time, trace.tilt, trace.rolling_angle)))

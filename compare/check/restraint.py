@@ -27,7 +27,7 @@ from .measurement import (
     largest,
     steady,
 )
-from .subject import Subject
+from .subject import SLAB, Subject
 
 _HELD = dataclasses.replace(RELEASE, tendon=TENDON)
 _HELD_FRAME = dataclasses.replace(FRAME_RELEASE, tendon=TENDON)
@@ -36,7 +36,7 @@ _NEAR = 0.005  # relative distance of the releases from the balance, on both sid
 
 def _releases(subject: Subject) -> dict[str, Case]:
     """Return a release of a column, and of a frame where the subject knows one."""
-    return {"column": _HELD} | ({"frame": _HELD_FRAME} if subject.carries_slab else {})
+    return {"column": _HELD} | ({"frame": _HELD_FRAME} if SLAB in subject.features else {})
 
 
 def releases(subject: Subject, support: str) -> Iterator[Result]:

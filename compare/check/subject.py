@@ -44,6 +44,9 @@ _STEPS, _COARSE_STEPS = (4.0, 2.0, 1.0), (10.0, 7.0, 4.0)
 # tolerance for the same motion, rotated or mirrored: solvers stop at a tolerance, and a pass magnifies the
 # rest
 ENGINE_REPEATABILITY = 1e-5
+# features of a subject: an independent model as its reference, trajectories of files alone, starts from a
+# cylinder that stands, wobbling frames
+REFERENCE, FILES, UPLIFT, SLAB = "reference", "files", "uplift", "slab"
 TOLERANCE = 1e-3  # default for a model or trajectory of somebody else
 
 
@@ -60,8 +63,9 @@ class Subject(CompactRepr):
         "recess", "flat", "ring" and, of the reduced models, "planar".
     knows : frozenset of str
         Fields of a trace that it fills.
-    options : frozenset of str
-        Further options of `source`; "stepper" says that it is an engine of the protocol.
+    features : frozenset of str
+        Further options of `source`, terms of a case (`Case.terms`), and `UPLIFT`, `SLAB`, `REFERENCE`;
+        "stepper" says that it is an engine of the protocol, `FILES` that it answers its cases alone.
     tolerance : float
         Relative accuracy that it claims: of alpha, of a time or of an energy.
     repeatability : float
@@ -80,19 +84,13 @@ class Subject(CompactRepr):
         Engine, time step and settings, of an engine.
     cases : tuple of Case, optional
         The only cases that it answers. Default: any.
-    uplifts : bool
-        Whether it can start from a cylinder that stands.
-    carries_slab : bool
-        Whether it knows a wobbling frame.
-    terms : frozenset of str
-        Terms of a case (`Case.terms`) that it knows.
     """
 
     label: str
     source: Simulate
     supports: tuple[str, ...]
     knows: frozenset[str]
-    options: frozenset[str] = frozenset()
+    features: frozenset[str]
     tolerance: float
     repeatability: float
     rounding: float = 0.0
@@ -102,15 +100,12 @@ class Subject(CompactRepr):
     reference: Simulate | None = None
     run: Run | None = None
     cases: tuple[Case, ...] | None = None
-    uplifts: bool = True
-    carries_slab: bool = False
-    terms: frozenset[str] = frozenset()
 
     def simulate(
         self, case: Case, support: str, *, sample_step: float = SAMPLE_STEP, **options: object
     ) -> Trace:
         """Return the motion of a case; options that the source does not take are left out."""
-        known = {name: value for name, value in options.items() if name in self.options}
+        known = {name: value for name, value in options.items() if name in self.features}
         return self.source(case, support, sample_step=sample_step, **known)
 
     def tolerance_bound(self, times: float, reason: str, unit: str = "") -> Bound:
@@ -145,11 +140,9 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
         source=_with_memory(source),
         supports=(*MODELLED, "planar"),
         knows=FIELDS,
-        options=frozenset({"rtol", "rest_tilt", "restitution", "plane"}),
+        features=TERMS | {"rtol", "rest_tilt", "restitution", "plane", UPLIFT, SLAB},
         tolerance=MODEL_TOLERANCE,
         repeatability=MODEL_TOLERANCE,
-        carries_slab=True,
-        terms=TERMS,
     )
 
 
@@ -175,6 +168,7 @@ def engine(name: str, time_step: TimeStep | None = None, **settings: object) -> 
     """
     found, facts = find_engine(name), engine_facts(name)
     tolerance = max(ENGINE_TOLERANCE, _ROUNDINGS * facts.rounding)
+    abilities = [name for name, has in ((UPLIFT, found.uplifts), (SLAB, facts.carries_slab)) if has]
 
     def source(case: Case, support: str, *, sample_step: float) -> Trace:
         return simulate_run(case, Run(name, support, time_step, **settings), sample_step=sample_step)
@@ -184,7 +178,7 @@ def engine(name: str, time_step: TimeStep | None = None, **settings: object) -> 
         source=_with_memory(source),
         supports=found.supports,
         knows=FIELDS.union(_ENGINE_FIELDS),
-        options=frozenset({"stepper"}),
+        features=facts.terms.union({"stepper", REFERENCE}, abilities),
         tolerance=tolerance,
         repeatability=ENGINE_REPEATABILITY,
         rounding=facts.rounding,
@@ -196,9 +190,6 @@ def engine(name: str, time_step: TimeStep | None = None, **settings: object) -> 
         at_step=lambda step: engine(name, step, **settings),
         reference=reduced.simulate,
         run=Run(name, found.supports[0], time_step, **settings),
-        uplifts=found.uplifts,
-        carries_slab=facts.carries_slab,
-        terms=facts.terms,
     )
 
 
@@ -243,6 +234,7 @@ def external_model(
         source=remembered,
         supports=(support,),
         knows=frozenset({"tilt", *known}),
+        features=frozenset({UPLIFT, REFERENCE}),
         tolerance=tolerance,
         repeatability=tolerance,
         reference=reduced.simulate,
@@ -286,6 +278,7 @@ def trajectories(traces: Sequence[Trace], *, support: str = RECESS, tolerance: f
         source=lambda case, support, *, sample_step: answers[fingerprint(case)],
         supports=(support,),
         knows=frozenset({"tilt", "rolling_angle"} if told else {"tilt"}),
+        features=frozenset({UPLIFT, REFERENCE, FILES}),
         tolerance=tolerance,
         repeatability=tolerance,
         reference=reduced.simulate,

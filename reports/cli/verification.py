@@ -313,8 +313,7 @@ def certify(
         from rockwobble.compare.check import reduced_model, run_checks
         from rockwobble.compare.check.baseline import certify as make
         from rockwobble.compare.check.baseline import models, write_certificate
-        from rockwobble.compare.check.groups import CLAIMING, chosen_checks
-        from rockwobble.compare.runs.progress import stages
+        from rockwobble.compare.check.groups import CLAIMING
         from rockwobble.compare.storage.files import require_file
         from rockwobble.models.number_checks import require_one_of
         from rockwobble.models.support import SUPPORTS
@@ -332,9 +331,8 @@ def certify(
             raise ValueError(f"--engine must have a recess, got {given}")
         checked = subject if engine else reduced_model()
         groups = only or CLAIMING
-        count = len(chosen_checks(checked, groups))
         with shown_progress("checks", heading="checking", each=False) as progress:
-            results = list(run_checks(checked, groups, stage=stages(progress, [1.0] * count)))
+            results = list(run_checks(checked, groups, progress=progress))
         if failed := [result.name for result in results if result.failed]:
             complain(f"a check failed, and nothing is certified: {failed[0]}")
             raise typer.Exit(FAILED)
@@ -361,8 +359,9 @@ def verify(
     Example: rockwobble verify mujoco.json
     """
     with interruptible(), user_input():
-        from rockwobble.compare.check.baseline import certificate_findings, read_certificate
+        from rockwobble.compare.check.baseline import certificate_findings
         from rockwobble.compare.check.baseline import verify as verdict_on
+        from rockwobble.compare.check.verdict import read_certificate
 
         from ..pages.wording import joined
 

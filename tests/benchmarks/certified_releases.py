@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockwobble.compare.check.baseline import read_certificate, subject_of
+from rockwobble.compare.check.baseline import subject_of
 from rockwobble.compare.check.fingerprint import repeat
-from rockwobble.compare.check.verdict import Entry, Sample, compare_entries
+from rockwobble.compare.check.verdict import Entry, Sample, compare_entries, read_certificate
 from rockwobble.compare.storage.provenance import package_versions
 from rockwobble.multibody.engines.registry import engine_packages, find_engine
 

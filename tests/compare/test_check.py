@@ -10,8 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from benchmark_files.definitions import BenchmarkRun
-from benchmark_files.second import sampled
 from newton_euler import State, kinetic_energy, newton_euler, vector
 
 import rockwobble as rw
@@ -459,30 +457,6 @@ def test_the_number_that_is_off_is_named(name: str, scale: float, words: str, su
     subject = external_model(scaled(name, scale), support=support, tolerance=1e-5)
     cases = [MEASURED_RELEASE, agreement.LOW_RELEASE, agreement.RAMP]
     assert likely_cause(subject, support, cases) == words
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("support", ["recess", "flat"])
-def test_a_missing_gyroscopic_term_is_named(support: str) -> None:
-    def model(case: Case, support: str) -> Trace:
-        trace = reduced.simulate(case, support=support, sample_step=0.01)
-        if case.initial is None:  # from rest in one plane there is none
-            return trace
-        run = BenchmarkRun(
-            name="", cylinder=case.cylinder, support=support, duration=case.length, initial=case.initial
-        )
-        found = sampled(run, 0.01, case.length, rtol=1e-9, gyroscopic=0.0)
-        end = len(found.time)
-        return dataclasses.replace(
-            trace,
-            **{name: getattr(trace, name)[:end] for name in ("time", "twist")},
-            tilt=found.tilt,
-            rolling_angle=found.azimuth,
-        )
-
-    subject = external_model(model, support=support, tolerance=1e-5)
-    cases = [MEASURED_RELEASE, agreement.LOW_RELEASE, agreement.RAMP]
-    assert likely_cause(subject, support, cases) == "no gyroscopic term"
 
 
 @pytest.mark.slow
