@@ -40,7 +40,7 @@ from .agreement import walls
 from .measurement import Array, Bound, Result, at_most, not_run, why
 from .subject import Simulate
 
-# times the difference of two steps, of which the error is once or twice as much: no false alarm in 400 runs
+# times the difference of two steps, of which the error is once or twice as much
 CLEAN, WIDE = 5.0, 10.0
 LEAST = 1e-5  # [alpha] of contact, whatever the step
 # of the cylinder that the motion meets: tilt over alpha, rolling rate and length in units of its time scale,

@@ -4,8 +4,8 @@ import math
 import re
 
 import numpy as np
-import pandas as pd
 import pytest
+from external_files import ANGLES, PLACE, TURN, columns
 
 from rockwobble import reduced
 from rockwobble.compare import External, read_trajectory
@@ -18,7 +18,7 @@ START = InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.3, rolling_angle=1.0)
 RELEASE = Case(PIER, initial=START, duration=4.0, name="release")
 ROUNDING = 1e-9  # of degrees and quaternions in double precision [rad]
 
-TURN = "time,qw,qx,qy,qz"
+HEAD = "time,qw,qx,qy,qz"
 GOOD = "time [s],tilt [deg],azimuth [deg]\n0,1,0\n0.01,2,1\n0.02,3,2\n0.03,2,3\n"
 BAD = {
     "": "is empty",
@@ -30,10 +30,10 @@ BAD = {
     GOOD.replace("3,2\n", "357,2\n"): "tilt must be between -pi and pi, got 6.231 rad",
     GOOD.replace("0,1,0", "0,120,0"): "line 2: it must not lie at the start, got a tilt of 2.094 rad",
     GOOD.replace("0.0", ""): "line 3: samples must be at most 0.39 s apart for this cylinder, got 1 s",
-    f"{TURN}\n0,0,0,0,1\n0.01,0,0,0,1\n0.02,0,0,0,1\n": (
+    f"{HEAD}\n0,0,0,0,1\n0.01,0,0,0,1\n0.02,0,0,0,1\n": (
         "line 2: the quaternion must not be turned about the axis at the start, got 180 deg"
     ),
-    f"{TURN}\n0,0,1,0,0\n0.01,0,1,0,0\n0.02,0,1,0,0\n": "the quaternion holds the cylinder upside down",
+    f"{HEAD}\n0,0,1,0,0\n0.01,0,1,0,0\n0.02,0,1,0,0\n": "the quaternion holds the cylinder upside down",
     "time,x [mm],y [mm],z [mm]\n0,0,0,5.88\n0.01,0,0,5.88\n0.02,0,0,5.88\n": (
         "line 2: the mass centre must be R = 6 m from the rim and above the ground, got 1.177 m"
     ),
@@ -43,8 +43,8 @@ BAD = {
     GOOD.replace("time [s]", "n"): "must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x",
     GOOD.replace("azimuth", "tilt"): "must have each column once, got tilt as 'tilt [deg]' and 'tilt [deg]'",
     GOOD.split("0.01")[0]: "must hold at least 3 samples, got 1",
-    f"{TURN}\n0,1,0,0,0\n0.01,2,0,0,0\n0.02,1,0,0,0\n": "line 3: a quaternion must have the length 1, got 2",
-    f"{TURN},tilt [rad],azimuth [rad]\n0,1,0,0,0,0,0\n.01,.99875,.04998,0,0,.1,0\n.02,0,0,0,1,.1,0\n": (
+    f"{HEAD}\n0,1,0,0,0\n0.01,2,0,0,0\n0.02,1,0,0,0\n": "line 3: a quaternion must have the length 1, got 2",
+    f"{HEAD},tilt [rad],azimuth [rad]\n0,1,0,0,0,0,0\n.01,.99875,.04998,0,0,.1,0\n.02,0,0,0,1,.1,0\n": (
         "line 4: tilt and quaternion must agree, got tilts of 0.1 and 0 rad"
     ),
 }  # fmt: skip
@@ -62,34 +62,23 @@ def test_every_error_of_a_trajectory_file_names_its_line(save, text):
     assert "\n" not in str(caught.value)
 
 
-def y_up(run):
-    x, y, z = run.centre_of_mass.T
-    return {"x": x, "y": z, "z": -y}
-
-
-# files that cannot be read as they are, and the mistake without which they can
+# files that cannot be read as they are, and the mistake without which they can: factors of the columns
 UNREADABLE = {
-    "time_unit": lambda run: {"time": 1e3 * run.time, "tilt [rad]": run.tilt},
-    "angle_unit": lambda run: {"time": run.time, "tilt [rad]": np.degrees(run.tilt)},
-    "length_unit": lambda run: {
-        "time": run.time,
-        **dict(zip("xyz", 1e3 * run.centre_of_mass.T, strict=True)),
-    },
-    "z_reversed": lambda run: {
-        "time": run.time,
-        **dict(zip("xyz", (run.centre_of_mass * [1, 1, -1]).T, strict=True)),
-    },
-    "y_up": lambda run: {"time": run.time, **y_up(run)},
+    "time_unit": ("time", ANGLES[:2], [1e3, 1.0], 1e3),
+    "angle_unit": ("tilt", ANGLES[:2], [1.0, math.degrees(1.0)], math.degrees(1.0)),
+    "length_unit": ("path", ["time", *PLACE], [1.0, 1e3, 1e3, 1e3], 1e3),
+    "z_reversed": ("path", ["time", *PLACE], [1.0, 1.0, 1.0, -1.0], math.nan),
+    "y_up": ("path", ["time", "x", "z", "y"], [1.0, 1.0, 1.0, -1.0], math.nan),
 }
 
 
 @pytest.mark.parametrize("code", UNREADABLE)
 def test_the_mistake_without_which_a_file_is_readable_is_named(save, response, code):
-    values = {"time_unit": 1e3, "angle_unit": math.degrees(1.0), "length_unit": 1e3}
-    concerns = {"angle_unit": "tilt"}.get(code, "path")
-    words = Mistake(code=code, concerns=concerns, value=values.get(code, math.nan)).words
+    concerns, names, factors, value = UNREADABLE[code]
+    table = columns(response)[names] * factors
+    words = Mistake(code=code, concerns=concerns, value=value).words
     with pytest.raises(ValueError, match=f"; likely mistake: {re.escape(words)}$"):
-        read_trajectory(save(pd.DataFrame(UNREADABLE[code](response))), RELEASE)
+        read_trajectory(save(table.set_axis([names[0], *sorted(names[1:])], axis=1)), RELEASE)
 
 
 @pytest.mark.parametrize("mark", [";", "\t"])
@@ -117,12 +106,6 @@ def response():
     return reduced.simulate(Case(PIER, initial=START, duration=4.0))
 
 
-def as_quaternions(run, time):
-    half = 0.5 * run.tilt
-    x, y = -np.sin(half) * np.sin(run.rolling_angle), np.sin(half) * np.cos(run.rolling_angle)
-    return np.column_stack([time, np.cos(half), x, y, 0.0 * x, run.centre_of_mass])
-
-
 TITLES = (
     "%time,field.orientation.w,field.orientation.x,field.orientation.y,field.orientation.z,x,y,z",
     "timestamp,can_qw,can_qx,can_qy,can_qz,can_tx,can_ty,can_tz",
@@ -131,23 +114,21 @@ TITLES = (
 )
 
 
-@pytest.mark.parametrize("titles", TITLES)
-def test_columns_are_read_by_the_end_of_their_titles(save, response, titles):
-    rows = as_quaternions(response, response.time)
-    text = "\n".join([titles, *(",".join(map(repr, row)) for row in rows.tolist())])
-    trajectory = read_trajectory(save(text), RELEASE)
-    assert trajectory.tilt == pytest.approx(response.tilt, abs=ROUNDING)
-    assert trajectory.centre_of_mass == pytest.approx(response.centre_of_mass)
-    assert "not read" not in notes(trajectory)
+def test_columns_are_read_by_the_end_of_their_titles(save, response):
+    table = columns(response)[[*TURN, *PLACE]]
+    for titles in TITLES:
+        trajectory = read_trajectory(save(table.set_axis(titles.split(","), axis=1)), RELEASE)
+        assert trajectory.tilt == pytest.approx(response.tilt, abs=ROUNDING)
+        assert trajectory.centre_of_mass == pytest.approx(response.centre_of_mass)
+        assert "not read" not in notes(trajectory)
 
 
-@pytest.mark.parametrize("unit", [1.0, 1e3, 1e6, 1e9])
-def test_times_since_1970_are_from_the_first(save, response, unit):
-    rows = as_quaternions(response, unit * (1.7e9 + response.time))
-    text = "\n".join(["time,qw,qx,qy,qz,x,y,z", *(",".join(map(repr, row)) for row in rows.tolist())])
-    trajectory = read_trajectory(save(text), RELEASE)
-    assert trajectory.tilt == pytest.approx(response.tilt, abs=1e-6)  # the digits of such a time
-    assert "since 1970" in notes(trajectory)
+def test_times_since_1970_are_from_the_first(save, response):
+    for unit in (1.0, 1e3, 1e6, 1e9):
+        table = columns(response)[TURN].assign(time=unit * (1.7e9 + response.time))
+        trajectory = read_trajectory(save(table), RELEASE)
+        assert trajectory.tilt == pytest.approx(response.tilt, abs=1e-6)  # the digits of such a time
+        assert "since 1970" in notes(trajectory)
 
 
 MOTIVE = """Format Version,1.23
@@ -160,10 +141,10 @@ frame,n,lean,to
 """
 
 
-@pytest.mark.parametrize("asked", ["2,3 [deg],4 [deg]", "n,lean [deg],to [deg]"])
-def test_columns_that_an_option_names_are_read_whatever_stands_above(save, asked):
-    trajectory = read_trajectory(External(path=save(MOTIVE), columns=asked.split(",")), RELEASE)
-    assert trajectory.tilt.max() == pytest.approx(math.radians(3.0))
+def test_columns_that_an_option_names_are_read_whatever_stands_above(save):
+    for asked in ("2,3 [deg],4 [deg]", "n,lean [deg],to [deg]"):
+        trajectory = read_trajectory(External(path=save(MOTIVE), columns=asked.split(",")), RELEASE)
+        assert trajectory.tilt.max() == pytest.approx(math.radians(3.0))
 
 
 def test_columns_that_are_not_there_are_named(save):
@@ -176,14 +157,10 @@ def test_columns_that_are_not_there_are_named(save):
         read_trajectory(save(MOTIVE), RELEASE)
 
 
-def columns(response, **others) -> pd.DataFrame:
-    return pd.DataFrame({"time": response.time, **others})
-
-
 def test_an_azimuth_may_be_wrapped_in_any_way(save, response):
-    tilt, azimuth = response.tilt, np.degrees(response.rolling_angle)
+    azimuth = np.degrees(response.rolling_angle)
     for wrapped in (azimuth, azimuth % 360.0, (azimuth + 180.0) % 360.0 - 180.0):
-        table = columns(response, **{"tilt [rad]": tilt, "azimuth [deg]": wrapped})
+        table = columns(response)[ANGLES[:2]].assign(**{"azimuth [deg]": wrapped})
         trajectory = read_trajectory(save(table), RELEASE)
         assert trajectory.rolling_angle == pytest.approx(response.rolling_angle, abs=ROUNDING)
 
@@ -193,7 +170,7 @@ def test_a_signed_tilt_leans_to_the_other_side(save):
     planar = reduced.simulate(Case(PIER, initial=start, duration=4.0))
     signed = np.copysign(planar.tilt, np.cos(planar.rolling_angle - 0.4))
     assert signed.min() < -0.4 * PIER.alpha
-    table = columns(planar, **{"tilt [rad]": signed, "azimuth [rad]": 0.4})
+    table = columns(planar)[ANGLES].assign(**{"tilt [rad]": signed, "azimuth [rad]": 0.4})
     case = Case(PIER, initial=start, duration=4.0, name="planar")
     trajectory = read_trajectory(save(table), case)
     assert trajectory.tilt == pytest.approx(planar.tilt, abs=ROUNDING)
@@ -207,8 +184,8 @@ def test_a_signed_tilt_leans_to_the_other_side(save):
 
 
 def test_mass_centre_alone_determines_the_pose_in_a_recess(save, response):
-    x, y, z = 100.0 * response.centre_of_mass.T
-    trajectory = read_trajectory(save(columns(response, **{"x [cm]": x, "y [cm]": y, "z [cm]": z})), RELEASE)
+    table = (100.0 * columns(response)[PLACE]).add_suffix(" [cm]").assign(time=response.time)
+    trajectory = read_trajectory(save(table), RELEASE)
     assert measurement(trajectory).poses.given == ("path",)
     assert trajectory.tilt == pytest.approx(response.tilt, abs=ROUNDING)
     assert trajectory.rolling_angle == pytest.approx(response.rolling_angle, abs=ROUNDING)
@@ -216,7 +193,7 @@ def test_mass_centre_alone_determines_the_pose_in_a_recess(save, response):
 
 
 def test_lost_samples_are_left_out_and_counted(save, response):
-    table = columns(response, **{"tilt [rad]": response.tilt, "azimuth [rad]": response.rolling_angle})
+    table = columns(response)[ANGLES]
     table.iloc[[50, 120], 1:] = np.nan
     trajectory = read_trajectory(save(table), RELEASE)
     # a local cubic over 0.02 s: (phi' dt)^3/24 of the tilt of 0.018 rad at the pass, where phi' is 9 rad/s
@@ -230,7 +207,7 @@ def test_lost_samples_are_left_out_and_counted(save, response):
 def test_uneven_samples_and_a_clock_that_does_not_start_at_zero(save):
     fine = reduced.simulate(Case(PIER, initial=START, duration=4.0), sample_step=0.001)
     uneven = np.cumsum(np.tile([8, 13, 9, 12], 95))
-    table = columns(fine, **{"tilt [rad]": fine.tilt, "azimuth [rad]": fine.rolling_angle}).iloc[[0, *uneven]]
+    table = columns(fine)[ANGLES].iloc[[0, *uneven]]
     table["time"] += 7.0
     with pytest.raises(ValueError, match="if that is the start, give its time an offset of -7 s"):
         read_trajectory(save(table), RELEASE)
@@ -241,18 +218,16 @@ def test_uneven_samples_and_a_clock_that_does_not_start_at_zero(save):
     assert measurement(trajectory).poses.noise < 1e-4 * PIER.alpha
 
 
-@pytest.mark.parametrize("share", [0.001, 0.005])
-def test_noise_is_estimated_from_the_samples(save, response, share):
-    generator = np.random.default_rng(2)
-    lean = np.sin(response.tilt) * np.exp(1j * response.rolling_angle)
-    lean = lean + share * PIER.alpha * (
-        generator.normal(size=len(lean)) + 1j * generator.normal(size=len(lean))
-    )
-    table = columns(response, **{"tilt [rad]": np.arcsin(np.abs(lean)), "azimuth [rad]": np.angle(lean)})
-    trajectory = read_trajectory(save(table), RELEASE)
-    # the median of 400 normal numbers, to three of its standard deviations
-    assert measurement(trajectory).poses.noise == pytest.approx(share * PIER.alpha, rel=0.2)
-    assert measurement(trajectory).poses.stands == pytest.approx(5.0 * measurement(trajectory).poses.noise)
+def test_noise_is_estimated_from_the_samples(save, response):
+    random = np.random.default_rng(2)
+    for share in (0.001, 0.005):
+        noise = share * PIER.alpha * random.normal(size=(2, len(response.time)))
+        lean = np.sin(response.tilt) * np.exp(1j * response.rolling_angle) + noise[0] + 1j * noise[1]
+        found = {"tilt [rad]": np.arcsin(np.abs(lean)), "azimuth [rad]": np.angle(lean)}
+        poses = measurement(read_trajectory(save(columns(response)[ANGLES].assign(**found)), RELEASE)).poses
+        # the median of 400 normal numbers, to three of its standard deviations
+        assert poses.noise == pytest.approx(share * PIER.alpha, rel=0.2)
+        assert poses.stands == pytest.approx(5.0 * poses.noise)
 
 
 def test_samples_of_a_rockwobble_run_are_read_unchanged(tmp_path):
