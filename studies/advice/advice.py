@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal, TypedDict
+from typing import Any, Literal, cast
 
 import numpy as np
 import pandas as pd
@@ -31,9 +31,9 @@ from rockwobble.models import (
 )
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL, TERMS
-from rockwobble.models.cylinder import WobblingFrame, cylinder_of
+from rockwobble.models.cylinder import cylinder_of
 from rockwobble.models.doubts import doubts_of_cases
-from rockwobble.models.finding import Finding, Findings, Grade
+from rockwobble.models.finding import Findings, Grade
 from rockwobble.models.mode import REST, SLIDES, expected_mode
 from rockwobble.models.plain_json import plain
 from rockwobble.models.records.units import sources_of
@@ -45,19 +45,7 @@ from ..plans import AdvicePlan
 from ..spectrum.parts import SPATIAL
 from .demands import demand_table, demands_of, overturning_time, weaker_factors
 from .findings import findings_of
-from .grades import (
-    EVENLY_LOADED,
-    NEAR,
-    POOR,
-    grade_chance,
-    grade_engine,
-    grade_intensity,
-    grade_overturning,
-    grade_share,
-    grade_tendon,
-    grade_trace,
-    overall,
-)
+from .grades import graded, overall
 from .members import (
     BESIDE_THE_PROBLEM,
     COPIES,
@@ -77,11 +65,9 @@ from .members import (
     with_vertical,
     without_vertical,
 )
-from .scales import AS_STRONG, planar_runs, scan_as_strong, scan_scales
+from .scales import planar_runs, scan_as_strong, scan_scales
 from .slides import (
-    engine_finding,
     engine_rows,
-    slide_findings,
     slide_rows,
     slides_and_rocks,
     usual_support,
@@ -124,30 +110,6 @@ class Vertical:
     record: str = ""
     uplift_factor: float = math.inf
     ratios: Mapping[str, float] | None = None
-
-
-class Response(TypedDict):
-    """Facts of the run of the reduced model as given: times in s, tilts in alpha, demands as in `demands_of`.
-
-    diagnostics are their codes; end is that of the run or of the fall, tolerance that of an agreement.
-    """
-
-    outcome: str
-    mode: str
-    displacement: float  # largest displacement of the base centre over the ground [m]
-    residual_displacement: float  # at the end [m]
-    diagnostics: list[str]
-    uplift_time: float
-    peak_tilt: float
-    peak_time: float
-    end: float
-    in_one_plane: bool
-    largest_normal_force: float
-    slip: float
-    tension: float  # largest force of a tendon until it falls [weights of one column]; NaN without one
-    lost: float
-    tolerance: float
-    yields: bool  # a tendon, see `beyond_yield`
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -213,10 +175,15 @@ class Advice(Results, kind=KIND):
         return cylinder_of(self.facts["cylinder"])
 
     @property
-    def response(self) -> Response:
-        """Facts of the run of the reduced model as given."""
-        found: Response = self.facts["response"]
-        return found
+    def response(self) -> Mapping[str, Any]:
+        """Facts of the run of the reduced model as given: times in s, tilts in alpha, forces in weights.
+
+        Demands are as in `demands_of`, displacements [m] those of the base centre; diagnostics are codes; end
+        is that of the run or of the fall, tolerance that of an agreement, yields, see `beyond_yield`, of a
+        tendon, and tension its largest force until the fall; NaN without one.
+        """
+        response: Mapping[str, Any] = self.facts["response"]
+        return response
 
     @property
     def trust(self) -> Trust:
@@ -240,28 +207,6 @@ class Advice(Results, kind=KIND):
         return len(self.tables.get("slides", ())) > 0
 
     @property
-    def mode_findings(self) -> Findings:
-        """Findings of the mode of motion, and of the slide."""
-        first = [
-            Finding(
-                key=each["key"],
-                level=each["level"],
-                values={name: part["value"] for name, part in each["values"].items()},
-            )
-            for each in self.facts.get("mode", ())  # an earlier version stated none
-        ]
-        response, facts = self.response, self.facts
-        if self.slides:
-            moved = response["displacement"], response["residual_displacement"]
-            first += slide_findings(self.tables["slides"], *moved, source=facts["records"], gap=facts["gap"])
-        if (engine := facts.get("rocks_and_slides")) is not None:
-            first.append(engine_finding(self.tables.get("slipped"), engine, response["peak_tilt"]))
-        if not self.slides and facts["friction"] is None and facts["motion"] is not None:
-            bound = self.cylinder.tan_alpha
-            first.append(Finding(key="mode.no_friction_given", values={"bound": bound}))
-        return Findings(first)
-
-    @property
     def slides_at_rest(self) -> bool:
         """Whether the friction given does not keep a base in its place that stays closed."""
         motion, friction = self.facts["motion"], self.facts["friction"]
@@ -279,7 +224,7 @@ class Advice(Results, kind=KIND):
     @property
     def yields(self) -> bool:
         """Whether the tendon yields as given, so that the run is no answer."""
-        return self.response.get("yields", False)  # unknown for results of earlier versions
+        return bool(self.response.get("yields", False))  # unknown for results of earlier versions
 
     @property
     def yielded(self) -> int:
@@ -307,7 +252,7 @@ class Advice(Results, kind=KIND):
     @property
     def peak(self) -> float:
         """Largest tilt of the case as given [alpha]."""
-        return self.response["peak_tilt"]
+        return float(self.response["peak_tilt"])
 
     def top(self, tilt: float) -> float:
         """Return the displacement of the top at a tilt [alpha], infinite where it overturns [m]."""
@@ -368,105 +313,11 @@ class Advice(Results, kind=KIND):
     @property
     def grades(self) -> dict[str, Grade]:
         """Grade of each topic that there is something to say about; the criteria are in `grades`."""
-        response, facts, verification = self.response, self.facts, self.verification
-        tendon = facts.get("tendon")  # none in what an earlier version saved
-        if response["outcome"] in NO_PEAK:
-            return {"trace": "not satisfied"}
-        if self.slides:
-            return {}
-        if not self.moves:
-            return {"friction": "not satisfied"} if self.slides_at_rest else {}
-        shaken, friction = facts["motion"] is not None, facts["friction"]
-        (slip, lost), spread = (
-            self.missing,
-            not self.yielded and bool((~self.counting["single"] & self.counting["lost_95"].notna()).any()),
-        )
-        slides = friction is not None and friction < self.cylinder.tan_alpha and response["uplift_time"] > 0.0
-        found: dict[str, Grade] = {
-            "overturning": grade_overturning(
-                self.overturned,
-                self.lowest_factor,
-                self.counting["chance"],
-                tested=(len(self.lowest) > 0 or (not shaken and self.copies_differ))
-                and not (self.yields or self.yielded or self.yields_from < NEAR),
-            ),
-            "friction": grade_share(
-                0.0 if friction is None else slip,
-                asked=friction is not None,
-                tested=spread,
-                slides=slides,
-            ),
-            "contact": grade_share(lost, tested=spread),
-            "trace": "not satisfied"
-            if self.yields
-            else grade_trace(self.trust.kind, tested=self.copies_differ),
-        }
-        if tendon is not None:
-            found["tendon"] = grade_tendon(
-                self.largest_tension, tendon["yield_force"], tested=self.copies_differ
-            )
-        if shaken and not self.overturned:
-            low, high = self.range_as_strong
-            grade = grade_intensity(*map(_opened, (low, self.peak, high)))
-            found["intensity"] = "not tested" if self.yields_from <= AS_STRONG[1] else grade
-        found["engine"] = "not tested"
-        if verification is not None:
-            fell = self.overturned and math.isinf(verification.stopped)
-            differs = (verification.outcome == "overturned") != fell or not verification.moves
-            found["engine"] = grade_engine(verification.outcome, verification.divergence, differs=differs)
-        return found
-
-    @property
-    def largest_tension(self) -> float:
-        """Design demand on the tendon [weights of one column]; NaN without one."""
-        values = self.demands.set_index("demand")["value"]
-        found = float(values.get("tendon", math.nan))
-        return found if math.isfinite(found) else self.response["tension"]
+        return {each.key.partition(".")[0]: cast("Grade", each.level) for each in graded(self)}
 
     def findings(self) -> Findings:
         """Verdict, motion, grades with reasons, groups, demands, next steps and details, in this order."""
         return findings_of(self)
-
-    @property
-    def vertical_matters(self) -> bool:
-        """Whether copies with the vertical component have another grade than those without it."""
-        if not len(self.groups):
-            return False
-        chances = self.groups.set_index("group")["chance"]
-        pair = [chances[name] for name in (COPIES, VERTICAL, HORIZONTAL) if name in chances]
-        return len(pair) == 2 and len(set(map(grade_chance, pair))) == 2
-
-    @property
-    def shares_load_unevenly(self) -> bool:
-        """Whether it is a frame of so many columns that their ends do not share the load evenly."""
-        return isinstance(self.cylinder, WobblingFrame) and self.cylinder.columns > EVENLY_LOADED
-
-    @property
-    def next_steps(self) -> list[str]:
-        """Next steps by name, the most urgent first; pages have the words and the commands."""
-        grades, friction = self.grades, self.facts["friction"]
-        holds = support_named(self.facts["support"])
-        slides = friction is not None and friction < self.cylinder.tan_alpha
-        steps = {
-            "friction unknown": friction is None,
-            "slides": slides and self.facts["release"] is None,
-            "more friction": friction is not None and not slides and grades.get("friction") in POOR,
-            "contact": grades.get("contact") in POOR,
-            "budget": grades.get("engine") == "not satisfied",
-            "engine": self.verification is None,
-            "spectrum": grades.get("overturning") != "satisfied" and self.facts["motion"] is not None,
-            "ensemble": self.trust.kind == "statistics",
-            "clearance": holds.guided and self.facts.get("tendon") is None,
-            "in a recess": not holds.is_recess,
-            "vertical": self.vertical.source == "other",
-            "records": self.facts["records"] == "synthetic",
-        }
-        return [name for name, due in steps.items() if due] if self.moves else []
-
-    @property
-    def model_grade(self) -> Grade:
-        """Whether the model may be used, whatever becomes of the cylinder."""
-        return overall(grade for topic, grade in self.grades.items() if topic != "overturning")
 
 
 @with_argument_kinds
@@ -754,7 +605,7 @@ def _problem(case: Case) -> dict[str, object]:
     }
 
 
-def _response(trace: Trace) -> Response:
+def _response(trace: Trace) -> dict[str, object]:
     moves = _moves(trace.outcome, trace.uplift_time)
     assumed = trace.assumptions_until(overturning_time(trace)) if moves else None
     own = demands_of(trace)

@@ -1,4 +1,4 @@
-"""Grades of an advice, each by a written criterion.
+"""Grades of an advice: each topic by the first of its criteria that holds, with key, level and values.
 
 A grade rests on what was run: "not tested" is the grade of what nothing was run for.
 """
@@ -6,14 +6,22 @@ A grade rests on what was run: "not tested" is the grade of what nothing was run
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
 
 from rockwobble.compare.comparison.prediction import BEATEN, UNTESTED
 from rockwobble.compare.metrics.statistics import FEWEST
+from rockwobble.models import AGREEMENT, CLOSED_TILT
+from rockwobble.models.diagnostic import codes_in
 from rockwobble.models.finding import GRADES, Finding, Grade, Value
 from rockwobble.models.trace import NO_PEAK
 
 from .demands import COVERED
+from .members import ACCELERATION, VELOCITY
+from .scales import AS_STRONG
+
+Advice = Any  # class of `.advice`, which imports this module
+Criterion = tuple[bool, str, Grade, Mapping[str, Value]]  # whether it holds, key, level, values
 
 POOR: tuple[Grade, ...] = ("caution", "not satisfied")
 # share of the moving time for which contact or friction may be missing before the motion is another one:
@@ -27,16 +35,12 @@ UNSAFE = 0.1
 SENSITIVE = 1.5
 # margin of the ratio: the tilt may change by so much more between the scales that were run
 BETWEEN_SCALES = 1.05
+RANGE: Mapping[str, Value] = {"share_weaker": 1.0 - AS_STRONG[0], "share_stronger": AS_STRONG[1] - 1.0}
 
-# columns of a frame: what lies on more than three ends rests on those that happen to be higher
-EVENLY_LOADED = 3
-
-
-# numbers that the words of a criterion name, by topic and grade
-_NEAR = {"factor": NEAR, "share": UNSAFE}
+# numbers that the words of a criterion name, by topic
 _SHARES = {"share": BROKEN, "share_covered": COVERED, "runs": FEWEST}
 _CRITERIA: Mapping[str, Mapping[str, Value]] = {
-    "overturning": _NEAR,
+    "overturning": {"factor": NEAR, "share": UNSAFE},
     "friction": _SHARES,
     "contact": _SHARES,
     "tendon": _SHARES,
@@ -51,57 +55,9 @@ def criterion(topic: str, grade: Grade) -> Finding:
     return Finding(key=key, level=grade, values=_CRITERIA.get(topic, {}))
 
 
-def grade_share(missing: float, *, asked: bool = True, slides: bool = False, tested: bool = True) -> Grade:
-    """Return the grade of friction or contact.
-
-    Parameters
-    ----------
-    missing : float
-        Share of the moving time in which it is missing, that 95 % of the runs do not exceed.
-    asked : bool, optional
-        Whether what there is was given.
-    slides : bool, optional
-        Whether the cylinder slides where it would have uplifted.
-    tested : bool, optional
-        Whether that is of runs that differ, and not of the case as given alone.
-    """
-    if slides or missing > BROKEN:
-        return "not satisfied"
-    if missing > 0.0 or not asked:
-        return "caution"
-    return "satisfied" if tested else "not tested"
-
-
-def grade_tendon(tension: float, yield_force: float | None, *, tested: bool) -> Grade:
-    """Return the grade of a tendon by its largest tension and its yield force [weights of one column]."""
-    if yield_force is None:
-        return "caution"
-    if tension > yield_force:
-        return "not satisfied"
-    return "satisfied" if tested else "not tested"
-
-
-def grade_overturning(overturned: bool, lowest: float, chances: Iterable[float], *, tested: bool) -> Grade:
-    """Return the grade of the stability of the cylinder.
-
-    Parameters
-    ----------
-    overturned : bool
-        In the run as it is given.
-    lowest : float
-        Lowest overturning factor on the ground motion; NaN if none does.
-    chances : iterable of float
-        Share of each group of members that overturns; NaN of a group that says nothing.
-    tested : bool
-        Whether other scales of the ground motion were run, or copies of a release over still ground, and the
-        tendon, if there is one, yields in none.
-    """
-    worst = overall(map(grade_chance, chances))
-    if overturned or worst == "not satisfied":
-        return "not satisfied"
-    if worst == "caution" or lowest < NEAR:
-        return "caution"
-    return "satisfied" if tested else "not tested"
+def overall(grades: Iterable[Grade]) -> Grade:
+    """Return the worst of some grades; "not tested" of none."""
+    return max(grades, key=GRADES.index, default="not tested")
 
 
 def grade_chance(chance: float) -> Grade:
@@ -111,40 +67,185 @@ def grade_chance(chance: float) -> Grade:
     return "not satisfied" if chance > UNSAFE else "caution" if chance > 0.0 else "satisfied"
 
 
-def grade_trace(kind: str, *, tested: bool) -> Grade:
-    """Return the grade of a trace by the kind of its `Trust`; tested: whether copies that differ were run."""
-    if kind == "statistics":
-        return "caution"
-    return "satisfied" if tested else "not tested"
-
-
-def grade_intensity(low: float, peak: float, high: float) -> Grade:
-    """Return the grade of a largest tilt that is `low` to `high` under shaking as strong; NaN: not run."""
-    if math.isnan(low):
-        return "not tested"
-    limit = SENSITIVE / BETWEEN_SCALES
-    return "caution" if high > limit * peak or low * limit < peak else "satisfied"
-
-
-def grade_engine(outcome: str, divergence: str, *, differs: bool) -> Grade:
-    """Return the grade of a run of an engine.
-
-    Parameters
-    ----------
-    outcome, divergence : str
-        As in the summary of a comparison.
-    differs : bool
-        Whether one of engine and model overturns, or moves, and the other does not.
-    """
+def graded(advice: Advice) -> Iterator[Finding]:
+    """Grade of each topic that there is something to say about, with what it rests on in this case."""
+    outcome, facts = advice.response["outcome"], advice.facts
     if outcome in NO_PEAK:
-        return "not tested"
-    if divergence == "earlier":
-        return "not satisfied"
-    if differs:
-        return "caution"
-    return "not tested" if divergence in UNTESTED else "satisfied"
+        yield Finding(key=f"trace.{outcome}", level="not satisfied")
+    elif advice.slides_at_rest:
+        values = {"given": facts["friction"], "demand": facts["motion"]["friction_at_rest"]}
+        yield Finding(key="friction.slides_at_rest", level="not satisfied", values=values)
+    elif advice.moves and not advice.slides:
+        topics = {
+            "overturning": _overturning,
+            "friction": _friction,
+            "contact": lambda advice: _missing(advice, advice.missing[1], "lost", {}),
+            "trace": _trace,
+            "tendon": _tendon,
+            "intensity": _intensity,
+            "engine": _engine,
+        }
+        for topic, criteria in topics.items():
+            first = next((each for each in criteria(advice) if each[0]), None)
+            if first is not None:
+                yield Finding(key=f"{topic}.{first[1]}", level=first[2], values=first[3])
 
 
-def overall(grades: Iterable[Grade]) -> Grade:
-    """Return the worst of some grades; "not tested" of none."""
-    return max(grades, key=GRADES.index, default="not tested")
+def group_name(advice: Advice, group: str) -> str:
+    """Name of a group of runs in the table of words; of other records with what they are."""
+    return f"{group}_{advice.facts['records']}" if group in (ACCELERATION, VELOCITY) else group
+
+
+def _overturning(advice: Advice) -> Iterator[Criterion]:
+    """Of the run as given, of the groups, and of other scales, which count where no tendon yields in them."""
+    lowest, beyond, groups = advice.lowest_factor, advice.yields_from, advice.counting
+    shaken, yielded = advice.facts["motion"] is not None, advice.yielded
+    known = len(advice.lowest) > 0 if shaken else advice.copies_differ
+    grade: Grade = "satisfied" if known and not (advice.yields or yielded or beyond < NEAR) else "not tested"
+    chances = overall(map(grade_chance, groups["chance"]))
+    if advice.overturned or chances == "not satisfied":
+        grade = "not satisfied"
+    elif chances == "caution" or lowest < NEAR:
+        grade = "caution"
+    near = {"factor": lowest if grade == "caution" and lowest < NEAR else math.nan}
+    yield advice.overturned, "as_given", grade, {}
+    yield advice.yields, "yields_as_given", grade, {}
+    if (groups["chance"] > 0.0).any():
+        worst = groups.loc[groups["chance"].idxmax()]
+        counts = {"overturned": int(worst["overturned"]), "runs": int(worst["runs"] - worst["failed"])}
+        yield True, "group", grade, counts | {"name": group_name(advice, worst["group"]), **near}
+    yield grade == "caution", "scale", grade, near
+    yield yielded > 0, "yielded", grade, {"count": yielded, "runs": int(groups["runs"].sum())}
+    yield beyond < NEAR, "yields_at", grade, {"factor": beyond}
+    yield not shaken, "no_copy" if grade == "satisfied" else "one_run", grade, {}
+    yield not known, "no_scales", grade, {}
+    yield lowest > 0.0, "none_but", grade, {"factor": lowest}
+    yield not math.isnan(beyond), "none_but_yields", grade, {"factor": beyond}
+    yield True, "none_up_to", grade, {"factor": float(advice.scales["factor"].max())}
+
+
+def _friction(advice: Advice) -> Iterator[Criterion]:
+    given, border = advice.facts["friction"], advice.cylinder.tan_alpha
+    demand = float(advice.demands.set_index("demand")["value"].get("friction", math.nan))
+    if given is None:
+        yield True, "not_given", "caution", {"demand": demand}
+        return
+    values = {"given": given, "demand": demand}
+    slides = given < border and advice.response["uplift_time"] > 0.0
+    yield slides, "below_border", "not satisfied", {**values, "bound": border}
+    yield from _missing(advice, advice.missing[0], "too_little", values)
+
+
+def _missing(advice: Advice, share: float, key: str, values: Mapping[str, Value]) -> Iterator[Criterion]:
+    """Of a share of the moving time without friction or contact, which 95 % of the runs do not exceed."""
+    groups = advice.counting
+    spread = not advice.yielded and bool((~groups["single"] & groups["lost_95"].notna()).any())
+    yield share > BROKEN, key, "not satisfied", {**values, "share": share}
+    yield share > 0.0, key, "caution", {**values, "share": share}
+    yield spread, "enough", "satisfied", values
+    yield advice.yielded > 0, "yielded", "not tested", {"count": advice.yielded}
+    yield True, "few", "not tested", {"runs": FEWEST}
+
+
+def _trace(advice: Advice) -> Iterator[Criterion]:
+    trust, ran, copies = advice.trust, has_run(advice), math.isfinite(advice.divergence_time)
+    statistics, methods = trust.kind == "statistics", trust.because == "methods"
+    grade: Grade = "caution" if statistics else "satisfied" if advice.copies_differ else "not tested"
+    yield advice.yields, "yields", "not satisfied", {}
+    yield grade == "not tested", "one_run", grade, {}
+    yield trust.kind == "trace", "whole", grade, {"names": ("model", *(["engine"] if ran else []), "copies")}
+    yield advice.peak <= CLOSED_TILT, "hardly", grade, {"peak": advice.peak}
+    values: dict[str, Value] = {
+        "reason": end_of_motion(advice),
+        "time": advice.response["peak_time"],
+        # a smaller difference than that of the copies, which is why it may come before
+        "difference": tolerance(advice) if methods else math.nan,
+        "time_engine": trust.until if methods and ran else math.nan,
+        "time_predicted": trust.until if methods and not ran else math.nan,
+        "share": advice.facts["perturbation"],
+        "time_copies": advice.divergence_time if copies else math.nan,
+    }
+    yield True, trust.kind, grade, values
+
+
+def _tendon(advice: Advice) -> Iterator[Criterion]:
+    tendon = advice.facts.get("tendon")
+    if tendon is None:
+        return
+    force = float(advice.demands.set_index("demand")["value"].get("tendon", math.nan))
+    force = force if math.isfinite(force) else advice.response["tension"]
+    stress, limit = tendon.get("unit_stress"), tendon["yield_force"]
+    values = {"force": force, "stress": stress * force if stress else math.nan}
+    if limit is None:
+        yield True, "no_yield_force", "caution", values
+        return
+    values["bound"] = limit
+    yield force > limit, "above", "not satisfied", values
+    yield True, "below", "satisfied" if advice.copies_differ else "not tested", values
+
+
+def _intensity(advice: Advice) -> Iterator[Criterion]:
+    """Of the largest tilt under shaking as strong; below that of an open base all tilts are the same."""
+    if advice.facts["motion"] is None or advice.overturned:
+        return
+    (least, most), limit = advice.range_as_strong, SENSITIVE / BETWEEN_SCALES
+    low, peak, high = (max(each, CLOSED_TILT) for each in (least, advice.peak, most))
+    grade: Grade = "caution" if high > limit * peak or low * limit < peak else "satisfied"
+    lowest, share = advice.overturning_as_strong
+    values = {"count": len(advice.as_strong), **RANGE}
+    yield math.isnan(least), "not_run", "not tested", {}
+    yield advice.yields_from <= AS_STRONG[1], "yields_at", "not tested", {"factor": advice.yields_from}
+    yield math.isinf(most), "overturns", grade, {**values, "share": share, "factor": lowest}
+    yield most <= CLOSED_TILT, "hardly", grade, {**values, "peak": most}
+    yield least == 0.0, "rests", grade, values
+    yield True, "ratio", grade, {**values, "ratio_least": low / peak, "ratio_largest": high / peak}
+
+
+def _engine(advice: Advice) -> Iterator[Criterion]:
+    """Of a run of an engine: a smaller difference than that of the copies, which may come before it."""
+    engine = advice.verification
+    if engine is None:
+        yield True, "not_run", "not tested", {}
+        return
+    until, predicted = agreed_until(advice), predicted_until(advice)
+    stopped = engine.stopped if math.isfinite(engine.stopped) else math.nan
+    values = {"until": until, "predicted": predicted, "time": stopped}
+    falls = engine.outcome == "overturned"
+    yield (
+        engine.outcome in NO_PEAK,
+        engine.outcome,
+        "not tested",
+        {"names": tuple(codes_in(engine.diagnostics))},
+    )
+    yield engine.divergence == "earlier", "earlier", "not satisfied", values
+    yield not engine.moves, "rests", "caution", {}
+    yield falls != advice.overturned, "overturns" if falls else "stands", "caution", {}
+    yield engine.divergence == "too little motion", "little", "not tested", values
+    yield engine.divergence in UNTESTED, "untested", "not tested", values
+    yield True, "as_predicted" if until == predicted else "agrees", "satisfied", values
+
+
+def end_of_motion(advice: Advice) -> str:
+    """Reason of the time of the largest tilt: the fall, or the tilt itself."""
+    return "it_falls" if advice.overturned else "largest_tilt"
+
+
+def has_run(advice: Advice) -> bool:
+    """Whether an engine was run, to an end."""
+    return advice.verification is not None and advice.verification.outcome not in NO_PEAK
+
+
+def tolerance(advice: Advice) -> float:
+    """Tilt difference of model and engine that ends their agreement [alpha]."""
+    return float(min(AGREEMENT, advice.response["tolerance"]))
+
+
+def predicted_until(advice: Advice) -> float:
+    """Predicted end of the agreement [s]; inf: that of the run."""
+    prediction = advice.facts["prediction"]
+    return float(advice.response["uplift_time"] + prediction["length"]) if prediction["reason"] else math.inf
+
+
+def agreed_until(advice: Advice) -> float:
+    """End of the agreement of an engine [s]; inf: that of the run."""
+    return float(advice.verification.agreed_until) if advice.verification.diverged else math.inf

@@ -8,6 +8,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -49,12 +50,8 @@ from rockwobble.studies.advice.grades import (
     NEAR,
     SENSITIVE,
     UNSAFE,
-    grade_engine,
-    grade_intensity,
-    grade_overturning,
-    grade_share,
-    grade_tendon,
-    grade_trace,
+    grade_chance,
+    graded,
     overall,
 )
 from rockwobble.studies.advice.members import (
@@ -173,16 +170,6 @@ def test_answers_count_what_falls_and_leave_out_what_failed(advice):
 
 
 @pytest.mark.parametrize(
-    ("missing", "grade"), [(0.0, "satisfied"), (BROKEN, "caution"), (BROKEN * 1.01, "not satisfied")]
-)
-def test_short_lacks_want_care_and_long_ones_rule_the_model_out(missing, grade):
-    assert grade_share(missing) == grade
-    assert grade_share(missing, slides=True) == "not satisfied"
-    assert grade_share(0.0, asked=False) == "caution"
-    assert grade_share(missing, tested=False) == (grade if missing else "not tested")
-
-
-@pytest.mark.parametrize(
     ("methods", "data", "peak", "expected"),
     [
         (math.inf, math.inf, 5.0, ("trace", 10.0, "")),
@@ -196,45 +183,79 @@ def test_trust_turns_on_what_comes_before_the_largest_tilt(methods, data, peak, 
     assert (trust.kind, trust.until, trust.because) == expected
 
 
+ENGINE = {"label": "mujoco recess", "version": "4.0.0", "time_step": 1e-4, "outcome": "stands", "moves": True}
+ENGINE |= {"diagnostics": "", "peak_tilt": 0.25, "agreed_until": 5.0, "diverged": True, "divergence": "later"}
+TENDON = {"yield_force": 1.0, "prestress": 0.5}
+FALLS = 0.5 * math.pi
+
+
 @pytest.mark.parametrize(
-    ("fell", "lowest", "chances", "grade"),
+    ("columns", "facts", "key", "level"),
     [
-        (True, 1.0, [0.0], "not satisfied"),
-        (False, 9.0, [0.0, UNSAFE * 1.01], "not satisfied"),
-        (False, 9.0, [UNSAFE], "caution"),
-        (False, NEAR * 0.99, [0.0], "caution"),
-        (False, NEAR, [0.0], "satisfied"),
-        (False, math.nan, [], "satisfied"),
-        (
-            False,
-            math.nan,
-            [math.nan, 0.5],
-            "not satisfied",
-        ),  # a group whose members all failed hides no other
+        ({}, {}, "overturning.none_but", "satisfied"),
+        ({"lowest": {"factor": NEAR * 0.99}}, {}, "overturning.scale", "caution"),
+        ({"groups": {"chance": UNSAFE}}, {}, "overturning.group", "caution"),
+        ({"groups": {"chance": UNSAFE * 1.01}}, {}, "overturning.group", "not satisfied"),
+        ({"lowest": {"factor": math.nan}}, {}, "overturning.none_up_to", "satisfied"),
+        ({"scales": {"yields": True}}, {}, "overturning.yields_at", "not tested"),
+        ({"groups": {"yielded": 1}}, {}, "overturning.yielded", "not tested"),
+        ({}, {"friction": None}, "friction.not_given", "caution"),
+        ({}, {"friction": 0.19}, "friction.below_border", "not satisfied"),
+        ({"groups": {"slip_95": BROKEN}}, {"friction": 0.3}, "friction.too_little", "caution"),
+        ({"groups": {"slip_95": BROKEN * 1.01}}, {"friction": 0.3}, "friction.too_little", "not satisfied"),
+        ({"groups": {"slip_95": 0.0}}, {"friction": 0.3}, "friction.enough", "satisfied"),
+        ({"groups": {"single": True}}, {"friction": 3.0}, "friction.few", "not tested"),
+        ({"groups": {"lost_95": BROKEN * 1.01}}, {}, "contact.lost", "not satisfied"),
+        ({"groups": {"yielded": 1}}, {}, "contact.yielded", "not tested"),
+        ({}, {"trust": ("statistics", "data")}, "trace.statistics", "caution"),
+        ({}, {"trust": ("peak", "methods")}, "trace.peak", "satisfied"),
+        ({}, {"trust": ("trace", "")}, "trace.whole", "satisfied"),
+        ({}, {"tendon": TENDON, "tension": 1.01}, "tendon.above", "not satisfied"),
+        ({}, {"tendon": TENDON, "tension": 0.99}, "tendon.below", "satisfied"),
+        ({}, {"tendon": TENDON | {"yield_force": None}, "tension": 1.0}, "tendon.no_yield_force", "caution"),
+        ({"as_strong": {"peak_tilt": 0.99 * SENSITIVE / BETWEEN_SCALES}}, {}, "intensity.ratio", "satisfied"),
+        ({"as_strong": {"peak_tilt": SENSITIVE}}, {}, "intensity.ratio", "caution"),
+        ({"as_strong": {"peak_tilt": 0.0}}, {}, "intensity.hardly", "caution"),
+        ({"as_strong": {"peak_tilt": math.inf}}, {}, "intensity.overturns", "caution"),
+        ({"as_strong": {"yields": True}}, {}, "intensity.yields_at", "not tested"),
+        ({}, {}, "engine.not_run", "not tested"),
+        ({}, {"verification": {}}, "engine.agrees", "satisfied"),
+        ({}, {"verification": {"divergence": "earlier", "moves": False}}, "engine.earlier", "not satisfied"),
+        ({}, {"verification": {"moves": False}}, "engine.rests", "caution"),
+        ({}, {"verification": {"outcome": "overturned"}}, "engine.overturns", "caution"),
+        ({}, {"verification": {"divergence": "much later"}}, "engine.untested", "not tested"),
+        ({}, {"verification": {"divergence": "too little motion"}}, "engine.little", "not tested"),
+        ({}, {"verification": {"outcome": "failed"}}, "engine.failed", "not tested"),
     ],
 )
-def test_overturning_is_likely_near_or_far(fell, lowest, chances, grade):
-    assert grade_overturning(fell, lowest, chances, tested=True) == grade
-    untested = grade_overturning(fell, lowest, chances, tested=False)
-    assert untested == ("not tested" if grade == "satisfied" else grade)
+def test_the_first_criterion_that_holds_gives_reason_and_grade(advice, columns, facts, key, level):
+    """Of an advice in which nothing overturns, and the largest tilt is that of all shaking as strong."""
+    plain: dict[str, dict[str, Any]] = {"groups": {"chance": 0.0}, "lowest": {"factor": NEAR}}
+    plain["as_strong"] = {"peak_tilt": 1.0}
+    columns = {name: plain.get(name, {}) | columns.get(name, {}) for name in (*plain, *columns)}
+    columns["as_strong"]["peak_tilt"] = min(
+        columns["as_strong"]["peak_tilt"] * advice.peak * PIER.alpha, FALLS
+    )
+    tables = {name: advice.tables[name].assign(**values) for name, values in columns.items()}
+    stated = {**advice.facts, **facts}
+    if "trust" in facts:
+        stated["trust"] = dict(zip(("kind", "because", "until"), (*facts["trust"], 3.0), strict=True))
+    if "verification" in facts:
+        stated["verification"] = ENGINE | facts["verification"]
+    if "tension" in facts:
+        stated["response"] = advice.response | {"tension": facts["tension"]}
+    found = dataclasses.replace(advice, tables={**advice.tables, **tables}, facts=stated)
+    finding = next(each for each in graded(found) if each.key.split(".")[0] == key.split(".")[0])
+    assert (finding.key, finding.level) == (key, level)
+    assert found.grades[key.split(".")[0]] == level
 
 
-def test_engines_and_intensities_have_grades_and_the_worst_counts():
-    assert grade_engine("stands", "earlier", differs=True) == "not satisfied"
-    assert grade_engine("failed", "earlier", differs=False) == "not tested"
-    assert grade_engine("overturned", "much later", differs=True) == "caution"
-    assert grade_engine("stands", "later", differs=False) == "satisfied"
-    for divergence in ("much later", "too little motion"):
-        assert grade_engine("stands", divergence, differs=False) == "not tested"
-    assert grade_intensity(1.0, 1.0, 0.99 * SENSITIVE / BETWEEN_SCALES) == "satisfied"
-    assert grade_intensity(1.0, 1.0, SENSITIVE) == "caution"
-    assert grade_intensity(1.0, 1.0, math.inf) == grade_intensity(0.1, 1.0, 1.0) == "caution"
-    assert grade_intensity(math.nan, 1.0, math.nan) == "not tested"
-    assert grade_trace("statistics", tested=True) == "caution"
-    assert grade_trace("peak", tested=True) == grade_trace("trace", tested=True) == "satisfied"
+def test_the_worst_grade_counts_and_what_was_not_run_is_no_better():
     assert overall(["satisfied", "not satisfied", "caution", "not tested"]) == "not satisfied"
     assert overall(["not tested", "caution"]) == "caution"
     assert overall(["satisfied", "not tested"]) == overall([]) == "not tested"
+    # a group whose members all failed hides no other
+    assert overall(map(grade_chance, [math.nan, 0.5])) == "not satisfied"
 
 
 def test_scales_hold_what_single_runs_give():
@@ -497,7 +518,8 @@ def test_the_vertical_component_is_part_of_the_grade_of_overturning(advice):
     members = advice.members.copy()
     fallen = members[members["group"] == "copies"].assign(group="with vertical", outcome="overturned")
     found = with_table(advice, members=pd.concat([members, fallen], ignore_index=True))
-    assert (found.grades["overturning"], found.vertical_matters) == ("not satisfied", True)
+    assert found.grades["overturning"] == "not satisfied"
+    assert [each.level for each in found.findings().of("vertical")] == ["not satisfied"]
     beside = fallen.assign(group="without vertical")
     assert with_table(advice, members=pd.concat([members, beside])).grades == advice.grades
 
@@ -528,7 +550,6 @@ def test_shaking_as_strong_is_scanned_finely_and_holds_single_runs(advice):
     found = with_table(advice, as_strong=falls)
     assert found.range_as_strong[1] == math.inf
     assert found.grades["intensity"] == "caution"
-    assert grade_overturning(False, found.lowest_factor, [0.0], tested=True) == "caution"
     assert found.lowest_factor == factors[factors > 1.1].min()
     assert not len(scan_as_strong(Case(PIER, SHORT), "recess", 0.5 * math.pi))
 
@@ -703,21 +724,6 @@ def test_an_engine_that_ends_its_process_leaves_the_advice(monkeypatch: pytest.M
     verified, prediction, trace = verify_run(release, Run("mujoco", "recess"), reduced.simulate(release))
     assert (verified.outcome, verified.diagnostics, verified.diverged) == ("failed", "died", True)
     assert (prediction.length, prediction.reason, len(trace.time)) == (1.0, "", 0)
-
-
-@pytest.mark.parametrize(
-    ("tension", "force", "tested", "grade"),
-    [
-        (0.99, 1.0, True, "satisfied"),
-        (1.01, 1.0, True, "not satisfied"),
-        (0.5, 1.0, False, "not tested"),
-        (0.5, None, True, "caution"),
-    ],
-)
-def test_a_tendon_is_graded_by_its_yield(
-    tension: float, force: float | None, tested: bool, grade: str
-) -> None:
-    assert grade_tendon(tension, force, tested=tested) == grade
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ CASE = rw.Case(CASK, rw.el_centro_1940().scaled(2.5), duration=8.0, friction=0.3
 
 def test_advice_on_a_slide_says_how_far_and_uses_up_a_gap() -> None:
     found = rw.advise(CASE, copies=20, gap=0.1)
-    first, slide, *others = found.mode_findings
+    first, slide, *others = found.findings().of("mode")
     trace = reduced.simulate(CASE, support="flat")
     assert (found.facts["support"], first.key, found.grades) == ("flat", "mode.slides", {})
     peak, low, high = slide.values["displacement"]
@@ -33,7 +33,7 @@ def test_advice_on_a_slide_says_how_far_and_uses_up_a_gap() -> None:
 @pytest.mark.slow
 def test_walls_stop_a_slide_with_what_friction_does_not_take() -> None:
     found = rw.advise(CASE, copies=20, support="recess")
-    first, walls = found.mode_findings
+    first, walls = found.findings().of("mode")
     assert (first.key, walls.key) == ("mode.rocks", "mode.walls")
     assert walls.values["force"] == pytest.approx(0.5 - 0.3)  # until it uplifts
     with pytest.raises(ValueError, match="gap"):
@@ -43,14 +43,16 @@ def test_walls_stop_a_slide_with_what_friction_does_not_take() -> None:
 @pytest.mark.slow
 def test_friction_near_the_border_and_friction_unknown_are_said() -> None:
     near = rw.Case(CASK, CASE.motion, duration=8.0, friction=0.46)
-    assert [each.key for each in rw.advise(near, copies=20).mode_findings][1] == "mode.border"
+    assert [each.key for each in rw.advise(near, copies=20).findings().of("mode")][1] == "mode.border"
     both = rw.Case(CASK, CASE.motion, duration=8.0, friction=0.52)
-    keys = [(each.key, each.level) for each in rw.advise(both, copies=20, support="flat").mode_findings]
+    keys = [
+        (each.key, each.level) for each in rw.advise(both, copies=20, support="flat").findings().of("mode")
+    ]
     assert keys == [("mode.rocks_and_slides", "note"), ("mode.no_engine", "not tested")]
     unknown = rw.advise(rw.Case(CASK, CASE.motion, duration=3.0), copies=20, friction_given=False)
-    assert unknown.mode_findings[-1].key == "mode.no_friction_given"
-    assert unknown.mode_findings[-1].values["bound"] == 0.5
-    assert math.isnan(unknown.mode_findings[0].values["given"])
+    assert unknown.findings().of("mode")[-1].key == "mode.no_friction_given"
+    assert unknown.findings().of("mode")[-1].values["bound"] == 0.5
+    assert math.isnan(unknown.findings().of("mode")[0].values["given"])
 
 
 def test_spectrum_says_the_mode_first_and_refuses_what_only_slides() -> None:
