@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -200,3 +201,13 @@ class GroundMotion:
         """
         source = self.source and self.source.with_change(change)
         return GroundMotion(acceleration, self.time_step, self.name, source)
+
+
+def sources_of(motions: Iterable[GroundMotion | None]) -> list[str]:
+    """Source of each ground motion in a line; each once, without motions of no file."""
+    lines = (
+        f"{motion.name or 'record'}: {motion.source.line}"
+        for motion in motions
+        if motion and motion.source and motion.source.from_files
+    )
+    return list(dict.fromkeys(lines))

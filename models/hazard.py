@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from .argument_kinds import with_argument_kinds
 from .diagnostic import Diagnostic
 from .number_checks import quoted, require_increasing, require_numbers, require_one_of, require_positive
-from .records.component import METRES_PER_SECOND_SQUARED, UNITS
+from .record_source import METRES_PER_SECOND_SQUARED, UNITS
 from .records.units import unit_of
 from .shown import CompactRepr
 

@@ -13,7 +13,17 @@ from .plain_json import Facts
 
 # a mean above this part of the peak is said beside it, and doubted: an offset that was not removed
 LARGEST_MEAN = 0.05
-STANDARD_GRAVITY = 9.81  # [m/s^2], the g of files of records
+# 1 g is 9.81 m/s^2, the default gravity of every model here, so that a/g stays what the file says
+STANDARD_GRAVITY = 9.81
+_USUAL = {"g": STANDARD_GRAVITY, "m/s2": 1.0, "cm/s2": 0.01}
+METRES_PER_SECOND_SQUARED = _USUAL | {
+    **{"mm/s2": 1e-3, "µm/s2": 1e-6, "mgal": 1e-5},
+    **{unit: part * STANDARD_GRAVITY for unit, part in {"%g": 1e-2, "mg": 1e-3, "µg": 1e-6}.items()},
+    **{"ft/s2": 0.3048, "in/s2": 0.0254},
+}
+UNITS = tuple(METRES_PER_SECOND_SQUARED)
+USUAL_UNITS = tuple(_USUAL)
+ALLOWED_UNITS = ", ".join(UNITS)
 SYNTHETIC, PULSE = "synthetic", "pulse"  # formats of motions that nobody recorded
 
 

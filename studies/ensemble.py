@@ -33,9 +33,9 @@ from rockwobble.models.case import REDUCED_MODELS, TERMS
 from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.finding import Findings
+from rockwobble.models.ground_motion import sources_of
 from rockwobble.models.number_checks import require_each
 from rockwobble.models.plain_json import fields_of, plain
-from rockwobble.models.records.units import sources_of
 from rockwobble.models.trace import NO_PEAK, lost_trace
 
 from .ensemble_findings import ensemble_findings

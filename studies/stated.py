@@ -10,8 +10,8 @@ from typing import Any
 from rockwobble.models import Case, GroundMotion
 from rockwobble.models import case as of_case
 from rockwobble.models.finding import Finding, Value
+from rockwobble.models.ground_motion import sources_of
 from rockwobble.models.plain_json import Facts
-from rockwobble.models.records.units import sources_of
 
 from .spectrum.maps import uplift_factor
 

@@ -26,9 +26,9 @@ from rockwobble.models.case import RECESS_MODEL
 from rockwobble.models.diagnostic import cell_of
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.finding import Finding, Findings, Value
+from rockwobble.models.ground_motion import sources_of
 from rockwobble.models.number_checks import require_in_range
 from rockwobble.models.plain_json import fields_of, plain
-from rockwobble.models.records.units import sources_of
 from rockwobble.models.trace_file import case_facts
 
 from .grid import Grid, GridChunk

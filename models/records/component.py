@@ -21,14 +21,6 @@ _UTF16 = {"utf-16-le": codecs.BOM_UTF16_LE, "utf-16-be": codecs.BOM_UTF16_BE}
 _TYPESET = str.maketrans({"\u00a0": " ", "\u2007": " ", "\u2009": " ", "\u202f": " ", "\u2212": "-"})
 # the largest of the networks are below 50 MB; what is larger is another file by mistake
 LARGEST_FILE = 200_000_000  # [bytes]
-# 1 g is 9.81 m/s^2, the default gravity of every model here, so that a/g stays what the file says
-_G = 9.81
-_USUAL = {"g": _G, "m/s2": 1.0, "cm/s2": 0.01}
-_PARTS = {"mm/s2": 1e-3, "µm/s2": 1e-6, "mgal": 1e-5, "%g": 1e-2 * _G, "mg": 1e-3 * _G}
-METRES_PER_SECOND_SQUARED = _USUAL | _PARTS | {"µg": 1e-6 * _G, "ft/s2": 0.3048, "in/s2": 0.0254}
-UNITS = tuple(METRES_PER_SECOND_SQUARED)
-USUAL_UNITS = tuple(_USUAL)
-ALLOWED_UNITS = ", ".join(UNITS)
 STEP_OPTION, COLUMNS_OPTION = "--record-step (time_step=)", "--record-columns (columns=)"
 _END_OF_FILE = b"\x1a"  # Ctrl-Z of DOS
 _HEAD = 60  # lines; the longest headers of the networks have 55

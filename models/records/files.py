@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 
 from ..argument_kinds import with_argument_kinds
+from ..doubts import doubts_as_read
 from ..ground_motion import GroundMotion
-from ..record_source import ComponentSource, RecordSource
-from .component import METRES_PER_SECOND_SQUARED, Component, Direction, open_record
+from ..record_source import METRES_PER_SECOND_SQUARED, ComponentSource, RecordSource
+from .component import Component, Direction, open_record
 from .directions import NORTH, at_the_surface, for_place, in_order, turned_to_north
 from .formats import read_components
-from .plausibility import doubts_as_read
 from .reading import Reading
 from .units import factor
 
@@ -194,7 +194,7 @@ def _source(
         samples=len(samples),
         components=tuple(parts),
         notes=tuple(said),
-        doubts=doubts_as_read(samples, motion.time_step, components, units),
+        doubts=doubts_as_read(samples, motion.time_step, [part.direction for part in components], units),
     )
 
 

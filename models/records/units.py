@@ -1,16 +1,12 @@
-"""Units of acceleration, as the files of records state them, and doubts where one cannot be right."""
+"""Units of acceleration, as the files of records state them."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from pathlib import Path
 
-from ..diagnostic import Diagnostic
-from ..ground_motion import GroundMotion
 from ..number_checks import quoted
-from .component import ALLOWED_UNITS, METRES_PER_SECOND_SQUARED, USUAL_UNITS
-from .plausibility import LARGEST_SCALED_PEAK, peak_doubts
+from ..record_source import ALLOWED_UNITS, METRES_PER_SECOND_SQUARED, USUAL_UNITS
 
 _SPELLINGS = {  # units without blanks and signs of powers and products, "sec" as "s"
     "g": "g g's gs",
@@ -118,57 +114,3 @@ def _candidates(line: str) -> list[str]:
     """Words of a header line that stand where a unit would."""
     words = [word for place in _PLACES for word in place.findall(line)]
     return [word.rstrip(".") for word in words]
-
-
-def doubts(motion: GroundMotion) -> tuple[Diagnostic, ...]:
-    """Reasons why a ground motion is improbable.
-
-    Of one that was read from files, what makes it improbable as it was read, see `RecordSource.doubts`, and a
-    peak beyond 5 g after scaling. Of one made of an array its peaks.
-
-    Returns
-    -------
-    tuple of Diagnostic
-        "large_peak": size is the peak [g], detail the unit that would make sense; "unlike_components": size
-        is the ratio of the peaks, detail the component that is larger; and the codes of a record in `CODES`.
-
-    Examples
-    --------
-    >>> motion = GroundMotion([[0, 0], [981, 0.1], [-400, 0.02]], 0.01)
-    >>> [(fact.code, fact.detail) for fact in doubts(motion)]
-    [('large_peak', 'cm/s2'), ('unlike_components', 'x')]
-    """
-    if motion.source is None or not motion.source.from_files:
-        return tuple(peak_doubts(motion.acceleration))
-    facts = motion.source.doubts
-    if any(fact.code == "large_peak" for fact in facts):
-        return facts
-    peak = motion.peak / METRES_PER_SECOND_SQUARED["g"]
-    if peak > LARGEST_SCALED_PEAK:  # its unit is known: no advice on it
-        facts = (*facts, Diagnostic(code="large_peak", size=peak, bound=LARGEST_SCALED_PEAK))
-    return facts
-
-
-def sources_of(motions: Iterable[GroundMotion | None]) -> list[str]:
-    """Source of each ground motion in a line; each once, without motions of no file."""
-    lines = (
-        f"{motion.name or 'record'}: {motion.source.line}"
-        for motion in motions
-        if motion and motion.source and motion.source.from_files
-    )
-    return list(dict.fromkeys(lines))
-
-
-def doubts_of(motions: Iterable[GroundMotion | None]) -> list[dict[str, object]]:
-    """Return the doubts about many motions as plain values, for a file: record and fields of each.
-
-    Of a record that comes several times, as at several scales, each doubt is there once.
-    """
-    known: dict[tuple[str, str], dict[str, object]] = {}
-    for motion in motions:
-        if motion is None:
-            continue
-        for fact in doubts(motion):
-            fields = {name: getattr(fact, name) for name in ("code", "size", "bound", "detail")}
-            known.setdefault((motion.name, fact.code), {"record": motion.name or "record"} | fields)
-    return list(known.values())

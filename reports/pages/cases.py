@@ -37,7 +37,7 @@ def conditions(facts: Facts) -> list[str]:
 
 def record_lines(motions: Iterable[GroundMotion | None]) -> list[str]:
     """A line on what each ground motion is read from."""
-    from rockwobble.models.records.units import sources_of
+    from rockwobble.models.ground_motion import sources_of
 
     return source_lines(sources_of(motions))
 

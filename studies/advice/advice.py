@@ -34,9 +34,9 @@ from rockwobble.models.case import FLAT_MODEL, RECESS_MODEL, TERMS
 from rockwobble.models.cylinder import cylinder_of
 from rockwobble.models.doubts import doubts_of_cases
 from rockwobble.models.finding import Findings, Grade
+from rockwobble.models.ground_motion import sources_of
 from rockwobble.models.mode import REST, SLIDES, expected_mode
 from rockwobble.models.plain_json import plain
-from rockwobble.models.records.units import sources_of
 from rockwobble.models.support import RECESS, support_named
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.models.trace_file import motion_facts

@@ -20,9 +20,9 @@ from rockwobble.models import GroundMotion, HazardCurve, RockingBody, Run
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
 from rockwobble.models.finding import Findings
+from rockwobble.models.ground_motion import sources_of
 from rockwobble.models.number_checks import require_each, require_one_of, require_positive
 from rockwobble.models.plain_json import Facts, fields_of, plain
-from rockwobble.models.records.units import sources_of
 from rockwobble.models.support import RECESS
 from rockwobble.models.trace import NO_PEAK
 

@@ -15,8 +15,8 @@ from rockwobble.models import Cylinder, GroundMotion
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.doubts import doubts_about
 from rockwobble.models.finding import Findings
+from rockwobble.models.ground_motion import sources_of
 from rockwobble.models.plain_json import plain
-from rockwobble.models.records.units import sources_of
 from rockwobble.models.support import RECESS
 
 from ..plans import PROBES, STEP, SpectrumPlan

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from rockwobble.models import GroundMotion, el_centro_1940, read_record
-from rockwobble.models.records.plausibility import LARGEST_PEAK
-from rockwobble.models.records.units import doubts, doubts_of
+from rockwobble.models.doubts import LARGEST_PEAK, doubts, doubts_about
 
 RECORD = el_centro_1940()
 G = 9.81  # [m/s^2]
@@ -30,7 +29,7 @@ def test_measured_records_are_plausible() -> None:
 
 
 def test_doubts_of_one_record_are_said_once() -> None:
-    found = doubts_of([times(981.0, 981.0), None, times(2000.0, 2000.0), RECORD])
+    found = doubts_about(motions=[times(981.0, 981.0), None, times(2000.0, 2000.0), RECORD])
     assert [(doubt["record"], doubt["code"]) for doubt in found] == [("made", "large_peak")]
 
 

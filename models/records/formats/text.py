@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...record_source import ALLOWED_UNITS
 from ..column_names import (
     ColumnName,
     comparison_key,
@@ -21,7 +22,7 @@ from ..column_names import (
     stated_step,
     without_unit,
 )
-from ..component import ALLOWED_UNITS, COLUMNS_OPTION, STEP_OPTION, Component, Direction, RecordFile
+from ..component import COLUMNS_OPTION, STEP_OPTION, Component, Direction, RecordFile
 from ..reading import Reading
 from ..table import Table, table_of
 from ..units import stated_unit, unit_of
