@@ -11,6 +11,7 @@ import pandas as pd
 
 from rockwobble.compare.metrics.pair import overturned
 from rockwobble.models.bounds import OVERTURNED_TILT
+from rockwobble.models.finding import Finding
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.studies.advice.advice import Advice
 from rockwobble.studies.spectrum.parts import SERIES
@@ -22,6 +23,7 @@ from .spectrum import NAMES, series_styles
 
 SHORT = {"copies": "copies", "acceleration": "same acceleration", "velocity": "same velocity"}
 _STANDS, _SIDE = 1.2, 1.3  # [balance tilt] where tilts are cut, and where overturned runs are drawn
+_LOW = 1.8  # height of the panel beside the grades [inch]
 _SCALES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 
 
@@ -42,6 +44,18 @@ def pictures(results: Advice) -> list[Picture]:
         legend="panels",
     )
     return [picture] if panels else []
+
+
+def parts_of(picture: Picture) -> tuple[Picture, Picture]:
+    """Largest tilts, which stand beside the grades of a page, and the other panels of the picture."""
+    assert isinstance(picture.caption, Finding)
+    peaks, details = (caption(f"advice_{part}", **picture.caption.values) for part in ("peaks", "details"))
+    first, *others = picture.panels
+    low = replace(first, title="", height=_LOW)
+    return (
+        replace(picture, name="advice-peaks", caption=peaks, panels=[low], columns=1),
+        replace(picture, caption=details, panels=others),
+    )
 
 
 def _peaks(results: Advice) -> Panel:

@@ -42,7 +42,7 @@ def budget_picture(view: CaseView, name: str) -> Picture | None:
     bars = [
         (f"{run} − {model}", each, True) for (run, model), each in view.budgets.items() if not each.not_split
     ]
-    return _stack(bars, name)
+    return _stack(bars, name, view.case.name)
 
 
 def all_budgets_picture(comparison: Comparison) -> Picture | None:
@@ -68,7 +68,7 @@ def all_budgets_picture(comparison: Comparison) -> Picture | None:
     return _stack(bars, "budget")
 
 
-def _stack(bars: Sequence[Bar], name: str) -> Picture | None:
+def _stack(bars: Sequence[Bar], name: str, case: str | None = None) -> Picture | None:
     if not bars:
         return None
     places, ends = np.arange(len(bars), dtype=np.float64), np.zeros(len(bars))
@@ -86,7 +86,7 @@ def _stack(bars: Sequence[Bar], name: str) -> Picture | None:
         layers=layers,
         height=0.9 + 0.27 * len(bars),
     )
-    return Picture(name=name, caption=caption("budget"), panels=[panel])
+    return Picture(name=name, caption=caption("budget", name=case), panels=[panel])
 
 
 def parts_picture(view: CaseView, name: str, *, above: float = 0.0) -> Picture | None:
@@ -110,4 +110,5 @@ def parts_picture(view: CaseView, name: str, *, above: float = 0.0) -> Picture |
         panels.append(Panel(x=TIME, y=y, layers=layers, title=f"{run} − {model}"))
     if not panels:
         return None
-    return Picture(name=name, caption=caption("budget_parts"), panels=panels, link_x=True)
+    said = caption("budget_parts", name=view.case.name)
+    return Picture(name=name, caption=said, panels=panels, link_x=True)

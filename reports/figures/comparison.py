@@ -99,7 +99,7 @@ def contact_picture(view: CaseView, name: str) -> Picture:
     """Return the unwrapped azimuth of the contact point, and by support its distance from the circle."""
     return Picture(
         name=name,
-        caption=caption("contact_point"),
+        caption=caption("contact_point", name=view.case.name),
         panels=[_azimuth(view), *(_drift(view, support) for support in view.supports)],
         link_x=True,
     )
@@ -160,7 +160,7 @@ def turn_picture(view: CaseView, name: str, *, notes: bool = True) -> Picture:
     x = Axis(label=TIME.label, unit=TIME.unit, low=0.0, high=view.case.length)
     return Picture(
         name=name,
-        caption=caption("turns"),
+        caption=caption("turns", name=view.case.name),
         panels=[Panel(x=x, y=_ANGLE, layers=layers)],
         link_x=True,
     )
@@ -191,7 +191,7 @@ def orbit_picture(view: CaseView, name: str) -> Picture:
         panels.append(Panel(x=east, y=north, layers=layers, title=title, equal=True, height=3.4))
     return Picture(
         name=name,
-        caption=caption("orbits"),
+        caption=caption("orbits", name=view.case.name),
         panels=panels,
         columns=2,
         legend="panels",
@@ -230,7 +230,7 @@ def residual_picture(view: CaseView, name: str) -> Picture:
     colours = [view.styles[run].colour if run in view.styles else GREY for run in runs]
     return Picture(
         name=name,
-        caption=caption("residuals"),
+        caption=caption("residuals", name=view.case.name),
         panels=[
             _bars(runs, moved, colours, Axis(label="displacement / b", unit="-", low=0.0), "b"),
             _bars(runs, twisted, colours, Axis(label="twist", unit="deg", low=0.0), "°"),
@@ -277,7 +277,7 @@ def excitation_picture(view: CaseView, name: str) -> Picture | None:
     y = Axis(label="ground acceleration / g", unit="-", low=-peak, high=peak)
     return Picture(
         name=name,
-        caption=caption("excitation"),
+        caption=caption("excitation", name=view.case.name),
         panels=[Panel(x=TIME, y=y, layers=layers)],
         link_x=True,
     )

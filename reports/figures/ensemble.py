@@ -33,7 +33,7 @@ def pictures(found: Ensemble) -> list[Picture]:
     panels = [distributions(found.members, list(models)), *([_ratios(found, rows)] if rows else [])]
     picture = Picture(
         name="ensemble",
-        caption=caption("ensemble", share=MARGIN),
+        caption=caption("ensemble", share=MARGIN, name=found.facts.get("members")),
         panels=panels,
         legend="panels",
     )

@@ -80,7 +80,7 @@ def _ratios(results: Fragility) -> Picture | None:
     panel = Panel(x=x_axis, y=y_axis, layers=layers, title=title, height=_LINE * len(pairs) + 1.0)
     return Picture(
         name="fragility-ratios",
-        caption=caption("fragility_ratios", share=margin),
+        caption=caption("fragility_ratios", share=margin, names=tuple(results.facts["cylinders"])),
         panels=[panel],
     )
 

@@ -29,7 +29,9 @@ def _maps(results: Sweep) -> Picture:
     parts = results.table.groupby(results.keys, sort=False)
     sizes, scales = (results.table[name].nunique() for name in ("semidiagonal", "scale"))
     steps = _step(sizes, scales), _step(scales, sizes)
-    panels = [_map(own, *steps) for _, own in islice(parts, _MOST_MAPS)]
+    shown = [own for _, own in islice(parts, _MOST_MAPS)]
+    panels = [_map(own, *steps) for own in shown]
+    motions = tuple(dict.fromkeys(str(own["motion"].iloc[0]) for own in shown))
     one_in = {
         f"count_{name}": step if step > 1 else None
         for name, step in zip(("sizes", "scales"), steps, strict=True)
@@ -37,7 +39,7 @@ def _maps(results: Sweep) -> Picture:
     maps = len(parts) if len(parts) > _MOST_MAPS else None
     return Picture(
         name="sweep",
-        caption=caption("sweep_maps", count=_MOST_MAPS, count_all=maps, **one_in),
+        caption=caption("sweep_maps", names=motions, count=_MOST_MAPS, count_all=maps, **one_in),
         panels=panels,
         columns=min(2, len(panels)),
         shades=PEAKS,
@@ -82,9 +84,10 @@ def _distributions(table: pd.DataFrame) -> Picture:
     members = table.drop(columns="peak_tilt").rename(
         columns={"run": "method", "case": "member", "peak_tilt_over_alpha": "peak_tilt"}
     )
+    cases = table["case"].unique()
     models = members.loc[members["engine"] == REDUCED, "method"].unique()
     return Picture(
         name="sweep",
-        caption=caption("sweep_shares"),
+        caption=caption("sweep_shares", name=str(cases[0]), count=len(cases) - 1 or None),
         panels=[distributions(members, list(models), "cases")],
     )

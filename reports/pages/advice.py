@@ -18,10 +18,10 @@ from rockwobble.studies.advice.members import COPIES
 from rockwobble.studies.advice.scales import planar_shares
 from rockwobble.studies.advice.trust import scatter_of
 
-from ..figures.advice import pictures
+from ..figures.advice import parts_of, pictures
 from .cases import conditions
 from .command_line import command_line, spectrum_line
-from .page import Page
+from .page import Page, figure_html
 from .table import number, scattered
 from .wording import lines_of, sentence, statement
 
@@ -82,7 +82,9 @@ def page_of(found: Advice) -> Page:
         "weight_short": " ".join(statement(each, short=True) for each in findings.of("weight")),
         "demanded": list(_demand_rows(found, findings)),
         "demand_columns": list(_demand_columns(found)),
-        "wall": " ".join(_said(each for each in findings.of("wall") if each.key not in _DEMAND_DETAILS)),
+        "wall": " ".join(
+            statement(each, short=True) for each in findings.of("wall") if each.key not in _DEMAND_DETAILS
+        ),
         "acting": " ".join(_said([*acting, *(each for each in findings if each.key == "demand.weaker")])),
         "steps": _steps(found, findings),
         "next": next(iter(_steps(found, findings, short=True)), ""),
@@ -96,7 +98,11 @@ def page_of(found: Advice) -> Page:
         "shares": planar_shares(found.planar) if len(found.planar) and not found.yielded else [],
         "assumptions": _said(findings.of("assumption")),
     }
-    return Page(name="advice", template="advice", values=values, pictures=drawn, blocks={"signed": _SIGNED})
+    blocks = {"signed": _SIGNED}
+    if found.moves:
+        peaks, details = map(figure_html, parts_of(*drawn))
+        blocks |= {"beside": '<div class="beside"><div>', "peaks": f"</div>{peaks}</div>", "details": details}
+    return Page(name="advice", template="advice", values=values, pictures=drawn, blocks=blocks)
 
 
 _DEMAND_DETAILS = ("demand.levels", "wall.moment", "wall.balance")
@@ -196,7 +202,7 @@ def _demand_rows(found: Advice, findings: Findings) -> Iterator[Row]:
 
 def _sizes(row: Mapping[Any, Any], unit: str) -> Row:
     cells: Row = {"value": f"{number(row['value'])}{_UNITS[row['unit']]}"}
-    if not math.isnan(row.get("peak", math.nan)):  # an earlier version stated none
+    if not math.isnan(row.get("peak", math.nan)):
         cells["peak"] = f"{number(row['peak'])}{_UNITS[row['unit']]}"
         if not math.isnan(row["for_mass"]):
             cells["peak"] = f"{_round(row['peak'] / row['value'] * row['for_mass'])} {unit}"
@@ -217,7 +223,9 @@ def _demand_columns(found: Advice) -> Iterator[list[str]]:
     yield from (["name", "demand", "words"], ["value", "value", "words"], ["tonne", "per tonne", "words"])
     if found.facts["mass"] is not None:
         yield ["mass", _cell("one_column" if "columns" in found.facts["cylinder"] else "in_all"), "words"]
-    yield from (["peak", "peak", "words"], ["of", "not exceeded by", "words"])
+    if "peak" in found.demands and found.demands["peak"].notna().any():  # an earlier version stated none
+        yield ["peak", "peak", "words"]
+    yield ["of", "not exceeded by", "words"]
 
 
 def _round(value: float) -> str:

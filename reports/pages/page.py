@@ -270,18 +270,24 @@ def _html(part: Part) -> str:
         summary = f'<details class="fold"><summary>{html.escape(part.title)}</summary>'
         return summary if part.title else "</details>"
     if isinstance(part, Picture):
-        panels = "".join(
-            f"<div>{f'<h4>{html.escape(title)}</h4>' if title else ''}{plot}</div>"
-            for title, plot in charts(part)
-        )
-        columns = f' class="panels" style="--columns: {part.columns}"'
-        several = columns if len(part.panels) > 1 and not part.link_x else ""
-        words = f"<h3>{html.escape(part.title)}</h3><p>{html.escape(str(part.caption))}</p>"
-        scale = colour_bar(part.shades) if part.shades else ""
-        return f'<figure id="{html.escape(part.name)}">{words}<div{several}>{panels}</div>{scale}</figure>'
+        return figure_html(part)
     if isinstance(part, Table):
         return part.html()
     return str(part) if isinstance(part, MarkdownText) else to_html(part)
+
+
+def figure_html(picture: Picture) -> str:
+    """A picture as an element of a page, with title and caption."""
+    shown = _worded(picture)
+    panels = "".join(
+        f"<div>{f'<h4>{html.escape(title)}</h4>' if title else ''}{plot}</div>"
+        for title, plot in charts(shown)
+    )
+    columns = f' class="panels" style="--columns: {shown.columns}"'
+    several = columns if len(shown.panels) > 1 and not shown.link_x else ""
+    words = f"<h3>{html.escape(shown.title)}</h3><p>{html.escape(str(shown.caption))}</p>"
+    scale = colour_bar(shown.shades) if shown.shades else ""
+    return f'<figure id="{html.escape(shown.name)}">{words}<div{several}>{panels}</div>{scale}</figure>'
 
 
 def to_html(text: str) -> str:

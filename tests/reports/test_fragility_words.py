@@ -10,9 +10,9 @@ import numpy as np
 import pandas as pd
 import pytest
 from fragility_example import METHODS, made_up
+from showing import is_golden
 
 from rockwobble.compare.metrics.statistics import FEWEST, Interval
-from rockwobble.compare.storage.manifest import Manifest
 from rockwobble.reports.figures.fragility import pictures
 from rockwobble.reports.pages import page_of
 from rockwobble.reports.pages.fragility import fragility_values
@@ -33,21 +33,9 @@ def with_contrasts(found: Fragility, table: pd.DataFrame) -> Fragility:
     return dataclasses.replace(found, tables={**found.tables, "contrasts": table})
 
 
-GOLDEN = Path(__file__).parent / "golden" / "fragility.md"
-MANIFEST = Manifest(
-    kind="fragility",
-    command="rockwobble fragility",
-    date="2026-01-01",
-    processor="a CPU",
-    versions={"rockwobble": "0"},
-)
-
-
 @pytest.mark.slow
 def test_the_page_is_the_golden_one():
-    page = page_of(dataclasses.replace(made_up(("pier",)), manifest=MANIFEST)).markdown()
-    # made anew by writing `page` there, and read before it is committed
-    assert page == GOLDEN.read_text()
+    is_golden(made_up(("pier",)))
 
 
 Numbers = list[dict[str, Any]]

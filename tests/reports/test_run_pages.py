@@ -194,7 +194,7 @@ def test_a_map_has_a_cell_per_run_or_states_the_number(monkeypatch):
     assert picture.panels[0].layers[0].values.shape == (2, 2)
     left_out = {"count_sizes": 2, "count_scales": 2, "count": 1, "count_all": 2}
     assert isinstance(picture.caption, Finding)
-    assert picture.caption.values == left_out
+    assert picture.caption.values == {"names": ("El Centro 1940",), **left_out}
 
 
 def test_a_short_axis_keeps_its_values_beside_a_long_one():

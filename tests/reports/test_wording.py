@@ -115,3 +115,11 @@ def test_findings_are_a_table_a_file_and_a_text():
 def test_every_quantity_has_a_meaning():
     assert all(meaning for _, meaning in QUANTITIES.values())
     assert lines_of("diagnostic.slip") == ("slipped", "contact slipped[ from {time} on]")
+
+
+def test_the_title_of_every_figure_names_its_case():
+    of_limits = list(words()["figure"]).index("records")  # from there on, of all cases of one study
+    titles = {key: lines_of(f"figure.{key}")[0] for key in list(words()["figure"])[:of_limits]}
+    assert [key for key, title in titles.items() if not re.search(r"\{names?\}", title)] == [
+        "trace"
+    ]  # its own

@@ -143,6 +143,7 @@ def _lower_from(numbers: Mapping[str, float]) -> str:
 Array = NDArray[np.float64]
 
 _LINE = Style(colour=ORDER[0])
+_PIER = f"R = {PIER.semidiagonal:g} m, tan α = {PIER.tan_alpha:g}"
 # cividis, dark to light by slenderness
 _SHADES = ("#00224e", "#2b406d", "#595e6e", "#7e7d78", "#a99f73", "#d6c35d")
 _ROCKING = (1.0, free.DISC)  # the curves of slender bodies lie under Housner's
@@ -172,7 +173,7 @@ def period_picture(table: pd.DataFrame) -> Picture:
     )
     return Picture(
         name="figure-3",
-        title="Periods over the tilt",
+        title="Periods over the tilt, any size",
         caption="p times the time in which the contact point goes once round the rim at constant tilt, for "
         "bodies from slender to flat; and p times the full period of planar rocking released at that "
         "tilt: linearised after Housner (dotted), which does not depend on α, and exact for tan α = 1 "
@@ -200,7 +201,7 @@ def free_picture(table: pd.DataFrame) -> Picture:
             panels.append(Panel(x=_FROM_0, y=y, layers=[line], height=1.5))
     return Picture(
         name="figure-4",
-        title="Paths and time histories of the modes",
+        title=f"Paths and time histories of the modes, {_PIER}",
         caption="Top row: path of the centre of mass, seen from above; it starts at the dot.",
         panels=[*orbits, *panels],
         columns=len(modes),
@@ -254,7 +255,7 @@ def earthquake_picture(table: pd.DataFrame, record: pd.DataFrame, numbers: Mappi
         panels.append(_over_time(at, ground, y, marks, Style(colour="#444444"), 1.4))
     return Picture(
         name="figure-5",
-        title="Response and ground motion",
+        title="Response and ground motion, El Centro 1940",
         caption=f"R = {cylinder.semidiagonal:g} m, tan α = {cylinder.tan_alpha:g}. Shaded: the record itself "
         f"can uplift; dashed: from here on the response to a record {100.0 * earthquake.NUDGE:g} % stronger "
         "differs by 1 % of α.",
@@ -293,7 +294,7 @@ def overturning_picture(spectrum: OverturningSpectrum) -> Picture:
     return replace(
         whole,
         name="figure-6",
-        title="Peak tilts and overturning boundaries",
+        title=f"Peak tilts and overturning boundaries, El Centro 1940, tan α = {spectrum.maps.tan_alpha:g}",
         caption="Peak tilt of sizes under intensities, in 3D and of each component alone, undamped; the "
         "line is the overturning boundary as found by the search. The three runs of a cell "
         "share one factor on the record; the scale on the right of a planar map is the peak of "
