@@ -10,12 +10,12 @@ import pandas as pd
 from rockwobble.reports.figures.palette import DARK, GREY, Style, mark_styles
 from rockwobble.reports.figures.picture import Axis, Line, Panel, Picture, Rule, bar_ends
 from rockwobble.reports.published.tradeoff.points import Tradeoff
-from rockwobble.reports.published.tradeoff.problem import RECESS
+from rockwobble.reports.published.tradeoff.problem import PIER, RECESS
 
 TITLES = {
-    "turn": "Azimuth change in free response, R = 6 m, tan α = 0.2",
-    "shaken": "Tilt under 2 × El Centro, R = 6 m, tan α = 0.2",
-    "peaks": "Distribution of peak tilt, R = 6 m, tan α = 0.2",
+    "turn": "Azimuth change in free response",
+    "shaken": "Tilt under 2 × El Centro",
+    "peaks": "Distribution of peak tilt",
 }
 ERRORS = {
     "turn": ("error of azimuth change", "deg"),
@@ -66,7 +66,7 @@ def _picture(results: Tradeoff, problem: str) -> Picture:
         panels.append(Panel(x=time, y=error, layers=layers, title=title))
     return Picture(
         name=f"tradeoff-{problem}",
-        title=TITLES[problem],
+        title=f"{TITLES[problem]}, R = {PIER.semidiagonal:g} m, tan α = {PIER.tan_alpha:g}",
         caption="Lower left is better. Along a line only the tolerance or the time step changes, from coarse "
         "on the left to fine on the right; bars: quartiles of the times. A recess with clearance is compared "
         "with itself at half the finest step."
