@@ -17,35 +17,29 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
 from rockwobble.multibody import available_engines, simulate
 from rockwobble.multibody.engines.registry import find_engine
 
-Array = NDArray[np.float64]
 _CLOSELY = {"rtol": 1e-11, "rest_tilt": 0.0}
 
 
+def solve(case: Case, *, rolls_out: bool = False, sample_step: float = 0.01) -> Trace:
+    """The motion of a case in the recess or on flat ground."""
+    support = "flat" if rolls_out else "recess"
+    return reduced.simulate(case, support=support, sample_step=sample_step, **_CLOSELY)
+
+
 def free_response(
-    cylinder: Cylinder, initial: InitialState, time: Array, *, rolls_out: bool = False
+    cylinder: Cylinder, initial: InitialState, time: NDArray[np.float64], *, rolls_out: bool = False
 ) -> Trace:
-    """The response to a release at evenly spaced times, in the recess or on flat ground."""
+    """The response to a release at evenly spaced times."""
     case = Case(cylinder, initial=initial, duration=float(time[-1]))
-    return _solved(case, rolls_out, sample_step=float(time[1] - time[0]))
+    return solve(case, rolls_out=rolls_out, sample_step=float(time[1] - time[0]))
 
 
 def forced_response(
     cylinder: Cylinder, motion: GroundMotion, end: float, *, rolls_out: bool = False
 ) -> Trace:
     """The response from rest at the samples of the motion until `end`."""
-    return _solved(Case(cylinder, motion, duration=end), rolls_out, sample_step=motion.time_step)
-
-
-def released_response(cylinder: Cylinder, motion: GroundMotion, initial: InitialState, time: Array) -> Array:
-    """Tilt on flat ground from a release under a motion, at evenly spaced times."""
-    case = Case(cylinder, motion, initial=initial, duration=float(time[-1]))
-    return _solved(case, True, sample_step=float(time[1] - time[0])).tilt
-
-
-def _solved(case: Case, rolls_out: bool, *, sample_step: float) -> Trace:
-    return reduced.simulate(
-        case, support="flat" if rolls_out else "recess", sample_step=sample_step, **_CLOSELY
-    )
+    case = Case(cylinder, motion, duration=end)
+    return solve(case, rolls_out=rolls_out, sample_step=motion.time_step)
 
 
 def _is_exact(name: str) -> bool:
@@ -96,11 +90,6 @@ def run_release(solve_free: Callable[..., Trace]) -> Callable[..., tuple[Trace, 
 @pytest.fixture(scope="session")
 def solve_forced() -> Callable[..., Trace]:
     return forced_response
-
-
-@pytest.fixture
-def solve_released() -> Callable[..., Array]:
-    return released_response
 
 
 @pytest.fixture

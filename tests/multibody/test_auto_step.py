@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engine_samples import trace_of
 
 from rockwobble import multibody
-from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace
-from rockwobble.models.trace_source import EagerSource
+from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Trace
 from rockwobble.multibody.auto_step import COARSEST, SMALLEST, Closeness, closeness, find_step
 from rockwobble.multibody.halving import common_count
 
@@ -49,35 +49,6 @@ def test_the_step_scales_with_size() -> None:
     assert run.time_step == pytest.approx(0.1 * COARSEST / 2)
 
 
-def made(tilt: Any, *, passes: tuple[float, ...] = (), outcome: str = "stands") -> Trace:
-    """Return a trace with that tilt and nothing else to speak of."""
-    import pandas as pd
-
-    n = len(tilt)
-    zeros, points = np.zeros(n), np.zeros((n, 3))
-    return Trace(
-        case=Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), duration=1.0),
-        run=Run("made", "flat"),
-        version="",
-        time=0.01 * np.arange(n),
-        tilt=np.asarray(tilt, dtype=float),
-        tilt_rate=zeros,
-        rolling_angle=zeros,
-        twist=zeros,
-        contact_point=points[:, :2],
-        centre_of_mass=points,
-        peak_tilt=0.1,
-        outcome=outcome,
-        facts=(Diagnostic(code="warning", detail="why"),) if outcome == "failed" else (),
-        uplift_time=0.0,
-        uplift_direction=0.0,
-        passes=pd.DataFrame({"time": passes}),
-        contact_resolution=1e-6,
-        wall_time=1.0,
-        source=EagerSource({}),
-    )
-
-
 def step_fact(run: Trace) -> Diagnostic:
     """What the search for a step says of its end."""
     (fact,) = (fact for fact in run.facts if fact.code in ("settled", "unsettled"))
@@ -93,7 +64,7 @@ def search(
     def attempt(step: float, _: Any) -> Trace:
         steps.append(step)
         given = tilt_of(step)
-        run = given if isinstance(given, Trace) else made(given, **kept)
+        run = given if isinstance(given, Trace) else trace_of(given, **kept)
         return replace(run, time_step=step)
 
     return find_step(attempt, 1.0, ALPHA, tolerance, None), steps
@@ -118,7 +89,7 @@ def test_auto_step_is_unsettled_after_chance_events(code: str) -> None:
     left: dict[str, Any] = {"facts": (Diagnostic(code=code, time=0.2),)}
     if code == "unresolved_pass":  # contact resolves 1e-6 rad
         left = {"extrema": np.array([[0.1, 0.1, 0.0, 1.0], [0.2, 1e-7, 0.0, -1.0]])}
-    run, steps = search(lambda step: replace(made(np.full(50, 0.1)), **left))
+    run, steps = search(lambda step: replace(trace_of(np.full(50, 0.1)), **left))
     assert len(steps) == 2
     assert (step_fact(run).code, step_fact(run).detail) == ("unsettled", code)
     assert np.isnan(run.error_estimate)
@@ -163,7 +134,7 @@ def test_a_divergence_that_stays_is_where_agreement_ends() -> None:
 
 
 def test_failed_steps_are_passed_over() -> None:
-    fails = made([0.1], outcome="failed")
+    fails = trace_of([0.1], outcome="failed")
     run, steps = search(lambda step: fails if step > 0.9 * COARSEST else np.full(50, 0.1))
     assert run.outcome == "stands"
     assert len(steps) == 3
@@ -176,14 +147,14 @@ def test_failed_steps_are_passed_over() -> None:
 
 
 def test_closeness_knows_an_end_before_the_other() -> None:
-    whole, short = made(np.full(50, 0.1)), made(np.full(30, 0.1), outcome="overturned")
+    whole, short = trace_of(np.full(50, 0.1)), trace_of(np.full(30, 0.1), outcome="overturned")
     assert closeness(whole, short, ALPHA) == Closeness(0.0, pytest.approx(0.29), pytest.approx(0.29))
 
 
 def test_closeness_ends_at_the_last_pass_before_a_divergence() -> None:
-    fine = made(np.full(50, 0.1), passes=(0.05, 0.1, 0.2, 0.4))
+    fine = trace_of(np.full(50, 0.1), passes=(0.05, 0.1, 0.2, 0.4))
     off = np.where(fine.time < 0.15, 1e-6, np.where(fine.time < 0.3, 2e-6, 0.1))
-    found = closeness(made(fine.tilt + off), fine, ALPHA)
+    found = closeness(trace_of(fine.tilt + off), fine, ALPHA)
     assert found == Closeness(pytest.approx(2e-6), pytest.approx(0.2), pytest.approx(0.3))
 
 
@@ -199,9 +170,3 @@ def test_closeness_ends_at_the_last_pass_before_a_divergence() -> None:
 def test_what_is_refused(pier: Cylinder, arguments: dict[str, Any], line: str) -> None:
     with pytest.raises(ValueError, match=line):
         multibody.simulate(Case(pier, initial=InitialState(0.1), duration=0.1), **arguments)
-
-
-def test_a_run_takes_it() -> None:
-    assert Run("mujoco", "flat", "auto").time_step == "auto"
-    with pytest.raises(ValueError, match="time_step"):
-        Run("mujoco", "flat", "aut")  # type: ignore[arg-type]

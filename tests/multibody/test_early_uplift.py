@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 import pytest
+from engine_samples import scene_of
 
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, Diagnostic, GroundMotion
-from rockwobble.models.support import FLAT
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.protocol import Steps
 from rockwobble.multibody.reaction import EARLY, sure_tilt
 from rockwobble.multibody.recorder import Recorder
-from rockwobble.multibody.scene import Scene, scaled_body, starting_state
+from rockwobble.multibody.scene import scaled_body, starting_state
 from rockwobble.multibody.simulation import diagnostics
 
 STEP = 1e-4
@@ -46,16 +46,7 @@ def opening(share: float, rise: float) -> list[Diagnostic]:
         np.column_stack([zero, rate, zero]),
     )
     acceleration = np.column_stack([-load * GRAVITY * PIER.tan_alpha, zero, zero])
-    scene = Scene(
-        body=BODY,
-        start=start,
-        support=FLAT,
-        friction=1.0,
-        time_step=STEP,
-        gravity=GRAVITY,
-        components="xy",
-        unit_time=1.0,
-    )
+    scene = scene_of(PIER, time_step=STEP)
     recorder = Recorder(scene, np.array([0.0, STEP * (end - 2)]), 0.0, False)
     parts = (steps.position, steps.quaternion, steps.velocity, steps.angular_velocity)
     recorder.take(Steps(*(each[:end] for each in parts)), acceleration[:end])

@@ -51,21 +51,13 @@ def test_small_tilts_agree_beyond_twenty_seconds(pier: Cylinder, solve_forced: C
     motion = el_centro_1940()
     run = multibody.simulate(Case(pier, motion, duration=20.5))
     exact = solve_forced(pier, motion, 20.5)
-    tilt = np.interp(exact.time, run.time, run.tilt)
-    assert np.abs(tilt - exact.tilt).max() < 0.01 * pier.alpha
-    assert run.uplift_time == pytest.approx(exact.uplift_time, abs=UPLIFT_STEPS * run.time_step)
-    assert run.uplift_direction == pytest.approx(exact.uplift_direction, abs=UPLIFT_ANGLE)
+    assert np.abs(np.interp(exact.time, run.time, run.tilt) - exact.tilt).max() < 0.01 * pier.alpha
     # at rest there is no contact azimuth, and as soon as the cylinder leans by 1e-6 rad there is
     resting = run.tilt < 5e-6 * pier.alpha
     assert resting[run.time < run.uplift_time].all()
     assert not resting[run.time > run.uplift_time + 0.03].any()
-    assert np.isnan(run.rolling_angle[resting]).all()
-    assert np.isnan(run.contact_point[resting]).all()
-    assert np.isfinite(run.rolling_angle[~resting]).all()
-    # the guide keeps the contact on the original circle; the rest is the resolution of Bullet and MuJoCo
-    radius = np.hypot(*run.contact_point[~resting].T)
-    assert np.abs(radius - pier.base_radius).max() < 2e-3 * pier.base_radius
-    assert np.abs(run.twist).max() < 1e-4
+    for values in (run.rolling_angle, run.contact_point[:, 0]):
+        np.testing.assert_array_equal(np.isnan(values), resting)
 
 
 @pytest.mark.slow
@@ -124,43 +116,8 @@ def test_an_uplift_under_a_turning_load_leaves_next_to_no_error(
     assert np.abs(errors).max() < 1.5e-7
 
 
-@pytest.mark.slow
-def test_vertical_ground_motion_agrees_with_the_model(
-    pier: Cylinder, solve_forced: Callable[..., Any]
-) -> None:
-    motion = el_centro_1940(vertical=True).scaled(2.0)
-    run = multibody.simulate(Case(pier, motion, duration=5.0))
-    exact = solve_forced(pier, motion, 5.0)
-    assert relative_difference(run, exact, 5.0) < TRACE["mujoco"]
-    flat = solve_forced(pier, GroundMotion(motion.acceleration[:, :2], motion.time_step), 5.0)
-    assert relative_difference(run, flat, 5.0) > 0.05
-
-
-@pytest.mark.slow
-def test_open_ground_follows_the_rolling_model(pier: Cylinder, solve_forced: Callable[..., Any]) -> None:
-    motion = el_centro_1940().scaled(2.0)
-    run = multibody.simulate(Case(pier, motion, duration=6.0), support="flat")
-    # the same resolution as in the recess
-    assert relative_difference(run, solve_forced(pier, motion, 6.0, rolls_out=True), 6.0) < TRACE["mujoco"]
-    assert relative_difference(run, solve_forced(pier, motion, 6.0), 6.0) > 3 * TRACE["mujoco"]
-
-
 def test_step_load_uplifts_at_once(engine: str, pier: Cylinder) -> None:
     pulse = GroundMotion([[3.0, 4.0], [3.0, 4.0], [0.0, 0.0]], 0.2)
     run = multibody.simulate(Case(pier, pulse), engine=engine)
     assert run.uplift_time <= run.time_step
     assert run.uplift_direction == pytest.approx(np.arctan2(-4.0, -3.0), abs=1e-3)
-
-
-def test_weak_motion_leaves_it_standing(engine: str, pier: Cylinder, time_step: float | None) -> None:
-    record = el_centro_1940().scaled(0.5)
-    # its largest acceleration, half a second on each side
-    case = Case(pier, GroundMotion(record.acceleration[163:263], record.time_step))
-    run = multibody.simulate(case, engine=engine, time_step=time_step)
-    assert run.rests
-    assert np.isnan(run.uplift_time)
-    assert np.isnan(run.rolling_angle).all()
-    assert len(run.passes) == 0
-    # contact yields: MuJoCo leans by 1e-9 rad, Bullet by 1e-7
-    assert run.peak_tilt < 1e-6
-    assert run.residual_displacement < 1e-6

@@ -42,7 +42,3 @@ def test_time_and_acceleration_scale() -> None:
     np.testing.assert_allclose(
         StepMeans(small, scale, 1e-3)(0, 50), StepMeans(MOTION, UNIT, 1e-3)(0, 50), atol=1e-12
     )
-
-
-def test_still_ground() -> None:
-    assert (StepMeans(None, UNIT, 1e-3)(0, 10) == 0.0).all()

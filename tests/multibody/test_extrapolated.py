@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from engine_samples import trace_of
 
 from rockwobble import multibody
 from rockwobble.models import (
@@ -17,14 +18,11 @@ from rockwobble.models import (
     Cylinder,
     Diagnostic,
     InitialState,
-    Run,
     Trace,
     el_centro_1940,
 )
-from rockwobble.models.trace_source import EagerSource
 from rockwobble.multibody.extrapolated_step import extrapolation
 from rockwobble.multibody.guard import LARGEST_STEP
-from rockwobble.multibody.halving import to_zero_step
 
 ALPHA = 0.2
 # of alpha, after a release: what the second order leaves of an engine of first order
@@ -71,36 +69,9 @@ def test_a_shaken_run_extrapolates(engine: str, solve_forced: Callable[..., Any]
     assert [(fact.code, fact.bound) for fact in run.facts] == [("extrapolated", 2.0)]
 
 
-def made(tilt: Any, *, angle: Any = None, outcome: str = "stands", **more: Any) -> Trace:
-    """Return a trace with that tilt and nothing else to speak of."""
-    n = len(tilt)
-    zeros, points = np.zeros(n), np.zeros((n, 3))
-    return Trace(
-        case=Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), duration=1.0),
-        run=Run("made", "flat"),
-        version="",
-        time=0.01 * np.arange(n),
-        tilt=np.asarray(tilt, dtype=float),
-        tilt_rate=zeros,
-        rolling_angle=zeros if angle is None else np.asarray(angle, dtype=float),
-        twist=zeros,
-        contact_point=points[:, :2],
-        centre_of_mass=points,
-        peak_tilt=float(np.max(tilt)),
-        outcome=outcome,
-        facts=(Diagnostic(code="warning", detail="why"),) if outcome == "failed" else (),
-        uplift_time=0.0,
-        uplift_direction=0.0,
-        contact_resolution=1e-6,
-        wall_time=1.0,
-        source=EagerSource({"energy": np.asarray(tilt, dtype=float), "slip": zeros}),
-        **more,
-    )
-
-
 def three(error: Callable[[float], Any], **more: Any) -> list[Trace]:
     """Return runs at steps of 4, 2 and 1, whose tilt is off by `error` of the step."""
-    return [replace(made(0.1 + error(step), **more), time_step=step) for step in (4.0, 2.0, 1.0)]
+    return [replace(trace_of(0.1 + error(step), **more), time_step=step) for step in (4.0, 2.0, 1.0)]
 
 
 @pytest.mark.parametrize("order", [1, 2])
@@ -214,16 +185,11 @@ def test_a_tilt_stays_positive_and_two_sides_of_upright_do_not_mix() -> None:
 
 
 def test_a_failed_run_is_said() -> None:
-    fails = made([0.1], outcome="failed")
+    fails = trace_of([0.1], outcome="failed")
     good = three(lambda step: np.full(50, 1e-5 * step))
     (fact,) = extrapolation([fails, *good[1:]], ALPHA).facts
     assert (fact.code, fact.detail) == ("not_extrapolated", "fails")
     assert extrapolation([*good[:2], fails], ALPHA) is fails
-
-
-def test_the_limit_of_one_order() -> None:
-    assert to_zero_step([np.array([5.0]), np.array([3.0])], 1) == pytest.approx(1.0)
-    assert to_zero_step([np.array([5.0]), np.array([2.0])], 2) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize(

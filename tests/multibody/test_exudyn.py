@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from rockwobble import multibody
+from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
 
 if "exudyn" not in multibody.available_engines():
     pytest.skip("exudyn is not installed", allow_module_level=True)
 
-TABLE = Path(__file__).parents[1] / "reference" / "finite_release.csv"
-TURN = 1e-4  # [deg] printed to 1e-6; the trapezoidal rule leaves 2e-5 to 7e-5
 TILT = 2e-6  # of alpha; 8e-7 at 2e-4 s for the squattest, less for all others
 FORCED = 3e-7  # of alpha; 5e-8 at 2e-4 s, of which half is the excitation
 ORDER = 0.2
@@ -33,48 +29,9 @@ def free(cylinder: Cylinder, initial: InitialState | None, **changes: Any) -> Tr
     return multibody.simulate(case, engine="exudyn", **{"support": "flat", **changes})
 
 
-def table() -> list[tuple[float, ...]]:
-    lines = [line for line in TABLE.read_text().splitlines() if not line.startswith("#")]
-    rows = csv.DictReader(lines)
-    # the fastest and the slowest of each slenderness
-    return [
-        tuple(float(row[key]) for key in ("h_over_b", "phi_rate", "rolling_turn_deg", "rolling_period_s"))
-        for row in rows
-        if row["phi_rate"] != "0.1"
-    ]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("slenderness", "rate", "turn", "period"), table())
-def test_angle_of_turn(slenderness: float, rate: float, turn: float, period: float) -> None:
-    cylinder = Cylinder.from_dimensions(base_radius=1.0, height=2.0 * slenderness)
-    release = InitialState(cylinder.alpha / 2, rolling_rate=rate)
-    # second order in step over the time scale of the pass, its least tilt over the speed of the fall
-    finer = {(1.0, 0.03): 5.0, (2.0, 0.03): 2.0}.get((slenderness, rate), 1.0)
-    step = 1e-4 * math.sqrt(cylinder.semidiagonal / 6.0) / finer
-    run = free(cylinder, release, duration=period + 0.1, time_step=step)
-    found = math.degrees(run.passes["angle_of_turn"].iloc[0])
-    assert found == pytest.approx(turn, abs=TURN)
-    assert run.settings["integrator"] == "trapezoidal"
-    assert run.facts == ()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("tan_alpha", [0.1, 3.0])
-def test_free_response_for_eight_seconds(tan_alpha: float, solve_free: Solve) -> None:
-    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
-    release = InitialState(cylinder.alpha / 2, rolling_rate=0.5)
-    run = free(cylinder, release, duration=8.0, time_step=2e-4, sample_step=0.02)
-    exact = solve_free(cylinder, release, run.time, rolls_out=True)
-    assert np.abs(run.tilt - exact.tilt).max() / cylinder.alpha < TILT
-    # the magnification of a pass from tilt to turn and twist
-    assert np.abs(run.twist - exact.twist).max() < 10.0 * TILT
-    assert np.abs(run.rolling_angle - exact.rolling_angle).max() < 10.0 * TILT
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("integrator", ["trapezoidal", "generalized-alpha"])
-def test_second_order_under_excitation(integrator: str, pier: Cylinder, solve_released: Solve) -> None:
+def test_second_order_under_excitation(integrator: str, pier: Cylinder) -> None:
     # not zero at the start, and rough: a force shifted by a part of a step is first order
     motion = GroundMotion([[0.6, -0.4], [0.9, 0.5], [-0.8, 0.7], [0.3, -0.9], [0.2, 0.1]], 0.4)
     release = InitialState(pier.alpha / 2, rolling_rate=0.5)
@@ -83,7 +40,8 @@ def test_second_order_under_excitation(integrator: str, pier: Cylinder, solve_re
         free(pier, release, motion=motion, time_step=step, sample_step=0.05, integrator=integrator)
         for step in steps
     ]
-    exact = solve_released(pier, motion, release, runs[0].time)
+    case = Case(pier, motion, initial=release)
+    exact = reduced.simulate(case, support="flat", sample_step=0.05, rtol=1e-11, rest_tilt=0.0).tilt
     errors = [np.abs(run.tilt - exact).max() / pier.alpha for run in runs]
     slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
     assert slope == pytest.approx(2.0, abs=ORDER)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from types import SimpleNamespace
 from typing import Any
 
@@ -70,30 +69,6 @@ def test_a_fall_between_two_samples_is_its_start_and_its_end(sample_step: float)
     run, model = (each.simulate(case, sample_step=sample_step) for each in (multibody, reduced))
     np.testing.assert_allclose(run.time[:-1], model.time[:-1], rtol=1e-12)
     assert (run.outcome, len(run.contact_force)) == ("overturned", len(run.time))
-
-
-@pytest.mark.slow
-def test_wherever_still_ground_is_cut_the_fall_ends_alike() -> None:
-    whole = multibody.simulate(Case(PIER, one_sine(4.0, still=6.0)), time_step=STEP)
-    # at 1.3 s the base still comes down on the side from which it will rise and fall
-    for duration in (1.3, 1.6, 2.4, 5.69):
-        cut = multibody.simulate(Case(PIER, one_sine(4.0, still=6.0), duration=duration), time_step=STEP)
-        assert cut.outcome == "overturned", duration
-        assert cut.time[-1] == pytest.approx(whole.time[-1], abs=1e-9), duration
-
-
-def test_a_standing_run_ends_on_time_with_its_last_swing_peak(engine: str) -> None:
-    run, later = (
-        multibody.simulate(Case(PIER, one_sine(2.0, still)), engine=engine, time_step=STEP)
-        for still in (0.0, 2.0)
-    )
-    assert (run.outcome, run.time[-1], run.rests) == ("stands", PERIOD, False)
-    assert run.tilt[-1] < 0.5 * run.peak_tilt
-    assert run.peak_tilt == pytest.approx(later.peak_tilt, abs=1e-9)
-    top = later.extrema[(later.extrema[:, 0] > PERIOD) & (later.extrema[:, 3] > 0.0), 0][0]
-    assert run.followed_until == pytest.approx(top, abs=1e-9)
-    # where the ground has been still for a whole swing nothing is left to follow
-    assert math.isnan(later.followed_until)
 
 
 @pytest.mark.parametrize("support", ["recess", "flat"])
@@ -180,20 +155,6 @@ def test_an_undecided_run_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     assert [fact.code for fact in run.facts] == ["undecided"]
 
 
-def test_a_cylinder_beyond_its_balance_falls_without_energy_to_spare(engine: str) -> None:
-    # less energy than that of the balance, on its far side
-    run, short = (
-        multibody.simulate(
-            Case(PIER, initial=InitialState(share * PIER.alpha), duration=0.05),
-            engine=engine,
-            time_step=STEP,
-        )
-        for share in (1.05, 0.95)
-    )
-    assert run.outcome == "overturned"
-    assert (short.outcome, short.time[-1]) == ("stands", 0.05)
-
-
 def test_noise_of_a_slow_rise_is_no_turn() -> None:
     start = TurningPoint(1.0, 0.1, 0.0, False)
     noise = [TurningPoint(1.1, 0.1 + 3e-7, 0.0, True), TurningPoint(1.2, 0.1 + 2e-7, 0.0, False)]
@@ -209,18 +170,3 @@ def test_noise_of_a_slow_rise_is_no_turn() -> None:
     assert turned(noise + top, 0.119)
     # a maximum before the end is none after it, and a descent has yet to rise again
     assert not turned([TurningPoint(0.9, 0.2, 0.0, True)], 0.11)
-
-
-def test_progress_stays_at_one_while_it_is_followed() -> None:
-    seen: list[float] = []
-    multibody.simulate(Case(PIER, one_sine(4.0)), progress=seen.append)
-    assert seen == sorted(seen)
-    assert seen.count(1.0) > 2
-
-
-def test_a_fall_after_the_end_is_sampled_as_the_rest(engine: str) -> None:
-    case = Case(PIER, one_sine(4.0), duration=1.2034)
-    run = multibody.simulate(case, sample_step=0.02, engine=engine, time_step=STEP)
-    # the end that was asked for is none of this run, as in the reduced models
-    assert run.time[-1] > 1.3
-    np.testing.assert_allclose(run.time[:-1], 0.02 * np.arange(len(run.time) - 1), rtol=1e-12)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 import pytest
+from engine_samples import scene_of
 
 from rockwobble.models import Cylinder, InitialState
 from rockwobble.models.support import FLAT, RECESS, Support
@@ -12,7 +13,6 @@ from rockwobble.multibody.engines.mujoco import MujocoEngine
 from rockwobble.multibody.engines.mujoco_scene import MujocoSettings, compile_scene
 from rockwobble.multibody.reaction import HALF_WINDOW, ForceSamples, force_of_steps
 from rockwobble.multibody.recorder import Recorder
-from rockwobble.multibody.scene import Scene, scaled_body, starting_state
 
 STEP = 1e-4
 
@@ -20,18 +20,8 @@ STEP = 1e-4
 @pytest.mark.parametrize("support", [RECESS, FLAT])
 def test_force_of_a_step_is_that_of_the_engines_own_contacts(support: Support) -> None:
     # pushed sideways as by the ground, so that friction has work to do
-    body = scaled_body(Cylinder(semidiagonal=6.0, tan_alpha=0.5), 1.0)
     initial = InitialState(0.2, tilt_rate=0.1, rolling_angle=0.7, rolling_rate=0.5)
-    scene = Scene(
-        body=body,
-        start=starting_state(body, initial, 1.0),
-        support=support,
-        friction=1.0,
-        time_step=STEP,
-        gravity=9.81,
-        components="xy",
-        unit_time=1.0,
-    )
+    scene = scene_of(Cylinder(semidiagonal=6.0, tan_alpha=0.5), initial, support=support)
     ground = np.tile([1.5, -0.8, 0.0], (41, 1))
     engine = MujocoEngine()
     settings = engine.settings({}, scene)

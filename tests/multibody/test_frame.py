@@ -10,7 +10,7 @@ import pytest
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, InitialState, Trace, WobblingFrame, el_centro_1940
 from rockwobble.multibody.engines.mujoco import MujocoEngine
-from rockwobble.multibody.engines.registry import engine_facts, find_engine
+from rockwobble.multibody.engines.registry import find_engine
 
 pytestmark = pytest.mark.slow
 
@@ -27,7 +27,6 @@ RELEASED = {
     "rapier": 2e-4,
 }
 ENGINES = [name for name in RELEASED if name in multibody.available_engines()]
-ORDER = 0.2  # of the slope of the error
 # relative RMS at the default step; measured 5.0e-6 to 1.3e-5, of a cylinder alone 6.4e-6 to 1.0e-5
 SHAKEN = 5e-5
 UNTIL = {"mujoco": 15.0, "pybullet": 15.0, "dart": 6.0}  # [s]; a step of DART costs four times another's
@@ -61,16 +60,6 @@ def test_a_release_follows_the_reduced_model(ratio: float, name: str, support: s
     assert engine.diagnostics == ()
 
 
-@pytest.mark.parametrize("name", [name for name in ENGINES if name != "rapier"])  # which rounds by more
-def test_the_order_of_the_error(name: str) -> None:
-    support = find_engine(name).supports[0]
-    steps = np.array([1e-3, 5e-4, 2.5e-4])
-    found = [both(release(), engine=name, support=support, time_step=float(step)) for step in steps]
-    errors = [np.abs(engine.tilt - model.tilt).max() for engine, model in found]
-    order = engine_facts(name).order
-    assert np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(order, abs=ORDER)
-
-
 @pytest.mark.parametrize("name", [name for name in ENGINES if name in UNTIL])
 @pytest.mark.parametrize(("size", "tan_alpha", "scale"), [(10.0, 0.1, 1.0), (6.0, 0.2, 2.0)])
 def test_el_centro_from_rest(size: float, tan_alpha: float, scale: float, name: str) -> None:
@@ -98,13 +87,6 @@ def test_creep_on_flat_ground_falls_with_slip_removed_per_step(name: str) -> Non
     assert errors[2] < 0.1 * errors[1]
 
 
-def test_the_vertical_component_moves_the_slab_too() -> None:
-    frame = WobblingFrame(Cylinder(semidiagonal=6.0, tan_alpha=0.2), 1.0, columns=1)
-    engine, model = both(Case(frame, el_centro_1940(vertical=True), duration=6.0))
-    assert np.abs(engine.tilt - model.tilt).max() < 1e-4 * frame.alpha
-    assert model.peak_tilt > 0.05 * frame.alpha
-
-
 def test_a_joint_that_holds_the_slab_down_or_drags_it_says_so() -> None:
     pytest.importorskip("exudyn")
     # under a light slab the top is at fault before the base
@@ -117,21 +99,15 @@ def test_a_joint_that_holds_the_slab_down_or_drags_it_says_so() -> None:
     assert [each.code for each in engine.diagnostics] == ["friction_needed"]
 
 
-@pytest.mark.parametrize("name", ENGINES)
-@pytest.mark.parametrize("columns", [3, 4])
-def test_one_column_represents_any_number_with_a_diagnostic(name: str, columns: int) -> None:
-    support, start = find_engine(name).supports[0], InitialState(0.1, rolling_rate=0.5)
+def test_one_column_represents_any_number_with_a_diagnostic() -> None:
+    start = InitialState(0.1, rolling_rate=0.5)
     one, many = (
-        multibody.simulate(
-            Case(WobblingFrame(SQUAT, 1.0, columns=number), initial=start, duration=0.2),
-            engine=name,
-            support=support,
-        )
-        for number in (1, columns)
+        multibody.simulate(Case(WobblingFrame(SQUAT, 1.0, columns=number), initial=start, duration=0.2))
+        for number in (1, 4)
     )
     assert np.array_equal(one.tilt, many.tilt)
     (fact,) = (fact for fact in many.facts if fact not in one.facts)
-    assert (fact.code, fact.size) == ("one_column", columns)
+    assert (fact.code, fact.size) == ("one_column", 4)
     assert "one_column" not in [fact.code for fact in one.facts]
 
 

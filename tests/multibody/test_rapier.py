@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 
 import numpy as np
 import pytest
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
-from rockwobble.multibody.engines.rapier import RapierSettings
+from rockwobble.models import Case, Cylinder, InitialState
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.reaction import sure_tilt
 from rockwobble.multibody.scene import scaled_body
@@ -55,33 +53,3 @@ def test_a_tilt_that_single_precision_does_not_know_is_no_motion() -> None:
     facts, slender = engine_facts("rapier"), scaled_body(Cylinder(semidiagonal=6.0, tan_alpha=0.1), 1.0)
     assert facts.rounding == 2.0**-24
     assert sure_tilt(slender, facts.rounding) > sure_tilt(slender, engine_facts("mujoco").rounding)
-
-
-@pytest.mark.slow
-def test_a_record_is_followed_and_uplifts_in_time() -> None:
-    case = Case(Cylinder(semidiagonal=10.0, tan_alpha=0.1), el_centro_1940(), duration=8.0)
-    found, model = multibody.simulate(case, engine="rapier"), reduced.simulate(case)
-    # 3e-3 until 8 s: what single precision errs at uplift, and passes magnify
-    assert np.abs(found.tilt - model.tilt).max() < 1e-2 * case.cylinder.alpha
-    assert abs(found.uplift_time - model.uplift_time) < 5e-3  # [s] half a sample
-
-
-@pytest.mark.slow
-def test_the_vertical_component_moves_the_uplift() -> None:
-    motion = el_centro_1940().scaled(1.2)
-    vertical = np.full((len(motion.acceleration), 1), -3.0)
-    lifted = dataclasses.replace(motion, acceleration=np.hstack([motion.acceleration, vertical]))
-    case = Case(Cylinder(semidiagonal=10.0, tan_alpha=0.1), lifted, duration=3.0)
-    found, model = multibody.simulate(case, engine="rapier"), reduced.simulate(case)
-    assert found.outcome == "stands"
-    # [s] 5e-3 was measured: 2 % of a load that rises by 0.98 to 1.02 of the threshold within two samples
-    assert abs(found.uplift_time - model.uplift_time) < 0.01
-
-
-SETTINGS = ({"depth": 0.0}, {"substeps": 0}, {"iterations": 1.5}, {"contact_frequency": -1.0})
-
-
-@pytest.mark.parametrize("change", SETTINGS)
-def test_settings_out_of_range_are_refused(change: dict[str, float]) -> None:
-    with pytest.raises(ValueError, match=next(iter(change))):
-        RapierSettings.resolve(change, 1e-4)

@@ -7,6 +7,7 @@ import math
 import mujoco
 import numpy as np
 import pytest
+from engine_samples import scene_of
 
 from rockwobble.models import Cylinder, InitialState
 from rockwobble.models.support import RING
@@ -19,7 +20,7 @@ from rockwobble.multibody.ring import (
     wall_feet,
     wall_orientations,
 )
-from rockwobble.multibody.scene import Array, Scene, scaled_body, starting_state
+from rockwobble.multibody.scene import Array, scaled_body, starting_state
 
 ROUNDING = 1e-12  # of quantities of the order of b or of 1
 # clearance by which the engine is tried on both sides; a pose is good to 1e-15 m
@@ -58,17 +59,6 @@ def test_clearance_is_that_of_the_points_of_the_cylinder(
     # walls and points 0.25 deg apart: (half a step)^2/2 is 2e-6, of a body up to 20 b high; the wall ahead is
     # among them
     assert clearance_needed(cylinder, tilt, inclination) == pytest.approx(max(out, 0.0), abs=2e-5)
-
-
-def test_walls_that_lean_enough_need_none_and_upright_ones_the_side() -> None:
-    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    b, height = cylinder.base_radius, 2.0 * cylinder.half_height
-    for tilt in (0.0, 1e-3, 0.1, 0.4):
-        assert clearance_needed(cylinder, tilt, tilt) == 0.0
-        assert clearance_needed(cylinder, tilt, tilt + 0.1) == 0.0
-        # a vertical wall as high as the cylinder stands back w tan(theta), w the height that its side reaches
-        w = height * math.cos(tilt)
-        assert clearance_needed(cylinder, tilt, 0.0) * b == pytest.approx(w * math.tan(tilt), abs=ROUNDING)
 
 
 @pytest.mark.parametrize("tilt", [0.01, 0.3, 1.2])
@@ -149,16 +139,7 @@ def _wall_contacts(
     """Number of contacts with walls that the engine finds, at tilts and azimuths."""
     body = scaled_body(cylinder, 1.0)
     starts = [starting_state(body, InitialState(tilt, rolling_angle=azimuth), 1.0) for tilt, azimuth in poses]
-    scene = Scene(
-        body=body,
-        start=starts[0],
-        support=RING,
-        friction=1.0,
-        time_step=1e-4,
-        gravity=9.81,
-        components="",
-        unit_time=1.0,
-    )
+    scene = scene_of(cylinder, start=starts[0], support=RING, components="")
     ring = RingSettings(ring_clearance=clearance, ring_inclination=inclination, ring_facets=8)
     model = compile_scene(scene, MujocoSettings.resolve({}, 1e-4), standing=False, ring=ring)
     data = mujoco.MjData(model)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
+from engine_samples import scene_of
 from scipy.spatial.transform import Rotation
 
 import rockwobble.models
@@ -18,7 +18,7 @@ from rockwobble.models.support import RING, SUPPORTS
 from rockwobble.multibody.engines.mujoco import MujocoEngine
 from rockwobble.multibody.engines.mujoco_scene import MujocoSettings, _rim_acceleration, compile_scene
 from rockwobble.multibody.ring import RingSettings, take_ring, wall_feet, wall_orientations
-from rockwobble.multibody.scene import Scene, scaled_body, starting_state
+from rockwobble.multibody.scene import scaled_body, starting_state
 
 FOLDER = Path(next(iter(rockwobble.models.__path__))) / "scenes"
 SCENES = sorted(FOLDER.glob("*.xml"))
@@ -145,32 +145,12 @@ def _compiled(
     ring: RingSettings | None = None,
 ) -> mujoco.MjModel:
     cylinder = cylinder or PIER
-    body = scaled_body(cylinder, 1.0)
-    scene = Scene(
-        body=body,
-        start=starting_state(body, None if standing else InitialState(0.1), 1.0),
-        support=SUPPORTS[support],
-        friction=1.0,
-        time_step=1e-4,
-        gravity=9.81,
-        components=components,
-        unit_time=1.0,
-    )
+    initial = None if standing else InitialState(0.1)
+    scene = scene_of(cylinder, initial, support=SUPPORTS[support], components=components)
     settings = MujocoSettings.resolve({"standing_corners": standing_corners}, 1e-4)
     if support == "ring" and ring is None:
         _, ring = take_ring({}, RING, cylinder.tan_alpha)
     return compile_scene(scene, settings, standing=standing, ring=ring)
-
-
-@pytest.mark.parametrize("length", [0.5, 6.0])
-def test_inertias_that_are_left_out_are_those_of_a_solid(length: float) -> None:
-    plain = scaled_body(PIER, length)
-    b, height = PIER.base_radius, 2.0 * PIER.half_height
-    stated = scaled_body(
-        dataclasses.replace(PIER, transverse_inertia=b * b / 4 + height**2 / 12, axial_inertia=b * b / 2),
-        length,
-    )
-    assert dataclasses.astuple(plain) == pytest.approx(dataclasses.astuple(stated), rel=ROUNDING)
 
 
 def test_the_acceleration_of_the_rim_is_that_of_its_lowest_point() -> None:
