@@ -1,7 +1,7 @@
 """time_step="extrapolated": the limit of a run for a vanishing step, from runs at steps that halve.
 
 Three runs, at h = 4, 2 and 1 times the finest step. The two finest give the limit, sample by sample, the
-third its order p and the error that is left, see `halving`. p is 1 or 2. After a release, and wherever the
+third its order p and the error that is left, see `auto_step`. p is 1 or 2. After a release, and wherever the
 rim only rolls, it is 1 and the limit 2 x(h) - x(2 h); under shaking the near passes of upright take over, in
 which a step of h is a share of a short time, and their error is of order 2. The error is what one halving has
 moved the extrapolation by: of a pure series it is a third or a seventh of that, but near passes mix the
@@ -28,9 +28,18 @@ from numpy.typing import NDArray
 from rockwobble.models import Diagnostic, Trace
 from rockwobble.models.trace_source import EagerSource
 
-from .auto_step import Attempt, Progress, closeness, part_of, shares, unknown_from
+from .auto_step import (
+    Attempt,
+    Progress,
+    closeness,
+    common_count,
+    measured_order,
+    part_of,
+    shares,
+    to_zero_step,
+    unknown_from,
+)
 from .guard import LARGEST_STEP
-from .halving import common_count, measured_order, to_zero_step
 from .scene import Array
 
 if TYPE_CHECKING:

@@ -323,11 +323,11 @@ class Recorder:
     def _watch_tendon(self, time: Array, poses: Steps) -> Array:
         """Return the elongations of the tendon, shape (n,) [m]; note where it would yield."""
         restraint, height = self._scene.restraint, self._scene.body.mass_centre_height
-        if restraint.tendon is None:
+        if not restraint.is_active:
             return np.zeros(len(time))
         elongation = restraint.elongation(poses.position, axis_of(poses.quaternion), height)
         self.elongation = max(self.elongation, float(elongation.max()))
-        yields = elongation > restraint.tendon.yield_elongation
+        yields = elongation > restraint.yield_elongation
         if math.isnan(self.yield_time) and yields.any():
             self.yield_time = float(time[np.argmax(yields)])
         return elongation

@@ -1,8 +1,8 @@
 """The restraint of a scene: what holds a body down besides its weight, stated once for run and engines.
 
 A `Restraint` answers what scene, kinematics and recorder ask of everything that holds the body down: couple
-and its slope, forces on a closed base, energy and the pull on what the ends carry. A term that is new is a
-field of it, and a part of each answer. Engines take the fields, one by one.
+and its slope, forces on a closed base, energy and the pull on what the ends carry. A term that is new adds
+fields to it, and a part to each answer. Engines take the fields, one by one.
 
 The tendon is a spring between points, whatever the column does. It runs from an anchor a little below the
 origin O to the centre of the base, up the axis, and under a slab on to an anchor in the slab as far above its
@@ -34,7 +34,6 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case
 from rockwobble.models.shown import CompactRepr
-from rockwobble.models.tendon import Tendon
 
 Array = NDArray[np.float64]
 
@@ -47,27 +46,35 @@ _ROUNDINGS = 2.0**14
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class SceneTendon(CompactRepr):
-    """A tendon at the size of a scene, whose column has unit mass.
+class Restraint(CompactRepr):
+    """Restraint that holds the body of a scene down besides its weight; by default none.
+
+    Per unit mass of the column. Where an answer takes poses, they are n places of the mass centre (n, 3) [m],
+    axes (n, 3), and the height of the mass centre above the base [m].
 
     Attributes
     ----------
     prestress : float
-        P0 [m/s^2].
+        P0 of a tendon along the axis [m/s^2].
     stiffness : float
         kt [1/s^2].
     gaps : int
     depth : float
-        Depth of the anchor below the ground, and above the underside of a slab [m].
+        Depth of the anchor below the ground, and above the underside of a slab [m]; 0 without a tendon.
     yield_elongation : float
         Elongation at which the tendon yields [m]; infinite where it does not.
     """
 
-    prestress: float
-    stiffness: float
-    gaps: int
-    depth: float
+    prestress: float = 0.0
+    stiffness: float = 0.0
+    gaps: int = 1
+    depth: float = 0.0
     yield_elongation: float = math.inf
+
+    @property
+    def is_active(self) -> bool:
+        """Whether anything but the weight holds the body down."""
+        return self.depth > 0.0
 
     def force(self, x: float, y: float, z: float) -> tuple[float, float, float]:
         """Return the force on the base whose centre is at (x, y, z) [m], and on the slab [m/s^2]."""
@@ -94,15 +101,6 @@ class SceneTendon(CompactRepr):
             arm * (a * axis_y - b * axis_x),
         )
 
-    def elongation(self, base_centre: Array) -> Array:
-        """Return the elongations (n,) where the centre of the base is at places (n, 3) [m]."""
-        x, y, z = base_centre.T
-        return np.asarray(self.gaps * (np.sqrt(x * x + y * y + (z + self.depth) ** 2) - self.depth))
-
-    def energy(self, elongation: Array) -> Array:
-        """Return the energy that elongations (n,) [m] store, per unit mass of the column [m^2/s^2]."""
-        return np.asarray((self.prestress + 0.5 * self.stiffness * elongation) * elongation)
-
     def couple(self, tilt: float, base_radius: float) -> float:
         """Return the couple on the column at a tilt [rad] in a plane, towards upright [m^2/s^2]."""
         elongation = 2.0 * self.gaps * base_radius * math.sin(0.5 * tilt)
@@ -114,99 +112,42 @@ class SceneTendon(CompactRepr):
         slope = self.gaps**2 * self.stiffness * base_radius * base_radius * math.cos(tilt)
         return slope - 0.5 * self.gaps * self.prestress * base_radius * math.sin(0.5 * tilt)
 
-    def forces(self, base_centre: Array, elongation: Array) -> Array:
-        """Return the forces (3, n) on the base at places (n, 3) [m], and on the slab [m/s^2]."""
-        way = base_centre.T + np.array([[0.0], [0.0], [self.depth]])
-        tension = self.prestress + self.stiffness * elongation
-        return np.asarray(-tension / np.linalg.norm(way, axis=0) * way)
-
-
-def scaled_tendon(
-    tendon: Tendon, gaps: int, base_radius: float, gravity: float, rounding: float = 0.0
-) -> SceneTendon:
-    """Return a tendon at the size of a scene of a base radius [m] and a gravity [m/s^2].
-
-    `rounding` is that of the engine, relative: its anchor lies deep enough for it.
-    """
-    stiffness, force = tendon.stiffness * gravity / base_radius, tendon.yield_force
-    yields = math.inf
-    if force is not None and stiffness > 0.0:
-        yields = (force - tendon.prestress) * gravity / stiffness
-    return SceneTendon(
-        prestress=tendon.prestress * gravity,
-        stiffness=stiffness,
-        gaps=gaps,
-        depth=max(ANCHOR_DEPTH, _ROUNDINGS * rounding) * base_radius,
-        yield_elongation=yields,
-    )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Restraint(CompactRepr):
-    """Restraint that holds the body of a scene down besides its weight, per unit mass of the column.
-
-    Where an answer takes poses, they are n places of the mass centre (n, 3) [m], axes (n, 3), and the height
-    of the mass centre above the base [m].
-
-    Attributes
-    ----------
-    tendon : SceneTendon, optional
-        Along the axis.
-    """
-
-    tendon: SceneTendon | None = None
-
-    @property
-    def is_active(self) -> bool:
-        """Whether anything but the weight holds the body down."""
-        return self.tendon is not None
-
-    @property
-    def closing_force(self) -> float:
-        """Force down the axis that would keep the base closed as well: n P0 of a tendon [m/s^2]."""
-        return 0.0 if self.tendon is None else self.tendon.gaps * self.tendon.prestress
-
-    @property
-    def pressing_force(self) -> float:
-        """Force that presses a closed base on the ground: P0 of a tendon [m/s^2]."""
-        return 0.0 if self.tendon is None else self.tendon.prestress
-
-    def couple(self, tilt: float, base_radius: float) -> float:
-        """Return the couple at a tilt [rad] in a plane, towards upright [m^2/s^2]."""
-        return 0.0 if self.tendon is None else self.tendon.couple(tilt, base_radius)
-
-    def couple_slope(self, tilt: float, base_radius: float) -> float:
-        """Return the derivative of the couple by the tilt [m^2/s^2]."""
-        return 0.0 if self.tendon is None else self.tendon.couple_slope(tilt, base_radius)
+    def elongation(self, place: Array, axis: Array, height: float) -> Array:
+        """Return the elongation of the tendon at poses, shape (n,) [m]."""
+        x, y, z = (place - height * axis).T
+        return np.asarray(self.gaps * (np.sqrt(x * x + y * y + (z + self.depth) ** 2) - self.depth))
 
     def energy(self, place: Array, axis: Array, height: float) -> Array:
         """Return the energy that is stored at poses, shape (n,) [m^2/s^2]."""
-        if self.tendon is None:
-            return np.zeros(len(place))
-        return self.tendon.energy(self.tendon.elongation(place - height * axis))
+        elongation = self.elongation(place, axis, height)
+        return np.asarray((self.prestress + 0.5 * self.stiffness * elongation) * elongation)
 
     def forces(self, place: Array, axis: Array, height: float) -> Array:
         """Return the force (3, n) on the base at poses, and on a slab [m/s^2]; a couple is none."""
-        if self.tendon is None:
-            return np.zeros((3, len(place)))
-        base_centre = place - height * axis
-        return self.tendon.forces(base_centre, self.tendon.elongation(base_centre))
-
-    def elongation(self, place: Array, axis: Array, height: float) -> Array:
-        """Return the elongation of the tendon at poses, shape (n,) [m]; zero without one."""
-        if self.tendon is None:
-            return np.zeros(len(place))
-        return self.tendon.elongation(place - height * axis)
+        way = (place - height * axis).T + np.array([[0.0], [0.0], [self.depth]])
+        tension = self.prestress + self.stiffness * self.elongation(place, axis, height)
+        return np.asarray(-tension / np.linalg.norm(way, axis=0) * way)
 
 
 WEIGHT_ALONE = Restraint()
 
 
 def scaled_restraint(case: Case, base_radius: float, gravity: float, rounding: float = 0.0) -> Restraint:
-    """Restraint of the body of a case, at the size of a scene; arguments as of `scaled_tendon`."""
+    """Return the restraint of a case at the size of a scene, of a base radius [m] and a gravity [m/s^2].
+
+    `rounding` is that of the engine, relative: an anchor lies deep enough for it.
+    """
     tendon = case.tendon
+    if tendon is None:
+        return WEIGHT_ALONE
+    stiffness, force = tendon.stiffness * gravity / base_radius, tendon.yield_force
+    yields = math.inf
+    if force is not None and stiffness > 0.0:
+        yields = (force - tendon.prestress) * gravity / stiffness
     return Restraint(
-        tendon=None
-        if tendon is None
-        else scaled_tendon(tendon, tendon.gaps(case.cylinder), base_radius, gravity, rounding)
+        prestress=tendon.prestress * gravity,
+        stiffness=stiffness,
+        gaps=tendon.gaps(case.cylinder),
+        depth=max(ANCHOR_DEPTH, _ROUNDINGS * rounding) * base_radius,
+        yield_elongation=yields,
     )

@@ -235,12 +235,12 @@ class Scene:
         Without vertical motion the base opens at b/h of it; what tips a frame are twice the forces of its
         slab.
         """
-        return self.gravity + self.restraint.closing_force / self.body.effective_mass
+        return self.gravity + self.restraint.gaps * self.restraint.prestress / self.body.effective_mass
 
     @property
     def pressing_gravity(self) -> float:
         """Gravity whose weight would press a closed base on the ground as weight and restraint do [m/s^2]."""
-        return self.gravity + self.restraint.pressing_force / (1.0 + self.body.slab_mass_ratio)
+        return self.gravity + self.restraint.prestress / (1.0 + self.body.slab_mass_ratio)
 
     @property
     def balance_tilt(self) -> float:

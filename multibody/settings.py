@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
-from functools import cache
+from functools import cache, partial
 from typing import Annotated, Self, get_type_hints
 
 from rockwobble.models.number_checks import quoted, require_in_range
@@ -18,14 +18,8 @@ Check = Callable[[str, object], None]
 
 def positive(*, most: float = math.inf, or_zero: bool = False) -> Check:
     """Return the check of a positive number of at most `most`; `or_zero` allows 0, too."""
-
-    def check(name: str, value: object) -> None:
-        if or_zero:
-            require_in_range(name, value, (int, float), least=0.0, most=most)
-        else:
-            require_in_range(name, value, (int, float), above=0.0, most=most)
-
-    return check
+    least, above = (0.0, -math.inf) if or_zero else (-math.inf, 0.0)
+    return partial(require_in_range, kind=(int, float), least=least, above=above, most=most)
 
 
 def one_of(*allowed: object) -> Check:
@@ -40,11 +34,7 @@ def one_of(*allowed: object) -> Check:
 
 def whole(*, least: int = 1, most: float = math.inf) -> Check:
     """Return the check of a whole number."""
-
-    def check(name: str, value: object) -> None:
-        require_in_range(name, value, int, least=least, most=most)
-
-    return check
+    return partial(require_in_range, kind=int, least=least, most=most)
 
 
 Positive = Annotated[float, positive()]

@@ -25,7 +25,7 @@ from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, engine_fa
 from .excitation import StepMeans
 from .extrapolated_step import EXTRAPOLATED, FINEST, extrapolate, require_finest
 from .guard import check_time_step
-from .impact import compare_impacts
+from .modes import compare_impacts, mode_facts
 from .passes import STEPS_OF_A_PASS, TurningPoint, filter_noise_swings, negligible_uplifts, passes_between
 from .protocol import Engine, Settings, Stepper
 from .reaction import EARLY
@@ -41,7 +41,6 @@ from .scene import (
     scaled_body,
     starting_state,
 )
-from .slide import mode_facts
 from .stepping import run_steps
 
 if TYPE_CHECKING:
@@ -207,7 +206,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         "wall_contact": table["wall_contact"] * scale.time,
         "wall_impulse": table["wall_impulse"] * scale.length / scale.time,
     }
-    if scene.restraint.tendon is not None and not scene.support.guided:
+    if scene.restraint.is_active and not scene.support.guided:
         # the base wanders from the anchor, and the tilt alone does not tell it
         sampled["elongation"] = table["elongation"] * scale.length
     if scene.rolling_resistance > 0.0:

@@ -1,24 +1,23 @@
-"""A problem in the form that the compiled time integration takes."""
+"""A problem in the form that the compiled time integration takes, and its ground motion in three columns."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import KW_ONLY, dataclass, fields, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from numbers import Real
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, InitialState
-from rockwobble.models.mode import plane_of
-from rockwobble.models.number_checks import quoted
+from rockwobble.models import Case, GroundMotion, InitialState
+from rockwobble.models.mode import PLANE_TOLERANCE, plane_of, stays_in_plane
+from rockwobble.models.number_checks import quoted, require_in_range, require_one_of
 from rockwobble.models.support import MODELLED, RECESS, support_named
 
 from . import kernels
 from .body import Body, restitution_from_momentum
-from .columns import is_spatial, three_columns
 from .integration.balance import decide
 from .integration.result import Driver, IntegrationResult, Options, Task
 from .restoring import TERMS, constants_of
@@ -43,6 +42,54 @@ _BUDGET, _BUDGET_PER_SAMPLE, _BUDGET_PER_TIME = 500_000, 50, 100_000
 # turns by the same angle, that of vanishing spin, and is solved as this one.
 _LEAST_SPIN = 1e-100
 LARGEST_REST_TILT = 0.1  # tilt of the rest rule over alpha
+
+
+def ground_at(case: Case, times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the ground acceleration (n, 3) [m/s^2] at `times` (n,) [s]; zero outside record and run."""
+    motion = case.motion
+    record = three_columns(motion)
+    if motion is None:
+        return np.zeros((len(times), 3))
+    at = np.arange(len(record)) * motion.time_step
+    # the last instant of a run may round beyond the last sample
+    inside = times <= min(motion.duration, case.length) * (1.0 + 1e-12)
+    return np.column_stack([np.where(inside, np.interp(times, at, column), 0.0) for column in record.T])
+
+
+@lru_cache(maxsize=4)
+def is_spatial(motion: GroundMotion) -> bool:
+    """Whether the motion is in no vertical plane by more than any rounding."""
+    record = three_columns(motion)
+    largest = record[int(np.square(record[:, :2]).sum(axis=1).argmax())]
+    return not stays_in_plane(record, math.atan2(largest[1], largest[0]), 1e4 * PLANE_TOLERANCE)
+
+
+def in_plane(record: NDArray[np.float64], azimuth: float) -> NDArray[np.float64]:
+    """Return a record (n, 3) without its component across the vertical plane at `azimuth` [rad]."""
+    cosine, sine = math.cos(azimuth), math.sin(azimuth)
+    along = record[:, 0] * cosine + record[:, 1] * sine
+    return np.column_stack([along * cosine, along * sine, record[:, 2]])
+
+
+def sample_times(duration: float, sample_step: float) -> NDArray[np.float64]:
+    """Multiples of `sample_step` before `duration`, and `duration` itself (n,) [s]."""
+    # a multiple within rounding of the end is the end
+    count = math.ceil(duration / sample_step * (1.0 - 1e-12))
+    times = np.arange(count + 1, dtype=float)
+    times *= sample_step
+    times[-1] = duration
+    return times
+
+
+# kept for the runs that follow with the same motion: it takes a tenth of the time of a short one
+@lru_cache(maxsize=4)
+def three_columns(motion: GroundMotion | None) -> NDArray[np.float64]:
+    """Return the samples of a motion (n, 3) [m/s^2], zeros where it has no vertical component."""
+    if motion is None:
+        return np.empty((0, 3))
+    record = np.zeros((len(motion.acceleration), 3))
+    record[:, : motion.acceleration.shape[1]] = motion.acceleration
+    return record
 
 
 class Plane(NamedTuple):
@@ -80,26 +127,13 @@ class Problem:
 
     def __post_init__(self) -> None:
         plane, initial = self.plane, self.case.initial
-        if self.support not in SUPPORTS:
-            raise ValueError(
-                f"support must be one of {', '.join(SUPPORTS)} for a reduced model, got {self.support!r}"
-            )
-        for name in ("rtol", "rest_tilt", "plane"):
-            value = getattr(self, name)
-            if not (isinstance(value, Real) or (name == "plane" and value is None)):
-                raise ValueError(f"{name} must be a number, got {quoted(value)}")
-        if not 1e-13 <= self.rtol <= 1e-2:
-            raise ValueError(f"rtol must be from 1e-13 to 1e-2, got {self.rtol!r}")
-        if not 0.0 <= self.rest_tilt <= LARGEST_REST_TILT:
-            raise ValueError(f"rest_tilt must be from 0 (no rule) to 0.1 (of alpha), got {self.rest_tilt!r}")
-        if plane is not None and not math.isfinite(plane):
-            raise ValueError(f"plane must be a finite azimuth [rad], got {plane!r}")
+        require_one_of("support", self.support, SUPPORTS)
+        require_in_range("rtol", self.rtol, least=1e-13, most=1e-2)
+        require_in_range("rest_tilt", self.rest_tilt, least=0.0, most=LARGEST_REST_TILT)
+        if plane is not None:
+            require_in_range("plane", plane)
         factor = self.restitution
-        if isinstance(factor, str):
-            known = factor == "momentum"
-        else:
-            known = isinstance(factor, Real) and 0.0 <= factor <= 1.0
-        if not known:
+        if not (factor == "momentum" or (isinstance(factor, Real) and 0.0 <= factor <= 1.0)):
             raise ValueError(f"restitution must be from 0 to 1 or 'momentum', got {quoted(factor)}")
         if plane is None and self.rebound != 1.0:
             raise ValueError(f"restitution belongs to planar motion, got {factor!r} without a plane")

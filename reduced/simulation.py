@@ -20,9 +20,8 @@ from rockwobble.models.trace import NO_PEAK
 
 from . import kernels, sliding
 from ._compile import announce, in_memory, on_disk
-from .columns import sample_times
 from .integration.result import COMPLETED, OVER_BUDGET, OVERTURNED, REST, UNDECIDED, IntegrationResult
-from .problem import REST_TILT, Problem
+from .problem import REST_TILT, Problem, sample_times
 from .solution import Solution, six_columns
 
 _OUTCOMES = {REST: "stands", COMPLETED: "stands", OVERTURNED: "overturned", UNDECIDED: "undecided"}

@@ -24,9 +24,9 @@ from rockwobble.models.support import FLAT
 from rockwobble.models.trace_source import Array
 
 from ._compile import announce
-from .columns import ground_at, sample_times, three_columns
 from .integration.sliding import Slide, slide
 from .kernels import interrupted_after
+from .problem import ground_at, sample_times, three_columns
 
 _TOLERANCE = 1e-13  # error of the speed in a step: the displacement to 1e-10 of its peak
 _COARSE = 1e-8  # tolerance of many at once: to 1e-7 of the peak, in two thirds of the time

@@ -16,9 +16,8 @@ from rockwobble.models.shown import CompactRepr
 from rockwobble.models.trace_source import Array, friction_of
 
 from . import forces, kernels
-from .columns import ground_at, in_plane
 from .integration.result import MAXIMUM, MINIMUM
-from .problem import Problem
+from .problem import Problem, ground_at, in_plane
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -228,11 +227,10 @@ def review(
     def largest(quantity: Callable[[Demands], Array]) -> tuple[float, float]:
         return _largest(quantity, demands_at, times, found)
 
-    (pull, pulled), (need, needed) = largest(_pull), largest(_need)
-    (normal, _), (moment, _) = (
-        largest(lambda found: found.load),
-        largest(lambda found: np.abs(found.moment)),
-    )
+    pull, pulled = largest(lambda demands: -demands.normal)
+    need, needed = largest(lambda demands: demands.friction)
+    normal, _ = largest(lambda demands: demands.load)
+    moment, _ = largest(lambda demands: np.abs(demands.moment))
     if (pull >= 0.0 and not _contact_loss(found).any()) or (need > friction and not slips(found).any()):
         # a breach that is shorter than a part of a step
         times = np.union1d(times, [pulled, needed])
@@ -250,14 +248,6 @@ def review(
         largest_restraining_moment=moment,
         friction=friction,
     )
-
-
-def _pull(demands: Demands) -> Array:
-    return -demands.normal
-
-
-def _need(demands: Demands) -> Array:
-    return demands.friction
 
 
 def _contact_loss(demands: Demands) -> NDArray[np.bool_]:

@@ -28,9 +28,9 @@ from rockwobble.models import Case, RockingBody, Run, Trace
 from rockwobble.models.frames import column_meanings, pd
 from rockwobble.models.shown import CompactRepr
 from rockwobble.models.support import RECESS
+from rockwobble.multibody.auto_step import common_count, linear_extrapolation, measured_order, to_zero_step
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.extrapolated_step import EXTRAPOLATED
-from rockwobble.multibody.halving import common_count, linear_extrapolation, measured_order, to_zero_step
 
 from ..metrics.pair import (
     Agreement,

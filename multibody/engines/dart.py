@@ -222,7 +222,7 @@ class _DartStepper(Leapfrog):
         b, h, arm = body.base_radius, body.mass_centre_height, body.mass_centre_height / body.base_radius
         excited, gravity, heading = bool(self._scene.components), self._scene.gravity, self._heading
         # prestress holds the base down as weight does
-        tipping, tied = self._scene.tipping_gravity, self._scene.restraint.tendon is not None
+        tipping, tied = self._scene.tipping_gravity, self._scene.restraint.is_active
         friction = self._scene.friction * self._scene.pressing_gravity / tipping
         followed = _LOADED * min(1.0, friction * arm)
         # where friction gives way before the base opens, it slides on four contacts: those of the rim solver
@@ -309,11 +309,11 @@ class _DartStepper(Leapfrog):
 
     def _pull_tendon(self, place: Sequence[float], axis: Sequence[float]) -> None:
         """Apply the forces of the tendon in the next step, at a place of the mass centre and an axis."""
-        tendon, depth = self._scene.restraint.tendon, self._depth
-        if tendon is None:
+        restraint, depth = self._scene.restraint, self._depth
+        if not restraint.is_active:
             return
         x, y, z = place
-        force, torque = tendon.loads((x, y, z + depth), axis, self._scene.body.mass_centre_height)
+        force, torque = restraint.loads((x, y, z + depth), axis, self._scene.body.mass_centre_height)
         self._cylinder.addExtTorque(torque)
         body = self._cylinder if self._slab is None else self._slab.getChildBodyNode()
         body.addExtForce(force)

@@ -359,12 +359,12 @@ class _DrakeStepper(Leapfrog):
 
     def _pull_of_tendon(self, force: Array) -> Array:
         """Return torque and forces of a step with those of the tendon."""
-        tendon, rim = self._scene.restraint.tendon, self._rim
-        if tendon is not None:
+        restraint, rim = self._scene.restraint, self._rim
+        if restraint.is_active:
             _, x, y, _, *place = self._place[:7]
             place[2] += self._depth
             axis = rim.axis_x, rim.axis_y, 1.0 - 2.0 * (x * x + y * y)
-            pull, couple = tendon.loads(place, axis, self._scene.body.mass_centre_height)
+            pull, couple = restraint.loads(place, axis, self._scene.body.mass_centre_height)
             force[:3] += couple
             force[-3:] += pull  # force on the slab, or on the cylinder alone
         return force

@@ -233,8 +233,8 @@ class _ExudynStepper:
             _, slab = add_body(share, [share] * 3, above, [*2.0 * start.velocity, 0.0, 0.0, 0.0, 0.0])
             both = [still, add_rim(slab, -1.0)]
             system.AddObject(items.ObjectJointGeneric(markerNumbers=both, constrainedAxes=[0, 0, 0, 1, 1, 1]))
-        tendon = scene.restraint.tendon
-        if tendon is not None:
+        tendon = scene.restraint
+        if tendon.is_active:
             # the rims do not slip, so both gaps open alike, and each has its share of the tension
             height = body.mass_centre_height
             gaps = [[(ground, [0.0, 0.0, -tendon.depth]), (cylinder, [0.0, 0.0, -height])]]

@@ -36,10 +36,8 @@ _LEANS = 1e-8  # [rad] from which a lean has a direction, which a corner follows
 _LOADED, _OPENING = 0.5, 0.98
 _LAST_PRISMS, _OUT_OF_REACH = 1, 1e-3  # [-], [m]
 _FREE = 7  # coordinates of a free body
-_ROLLING, _CLOSING = (
-    2.0,
-    4.0,
-)  # damping ratios of a rim that is not followed, and of one that closes in a plane
+# damping ratios of a rim that is not followed, and of one that closes in a plane
+_ROLLING, _CLOSING = 2.0, 4.0
 _STOPPING = 500.0  # [1/s] rate at which friction stops a base that slides, at the reference size
 _SLIDING: Settings = {
     "follow_load": False,
@@ -52,6 +50,7 @@ _SLIDING: Settings = {
 # under a load on its rim does a lean mean that it has uplifted, or if it is far larger.
 _ON_RIM, _RISEN_ANYHOW = 0.9, 1e-3  # eccentricity over b, and tilt [rad]
 
+_INTEGRATORS = ("implicitfast", "implicit", "RK4", "discrete")  # beside the default
 _FACTS = EngineFacts(
     title="MuJoCo",
     step_time=8e-6,
@@ -61,22 +60,11 @@ _FACTS = EngineFacts(
     carries_slab=True,
     terms=frozenset({"tendon", "rolling_resistance"}),
     contact_time="contact_time_constant",
-    alternatives={
-        **{
-            f"integrator {name}": {"integrator": name}
-            for name in ("implicitfast", "implicit", "RK4", "discrete")
-        },
-        "pyramidal cone": {"cone": "pyramidal"},
-    },
-    standing_alternatives={
-        **{
-            (f"standing on {corners} corners" if corners else "standing without prisms"): {
-                "standing_corners": corners
-            }
-            for corners in (0, 4, 12, 24, 48)
-        },
-        "nothing steered": {"follow_load": False},
-    },
+    alternatives={f"integrator {name}": {"integrator": name} for name in _INTEGRATORS}
+    | {"pyramidal cone": {"cone": "pyramidal"}},
+    standing_alternatives={"standing without prisms": {"standing_corners": 0}}
+    | {f"standing on {corners} corners": {"standing_corners": corners} for corners in (4, 12, 24, 48)}
+    | {"nothing steered": {"follow_load": False}},
 )
 
 

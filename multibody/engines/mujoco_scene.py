@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from ..restraint import SceneTendon
+from ..restraint import Restraint
 from ..ring import RingSettings, wall_feet, wall_orientations
 from ..scene import Array, Body, Scene, Start
 from ..settings import Count, EngineSettings, Positive, one_of, positive, whole
@@ -139,8 +139,8 @@ def compile_scene(
     _set_body(spec, scene)
     if ring is not None:
         _set_walls(spec, ring, scene.body.base_radius)
-    if scene.restraint.tendon is not None:
-        _add_tendon(spec, scene.body, scene.restraint.tendon)
+    if scene.restraint.is_active:
+        _add_tendon(spec, scene.body, scene.restraint)
     if scene.body.slab_mass_ratio > 0.0:
         _add_slab(spec, scene, standing and settings.follow_load and settings.standing_corners > 0)
     if not settings.follow_load:
@@ -215,7 +215,7 @@ def _add_rim(spec: mujoco.MjSpec, scene: Scene, settings: MujocoSettings) -> Non
             spec.add_pair(geomname1=other, geomname2=name)
 
 
-def _add_tendon(spec: mujoco.MjSpec, shape: Body, tendon: SceneTendon) -> None:
+def _add_tendon(spec: mujoco.MjSpec, shape: Body, tendon: Restraint) -> None:
     """Stretch a tendon from its anchor to the base, and up the axis to the slab where there is one.
 
     The actuator that is its prestress takes no control.
@@ -258,8 +258,8 @@ def _add_slab(spec: mujoco.MjSpec, scene: Scene, standing: bool) -> None:
             push = spec.add_actuator(name=f"push_slab_{name}", target=f"slab_{name}")
             push.trntype = mujoco.mjtTrn.mjTRN_JOINT
             push.gear[0] = shape.slab_mass_ratio
-    if scene.restraint.tendon is not None:
-        slab.add_site(name="tendon_slab", pos=[0.0, 0.0, scene.restraint.tendon.depth - _SLAB_THICKNESS])
+    if scene.restraint.is_active:
+        slab.add_site(name="tendon_slab", pos=[0.0, 0.0, scene.restraint.depth - _SLAB_THICKNESS])
     spec.add_pair(geomname1="slab", geomname2="prism0" if standing else "cylinder")
     # two convex bodies: their point of contact is sought, to rounding, and is one: what a face and a rim next
     # to it have in common, which 4.0 looks for, is off by 4e-3 m at a tilt of 1e-4 rad

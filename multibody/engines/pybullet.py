@@ -323,12 +323,12 @@ class _PybulletStepper(Leapfrog):
 
     def _pull_tendon(self, place: Sequence[float], turn: Sequence[float]) -> None:
         """Apply the forces of the tendon in the next step, at a place and a quaternion, scalar last."""
-        tendon = self._scene.restraint.tendon
-        if tendon is None:
+        restraint = self._scene.restraint
+        if not restraint.is_active:
             return
         x, y, z, w = turn
         axis = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)
-        force, torque = tendon.loads(place, axis, self._lengths[1])
+        force, torque = restraint.loads(place, axis, self._lengths[1])
         bullet, client, world = self._bullet, self._client, self._bullet.WORLD_FRAME
         bullet.applyExternalTorque(self._body, -1, torque, world, client)
         body, at = self._body, place
@@ -386,7 +386,7 @@ class _PybulletStepper(Leapfrog):
         ground, overshoot, (b, h) = self._ground, self._settings.friction_damping - 1.0, self._lengths
         slab, (slab_x, slab_y, slab_z) = self._slab, self._slab_velocity.tolist()
         atan2, sqrt, pull_tendon = math.atan2, math.sqrt, self._pull_tendon
-        tied = self._scene.restraint.tendon is not None
+        tied = self._scene.restraint.is_active
         # numbers in one list, not tuples in one: those the garbage collector would go through again and again
         poses: list[float] = []
         beyond_x = beyond_y = 0.0

@@ -135,7 +135,8 @@ class _RapierStepper(Leapfrog):
         cosine, sine, root, stiffness = math.cos, math.sin, math.sqrt, -4.0 * self._stiffness
         x, y, z, w, i, j, k = self._pose
         slab, above = self._slab, self._slab_height
-        tendon, depth, carried = self._scene.restraint.tendon, self._depth, body if slab is None else slab
+        tendon, depth, carried = self._scene.restraint, self._depth, body if slab is None else slab
+        tied = tendon.is_active
         rows: list[list[float]] = []
         lean = 2.0 * root((i * i + j * j) * (w * w + k * k))
         for ax, ay, az in acceleration:
@@ -147,14 +148,14 @@ class _RapierStepper(Leapfrog):
                 body.add_torque(
                     (pair * (i * k + w * j), pair * (j * k - w * i), pair * (1.0 - i * i - j * j))
                 )
-            if tendon is not None:
+            if tied:
                 axis = 2.0 * (i * k + w * j), 2.0 * (j * k - w * i), 1.0 - 2.0 * (i * i + j * j)
                 force, torque = tendon.loads((x, y, z + depth), axis, h)
                 body.add_torque(torque)
                 carried.add_force(force)
             step()
             body.reset_torques()
-            if tendon is not None:
+            if tied:
                 carried.reset_forces()
             linear, angular = body.linvel, body.angvel
             vx, vy, vz, ox, oy, oz = linear.x, linear.y, linear.z, angular.x, angular.y, angular.z

@@ -40,38 +40,30 @@ class BrokenEngineError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class _Entry:
-    engine: str  # class, in the module here that has the name of the engine
     package: str
     remedy: str
-    module: str = ""  # where it is not called as the package
-    part: str = ""  # part of the module that loads only where all of it is there
+    loads: str = ""  # module that loads only where all of the package is there; by default its own
     standard: bool = True  # comes with every installation of this package, where it has a wheel
+
+    @property
+    def module(self) -> str:
+        return self.loads or self.package
 
 
 _UNITS = {"rolling_resistance": " m"}  # units of terms of a case, for refusals
 # platforms of PyBullet; elsewhere DART takes its place in a default run
 _WHEEL = sys.version_info < (3, 12) and sys.platform == "linux" and platform.machine() == "x86_64"
+_WHEELS = "pip install pybullet, which has wheels for Python 3.11 and older on Linux x86-64 only"
+# by name: the module here, which has a class of that name
 _ENGINES: Mapping[str, _Entry] = MappingProxyType(
     {
         # an uninstalled mujoco-core leaves an empty folder that can be imported
-        "mujoco": _Entry("MujocoEngine", "mujoco", "pip install 'mujoco>=4.0,<5'", part="rollout"),
-        "pybullet": _Entry(
-            "PybulletEngine",
-            "pybullet",
-            "pip install pybullet, which has wheels for Python 3.11 and older on Linux x86-64 only",
-            standard=_WHEEL,
-        ),
-        "dart": _Entry("DartEngine", "dartpy", "pip install 'dartpy>=6.20,<7'", standard=not _WHEEL),
-        "drake": _Entry(
-            "DrakeEngine",
-            "drake",
-            "pip install 'drake>=1.51'",
-            module="pydrake",
-            part="multibody.plant",
-            standard=False,
-        ),
-        "exudyn": _Entry("ExudynEngine", "exudyn", "pip install 'exudyn>=1.13.6,<2'", standard=False),
-        "rapier": _Entry("RapierEngine", "rapier3d", "pip install 'rapier3d>=0.36'", standard=False),
+        "mujoco": _Entry("mujoco", "pip install 'mujoco>=4.0,<5'", loads="mujoco.rollout"),
+        "pybullet": _Entry("pybullet", _WHEELS, standard=_WHEEL),
+        "dart": _Entry("dartpy", "pip install 'dartpy>=6.20,<7'", standard=not _WHEEL),
+        "drake": _Entry("drake", "pip install 'drake>=1.51'", "pydrake.multibody.plant", standard=False),
+        "exudyn": _Entry("exudyn", "pip install 'exudyn>=1.13.6,<2'", standard=False),
+        "rapier": _Entry("rapier3d", "pip install 'rapier3d>=0.36'", standard=False),
     }
 )
 
@@ -128,7 +120,7 @@ def engine_lack(name: str) -> str:
     entry = _ENGINES.get(name)
     if entry is None:  # an engine declared by another package is installed
         return ""
-    if importlib.util.find_spec(entry.module or entry.package) is None:
+    if importlib.util.find_spec(entry.module.partition(".")[0]) is None:
         return f"is not installed here: {entry.remedy}"
     return ""
 
@@ -148,10 +140,9 @@ def _load_failure(name: str) -> str:
     entry = _ENGINES.get(name)
     if entry is None:  # an engine declared by another package is loaded by that package
         return ""
-    module = entry.module or entry.package
     try:
         with quiet():
-            importlib.import_module(f"{module}.{entry.part}" if entry.part else module)
+            importlib.import_module(entry.module)
     # whatever a damaged package raises, it must not stop the other engines
     except Exception as error:
         reason = " ".join(str(error).split()) or type(error).__name__
@@ -169,7 +160,7 @@ def engine_named(name: str) -> Engine:
     """
     if name in _ENGINES:
         module = importlib.import_module(f".{name}", __package__)
-        return cast(Engine, getattr(module, _ENGINES[name].engine)())
+        return cast(Engine, getattr(module, f"{name.title()}Engine")())
     declared = _declarations()
     if name not in declared:
         raise ValueError(f"engine must be one of {', '.join((*_ENGINES, *declared))}, got {name!r}")
@@ -273,7 +264,7 @@ def _declarations() -> dict[str, list[EntryPoint]]:
 
 
 def _load(name: str, points: list[EntryPoint]) -> Engine:
-    packages = ", ".join(sorted(_package(point) for point in points))
+    packages = ", ".join(sorted(point.dist.name if point.dist else point.value for point in points))
     if len(points) > 1:
         raise BrokenEngineError(f"engine {name!r} is declared more than once, by {packages}: uninstall one")
     try:
@@ -290,7 +281,3 @@ def _load(name: str, points: list[EntryPoint]) -> Engine:
             f"engine {name!r} of the package {packages} is no engine: it has no {', '.join(missing)}"
         )
     return cast(Engine, engine)
-
-
-def _package(point: EntryPoint) -> str:
-    return point.dist.name if point.dist is not None else point.value

@@ -19,7 +19,7 @@ from rockwobble.models.mode import REST, ROCKS, SLIDES
 from rockwobble.models.synthetic import synthetic_motions
 from rockwobble.multibody import simulation
 from rockwobble.multibody.engines.registry import engine_named, own_engines
-from rockwobble.multibody.slide import TOLERANCE, TURN
+from rockwobble.multibody.modes import TOLERANCE, TURN
 from rockwobble.reports.cli.options import settings
 
 from .console import options_of

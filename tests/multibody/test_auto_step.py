@@ -12,8 +12,7 @@ from engine_samples import trace_of
 
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Trace
-from rockwobble.multibody.auto_step import COARSEST, SMALLEST, Closeness, closeness, find_step
-from rockwobble.multibody.halving import common_count
+from rockwobble.multibody.auto_step import COARSEST, SMALLEST, Closeness, closeness, common_count, find_step
 
 ALPHA = 0.2
 # Richardson with a measured order is good for a factor; three is what it misses by at the bounds of the order

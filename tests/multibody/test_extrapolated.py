@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import pytest
 from engine_samples import trace_of
 
@@ -153,8 +152,7 @@ def test_beyond_a_divergence_it_is_the_finest_run() -> None:
     def error(step: float) -> Any:
         return 1e-5 * step * np.sin(0.1 * np.arange(100)) + np.where(late, 0.05 * side[step], 0.0)
 
-    passes = pd.DataFrame({name: [0.3, 0.55] for name in ("time", "minimum_tilt", "angle_of_turn")})
-    runs = three(error, passes=passes.assign(resolved=True))
+    runs = three(error, passes=(0.3, 0.55))
     found = extrapolation(runs, ALPHA)
     assert found.settled_until == 0.55
     np.testing.assert_allclose(found.tilt[:56], 0.1, atol=1e-15)

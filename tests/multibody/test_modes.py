@@ -10,7 +10,7 @@ import pytest
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, el_centro_1940
 from rockwobble.multibody.engines.registry import engine_named, own_engines
-from rockwobble.multibody.slide import mode_facts, path_of_slide
+from rockwobble.multibody.modes import mode_facts, path_of_slide
 
 
 def one_sine(tan_alpha: float) -> Case:

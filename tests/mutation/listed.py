@@ -108,7 +108,7 @@ def _structure() -> list[Mutation]:
         "other = without_fault(record, time_step, index + skipped, begin, last)\n"
         "return Piece(begin, piece.finish, piece.length, other.a, other.slope)",
     )
-    exchanged = _around("columns.py", "three_columns(motion)", "return without_fault(motion)[:, [1, 0, 2]]")
+    exchanged = _around("problem.py", "three_columns(motion)", "return without_fault(motion)[:, [1, 0, 2]]")
     late = _around(
         "integration/uplift.py",
         "uplift_in(*arguments)",

@@ -12,6 +12,8 @@ from rockwobble.models.support import FLAT
 from rockwobble.models.trace_source import EagerSource
 from rockwobble.multibody.scene import Scene, scaled_body, starting_state
 
+PASS = ("time", "minimum_tilt", "angle_of_turn")
+
 
 def scene_of(cylinder: RockingBody, initial: InitialState | None = None, **changes: Any) -> Scene:
     """A scene at the size of the cylinder, at steps of 1e-4 s on flat ground, with `changes`."""
@@ -49,7 +51,7 @@ def trace_of(tilt: Any, *, passes: tuple[float, ...] = (), outcome: str = "stand
         "facts": (Diagnostic(code="warning", detail="why"),) if outcome == "failed" else (),
         "uplift_time": 0.0,
         "uplift_direction": 0.0,
-        "passes": pd.DataFrame({"time": passes}),
+        "passes": pd.DataFrame(dict.fromkeys(PASS, np.array(passes, dtype=float))).assign(resolved=True),
         "contact_resolution": 1e-6,
         "wall_time": 1.0,
         "source": EagerSource({"energy": np.asarray(tilt, dtype=float), "slip": zeros}),

@@ -80,7 +80,7 @@ BAD = {
         "--diameter 0 --height 9": "--diameter must be above 0, got 0",
         "--mass-centre-height 3": "goes with --diameter and --height",
         "--set cone=pyramidal": "no run has a setting 'cone'; there are plane, restitution, rtol",
-        "--set rtol=abc": "rtol must be a number, got 'abc'",
+        "--set rtol=abc": "rtol must be from 1e-13 to 0.01, got 'abc'",
         "--tendon-force 1e5": "--tendon-force needs --tendon-rigidity and --tendon-length and --mass",
         f"{STEEL} --tendon-yield 2": "--tendon-force states a tendon in N, got --tendon",
         "--tendon-prestress -1": "--tendon-prestress must be at least 0, got -1",
