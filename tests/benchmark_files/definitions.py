@@ -8,6 +8,7 @@ that of an agreement, 1 % of alpha at every moment, in the window in which pertu
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from random import Random
 from typing import Any, Literal
@@ -24,7 +25,7 @@ SUPPORTS: tuple[Support, ...] = ("recess", "flat")
 Criterion = dict[str, Any]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class BenchmarkRun:
     """One motion of a case.
 
@@ -75,7 +76,7 @@ class BenchmarkRun:
         return "recess" if self.support == "recess" else "flat"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Definition:
     """One case: runs, the spacing of its reference [s], and what is asked."""
 
@@ -117,46 +118,30 @@ def release(cylinder: Cylinder, spin: float) -> InitialState:
     return InitialState(0.5 * cylinder.alpha, 0.0, AZIMUTH, spin)
 
 
+def returns(
+    name: str, title: str, runs: Iterable[BenchmarkRun], end: float, exact: float, **more: Any
+) -> Definition:
+    """Return the angle of turn and the period after a release, and the motion until then."""
+    asked = quantity("turn_1", "rad", 0.01, 1e-6), quantity("period_1", "relative", 0.002, 1e-6)
+    needed = ("turn_1", "period_1", "tilt")
+    return Definition(name, title, tuple(runs), 0.002, (*asked, *lean_and_tilt(end, exact)), needed, **more)
+
+
 def turns(name: str, support: Support, words: str) -> Definition:
-    """Return the angle of turn and the period after a release."""
-    runs = tuple(
-        BenchmarkRun(
-            name=f"spin-{spin:g}", cylinder=SQUAT, support=support, duration=5.0, initial=release(SQUAT, spin)
-        )
+    """Return releases with three spins."""
+    runs = (
+        BenchmarkRun(f"spin-{spin:g}", SQUAT, support, 5.0, initial=release(SQUAT, spin))
         for spin in (0.03, 0.1, 1.0)
     )
-    asked = (quantity("turn_1", "rad", 0.01, 1e-6), quantity("period_1", "relative", 0.002, 1e-6))
-    return Definition(
-        name=name,
-        title=f"Angle of turn and period {words}",
-        runs=runs,
-        step=0.002,
-        criteria=(*asked, *lean_and_tilt(3.0, 1e-5)),
-        needed=("turn_1", "period_1", "tilt"),
-    )
+    return returns(name, f"Angle of turn and period {words}", runs, 3.0, 1e-5)
 
 
 def disc() -> Definition:
     """Return a thick disc that rolls fast, whose axial inertia and gyroscopic term decide where it leans."""
     body = Cylinder.from_dimensions(base_radius=1.0, height=0.6)
     start = InitialState(0.3 * body.alpha, 0.0, AZIMUTH, 3.0)
-    runs = tuple(
-        BenchmarkRun(name=support, cylinder=body, support=support, duration=4.0, initial=start, friction=2.0)
-        for support in SUPPORTS
-    )
-    return Definition(
-        name="rolling-disc",
-        title="A thick disc that rolls fast",
-        runs=runs,
-        step=0.002,
-        criteria=(
-            quantity("turn_1", "rad", 0.01, 1e-6),
-            quantity("period_1", "relative", 0.002, 1e-6),
-            *lean_and_tilt(3.0, 1e-5),
-        ),
-        needed=("turn_1", "period_1", "tilt"),
-        needs="any",
-    )
+    runs = (BenchmarkRun(support, body, support, 4.0, initial=start, friction=2.0) for support in SUPPORTS)
+    return returns("rolling-disc", "A thick disc that rolls fast", runs, 3.0, 1e-5, needs="any")
 
 
 def steady() -> Definition:
@@ -164,15 +149,10 @@ def steady() -> Definition:
     rate = float(steady_wobble_rate(SQUAT, 0.3 * SQUAT.alpha, gravity=G))
     start = InitialState(0.3 * SQUAT.alpha, 0.0, AZIMUTH, rate)
     length = round(100.5 * 2.0 * math.pi / rate, 2)
-    run = BenchmarkRun(name="wobble", cylinder=SQUAT, support="either", duration=length, initial=start)
-    return Definition(
-        name="steady-wobble",
-        title="Steady wobble over 100 turns",
-        runs=(run,),
-        step=0.02,
-        criteria=(quantity("revolutions_100", "relative", 0.002, 1e-6), *lean_and_tilt(0.98 * length, 1e-4)),
-        needed=("revolutions_100", "tilt"),
-    )
+    runs = (BenchmarkRun("wobble", SQUAT, "either", length, initial=start),)
+    criteria = (quantity("revolutions_100", "relative", 0.002, 1e-6), *lean_and_tilt(0.98 * length, 1e-4))
+    needed = ("revolutions_100", "tilt")
+    return Definition("steady-wobble", "Steady wobble over 100 turns", runs, 0.02, criteria, needed)
 
 
 def uplift() -> Definition:
@@ -183,51 +163,25 @@ def uplift() -> Definition:
     for degrees in range(0, 360, 15):
         angle = math.radians(degrees)
         push = 1.8 * rate * np.array([math.cos(angle), math.sin(angle)])
-        runs.append(
-            BenchmarkRun(
-                name=f"{degrees:03d}-deg",
-                cylinder=body,
-                support="either",
-                duration=1.8,
-                motion=GroundMotion(np.vstack([np.zeros(2), push]), 1.8),
-                turned=angle,
-                levels={"lean_level": 0.01},
-            )
-        )
-    return Definition(
-        name="uplift-directions",
-        title="Uplift threshold in 24 directions",
-        runs=tuple(runs),
-        step=0.002,
-        criteria=(
-            quantity("lean_time", "s", 0.01, 1e-5),
-            quantity("lean_azimuth", "rad", 0.02, 1e-5),
-            *lean_and_tilt(1.75, 1e-5, start=1.0),
-        ),
-        needed=("lean_time", "lean_azimuth", "tilt"),
+        motion = GroundMotion(np.vstack([np.zeros(2), push]), 1.8)
+        more: dict[str, Any] = {"motion": motion, "turned": angle, "levels": {"lean_level": 0.01}}
+        runs.append(BenchmarkRun(f"{degrees:03d}-deg", body, "either", 1.8, **more))
+    criteria = (
+        quantity("lean_time", "s", 0.01, 1e-5),
+        quantity("lean_azimuth", "rad", 0.02, 1e-5),
+        *lean_and_tilt(1.75, 1e-5, start=1.0),
     )
+    needed, title = ("lean_time", "lean_azimuth", "tilt"), "Uplift threshold in 24 directions"
+    return Definition("uplift-directions", title, tuple(runs), 0.002, criteria, needed)
 
 
 def near_upright() -> Definition:
     """Return passes that become closer and closer."""
-    runs = tuple(
-        BenchmarkRun(
-            name=f"spin-{spin:g}", cylinder=PIER, support="recess", duration=6.0, initial=release(PIER, spin)
-        )
+    runs = (
+        BenchmarkRun(f"spin-{spin:g}", PIER, "recess", 6.0, initial=release(PIER, spin))
         for spin in (0.1, 0.01, 0.001)
     )
-    return Definition(
-        name="near-upright-pass",
-        title="Passes near the upright position at three spins",
-        runs=runs,
-        step=0.002,
-        criteria=(
-            quantity("turn_1", "rad", 0.01, 1e-6),
-            quantity("period_1", "relative", 0.002, 1e-6),
-            *lean_and_tilt(5.5, 1e-4),
-        ),
-        needed=("turn_1", "period_1", "tilt"),
-    )
+    return returns("near-upright-pass", "Passes near the upright position at three spins", runs, 5.5, 1e-4)
 
 
 def slip() -> Definition:
@@ -237,15 +191,7 @@ def slip() -> Definition:
 
     def run(name: str, friction: float, az: float, length: float, **levels: float) -> BenchmarkRun:
         motion = GroundMotion(length * np.array([[0.0, 0.0, 0.0], [ramp, 0.0, az]]), length)
-        return BenchmarkRun(
-            name=name,
-            cylinder=body,
-            support="flat",
-            duration=length,
-            motion=motion,
-            friction=friction,
-            levels=dict(levels),
-        )
+        return BenchmarkRun(name, body, "flat", length, motion=motion, friction=friction, levels=dict(levels))
 
     runs = (
         run("slides", 0.3, 0.0, 2.5, slide_level=1e-3),
@@ -253,19 +199,14 @@ def slip() -> Definition:
         run("rocks", 0.5, 0.0, 2.6, lean_level=0.01),
     )
     sliding = [one.name for one in runs[:2]]
-    return Definition(
-        name="onset-of-slip",
-        title="Onset of slip, and of rocking in its place",
-        runs=runs,
-        step=0.002,
-        criteria=(
-            quantity("slide_time", "s", 0.01, 1e-4, runs=sliding),
-            trace("path", 2.45, 1e-5, runs=sliding),
-            quantity("lean_time", "s", 0.01, 1e-5, runs=["rocks"]),
-            trace("tilt", 2.45, 1e-5),
-        ),
-        needed=("slide_time", "lean_time", "tilt"),
+    criteria = (
+        quantity("slide_time", "s", 0.01, 1e-4, runs=sliding),
+        trace("path", 2.45, 1e-5, runs=sliding),
+        quantity("lean_time", "s", 0.01, 1e-5, runs=["rocks"]),
+        trace("tilt", 2.45, 1e-5),
     )
+    needed, title = ("slide_time", "lean_time", "tilt"), "Onset of slip, and of rocking in its place"
+    return Definition("onset-of-slip", title, runs, 0.002, criteria, needed)
 
 
 def scales() -> Definition:
@@ -274,24 +215,10 @@ def scales() -> Definition:
     for size in (0.01, 0.1, 1.0, 10.0, 100.0):
         body, unit = Cylinder(semidiagonal=size, tan_alpha=0.35), math.sqrt(size / G)
         start = InitialState(0.5 * body.alpha, 0.0, AZIMUTH, 0.4 / unit)
-        runs.append(
-            BenchmarkRun(
-                name=f"r-{size:g}",
-                cylinder=body,
-                support="flat",
-                duration=12.0 * unit,
-                initial=start,
-                time_unit=unit,
-            )
-        )
-    return Definition(
-        name="scale-invariance",
-        title="One motion at five sizes, 1 cm to 100 m",
-        runs=tuple(runs),
-        step=0.005,
-        criteria=(quantity("period_1", "relative", 0.002, 1e-6), *lean_and_tilt(11.0, 1e-5)),
-        needed=("tilt",),
-    )
+        runs.append(BenchmarkRun(f"r-{size:g}", body, "flat", 12.0 * unit, initial=start, time_unit=unit))
+    criteria = (quantity("period_1", "relative", 0.002, 1e-6), *lean_and_tilt(11.0, 1e-5))
+    title = "One motion at five sizes, 1 cm to 100 m"
+    return Definition("scale-invariance", title, tuple(runs), 0.005, criteria, ("tilt",))
 
 
 def el_centro() -> Definition:
@@ -301,85 +228,43 @@ def el_centro() -> Definition:
     ends = {"recess": 26.0, "flat": 22.0}
     motion = GroundMotion(np.round(np.array(record.acceleration)[:2801], 6), record.time_step)  # as published
     runs = tuple(
-        BenchmarkRun(
-            name=name,
-            cylinder=PIER,
-            support=name,
-            duration=28.0,
-            motion=motion,
-            levels={"lean_level": 0.01},
-        )
-        for name in SUPPORTS
+        BenchmarkRun(name, PIER, name, 28.0, motion=motion, levels={"lean_level": 0.01}) for name in SUPPORTS
     )
     agreement = {"pass": 0.01, "good": 0.001, "measure": "largest"}
     criteria = [
         {**one, **agreement, "runs": [name]} for name in SUPPORTS for one in lean_and_tilt(ends[name], 1e-4)
     ]
-    return Definition(
-        name="el-centro",
-        title="El Centro 1940 until agreement must end",
-        runs=runs,
-        step=0.01,
-        criteria=(quantity("lean_time", "s", 0.02, 5e-4), *criteria),
-        needed=("tilt",),
-        needs="any",
-    )
+    asked = (quantity("lean_time", "s", 0.02, 5e-4), *criteria)
+    title = "El Centro 1940 until agreement must end"
+    return Definition("el-centro", title, runs, 0.01, asked, ("tilt",), "any")
 
 
 def records() -> Definition:
-    """Return 22 made-up records, of which only the distribution of the peaks is compared."""
+    """Return 22 synthetic ground motions, of which only the distribution of the peaks is compared."""
     runs = []
     for index in range(22):
         samples = noise(Random(1940 + index), 0.02, 20.0, 2)
         samples *= 2.2 * G * PIER.tan_alpha / np.hypot(*samples.T).max()
         samples[[0, -1]] = 0.0
         kept = GroundMotion(np.round(samples, 4), 0.02)  # as published
-        runs.append(
-            BenchmarkRun(
-                name=f"record-{index + 1:02d}",
-                cylinder=PIER,
-                support="recess",
-                duration=kept.duration,
-                motion=kept,
-            )
-        )
+        runs.append(BenchmarkRun(f"record-{index + 1:02d}", PIER, "recess", kept.duration, motion=kept))
     share = {"pass": 9.01 / 22.0, "good": 5.01 / 22.0, "exact": 1.01 / 22.0}
-    return Definition(
-        name="records-distribution",
-        title="Peak tilts under 22 records, as a distribution",
-        runs=tuple(runs),
-        step=0.02,
-        criteria=({"name": "peak_tilt", "kind": "distribution", "unit": "share", **share},),
-        needed=("peak_tilt",),
-    )
+    criteria = ({"name": "peak_tilt", "kind": "distribution", "unit": "share", **share},)
+    title = "Peak tilts under 22 records, as a distribution"
+    return Definition("records-distribution", title, tuple(runs), 0.02, criteria, ("peak_tilt",))
 
 
 def energy() -> Definition:
     """Return 100 passes without loss."""
-    runs = tuple(
-        BenchmarkRun(
-            name=support,
-            cylinder=SQUAT,
-            support=support,
-            duration=152.0,
-            initial=release(SQUAT, 0.5),
-        )
-        for support in SUPPORTS
+    start = release(SQUAT, 0.5)
+    runs = tuple(BenchmarkRun(support, SQUAT, support, 152.0, initial=start) for support in SUPPORTS)
+    criteria = (
+        quantity("maximum_100", "alpha", 0.003, 1e-6),
+        quantity("period_100", "relative", 0.002, 1e-7),
+        *lean_and_tilt(14.0, 1e-5),
     )
-    return Definition(
-        name="energy-100-passes",
-        title="Energy over 100 passes",
-        runs=runs,
-        step=0.005,
-        criteria=(
-            quantity("maximum_100", "alpha", 0.003, 1e-6),
-            quantity("period_100", "relative", 0.002, 1e-7),
-            *lean_and_tilt(14.0, 1e-5),
-        ),
-        needed=("maximum_100",),
-        needs="any",
-        end=15.0,
-    )
+    title = "Energy over 100 passes"
+    return Definition("energy-100-passes", title, runs, 0.005, criteria, ("maximum_100",), "any", 15.0)
 
 
 def tendon() -> Definition:
@@ -390,44 +275,25 @@ def tendon() -> Definition:
         "falling": (0.5, Tendon(prestress=0.5, stiffness=1.0)),
         "growing": (1.2, Tendon(prestress=0.25, stiffness=4.0)),
     }
-    length = 4.0
-    runs = [
-        BenchmarkRun(
-            name=name,
-            cylinder=SQUAT,
-            support="recess",
-            duration=length,
-            initial=InitialState(share * SQUAT.alpha, 0.0, AZIMUTH, 0.3),
-            tendon=held,
-        )
-        for name, (share, held) in tendons.items()
-    ]
+    length, runs = 4.0, []
+    for name, (share, held) in tendons.items():
+        start = InitialState(share * SQUAT.alpha, 0.0, AZIMUTH, 0.3)
+        runs.append(BenchmarkRun(name, SQUAT, "recess", length, initial=start, tendon=held))
     # it lifts off at four fifths of the length, where without a tendon it would at a little more than half
     push = 1.5 * G * SQUAT.tan_alpha / 0.8 * np.array([math.cos(AZIMUTH), math.sin(AZIMUTH)])
-    lifts = BenchmarkRun(
-        name="uplift",
-        cylinder=SQUAT,
-        support="recess",
-        duration=length,
-        motion=GroundMotion(np.vstack([np.zeros(2), push]), length),
-        tendon=Tendon(prestress=0.5),
-        levels={"lean_level": 0.01},
+    motion, held = GroundMotion(np.vstack([np.zeros(2), push]), length), Tendon(prestress=0.5)
+    more: dict[str, Any] = {"motion": motion, "tendon": held, "levels": {"lean_level": 0.01}}
+    runs.append(BenchmarkRun("uplift", SQUAT, "recess", length, **more))
+    released, lifted = list(tendons), ["uplift"]
+    criteria = (
+        quantity("turn_1", "rad", 0.01, 1e-6, runs=released),
+        quantity("period_1", "relative", 0.002, 1e-6, runs=released),
+        *lean_and_tilt(2.5, 1e-5, runs=released),
+        quantity("lean_time", "s", 0.01, 1e-5, runs=lifted),
+        *lean_and_tilt(3.9, 1e-5, start=3.2, runs=lifted),
     )
-    released, lifted = list(tendons), [lifts.name]
-    return Definition(
-        name="tendon",
-        title="A column with a tendon: turn, period and uplift",
-        runs=(*runs, lifts),
-        step=0.002,
-        criteria=(
-            quantity("turn_1", "rad", 0.01, 1e-6, runs=released),
-            quantity("period_1", "relative", 0.002, 1e-6, runs=released),
-            *lean_and_tilt(2.5, 1e-5, runs=released),
-            quantity("lean_time", "s", 0.01, 1e-5, runs=lifted),
-            *lean_and_tilt(3.9, 1e-5, start=3.2, runs=lifted),
-        ),
-        needed=("turn_1", "period_1", "tilt"),
-    )
+    needed, title = ("turn_1", "period_1", "tilt"), "A column with a tendon: turn, period and uplift"
+    return Definition("tendon", title, tuple(runs), 0.002, criteria, needed)
 
 
 def impact() -> Definition:
@@ -435,62 +301,27 @@ def impact() -> Definition:
     time = 0.005 * np.arange(161)
     push = np.column_stack([0.65 * G * np.sin(2.0 * math.pi * time / 0.8), np.zeros(161)])
     motion = GroundMotion(np.round(push, 6), 0.005)  # as published
-    runs = tuple(
-        BenchmarkRun(
-            name=support,
-            cylinder=SQUAT,
-            support=support,
-            duration=2.0,
-            motion=motion,
-            friction=5.0,
-            levels={"lean_level": 0.01},
-            closes=True,
-        )
-        for support in SUPPORTS
+    more: dict[str, Any] = {"friction": 5.0, "levels": {"lean_level": 0.01}, "closes": True}
+    runs = tuple(BenchmarkRun(support, SQUAT, support, 2.0, motion=motion, **more) for support in SUPPORTS)
+    criteria = (
+        *(quantity(f"maximum_{k}", "alpha", 0.001, 1e-6) for k in (2, 3, 4)),
+        *(quantity(f"kept_{k}", "relative", 0.01, 1e-5) for k in (2, 3)),
+        *lean_and_tilt(1.9, 1e-5),
     )
-    return Definition(
-        name="impact",
-        title="Impacts of a base that closes in one plane",
-        runs=runs,
-        step=0.002,
-        criteria=(
-            *(quantity(f"maximum_{k}", "alpha", 0.001, 1e-6) for k in (2, 3, 4)),
-            *(quantity(f"kept_{k}", "relative", 0.01, 1e-5) for k in (2, 3)),
-            *lean_and_tilt(1.9, 1e-5),
-        ),
-        needed=("maximum_2", "kept_2"),
-        needs="any",
-    )
+    title = "Impacts of a base that closes in one plane"
+    return Definition("impact", title, runs, 0.002, criteria, ("maximum_2", "kept_2"), "any")
 
 
 def slide(name: str, title: str, motion: GroundMotion, length: float, *asked: Criterion) -> Definition:
     """Return a slide from rest under a motion of the ground, at 0.6 and at 0.9 of b/h."""
+    more: dict[str, Any] = {"motion": motion, "levels": {"slide_level": 1e-3}}
     runs = tuple(
-        BenchmarkRun(
-            name=f"friction-{friction:g}",
-            cylinder=SQUAT,
-            support="flat",
-            duration=length,
-            motion=motion,
-            friction=friction,
-            levels={"slide_level": 1e-3},
-        )
+        BenchmarkRun(f"friction-{friction:g}", SQUAT, "flat", length, friction=friction, **more)
         for friction in (0.3, 0.45)
     )
-    end = length - 0.01
-    return Definition(
-        name=name,
-        title=title,
-        runs=runs,
-        step=0.002,
-        criteria=(
-            *asked,
-            quantity("slide_end", "relative", 0.01, 1e-5),
-            trace("path", end, 1e-5),
-            trace("tilt", end, 1e-5),
-        ),
-        needed=("slide_end", "path", "tilt"),
-    )
+    end, moved = length - 0.01, quantity("slide_end", "relative", 0.01, 1e-5)
+    criteria = (*asked, moved, trace("path", end, 1e-5), trace("tilt", end, 1e-5))
+    return Definition(name, title, runs, 0.002, criteria, ("slide_end", "path", "tilt"))
 
 
 def slide_on_a_line() -> Definition:

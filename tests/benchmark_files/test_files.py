@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -41,26 +42,26 @@ def table(case: str) -> dict[str, np.ndarray]:
     return dict(zip(path.read_text().split("\n", 1)[0].split(","), values.T, strict=True))
 
 
-def test_there_are_fifteen_cases_as_defined() -> None:
+def follows(schema: str, content: Any) -> None:
+    expected = json.loads((PUBLISHED / "schemas" / f"{schema}.schema.json").read_text())
+    jsonschema.validate(content, expected, cls=jsonschema.Draft202012Validator)
+
+
+def test_the_fifteen_cases_are_those_defined_and_follow_their_schemas() -> None:
     assert sorted(one.name for one in definitions()) == CASES
     assert len(CASES) == 15
+    for case in CASES:
+        for name in ("case", "accept", "reference"):
+            follows(name, read(case, name))
 
 
-@pytest.mark.parametrize("case", CASES)
-@pytest.mark.parametrize("name", ["case", "accept", "reference"])
-def test_files_follow_their_schemas(case: str, name: str) -> None:
-    schema = json.loads((PUBLISHED / "schemas" / f"{name}.schema.json").read_text())
-    jsonschema.validate(read(case, name), schema, cls=jsonschema.Draft202012Validator)
-
-
-@pytest.mark.parametrize("path", sorted((PUBLISHED / "results").glob("*/*.json")), ids=lambda p: p.stem)
-def test_results_follow_their_schema(path: Path) -> None:
-    schema = json.loads((PUBLISHED / "schemas" / "result.schema.json").read_text())
-    found = json.loads(path.read_text())
-    if path.name == "about.json":
-        assert {"code", "version", "settings", "seconds_a_step"} <= set(found)
-    else:
-        jsonschema.validate(found, schema, cls=jsonschema.Draft202012Validator)
+def test_results_follow_their_schema() -> None:
+    for path in (PUBLISHED / "results").glob("*/*.json"):
+        found = json.loads(path.read_text())
+        if path.name == "about.json":
+            assert {"code", "version", "settings", "seconds_a_step"} <= set(found)
+        else:
+            follows("result", found)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -231,8 +232,7 @@ def test_examples_are_exact(path: Path, place: str, copied: Path, tmp_path: Path
     assert done.returncode == EXIT["exact"]
     result = json.loads((tmp_path / "result.json").read_text())
     assert result["verdict"] == "exact", done.stdout
-    schema = json.loads((copied / "schemas" / "result.schema.json").read_text())
-    jsonschema.validate(result, schema, cls=jsonschema.Draft202012Validator)
+    follows("result", result)
 
 
 def test_the_scoreboard_tells_what_cannot_be_run_from_what_was_not() -> None:
@@ -270,10 +270,7 @@ def test_the_scoreboard_is_made_of_the_results(copied: Path) -> None:
 
 
 def test_a_result_by_other_references_is_refused(copied: Path, tmp_path: Path) -> None:
-    import shutil
-
-    other = tmp_path / "other"
-    shutil.copytree(copied, other)
+    other = shutil.copytree(copied, tmp_path / "other")
     path = next((other / "results").glob("*/turn-flat.json"))
     path.write_text(path.read_text().replace('"reference_sha256": "', '"reference_sha256": "00')[:-1])
     done = subprocess.run(
