@@ -13,6 +13,7 @@ import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache, update_wrapper
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Generic, ParamSpec, TypeVar, cast
 
@@ -20,6 +21,7 @@ import numba
 import numpy as np
 from numba.core.caching import IndexDataCacheFile
 from numba.extending import intrinsic, overload
+from numba.np import linalg
 from numpy.typing import NDArray
 
 F = TypeVar("F", bound=Callable[..., object])
@@ -139,12 +141,19 @@ def _digest(source: Path) -> str:
 
 @contextmanager
 def _without_collector() -> Iterator[None]:
-    """Keep the garbage collector out of what a compiler makes and keeps: it takes a fifth of the time."""
-    collects = gc.isenabled()
+    """Keep the garbage collector out of what a compiler makes and keeps: it takes a fifth of the time.
+
+    Nor is SciPy's linear algebra, which no kernel calls, imported to see whether it is there: a tenth of a
+    short command.
+    """
+    collects, asks = gc.isenabled(), linalg.ensure_blas
     gc.disable()
+    linalg.ensure_blas = lambda: None
     try:
+        import_module("numba.np.arraymath")  # it asks when it is imported
         yield
     finally:
+        linalg.ensure_blas = asks
         if collects:
             gc.enable()
 

@@ -8,6 +8,7 @@ only `serve`, and if it dies only its own call fails.
 from __future__ import annotations
 
 import contextlib
+import gc
 import math
 import os
 import pickle
@@ -108,6 +109,7 @@ class Worker:
 
 def serve() -> None:
     """Answer calls from the standard input until it closes; the body of the process."""
+    gc.set_threshold(500_000)  # as in the command itself
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # output of an engine must not mix with the answers
     calls: queue.SimpleQueue[Call] = queue.SimpleQueue()
