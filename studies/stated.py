@@ -13,7 +13,7 @@ from rockwobble.models.finding import Finding, Value
 from rockwobble.models.ground_motion import sources_of
 from rockwobble.models.plain_json import Facts
 
-from .spectrum.maps import uplift_factor
+from .spectrum.parts import uplift_factor
 
 DIFFERS = "differs"  # a condition that cases have several of
 _GRAVITY = 9.81  # [m/s^2], of which a page says nothing

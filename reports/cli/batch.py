@@ -165,16 +165,12 @@ def spectrum(
     """
     with interruptible(out):
         with user_input():
-            import numpy as np
-
-            from rockwobble.studies.spectrum.maps import intensity_unit, require_cases
+            from rockwobble.studies.spectrum.parts import runs_of
 
             tan_alpha = _slenderness(tan_alpha, diameter, height)
             motion = record.motion()
             assert motion is not None  # a case without a release has a motion
-            intensity_unit(tan_alpha, motion, plan.gravity)
-            require_cases(tan_alpha, motion, plan)
-            sizes = np.linspace(*plan.SIZES) if plan.semidiagonals is None else plan.semidiagonals
+            sizes = runs_of(tan_alpha, motion, plan).semidiagonals
             bodies = [rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha) for size in sizes]
             plan = with_steel(context, plan, steel, bodies, plan.gravity)
             body = under_slab(bodies[0], plan.slab_mass_ratio or None, None)

@@ -76,7 +76,7 @@ def series_styles(model: str) -> dict[str, Style]:
 
 
 def _curves(spectrum: TiltMaps) -> list[Line]:
-    styles = series_styles(str(Run(None, spectrum.support)))
+    styles = series_styles(str(Run(None, spectrum.plan.support)))
     gaps = safe_gaps(spectrum)
     spacing = float(np.diff(spectrum.semidiagonals).min(initial=np.inf))
     half = 0.5 * float(np.diff(spectrum.intensities).min(initial=np.inf))

@@ -26,7 +26,7 @@ def spectrum_values(found: OverturningSpectrum) -> dict[str, object]:
     said = {each.key: statement(each) for each in found.findings()}
     return {
         "spectrum": found.maps,
-        "holds": support_named(found.maps.support),
+        "holds": support_named(found.maps.plan.support),
         "cell_rows": contrast.assign(
             band=[f"{row.smallest:.3g} to {row.largest:.3g}" for row in contrast.itertuples()]
         )

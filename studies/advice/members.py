@@ -37,7 +37,7 @@ from rockwobble.models.records import p695
 from rockwobble.models.trace import NO_PEAK
 
 from ..fragility import intensity
-from ..spectrum.maps import uplift_factor
+from ..spectrum.parts import uplift_factor
 from .demands import COVERED, SHARES, UNITS, all_alike, demands_of
 
 Array = NDArray[np.float64]

@@ -16,8 +16,15 @@ from rockwobble.models import Case
 from rockwobble.models.support import RECESS
 
 from ..plans import STEP
-from ..spectrum.maps import intensity_unit, uplift_of_series
-from ..spectrum.parts import RTOL, SERIES, SPATIAL, series_options
+from ..spectrum.parts import (
+    AZIMUTH,
+    RTOL,
+    SERIES,
+    SPATIAL,
+    intensity_unit,
+    series_options,
+    uplift_factor,
+)
 from ..spectrum.search import Array, lowest_on_grid, run_searches, search_lowest
 from ..spectrum.verification import CHECK_RTOL, CONFIRMING
 from .members import tendon_uplift_factor
@@ -69,9 +76,9 @@ def scan_scales(case: Case, support: str = RECESS) -> tuple[pd.DataFrame, pd.Dat
         peaks = run(FACTORS)
         start = 0.0
         if not case.is_release:
-            start = uplift_of_series(
-                name, motion, tan_alpha, gravity, until=case.length
-            ) * tendon_uplift_factor(case)
+            plane = AZIMUTH.get(name)
+            start = uplift_factor(motion, tan_alpha, gravity, plane=plane, until=case.length)
+            start *= tendon_uplift_factor(case)
         alpha, stands = case.cylinder.alpha, not case.is_release
         search = search_lowest(FACTORS, peaks, start=start, step=step, alpha=alpha, stands=stands)
         found = run_searches([search], at)[0]

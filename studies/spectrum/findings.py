@@ -9,11 +9,9 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare.metrics.mode import mode_findings
-from rockwobble.models import Case, Cylinder, WobblingFrame
 from rockwobble.models.finding import Finding, Value
 from rockwobble.models.mode import ROCKS_AND_SLIDES, expected_mode
 
-from ..plans import tendon_of
 from .maps import TiltMaps
 from .parts import SPATIAL
 from .search import gap_bound
@@ -44,18 +42,11 @@ def spectrum_findings(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) ->
 
 def _mode(spectrum: TiltMaps) -> Iterator[Finding]:
     """Findings on the mode under the strongest shaking, where the friction is given."""
-    if spectrum.friction is None:
+    if spectrum.plan.friction is None:
         return
-    column = Cylinder(semidiagonal=float(spectrum.semidiagonals[0]), tan_alpha=spectrum.tan_alpha)
-    case = Case(
-        WobblingFrame(column, spectrum.slab_mass_ratio),
-        spectrum.motion.scaled(float(spectrum.scales[-1])),
-        gravity=spectrum.gravity,
-        friction=spectrum.friction,
-        tendon=tendon_of(spectrum.tendon_prestress, spectrum.tendon_stiffness, spectrum.tendon_yield),
-    )
-    yield from mode_findings(case, spectrum.support)
-    if expected_mode(case, spectrum.support) == ROCKS_AND_SLIDES:
+    case = spectrum.case(float(spectrum.semidiagonals[0]), float(spectrum.scales[-1]))
+    yield from mode_findings(case, spectrum.plan.support)
+    if expected_mode(case, spectrum.plan.support) == ROCKS_AND_SLIDES:
         yield Finding(key="mode.no_engine", level="not tested")
 
 
@@ -83,10 +74,10 @@ def _search(spectrum: TiltMaps, lowest: pd.DataFrame) -> Iterator[Finding]:
     """Findings on how the boundary was searched, what may be missed, and what is left to chance."""
     space, sizes = lowest[lowest["series"] == SPATIAL], len(spectrum.semidiagonals)
     found = space[np.isfinite(space["intensity"])]
-    steps = {"intensity": spectrum.searched_from[SPATIAL], "intensity_step": spectrum.search_step}
+    steps = {"intensity": spectrum.searched_from[SPATIAL], "intensity_step": spectrum.plan.search_step}
     yield Finding(key="spectrum.search", values=steps)
-    if spectrum.probes:
-        values: dict[str, Value] = {"count": spectrum.probes, "share": gap_bound(spectrum.probes)}
+    if probes := spectrum.plan.probes:
+        values: dict[str, Value] = {"count": probes, "share": gap_bound(probes)}
         values |= {"count_lowered": int((space["overturned_below"] > 0).sum()), "count_all": sizes}
         yield Finding(key="spectrum.probes", values=values)
     if len(found):

@@ -1,10 +1,10 @@
-"""Parts of a spectrum: some sizes in one series, each kept as it is finished."""
+"""Runs of a spectrum: what drives each series, its uplift, and parts that are kept as they finish."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, TypedDict
 
@@ -14,10 +14,12 @@ from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.compare.metrics.pair import beyond_yield
+from rockwobble.compare.runs.choice import require_runnable
 from rockwobble.compare.storage.provenance import reduced_makers, result_fingerprint
-from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
-from rockwobble.models.case import TERMS
+from rockwobble.models import Case, Cylinder, GroundMotion, Run, WobblingFrame
 from rockwobble.models.cpus import usable_cpus
+from rockwobble.models.number_checks import require_increasing
+from rockwobble.models.support import support_named
 
 from ..plans import SpectrumPlan
 from .search import probe_below, run_searches, search_lowest
@@ -50,8 +52,152 @@ class Options(TypedDict, total=False):
 
 
 def series_options(series: str, support: str) -> Options:
-    """Return the options of a reduced run that make it one of a series; `support` is that in 3D."""
+    """Options of a reduced run that make it one of a series; `support` is that in 3D."""
     return {"support": support} if series == SPATIAL else {"plane": AZIMUTH[series]}
+
+
+def intensity_unit(tan_alpha: float, motion: GroundMotion, gravity: float) -> float:
+    """Factor that brings the peak horizontal resultant of `motion` to g tan(alpha).
+
+    Raises
+    ------
+    ValueError
+        If the motion has no horizontal component to scale.
+    """
+    if motion.peak == 0.0:
+        raise ValueError("motion must have a horizontal acceleration to scale, got none")
+    return gravity * tan_alpha / motion.peak
+
+
+def uplift_factor(
+    motion: GroundMotion,
+    tan_alpha: float,
+    gravity: float,
+    *,
+    plane: float | None = None,
+    until: float = math.inf,
+) -> float:
+    """Factor on a ground motion at which a cylinder at rest uplifts [-]; inf if none does.
+
+    Without rolling resistance, which holds it longer.
+
+    Exact: f of equation (25) is convex between samples, and so is largest at one of them.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+    tan_alpha : float
+    gravity : float
+        [m/s^2]
+    plane : float, optional
+        Azimuth of the plane of planar motion [rad]. Default: motion in space.
+    until : float, optional
+        End of the run [s].
+    """
+    samples = motion.until(until)
+    x, y = samples[:, 0], samples[:, 1]
+    drive = np.hypot(x, y) if plane is None else np.abs(x * math.cos(plane) + y * math.sin(plane))
+    if motion.has_vertical:
+        drive = drive - samples[:, 2] * tan_alpha
+    largest = float(drive.max())
+    return gravity * tan_alpha / largest if largest > 0.0 else math.inf
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SpectrumRuns:
+    """Cylinders of one slenderness under one record, over size and intensity, in three series.
+
+    Attributes
+    ----------
+    tan_alpha : float
+        Slenderness b/h [-].
+    motion : GroundMotion
+        The record at its own scale.
+    plan : SpectrumPlan
+        Support of the model in three dimensions, terms of the body, and search.
+    semidiagonals : ndarray, shape (n_R,)
+        Sizes R [m].
+    intensities : ndarray, shape (n_I,)
+        Peak of the horizontal resultant over g tan(alpha) [-]; 1 is the threshold of uplift in three
+        dimensions without vertical motion.
+    searched_from : mapping
+        For each of `SERIES` the intensity at which it uplifts [-], from which the lowest is searched: up to
+        where something overturns, or to the last of the grid. inf where it uplifts at none.
+    """
+
+    tan_alpha: float
+    motion: GroundMotion
+    plan: SpectrumPlan
+    semidiagonals: Array
+    intensities: Array
+    searched_from: Mapping[str, float]
+
+    @property
+    def alpha(self) -> float:
+        """Slenderness [rad]."""
+        return math.atan(self.tan_alpha)
+
+    @property
+    def unit(self) -> float:
+        """Factor on the record that makes an intensity of 1 [-]."""
+        return intensity_unit(self.tan_alpha, self.motion, self.plan.gravity)
+
+    @property
+    def scales(self) -> Array:
+        """Factor on the record for each intensity (n_I,) [-]."""
+        return self.intensities * self.unit
+
+    def case(self, size: float, scale: float) -> Case:
+        """Case of one cylinder, with enough friction where the plan states none."""
+        plan = self.plan
+        return Case(
+            WobblingFrame(Cylinder(semidiagonal=size, tan_alpha=self.tan_alpha), plan.slab_mass_ratio),
+            self.motion.scaled(scale),
+            gravity=plan.gravity,
+            friction=1.0 if plan.friction is None else plan.friction,
+            rolling_resistance=plan.rolling_resistance,
+            tendon=plan.tendon,
+        )
+
+
+def runs_of(tan_alpha: float, motion: GroundMotion, plan: SpectrumPlan) -> SpectrumRuns:
+    """Runs of a plan.
+
+    Raises
+    ------
+    ValueError
+        If an axis is not increasing and positive, the motion is still, an option is out of range for the
+        smallest of the sizes or for the largest, or all of them slide and nothing more.
+    """
+    sizes, levels = (
+        np.linspace(*default) if given is None else require_increasing(name, given)
+        for name, given, default in (
+            ("semidiagonals", plan.semidiagonals, SpectrumPlan.SIZES),
+            ("intensities", plan.intensities, SpectrumPlan.INTENSITIES),
+        )
+    )
+    unit = intensity_unit(tan_alpha, motion, plan.gravity)
+    uplifted = partial(uplift_factor, motion, tan_alpha, plan.gravity)
+    column = WobblingFrame(Cylinder(semidiagonal=1.0, tan_alpha=tan_alpha), plan.slab_mass_ratio)
+    held = 1.0 if plan.tendon is None else plan.tendon.uplift_factor(column)
+    runs = SpectrumRuns(
+        tan_alpha=tan_alpha,
+        motion=motion,
+        plan=plan,
+        semidiagonals=sizes,
+        intensities=levels,
+        searched_from={name: held * uplifted(plane=AZIMUTH.get(name)) / unit for name in SERIES},
+    )
+    for size in (sizes[0], sizes[-1]):
+        case = runs.case(float(size), 1.0)
+        bound = case.friction_of_uplift
+        if plan.friction is not None and plan.friction < bound and support_named(plan.support).lets_slide:
+            raise ValueError(
+                f"friction {plan.friction:g} is below b/h = {bound:g}: on flat ground every size slides "
+                "alike and none uplifts; a fragility with a gap, or reduced.peak_displacements, says how far"
+            )
+        require_runnable(case, Run(None, plan.support))
+    return runs
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -62,33 +208,23 @@ class SpectrumPart:
     ----------
     series : str
         One of `SERIES`.
-    places : sequence of int
+    places : range
         Places of its sizes among all of the spectrum.
-    semidiagonals : ndarray, shape (n,)
-        [m]
-    levels : ndarray, shape (n_I,)
-        Intensities [g tan alpha].
-    unit : float
-        Factor on the motion that makes an intensity of 1.
-    start : float
-        Intensity at which the series uplifts.
-    tan_alpha : float
-    motion : GroundMotion
-    plan : SpectrumPlan
+    runs : SpectrumRuns
+        Runs of the whole spectrum.
     threads : int, optional
         Number of threads; it does not influence the result.
     """
 
     series: str
-    places: Sequence[int]
-    semidiagonals: Array
-    levels: Array
-    unit: float
-    start: float
-    tan_alpha: float
-    motion: GroundMotion
-    plan: SpectrumPlan
+    places: range
+    runs: SpectrumRuns
     threads: int | None = None
+
+    @property
+    def semidiagonals(self) -> Array:
+        """Sizes [m]."""
+        return self.runs.semidiagonals[self.places.start : self.places.stop]
 
     @property
     def name(self) -> str:
@@ -98,25 +234,21 @@ class SpectrumPart:
 
     def key(self) -> str:
         """Hash that identifies its result."""
-        plan, motion = self.plan, self.motion
-        terms = (name for name in TERMS if hasattr(plan, name))
-        named = ("gravity", "slab_mass_ratio", *terms, "support", "search_step", "probes")
-        return result_fingerprint(
-            {name: getattr(plan, name) for name in named}
-            | {name: getattr(self, name) for name in ("series", "semidiagonals", "levels", "unit", "start")}
-            | {"places": list(self.places), "tan_alpha": self.tan_alpha, "rtol": [RTOL, _CALM]}
-            | {"motion": (motion.acceleration, motion.time_step)},
-            reduced_makers(),
-        )
+        runs = self.runs
+        plan = replace(runs.plan, semidiagonals=None, intensities=None, friction=None)  # not of its runs
+        motion = runs.motion.acceleration, runs.motion.time_step
+        start = runs.searched_from[self.series]
+        inputs = [self.series, list(self.places), self.semidiagonals, runs.intensities, start]
+        return result_fingerprint([*inputs, plan, runs.tan_alpha, motion, RTOL, _CALM], reduced_makers())
 
 
 def run_part(part: SpectrumPart) -> pd.DataFrame:
-    """Return one row for each size: lowest, below and the peak tilt at each level, by its place."""
-    workers, sizes, levels, plan = part.threads, part.semidiagonals, part.levels, part.plan
+    """One row for each size: lowest, below and the peak tilt at each level, by its place."""
+    runs, plan, sizes, workers = part.runs, part.runs.plan, part.semidiagonals, part.threads
     elastic = partial(
         reduced.peak_tilts,
-        tan_alpha=part.tan_alpha,
-        motion=part.motion,
+        tan_alpha=runs.tan_alpha,
+        motion=runs.motion,
         rtol=RTOL,
         gravity=plan.gravity,
         slab_mass_ratio=plan.slab_mass_ratio,
@@ -124,36 +256,32 @@ def run_part(part: SpectrumPart) -> pd.DataFrame:
         tendon=plan.tendon,
         **series_options(part.series, plan.support),
     )
-    body = WobblingFrame(Cylinder(semidiagonal=1.0, tan_alpha=part.tan_alpha), plan.slab_mass_ratio)
-    case = Case(body, part.motion, tendon=plan.tendon)
+    case = runs.case(float(sizes[0]), 1.0)  # the tilt of yield is that of all sizes
 
-    def run(semidiagonals: Array, **given: Any) -> Array:
-        tilts = elastic(semidiagonals, **given)
+    def run(semidiagonals: Array, intensities: Array, **given: Any) -> Array:
+        tilts = elastic(semidiagonals, scales=runs.unit * intensities, **given)
         return np.where(beyond_yield(tilts, case), math.nan, tilts)
 
-    peaks = run(sizes, scales=part.unit * levels, workers=workers)
+    def of_one(i: int, intensities: Array, **given: Any) -> Array:
+        return run(sizes[i : i + 1], intensities, workers=1, **given).ravel()
+
+    levels, start = runs.intensities, runs.searched_from[part.series]
+    peaks = run(sizes, levels, workers=workers)
     searches = [
-        search_lowest(levels, known, start=part.start, step=plan.search_step, alpha=math.atan(part.tan_alpha))
-        for known in peaks
+        search_lowest(levels, known, start=start, step=plan.search_step, alpha=runs.alpha) for known in peaks
     ]
-    found = run_searches(searches, partial(_at_levels, run, sizes, part.unit), workers=workers)
+    lowest = run_searches(searches, of_one, workers=workers)
     index = SERIES.index(part.series)
     probing = [
-        probe_below(part.start, levels[-1], each, probes=plan.probes, seed=(index, place))
-        for place, each in zip(part.places, found, strict=True)
+        probe_below(start, levels[-1], each, probes=plan.probes, seed=(index, place))
+        for place, each in zip(part.places, lowest, strict=True)
     ]
-    calm = partial(_at_levels, partial(run, rest_tilt=_CALM), sizes, part.unit)
-    lowest, below = np.array(run_searches(probing, calm, workers=workers)).T
-    return pd.DataFrame(
-        {"lowest": lowest, "below": below} | {str(place): column for place, column in enumerate(peaks.T)}
-    )
+    probed = run_searches(probing, partial(of_one, rest_tilt=_CALM), workers=workers)
+    table = pd.DataFrame(probed, columns=["lowest", "below"], dtype=float)
+    return table.assign(**{str(place): column for place, column in enumerate(peaks.T)})
 
 
 def blocks_of_sizes(count: int) -> list[range]:
-    """Return the places of the sizes of each part: as many as there are threads, and some on few."""
+    """Places of the sizes of each part: as many as there are threads, and some on few."""
     step = max(_SIZES, usable_cpus())
     return [range(first, min(first + step, count)) for first in range(0, count, step)]
-
-
-def _at_levels(run: Callable[..., Array], sizes: Array, unit: float, i: int, levels: Array) -> Array:
-    return run(sizes[i : i + 1], scales=unit * levels, workers=1).ravel()

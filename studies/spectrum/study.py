@@ -21,8 +21,8 @@ from rockwobble.models.support import RECESS
 
 from ..plans import PROBES, STEP, SpectrumPlan
 from .findings import spectrum_findings
-from .maps import KIND, TiltMaps, maps_of, tilt_maps
-from .verification import tables_of
+from .maps import KIND, TiltMaps, maps_of, record_frame, safe_gaps, tilt_maps
+from .verification import check_cells, confirm_lowest, planar_contrast
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -159,10 +159,19 @@ def spectrum(
 
 
 def spectrum_of(maps: TiltMaps) -> OverturningSpectrum:
-    """Return the results of maps that were run: their tables, with cells and lowest intensities verified."""
+    """Results of maps that were run: their tables, with cells and lowest intensities verified."""
+    motion, facts = maps.motion, maps.facts()
     sizes = [Cylinder(semidiagonal=size, tan_alpha=maps.tan_alpha) for size in maps.semidiagonals.tolist()]
-    doubts = doubts_about(motions=[maps.motion], cylinders=sizes, gravities=[maps.gravity])
-    facts = maps.facts() | {"doubts": doubts, "record_sources": sources_of([maps.motion])}
+    doubts = doubts_about(motions=[motion], cylinders=sizes, gravities=[maps.plan.gravity])
     grid = maps.semidiagonals, maps.intensities
-    facts["inputs"] = result_fingerprint([maps.facts(), *grid, maps.motion.acceleration], reduced_makers())
-    return OverturningSpectrum(tables=tables_of(maps), facts=plain(facts))
+    inputs = result_fingerprint([facts, *grid, motion.acceleration], reduced_makers())
+    facts |= {"doubts": doubts, "record_sources": sources_of([motion]), "inputs": inputs}
+    tables = {
+        "spectrum": maps.to_frame(),
+        "record": record_frame(motion),
+        "lowest": confirm_lowest(maps),
+        "gaps": safe_gaps(maps),
+        "contrast": planar_contrast(maps),
+        "checked": check_cells(maps),
+    }
+    return OverturningSpectrum(tables=tables, facts=plain(facts))

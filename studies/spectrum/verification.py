@@ -10,10 +10,8 @@ from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.compare.metrics.pair import beyond_yield, overturned
-from rockwobble.models import Case, Cylinder, WobblingFrame
 
-from ..plans import tendon_of
-from .maps import TiltMaps, record_frame, safe_gaps
+from .maps import TiltMaps
 from .parts import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, series_options
 
 Array = NDArray[np.float64]
@@ -44,10 +42,8 @@ def planar_contrast(spectrum: TiltMaps) -> pd.DataFrame:
     """
     sizes = spectrum.semidiagonals
     edges = size_bands(sizes)
-    band = np.searchsorted(edges, sizes, side="right") - 1
-    band[sizes == edges[-1]] = len(edges) - 2
-    groups = [np.flatnonzero(band == i) for i in range(len(edges) - 1)]
-    rows = [_row(spectrum, group) for group in groups if len(group)]
+    band = np.minimum(np.searchsorted(edges, sizes, side="right") - 1, len(edges) - 2)
+    rows = [_row(spectrum, np.flatnonzero(band == each)) for each in np.unique(band)]
     return pd.DataFrame([*rows, _row(spectrum, np.arange(len(sizes)))])
 
 
@@ -61,7 +57,7 @@ def edge_difference(spectrum: TiltMaps) -> Array:
     plane = np.minimum(x, y)
     both = np.isinf(space) & np.isinf(plane)
     difference = np.where(both, 0.0, space) - np.where(both, 0.0, plane)
-    return np.where(np.abs(difference) > spectrum.search_step, difference, 0.0)
+    return np.where(np.abs(difference) > spectrum.plan.search_step, difference, 0.0)
 
 
 def unconservative_from(spectrum: TiltMaps) -> float:
@@ -113,12 +109,11 @@ def _share(which: NDArray[np.bool_]) -> float:
 
 def _median(lowest: Array) -> float:
     # the upper of two middle values: their mean with infinity would hide a finite one
-    ordered = np.sort(_or_infinite(lowest))
-    return float(ordered[len(ordered) // 2])
+    return float(np.quantile(_or_infinite(lowest), 0.5, method="higher"))
 
 
 def _or_infinite(lowest: Array) -> Array:
-    return np.where(np.isnan(lowest), math.inf, lowest)
+    return np.nan_to_num(lowest, nan=math.inf, posinf=math.inf)
 
 
 CHECK_RTOL = 1e-9
@@ -182,9 +177,8 @@ def confirm_lowest(spectrum: TiltMaps) -> pd.DataFrame:
         passes have multiplied the rounding of the solution to the size of the tilt.
     """
     table = spectrum.lowest_frame()
-    unit = float(spectrum.scales[0] / spectrum.intensities[0])
     table["confirmed"] = [
-        _overturns_again(spectrum, name, i, unit * float(lowest))
+        _overturns_again(spectrum, name, i, spectrum.unit * float(lowest))
         for name in SERIES
         for i, lowest in enumerate(spectrum.lowest[name])
     ]
@@ -199,34 +193,13 @@ def _overturns_again(spectrum: TiltMaps, series: str, i: int, scale: float) -> b
 
 def _single(spectrum: TiltMaps, series: str, i: int, scale: float) -> float:
     run = reduced.simulate(
-        Case(
-            WobblingFrame(
-                Cylinder(semidiagonal=float(spectrum.semidiagonals[i]), tan_alpha=spectrum.tan_alpha),
-                spectrum.slab_mass_ratio,
-            ),
-            spectrum.motion.scaled(scale),
-            gravity=spectrum.gravity,
-            rolling_resistance=spectrum.rolling_resistance,
-            tendon=tendon_of(spectrum.tendon_prestress, spectrum.tendon_stiffness, spectrum.tendon_yield),
-        ),
+        spectrum.case(float(spectrum.semidiagonals[i]), scale),
         rtol=CHECK_RTOL,
         sample_step=spectrum.motion.duration,
-        **series_options(series, spectrum.support),
+        **series_options(series, spectrum.plan.support),
     )
     return math.nan if beyond_yield(run.peak_tilt, run.case) else run.peak_tilt
 
 
 def _agree(peak: float, other: float) -> bool:
     return math.isnan(peak) == math.isnan(other) and not abs(peak - other) > SAME_PEAK * other
-
-
-def tables_of(spectrum: TiltMaps) -> dict[str, pd.DataFrame]:
-    """Return the tables of `OverturningSpectrum`; cells and lowest intensities are verified for them."""
-    return {
-        "spectrum": spectrum.to_frame(),
-        "record": record_frame(spectrum.motion),
-        "lowest": confirm_lowest(spectrum),
-        "gaps": safe_gaps(spectrum),
-        "contrast": planar_contrast(spectrum),
-        "checked": check_cells(spectrum),
-    }

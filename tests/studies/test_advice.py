@@ -72,7 +72,8 @@ from rockwobble.studies.advice.scales import (
 from rockwobble.studies.advice.trust import trust_of, verify_run
 from rockwobble.studies.plans import AdvicePlan, SpectrumPlan
 from rockwobble.studies.single_run import single_run
-from rockwobble.studies.spectrum.maps import intensity_unit, tilt_maps, uplift_factor
+from rockwobble.studies.spectrum.maps import tilt_maps
+from rockwobble.studies.spectrum.parts import intensity_unit, uplift_factor
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RECESS = Run(None, "recess")

@@ -14,7 +14,7 @@ from rockwobble.compare.metrics.pair import overturned
 from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 from rockwobble.models.cpus import in_threads
 from rockwobble.studies.plans import STEP
-from rockwobble.studies.spectrum.maps import uplift_factor
+from rockwobble.studies.spectrum.parts import uplift_factor
 from rockwobble.studies.spectrum.search import (
     gap_bound,
     lowest_on_grid,
@@ -55,7 +55,7 @@ def search(window, start: float, grid: np.ndarray, known: np.ndarray | None = No
 GRID = np.linspace(1.0, 4.0, 28)
 
 
-@pytest.mark.parametrize("centre", [1.4951, 1.3152, 1.5037, 2.7182])
+@pytest.mark.parametrize("centre", [1.3152, 1.5037, 2.7182])
 def test_an_overturning_window_narrower_than_the_grid_is_found(centre):
     window = Window(centre, 0.015, 0.3)
     found = search(window, 1.0, GRID)
@@ -154,6 +154,8 @@ def test_probes_go_down_until_none_overturns():
         assert missed > 100
     assert run_searches([probe_below(2.0, 4.0, 1.0, probes=9, seed=(0,))], third)[0] == (1.0, 0)
     assert run_searches([probe_below(1.0, 4.0, 2.0, probes=0, seed=(0,))], third)[0] == (2.0, 0)
+    # the share of which none in so many is seen
+    assert (1.0 - gap_bound(500)) ** 500 == pytest.approx(0.05)
 
 
 @pytest.mark.slow
@@ -175,11 +177,6 @@ def test_narrow_gaps_are_found_at_the_stated_rate(width: float, chance: float):
     assert found / trials == pytest.approx(
         chance, abs=4.0 * math.sqrt(chance * (1.0 - chance) / trials) + SAME
     )
-
-
-def test_the_bound_on_gaps_is_that_of_zero_hits():
-    assert (1.0 - gap_bound(500)) ** 500 == pytest.approx(0.05)
-    assert gap_bound(500) == pytest.approx(0.006, abs=1e-4)
 
 
 def test_a_search_finds_windows_that_a_grid_does_not_see():
@@ -204,9 +201,7 @@ def test_the_lowest_of_a_grid_is_the_first_that_overturns():
 HAIR = 1e-6  # relative: either side of the exact threshold, far above rounding
 
 
-@pytest.mark.parametrize(
-    "options", [{}, {"plane": 0.0}, {"plane": 0.5 * math.pi}, {"plane": 0.7}, {"until": 3.0}]
-)
+@pytest.mark.parametrize("options", [{}, {"plane": 0.5 * math.pi}, {"plane": 0.7}, {"until": 3.0}])
 def test_nothing_moves_below_the_factor_of_uplift(options):
     motion = el_centro_1940(vertical=True)
     factor = uplift_factor(motion, 0.2, 9.81, **options)

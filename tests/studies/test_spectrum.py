@@ -57,23 +57,10 @@ def test_each_series_is_driven_by_its_part_of_the_same_shaking(spectrum, series,
     assert compared >= 4
 
 
-def test_the_first_intensity_is_the_threshold_of_uplift(spectrum):
-    for series in SERIES:
+def test_the_tables_hold_every_cell(spectrum):
+    for series in SERIES:  # the first intensity is the threshold of uplift
         assert not spectrum.peak_tilt[series][:, 0].any()
     assert (spectrum.peak_tilt[SPATIAL][:, 1] > 0.0).all()
-
-
-@pytest.mark.slow
-def test_the_same_bits_whatever_the_number_of_threads(spectrum):
-    one = tilt_maps(
-        0.1, EL_CENTRO, SpectrumPlan(semidiagonals=SIZES, intensities=INTENSITIES, probes=PROBES), workers=1
-    )
-    for series in SERIES:
-        assert np.array_equal(one.peak_tilt[series], spectrum.peak_tilt[series], equal_nan=True)
-        assert np.array_equal(one.lowest[series], spectrum.lowest[series], equal_nan=True)
-
-
-def test_the_tables_hold_every_cell(spectrum):
     table = spectrum.to_frame()
     assert len(table) == len(SERIES) * len(SIZES) * len(INTENSITIES)
     cell = table[
@@ -93,58 +80,35 @@ def test_the_tables_hold_every_cell(spectrum):
     assert row["peak_acceleration"] == pytest.approx(row["intensity"] * 0.981 * share, rel=1e-14)
     assert row["on_grid"] >= row["intensity"]
     assert row["searched_from"] == pytest.approx(1.0 / share, rel=1e-14)
-    assert row["search_step"] == spectrum.search_step == STEP
-    assert row["probed"] == spectrum.probes == PROBES
+    assert row["search_step"] == spectrum.plan.search_step == STEP
+    assert row["probed"] == spectrum.plan.probes == PROBES
 
 
 def test_below_a_grid_that_begins_high_the_lowest_is_found():
-    spectrum = tilt_maps(
-        0.1,
-        EL_CENTRO,
-        SpectrumPlan(
-            semidiagonals=[0.5],
-            intensities=[6.0, 8.0],
-            probes=0,
-        ),
-    )
+    plan = SpectrumPlan(semidiagonals=[0.5], intensities=[6.0, 8.0], probes=0)
+    spectrum = tilt_maps(0.1, EL_CENTRO, plan)
     assert spectrum.overturned(SPATIAL)[0, 0]
     assert spectrum.lowest[SPATIAL][0] < 1.1
     row = spectrum.lowest_frame().iloc[0]
     assert (row["series"], row["on_grid"]) == (SPATIAL, 6.0)
 
 
-def test_the_rolling_model_makes_another_spectrum(spectrum):
-    rolling = tilt_maps(
-        0.1,
-        EL_CENTRO,
-        SpectrumPlan(
-            semidiagonals=SIZES[:2], intensities=INTENSITIES[:4], support="flat", search_step=2.0, probes=0
-        ),
-    )
-    single = reduced.simulate(
-        Case(Cylinder(semidiagonal=4.0, tan_alpha=0.1), EL_CENTRO.scaled(rolling.scales[1])),
-        support="flat",
-        rtol=1e-8,
-    )
-    assert rolling.peak_tilt[SPATIAL][1, 1] == pytest.approx(single.peak_tilt, rel=SAME_RUN)
-    assert rolling.peak_tilt[SPATIAL][1, 1] != spectrum.peak_tilt[SPATIAL][1, 1]
-
-
-def test_every_cell_and_its_rerun_carry_the_slab():
-    options = {"semidiagonals": [4.0], "intensities": [2.0, 4.0], "search_step": 2.0, "probes": 0}
-    maps = tilt_maps(0.1, EL_CENTRO, SpectrumPlan(slab_mass_ratio=2.0, **options))
-    frame = WobblingFrame(Cylinder(semidiagonal=4.0, tan_alpha=0.1), slab_mass_ratio=2.0)
-    single = reduced.simulate(Case(frame, EL_CENTRO.scaled(maps.scales[0])), rtol=1e-8)
-    assert maps.peak_tilt[SPATIAL][0, 0] == pytest.approx(single.peak_tilt, rel=SAME_RUN)
-    checked = check_cells(maps)
-    assert checked["agrees"].all()
+@pytest.mark.parametrize("terms", [{"support": "flat"}, {"slab_mass_ratio": 2.0}])
+def test_every_cell_and_its_rerun_carry_the_terms_of_the_plan(spectrum, terms):
+    options = {"semidiagonals": [4.0], "intensities": INTENSITIES[1:4:2], "search_step": 2.0, "probes": 0}
+    found = tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options, **terms))
+    frame = WobblingFrame(Cylinder(semidiagonal=4.0, tan_alpha=0.1), terms.get("slab_mass_ratio", 0.0))
+    case = Case(frame, EL_CENTRO.scaled(found.scales[0]))
+    single = reduced.simulate(case, support=terms.get("support", "recess"), rtol=1e-8)
+    assert found.peak_tilt[SPATIAL][0, 0] == pytest.approx(single.peak_tilt, rel=SAME_RUN)
+    assert found.peak_tilt[SPATIAL][0, 0] != spectrum.peak_tilt[SPATIAL][1, 1]
+    assert check_cells(found)["agrees"].all()
 
 
 def test_a_still_record_cannot_be_scaled():
+    still = GroundMotion(np.zeros((3, 2)), 0.1)
     with pytest.raises(ValueError, match="horizontal acceleration"):
-        tilt_maps(
-            0.1, GroundMotion(np.zeros((3, 2)), 0.1), SpectrumPlan(semidiagonals=[1.0], intensities=[1.0])
-        )
+        tilt_maps(0.1, still, SpectrumPlan(semidiagonals=[1.0], intensities=[1.0]))
 
 
 # Cells drawn from the grid of the paper's figure 6. Of 2200 drawn from the whole of it none failed these
@@ -190,11 +154,11 @@ def test_reruns_confirm_overturned_cells_only(spectrum, monkeypatch):
     assert not table.loc[(PLANAR_Y, 12.0), "confirmed"]
     # one that a slightly weaker record does not overturn is not
     with monkeypatch.context() as patch:
-        nudge = 2.0 * spectrum.search_step / spectrum.lowest[SPATIAL][3]
+        nudge = 2.0 * spectrum.plan.search_step / spectrum.lowest[SPATIAL][3]
         patch.setattr(verification, "CONFIRMING", (1.0, 1.0 - nudge, 1.0 + nudge))
         weaker = confirm_lowest(spectrum).set_index(table.index)
     assert not weaker.loc[(SPATIAL, 12.0), "confirmed"]
-    lower = {name: lowest - 2.0 * spectrum.search_step for name, lowest in spectrum.lowest.items()}
+    lower = {name: lowest - 2.0 * spectrum.plan.search_step for name, lowest in spectrum.lowest.items()}
     forged = dataclasses.replace(spectrum, lowest=lower)
     assert not confirm_lowest(forged)["confirmed"].to_numpy().reshape(3, -1)[0, 2:].any()
 
@@ -223,9 +187,9 @@ def test_a_fall_after_the_record_counts_as_overturned_in_cells():
 
 
 @pytest.mark.slow
-def test_a_spectrum_resumes_with_the_same_bits_after_whatever_ended_it(tmp_path, monkeypatch):
+def test_a_resumed_spectrum_has_the_same_bits_with_any_number_of_threads(tmp_path, monkeypatch):
     options = {"semidiagonals": np.linspace(1.0, 20.0, 9), "intensities": [1.0, 4.0, 8.0], "probes": 9}
-    whole = tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options))
+    whole = tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options), workers=1)
     told = []
 
     def interrupt(event):
@@ -241,8 +205,7 @@ def test_a_spectrum_resumes_with_the_same_bits_after_whatever_ended_it(tmp_path,
     assert len(ran) == told[-1].total - 2
     assert 0.0 < told[-3].left < math.inf
     for name in SERIES:
-        np.testing.assert_array_equal(found.peak_tilt[name], whole.peak_tilt[name])
-        np.testing.assert_array_equal(found.lowest[name], whole.lowest[name])
-        np.testing.assert_array_equal(found.below[name], whole.below[name])
+        for part in ("peak_tilt", "lowest", "below"):
+            np.testing.assert_array_equal(getattr(found, part)[name], getattr(whole, part)[name])
     tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options), resume=tmp_path)
     assert len(ran) == told[-1].total - 2

@@ -278,7 +278,7 @@ def _signed_log(values: Array) -> Array:
 def overturning_picture(spectrum: OverturningSpectrum) -> Picture:
     """Return figure 6: the maps, and the overturning boundaries on two axes."""
     (whole,) = pictures(spectrum)
-    styles = series_styles(str(Run(None, spectrum.maps.support)))
+    styles = series_styles(str(Run(None, spectrum.maps.plan.support)))
     curves = []
     for own, label in ((True, "own peak / (g tan α)"), (False, "peak resultant / (g tan α)")):
         lowest = lowest_on_axes(spectrum, own=own)

@@ -72,7 +72,7 @@ def unconservative_from(spectrum: OverturningSpectrum) -> float:
     """Return the size [m] from which on 3D has the lower overturning intensity at every size; NaN if none."""
     maps = spectrum.maps
     space, x, y = (np.nan_to_num(each, nan=math.inf) for each in maps.lowest.values())
-    higher = ~(space < np.minimum(x, y) - maps.search_step)
+    higher = ~(space < np.minimum(x, y) - maps.plan.search_step)
     if higher[-1]:
         return math.nan
     return float(maps.semidiagonals[np.flatnonzero(higher)[-1] + 1 if higher.any() else 0])
