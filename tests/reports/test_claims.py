@@ -280,7 +280,7 @@ def test_the_limits_on_one_screen_are_the_published_ones() -> None:
     said = [
         f"is {low:.2g} to {high:.2g}, by case",
         f"{ends('recess_recess', '.0f')} s in a recess",
-        f"on flat ground {flat} the flat-ground",
+        f"on flat ground {flat}",
         f"interval of the median ratio of the peaks extends from {least:.1f} to {largest:.1f} by the engine",
         f"from {min(map(float, model)):.1f} by the flat-ground model",
         f"changes {other} of {all_of} verdicts, as many as chance (a record 1 % stronger changes {chance})",
