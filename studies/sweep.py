@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Integral
 from pathlib import Path
@@ -225,7 +225,6 @@ def sweep(
     workers: int | None = None,
     chunk_size: int | None = None,
     progress: ProgressCallback | None = None,
-    save: Callable[[Sweep], object] | None = None,
 ) -> Sweep:
     """Run every combination, and return the tidy table of what became of each.
 
@@ -251,9 +250,6 @@ def sweep(
         Runs in a chunk. Default: about a second of computing. The hash of a chunk depends on it.
     progress : callable, optional
         Called with a `Progress` at the start and the end of each chunk.
-    save : callable, optional
-        Writes the sweep into `out`, perhaps with pages; the chunks there are kept until it has. Default:
-        `Sweep.save`.
 
     Returns
     -------
@@ -295,7 +291,7 @@ def sweep(
         workers=workers,
         scheduler=scheduler,
         progress=progress,
-        save=save if out is None or save is not None else lambda found: found.save(out),
+        save=None if out is None else lambda found: found.save(out),
     )
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
 from dataclasses import fields
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -15,13 +15,11 @@ import rockwobble as rw
 import rockwobble.compare as rc
 from rockwobble.studies.plans import Copies, FragilityPlan, SpectrumPlan
 
-from ..console import echo, interruptible, save_with_page, show_and_save, shown_progress, user_input
 from ..pages.cases import case_lines, case_warnings, record_lines, warnings_about
 from ..pages.table import span
 from ..pages.wording import written
 from . import options
-from .command import takes_options
-from .outputs import claim_folder
+from .command import Work, saves_results
 from .problem import (
     BODY,
     Body,
@@ -38,9 +36,11 @@ from .shared_options import GridOptions, Hazard, ManyMethods, ManyMotions, cylin
 from .suite_choice import chosen_runs, refuse_problem_options, report_skipped_engines, without_missing
 
 if TYPE_CHECKING:
+    from rockwobble.compare.runs.progress import ProgressCallback
     from rockwobble.models import RockingBody
     from rockwobble.models.case import TimeStep
     from rockwobble.models.finding import Value
+    from rockwobble.studies import Fragility, Sweep
 
 Cylinders = Annotated[
     list[str] | None,
@@ -51,7 +51,7 @@ Cylinders = Annotated[
 ]
 
 
-@takes_options
+@saves_results
 def fragility(
     context: typer.Context,
     many: ManyMotions,
@@ -63,9 +63,7 @@ def fragility(
     cylinder: Cylinders = None,
     workers: options.Workers = None,
     scheduler: options.Scheduler = None,
-    out: options.Out = Path("rockwobble-fragility"),
-    overwrite: options.Overwrite = False,
-) -> None:
+) -> Work:
     """Fragility curves: probability of overturning against intensity, by several methods.
 
     Every motion is scaled to the same intensities and run on every cylinder by every method: methods are
@@ -82,53 +80,34 @@ def fragility(
 
     Example: rockwobble fragility --p695 --cylinder pier=6,0.2 --engine mujoco
     """
-    with interruptible(out):
-        with user_input():
-            from rockwobble.studies.fragility.runs import default_models, methods_of
-            from rockwobble.studies.fragility.study import limits_of
+    from rockwobble.studies.fragility.runs import default_models, methods_of
+    from rockwobble.studies.fragility.study import limits_of
 
-            claim_folder(context)
-            if cylinder:
-                of_body = BODY - {"slab_mass_ratio", "columns"}
-                refuse(context, of_body, "does not go with --cylinder, which states the cylinder")
-            bodies = cylinders_of(cylinder, body)
-            plan = with_steel(context, plan, steel, list(bodies.values()), plan.gravity)
-            chosen = methods.methods(next(iter(bodies.values())), default_models(plan))
-            methods_of(chosen, restitution=plan.restitution)  # before motions are read
-            site = hazard.curve(plan.period, limits_of(plan))
-            stripes = many.by_level()
-            if stripes:
-                lone = {"levels", "scales"}
-                refuse(context, lone, "does not go with the column level of records.csv")
-                motions = list({each.name: each for own in stripes.values() for each in own}.values())
-                source = many.source
-            else:
-                motions, source = many.read(plan.seed)
-            echo([*record_lines(motions), *warnings_about(motions, bodies.values(), plan.gravity)])
-        with user_input(), shown_progress() as progress:
-            results = rw.fragility(
-                bodies,
-                stripes or motions,
-                methods=chosen,
-                workers=workers,
-                scheduler=scheduler,
-                progress=progress,
-                resume=out,
-                source=source,
-                **dataclasses.asdict(plan),
-            )
-            if site is not None:
-                results = results.with_risk(
-                    site,
-                    hazard.risk_years,
-                    total_dispersion=hazard.total_dispersion,
-                    limit=hazard.risk_limit,
-                    target=hazard.target,
-                )
-        show_and_save(results, out)
+    if cylinder:
+        of_body = BODY - {"slab_mass_ratio", "columns"}
+        refuse(context, of_body, "does not go with --cylinder, which states the cylinder")
+    bodies = cylinders_of(cylinder, body)
+    plan = with_steel(context, plan, steel, list(bodies.values()), plan.gravity)
+    chosen = methods.methods(next(iter(bodies.values())), default_models(plan))
+    methods_of(chosen, restitution=plan.restitution)  # before motions are read
+    site = hazard.curve(plan.period, limits_of(plan))
+    if stripes := many.by_level():
+        refuse(context, {"levels", "scales"}, "does not go with the column level of records.csv")
+        motions = list({each.name: each for own in stripes.values() for each in own}.values())
+        source = many.source
+    else:
+        motions, source = many.read(plan.seed)
+
+    def run(**work: Any) -> Fragility:
+        stated = {"workers": workers, "scheduler": scheduler, "source": source, **dataclasses.asdict(plan)}
+        results = rw.fragility(bodies, stripes or motions, methods=chosen, **stated, **work)
+        return results if site is None else hazard.with_risk(results, site)
+
+    lines = [*record_lines(motions), *warnings_about(motions, bodies.values(), plan.gravity)]
+    return Work(run, lines, resumes=True)
 
 
-@takes_options
+@saves_results
 def spectrum(
     context: typer.Context,
     record: Record,
@@ -142,9 +121,7 @@ def spectrum(
         float | None, options.body("Height 2h, in m; with --diameter, only their ratio counts.")
     ] = None,
     workers: options.Workers = None,
-    out: options.Out = Path("rockwobble-spectrum"),
-    overwrite: options.Overwrite = False,
-) -> None:
+) -> Work:
     """Overturning spectrum: peak tilt over size and intensity, in 3D and by planar analysis.
 
     The record is scaled to each intensity by its peak horizontal resultant. A planar run takes one
@@ -163,45 +140,24 @@ def spectrum(
 
     Example: rockwobble spectrum --tan-alpha 0.2 --semidiagonal 1:20:50 --intensity 1:9:50
     """
-    with interruptible(out):
-        with user_input():
-            from rockwobble.studies.spectrum.parts import runs_of
+    from rockwobble.studies.spectrum.parts import runs_of
 
-            tan_alpha = _slenderness(tan_alpha, diameter, height)
-            motion = record.motion()
-            assert motion is not None  # a case without a release has a motion
-            sizes = runs_of(tan_alpha, motion, plan).semidiagonals
-            bodies = [rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha) for size in sizes]
-            plan = with_steel(context, plan, steel, bodies, plan.gravity)
-            body = under_slab(bodies[0], plan.slab_mass_ratio or None, None)
-            slender = rw.Case(body, motion, gravity=plan.gravity, tendon=plan.tendon)
-            claim_folder(context)
-        print(
-            f"Cylinders: tan alpha = {tan_alpha:g} (alpha = {math.degrees(slender.cylinder.alpha):.4g} deg)"
-        )
-        # the ground: the threshold of uplift is that of all sizes
-        echo(case_lines(slender)[1:])
-        with user_input(), shown_progress("parts") as progress:
-            results = rw.spectrum(
-                tan_alpha,
-                motion,
-                workers=workers,
-                progress=progress,
-                resume=out,
-                **dataclasses.asdict(plan),
-            )
-        show_and_save(results, out)
-
-
-def _slenderness(tan_alpha: float | None, diameter: float | None, height: float | None) -> float:
-    """Return the slenderness that options state, or that of figure 6 of the paper."""
-    if diameter is None and height is None:
-        return 0.1 if tan_alpha is None else tan_alpha
-    if diameter is None or height is None:
-        raise ValueError("--diameter and --height go together, got one without the other")
-    if tan_alpha is not None:
-        raise ValueError("--diameter and --height stand in place of --tan-alpha")
-    return rw.Cylinder.from_dimensions(base_radius=0.5 * diameter, height=height).tan_alpha
+    sized = diameter is not None or height is not None
+    slenderness = 0.1 if tan_alpha is None and not sized else tan_alpha  # that of figure 6 of the paper
+    shape = Body(tan_alpha=slenderness, diameter=diameter, height=height)
+    tan_alpha = shape.cylinder().tan_alpha
+    motion = record.motion()
+    assert motion is not None  # a case without a release has a motion
+    sizes = runs_of(tan_alpha, motion, plan).semidiagonals
+    bodies = [rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha) for size in sizes]
+    plan = with_steel(context, plan, steel, bodies, plan.gravity)
+    body = under_slab(bodies[0], plan.slab_mass_ratio or None, None)
+    slender = rw.Case(body, motion, gravity=plan.gravity, tendon=plan.tendon)
+    alpha = math.degrees(slender.cylinder.alpha)
+    # the ground: the threshold of uplift is that of all sizes
+    lines = [f"Cylinders: tan alpha = {tan_alpha:g} (alpha = {alpha:.4g} deg)", *case_lines(slender)[1:]]
+    run = partial(rw.spectrum, tan_alpha, motion, workers=workers, **dataclasses.asdict(plan))
+    return Work(run, lines, what="parts", resumes=True)
 
 
 _COPIES = {"copies", "perturbation"}
@@ -216,7 +172,7 @@ Peak = Annotated[
 ]
 
 
-@takes_options
+@saves_results
 def ensemble(
     context: typer.Context,
     problem: Problem,
@@ -227,9 +183,7 @@ def ensemble(
     engine: options.Engines = None,
     support: options.Supports = None,
     time_step: options.TimeStep = None,
-    out: options.Out = Path("rockwobble-ensemble"),
-    overwrite: options.Overwrite = False,
-) -> None:
+) -> Work:
     """Distributions of peak tilt by several methods, and their contrasts.
 
     Without options: 20 perturbed copies of El Centro 1940 on R = 6 m, tan alpha = 0.2. With --synthetic,
@@ -242,34 +196,26 @@ def ensemble(
 
     Example: rockwobble ensemble --synthetic 40 --peak 3 --engine mujoco
     """
-    with interruptible(out):
-        with user_input():
-            claim_folder(context)
-            refuse_options_of_engines(context, engine)
-            stated: rw.Case | rw.Suite | list[rw.Case]
-            given: rw.Suite | None = None
-            if suite is not None:
-                ignored = _COPIES | _MOTIONS
-                refuse(context, ignored, f"does not go with a suite, got {suite}: its cases are the members")
-                refuse_problem_options(context, suite)
-                stated = given = rw.read_suite(suite)
-                source, members = written("motions.suite", {"name": str(suite)}, {}), list(given.cases)
-                lines = [f"Suite {suite}: {len(members)} members"]
-            else:
-                stated, source = _members(context, problem, copies, motions, peak)
-                # the words on one case apply to its copies; of different motions only the first line does
-                members = [] if isinstance(stated, rw.Case) else stated
-                lines = case_lines(stated) if isinstance(stated, rw.Case) else case_lines(members[0])[:1]
-                lines += [f"Members: {len(members) or copies.copies}, {source}"]
-            runs = _runs(
-                engine, support, time_step, given, [stated] if isinstance(stated, rw.Case) else members
-            )
-            echo([*lines, *record_lines(each.motion for each in members), *case_warnings(members)])
-        with user_input(), shown_progress() as progress:
-            results = rw.ensemble(
-                stated, runs=runs, progress=progress, resume=out, source=source, **dataclasses.asdict(copies)
-            )
-        show_and_save(results, out)
+    refuse_options_of_engines(context, engine)
+    stated: rw.Case | rw.Suite | list[rw.Case]
+    given: rw.Suite | None = None
+    if suite is not None:
+        ignored = _COPIES | _MOTIONS
+        refuse(context, ignored, f"does not go with a suite, got {suite}: its cases are the members")
+        refuse_problem_options(context, suite)
+        stated = given = rw.read_suite(suite)
+        source, members = written("motions.suite", {"name": str(suite)}, {}), list(given.cases)
+        lines = [f"Suite {suite}: {len(members)} members"]
+    else:
+        stated, source = _members(context, problem, copies, motions, peak)
+        # the words on one case apply to its copies; of different motions only the first line does
+        members = [] if isinstance(stated, rw.Case) else stated
+        lines = case_lines(stated) if isinstance(stated, rw.Case) else case_lines(members[0])[:1]
+        lines += [f"Members: {len(members) or copies.copies}, {source}"]
+    runs = _runs(engine, support, time_step, given, [stated] if isinstance(stated, rw.Case) else members)
+    lines += [*record_lines(each.motion for each in members), *case_warnings(members)]
+    run = partial(rw.ensemble, stated, runs=runs, source=source, **dataclasses.asdict(copies))
+    return Work(run, lines, resumes=True)
 
 
 def _members(
@@ -328,11 +274,11 @@ Models = Annotated[
 ]
 ChunkSize = Annotated[
     int | None,
-    options.work("Number of runs in a chunk. Default: about one second of work.", callback=options.whole(1)),
+    options.work("Number of runs in a chunk. Default: about one second of work.", min=1),
 ]
 
 
-@takes_options
+@saves_results
 def sweep(
     context: typer.Context,
     grid: GridOptions,
@@ -342,9 +288,7 @@ def sweep(
     workers: options.Workers = None,
     scheduler: options.Scheduler = None,
     chunk: ChunkSize = None,
-    out: options.Out = Path("rockwobble-sweep"),
-    overwrite: options.Overwrite = False,
-) -> None:
+) -> Work:
     """Peak tilt over a grid of sizes, slendernesses and scales.
 
     A grid combines every size, slenderness, scale, record and model, from rest, without sliding. A suite
@@ -356,35 +300,26 @@ def sweep(
 
     Example: rockwobble sweep --semidiagonal 0.5:30:100 --scale 1,2,4 --out grid
     """
-    with user_input():
-        plan: rw.Grid | rw.Suite
-        if suite is None:
-            made = grid.grid(model)
-            bodies = [
-                rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
-                for size in made.semidiagonals
-                for tan_alpha in made.tan_alphas
-            ]
-            plan = with_steel(context, made, steel, bodies, made.gravity)
-        else:
-            stated = {each.name for each in (*fields(GridOptions), *fields(Steel))}
-            refuse(context, stated, f"does not go with a suite, got {suite}: the file states the problems")
-            plan = _suite(suite, model)
-        claim_folder(context)
-    echo(_echo(plan))
-    shows: list[Callable[[], None]] = []
-    with interruptible(out), user_input(), shown_progress("chunks") as progress:
-        rw.sweep(
-            plan,
-            out=out,
-            scheduler=scheduler,
-            workers=workers,
-            chunk_size=chunk,
-            progress=progress,
-            save=lambda found: shows.append(save_with_page(found, out)),
+    plan: rw.Grid | rw.Suite
+    if suite is None:
+        made = grid.grid(model)
+        bodies = [
+            rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
+            for size in made.semidiagonals
+            for tan_alpha in made.tan_alphas
+        ]
+        plan = with_steel(context, made, steel, bodies, made.gravity)
+    else:
+        stated = {each.name for each in (*fields(GridOptions), *fields(Steel))}
+        refuse(context, stated, f"does not go with a suite, got {suite}: the file states the problems")
+        plan = _suite(suite, model)
+
+    def run(resume: Path, progress: ProgressCallback) -> Sweep:
+        return rw.sweep(
+            plan, out=resume, scheduler=scheduler, workers=workers, chunk_size=chunk, progress=progress
         )
-    for show in shows:
-        show()
+
+    return Work(run, _echo(plan), what="chunks", resumes=True)
 
 
 def _suite(name: str, models: list[str] | None) -> rw.Suite:

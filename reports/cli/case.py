@@ -6,6 +6,7 @@ import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,13 +17,12 @@ import rockwobble.compare as rc
 from rockwobble.compare.runs.plan import OptionsIn, Plan
 from rockwobble.studies.plans import AdvicePlan, ModelPlan
 
-from ..console import FAILED, complain, echo, interruptible, show_and_save, shown_progress, user_input
+from ..console import FAILED, complain
 from ..pages.cases import case_lines, case_warnings, record_lines
 from . import options
-from .command import takes_options
+from .command import Work, saves_results
 from .options import settings
-from .outputs import claim_folder
-from .problem import Problem, given_options, next_command, refuse_options_of_engines, stated_options
+from .problem import Problem, given_options, needs, next_command, refuse_options_of_engines, stated_options
 from .suite_choice import (
     chosen_runs,
     refuse_problem_options,
@@ -32,7 +32,10 @@ from .suite_choice import (
 )
 
 if TYPE_CHECKING:
+    from rockwobble.compare.runs.progress import ProgressCallback
     from rockwobble.models.case import TimeStep
+    from rockwobble.studies import Advice
+    from rockwobble.studies.single_run import SingleRun
 
 _external = OptionsIn("Trajectory of a shake table or another code")
 
@@ -73,26 +76,23 @@ class Trajectories(Plan):
         ValueError
             If an option is out of range or alone, there are more cases, or a file cannot be read.
         """
-        angles, offset = self.trajectory_angles, self.trajectory_offset
-        noise_deg = self.trajectory_noise_deg
-        if not self.trajectory:
-            if angles is not None or offset or noise_deg is not None or self.trajectory_columns:
-                raise ValueError("--trajectory-angles, -columns, -offset, -noise-deg need a --trajectory")
-            return []
-        if len(cases) > 1:
+        needs(self, [each.name for each in dataclasses.fields(self)], "trajectory")
+        if self.trajectory and len(cases) > 1:
             raise ValueError(f"--trajectory belongs to one case, got a suite of {len(cases)}")
-        columns = self.trajectory_columns.split(",") if self.trajectory_columns else ()
-        noise = None if noise_deg is None else math.radians(noise_deg)
-        found = [
-            rw.External(path=path, angle_unit=angles, columns=columns, time_offset=offset, noise=noise)
-            for path in self.trajectory
-        ]
-        for each in found:  # whatever is wrong with a file is said before anything runs
+        noise = self.trajectory_noise_deg
+        stated: dict[str, Any] = {
+            "angle_unit": self.trajectory_angles,
+            "columns": self.trajectory_columns.split(",") if self.trajectory_columns else (),
+            "time_offset": self.trajectory_offset,
+            "noise": None if noise is None else math.radians(noise),
+        }
+        trajectories = [rw.External(path=path, **stated) for path in self.trajectory or ()]
+        for each in trajectories:  # whatever is wrong with a file is said before anything runs
             rc.read_trajectory(each, cases[0])
-        return found
+        return trajectories
 
 
-@takes_options
+@saves_results
 def compare(
     context: typer.Context,
     problem: Problem,
@@ -109,9 +109,7 @@ def compare(
             "--budget",
         ),
     ] = False,
-    out: options.Out = Path("rockwobble-compare"),
-    overwrite: options.Overwrite = False,
-) -> None:
+) -> Work:
     """Agreement of the reduced model with multibody engines on one problem, and why they diverge.
 
     Without options: the 1940 El Centro record on R = 6 m, tan alpha = 0.2, the default engines, in an ideal
@@ -129,47 +127,34 @@ def compare(
 
     Example: rockwobble compare --semidiagonal 10 --tan-alpha 0.1 --engine mujoco
     """
-    from rockwobble.compare.runs.choice import require_runnable, with_settings
+    from rockwobble.compare.runs.choice import require_runnable, unable_engines, with_settings
 
-    with interruptible(out if suite else None):
-        with user_input():
-            from rockwobble.compare.runs.choice import unable_engines
-
-            refuse_options_of_engines(context, engine)
-            if suite is not None:
-                refuse_problem_options(context, suite)
-                cases, runs = _suite(suite, engine, support, time_step)
-            else:
-                cases = [problem.case()]
-                runs = _runs(cases[0], engine, support, time_step, alone=bool(external.trajectory))
-            if setting:
-                runs = list(with_settings(cases[0], runs, settings(setting)))
-            claim_folder(context)
-            for each in cases:
-                for run in runs:
-                    require_runnable(each, run)
-            trajectories = external.read(cases)
-        if suite is None:
-            echo(case_lines(cases[0], problem.mass, record=problem.names_record))
-        else:
-            echo(suite_lines(suite, cases, runs))
-        if engine == [options.ALL]:
-            for reason in unable_engines(cases):
-                complain(reason)
-        elif not engine and suite is None:
-            report_skipped_engines(support or [])
-        with user_input(), shown_progress() as progress:
-            results = rw.comparison(
-                rw.Suite(cases, runs),
-                runs=runs,
-                progress=progress,
-                external=trajectories,
-                resume=None if suite is None else out,
-                budget=budget,
-            )
-        show_and_save(results, out)
-    if (results.summary["outcome"] == "failed").any():
-        raise typer.Exit(FAILED)
+    refuse_options_of_engines(context, engine)
+    if suite is not None:
+        refuse_problem_options(context, suite)
+        cases, runs = _suite(suite, engine, support, time_step)
+    else:
+        cases = [problem.case()]
+        runs = _runs(cases[0], engine, support, time_step, alone=bool(external.trajectory))
+    if setting:
+        runs = list(with_settings(cases[0], runs, settings(setting)))
+    for each in cases:
+        for run in runs:
+            require_runnable(each, run)
+    trajectories = external.read(cases)
+    if engine == [options.ALL]:
+        for reason in unable_engines(cases):
+            complain(reason)
+    elif not engine and suite is None:
+        report_skipped_engines(support or [])
+    return Work(
+        partial(rw.comparison, rw.Suite(cases, runs), runs=runs, external=trajectories, budget=budget),
+        case_lines(cases[0], problem.mass, record=problem.names_record)
+        if suite is None
+        else suite_lines(suite, cases, runs),
+        resumes=suite is not None,
+        failed=lambda results: (results.summary["outcome"] == "failed").any(),
+    )
 
 
 def _suite(
@@ -197,15 +182,14 @@ def _runs(
         if not alone:
             raise ValueError("--engine none leaves nothing to compare, give a --trajectory as well")
         return []
-    every = engines == [options.ALL]
-    if every:
+    if engines == [options.ALL]:
         runs = all_runs([case], supports or None)
     else:
         runs = rc.default_runs(engines or None, supports or None, cases=[case])
     return [rw.Run(run.engine, run.support, time_step) for run in runs]
 
 
-@takes_options
+@saves_results
 def simulate(
     context: typer.Context,
     problem: Problem,
@@ -216,9 +200,7 @@ def simulate(
     support: options.Support = "recess",
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
-    out: options.Out = Path("rockwobble-simulate"),
-    overwrite: options.Overwrite = False,
-) -> None:
+) -> Work:
     """Motion of one case by the reduced model or one engine: traces, forces and diagnostics.
 
     Without options: the recess model under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
@@ -230,36 +212,29 @@ def simulate(
     Example: rockwobble simulate --release-tilt-deg 5 --rolling-rate 0.5 --duration 8
     """
     from rockwobble.compare.runs.choice import require_runnable
+    from rockwobble.studies.single_run import single_run
 
-    with interruptible():
-        from rockwobble.studies.single_run import single_run
+    from ..pages.diagnostics import remarks
 
-        from ..pages.diagnostics import remarks
+    case = problem.case()
+    if model.plane is not None and problem.release_azimuth_deg:
+        raise ValueError("--plane is the azimuth of the lean, got --release-azimuth-deg beside it")
+    if model.plane is not None and case.initial is not None:  # it leans in the plane that holds it
+        case = replace(case, initial=replace(case.initial, rolling_angle=model.plane))
+    named = None if engine == options.NO_ENGINE else engine
+    chosen = _with_settings(case, rw.Run(named, support, time_step), setting, dataclasses.asdict(model))
+    require_runnable(case, chosen)
+    answer = next_command(context, "advise", also=("support",))
 
-        with user_input():
-            case = problem.case()
-            if model.plane is not None and problem.release_azimuth_deg:
-                raise ValueError("--plane is the azimuth of the lean, got --release-azimuth-deg beside it")
-            if model.plane is not None and case.initial is not None:  # it leans in the plane that holds it
-                case = replace(case, initial=replace(case.initial, rolling_angle=model.plane))
-            claim_folder(context)
-            named = None if engine == options.NO_ENGINE else engine
-            run = _with_settings(case, rw.Run(named, support, time_step), setting, dataclasses.asdict(model))
-            require_runnable(case, run)
-        echo(case_lines(case, problem.mass, record=problem.names_record))
-        with user_input(), shown_progress() as progress:
-            found = single_run(
-                case,
-                run,
-                answer=next_command(context, "advise", also=("support",)),
-                progress=progress,
-            )
-        if not len(found.trace.time):
-            complain(f"{run} left no result: {remarks(found.trace.facts)}")
+    def run(progress: ProgressCallback) -> SingleRun:
+        results = single_run(case, chosen, answer=answer, progress=progress)
+        if not len(results.trace.time):
+            complain(f"{chosen} left no result: {remarks(results.trace.facts)}")
             raise typer.Exit(FAILED)
-        show_and_save(found, out)
-    if found.trace.outcome == "failed":
-        raise typer.Exit(FAILED)
+        return results
+
+    lines = case_lines(case, problem.mass, record=problem.names_record)
+    return Work(run, lines, failed=lambda results: results.trace.outcome == "failed")
 
 
 def _with_settings(case: rw.Case, run: rw.Run, setting: list[str] | None, model: dict[str, Any]) -> rw.Run:
@@ -285,7 +260,7 @@ Engine = Annotated[
 Details = Annotated[bool, options.output("Also print the details of the page.", "--details")]
 
 
-@takes_options
+@saves_results
 def advise(
     context: typer.Context,
     problem: Problem,
@@ -293,9 +268,7 @@ def advise(
     engine: Engine = None,
     time_step: options.TimeStep = None,
     details: Details = False,
-    out: options.Out = Path("rockwobble-advise"),
-    overwrite: options.Overwrite = False,
-) -> None:
+) -> Work:
     """Verdict on one case: does it overturn, how reliable is the answer, what must the support carry.
 
     Gives a verdict; a grade with its reason for each check; peak tilt, top displacement and overturning
@@ -309,33 +282,30 @@ def advise(
 
     Example: rockwobble advise --record-x EW.AT2 --record-y NS.AT2 --friction 0.5
     """
-    with interruptible():
-        with user_input():
-            from rockwobble.studies.advice.advice import require_judged
-            from rockwobble.studies.advice.slides import usual_support
+    from rockwobble.studies.advice.advice import require_judged
+    from rockwobble.studies.advice.slides import usual_support
 
-            case, given = problem.case(), given_options(context)
-            if "support" not in given:
-                plan = replace(plan, support=usual_support(case, friction_given="friction" in given))
-            require_judged(case, plan.support, plan.gap)
-            run = _run(case, engine, plan.support, time_step)
-            claim_folder(context)
-        # the advice lists the rest of the input
-        records = record_lines([case.motion]) if problem.names_record else []
-        echo([*records, *case_warnings([case], plan.mass)])
-        with shown_progress("stages") as progress:
-            results = rw.advise(
-                case,
-                run,
-                friction_given="friction" in given,
-                progress=progress,
-                **dataclasses.asdict(plan),
-            )
-        options_given = stated_options(context, also=[field.name for field in dataclasses.fields(plan)])
-        results = replace(results, facts={**results.facts, "options": options_given})
-        show_and_save(results, out, details=details)
-    if results.response["outcome"] == "failed":
-        raise typer.Exit(FAILED)
+    case, given = problem.case(), given_options(context)
+    if "support" not in given:
+        plan = replace(plan, support=usual_support(case, friction_given="friction" in given))
+    require_judged(case, plan.support, plan.gap)
+    checked = _run(case, engine, plan.support, time_step)
+    options_given = stated_options(context, also=[field.name for field in dataclasses.fields(plan)])
+
+    def run(progress: ProgressCallback) -> Advice:
+        stated = {"friction_given": "friction" in given, **dataclasses.asdict(plan)}
+        results = rw.advise(case, checked, progress=progress, **stated)
+        return replace(results, facts={**results.facts, "options": options_given})
+
+    # the advice lists the rest of the input
+    records = record_lines([case.motion]) if problem.names_record else []
+    return Work(
+        run,
+        [*records, *case_warnings([case], plan.mass)],
+        what="stages",
+        details=details,
+        failed=lambda results: results.response["outcome"] == "failed",
+    )
 
 
 def _run(case: rw.Case, engine: str | None, support: str, time_step: float | None) -> rw.Run | None:

@@ -1,20 +1,25 @@
-"""From a function to a command: its dataclasses of options, and the refusal of what was typed wrongly."""
+"""From a function to a command: its options, what refuses a slip of the hand, and what it runs and saves."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import fields, is_dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass
 from functools import wraps
-from typing import Annotated, Any, get_type_hints
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
 from typer.core import TyperCommand
 
 from rockwobble.compare.runs.plan import Option, options_of
 
-from ..console import user_input
-from .options import levels, numbers, restitution
+from ..console import FAILED, echo, interruptible, save_with_page, shown_progress, user_input
+from .options import Out, Overwrite, levels, numbers, restitution
+from .outputs import claim_folder
+
+if TYPE_CHECKING:
+    from rockwobble.compare.storage.results import Results
 
 # form of the text of an option: what reads it, and what help calls it
 _FORMS: Mapping[str, tuple[Callable[[str], object], str]] = {
@@ -49,6 +54,65 @@ def takes_options(command: Callable[..., None]) -> Callable[..., None]:
     with_options.__signature__ = inspect.Signature(list(parameters.values()))  # type: ignore[attr-defined]
     with_options.__annotations__ = {name: each.annotation for name, each in parameters.items()}
     return with_options
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What a command runs once its input is checked.
+
+    Attributes
+    ----------
+    run : callable
+        Takes `progress`, and where it resumes the folder as `resume`; yields the results.
+    lines : iterable of str
+        What was understood of the input.
+    what : str
+        Its tasks in words.
+    resumes : bool
+        Whether finished runs are kept in the folder.
+    details : bool
+        Whether what is folded on the page is printed, too.
+    failed : callable
+        Whether results are none, so that the exit code is 1.
+    """
+
+    run: Callable[..., Results]
+    lines: Iterable[str] = ()
+    what: str = "runs"
+    resumes: bool = False
+    details: bool = False
+    failed: Callable[[Any], object] = lambda results: False
+
+
+def saves_results(command: Callable[..., Work]) -> Callable[..., None]:
+    """Give a command --out and --overwrite, run its work, write the results with their page, and print it."""
+
+    def save(context: typer.Context, **given: Any) -> None:
+        out = context.params["out"]
+        with interruptible(), user_input():
+            work = command(context, **{name: given[name] for name in given if name not in written})
+            claim_folder(context)
+        with interruptible(out if work.resumes else None):
+            echo(work.lines)
+            with user_input(), shown_progress(work.what) as progress:
+                results = work.run(progress=progress, **({"resume": out} if work.resumes else {}))
+            save_with_page(results, out)(details=work.details)
+        if work.failed(results):
+            raise typer.Exit(FAILED)
+
+    stated, keyword = inspect.signature(command), inspect.Parameter.KEYWORD_ONLY
+    written = {"out": (Out, Path(f"rockwobble-{command.__name__}")), "overwrite": (Overwrite, False)}
+    added = [
+        inspect.Parameter(name, keyword, default=default, annotation=kind)
+        for name, (kind, default) in written.items()
+    ]
+    wraps(command)(save)
+    save.__signature__ = stated.replace(  # type: ignore[attr-defined]
+        parameters=[*(each.replace(kind=keyword) for each in stated.parameters.values()), *added]
+    )
+    kinds = {name: kind for name, (kind, _) in written.items()}
+    save.__annotations__ = command.__annotations__ | kinds | {"return": None}
+    return takes_options(save)
 
 
 def _make(kind: Any, given: Mapping[str, object]) -> object:

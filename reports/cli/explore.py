@@ -21,13 +21,14 @@ from .outputs import plan_of, require_own_file
 from .problem import (
     FREE_DURATION,
     PROBLEM,
+    WAYS,
     Problem,
-    ReadingOptions,
     Record,
     Release,
     Steel,
     first_given,
     given_options,
+    needs,
     refuse,
     stated_options,
 )
@@ -85,20 +86,17 @@ def explore(
     Example: rockwobble explore --diameter 0.3 --height 1.2 --record-x EW.AT2 --record-y NS.AT2
     """
     with interruptible(), user_input():
-        from rockwobble.compare.storage.files import replace_files, require_file
+        from rockwobble.compare.storage.files import replace_files
         from rockwobble.models.number_checks import require_one_of
         from rockwobble.models.support import MODELLED
 
-        from ..pages.explore import explore_page, plan_in_page
+        from ..pages.explore import explore_page
 
         refuse(context, PROBLEM - _OF_PAGE, "is not part of the model in the page")
         require_one_of("--support", support, MODELLED)
         if plane is not None and "support" in given_options(context):
             raise ValueError("--plane holds the motion on any support, got --support beside it")
-        require_file("--out", out)
-        plan = plan_of(context)
-        if not overwrite:
-            require_own_file("--out", out, plan, plan_in_page)
+        require_own_file(context, "--out", out)
         shakings = _shakings(context, problem, several.records)
         page = explore_page(
             shakings,
@@ -106,7 +104,7 @@ def explore(
             gravity=problem.gravity,
             duration=problem.duration if problem.release_tilt_deg is None else None,
             free=problem.duration or FREE_DURATION,
-            plan=plan,
+            plan=plan_of(context),
         )
         echo(record_lines([each.motion for each in shakings]))
         content = page.encode()
@@ -135,8 +133,7 @@ def _shakings(context: typer.Context, problem: Problem, records: Path | None) ->
         made = f"rw.read_records({str(records)!r}, {_call('rw.Reading', **ways)})"
         return [Shaking(motion=motion, python=f"{made}[{place}]") for place, motion in enumerate(motions)]
     if not one:
-        if lone := first_given(problem, *(field.name for field in fields(ReadingOptions))):
-            raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
+        needs(problem, WAYS, "record", "record_x", "record_y")
         return standard_shakings()
     motion = replace(problem, scale=1.0).motion()
     assert motion is not None

@@ -125,17 +125,6 @@ def panel(title: str) -> Callable[..., object]:
     return option
 
 
-def whole(least: int) -> Callable[[int | None], int | None]:
-    """Callback of a whole number: one out of range is refused in a line that says both."""
-
-    def checked(value: int | None) -> int | None:
-        if value is None or least <= value:
-            return value
-        raise typer.BadParameter(f"must be at least {least}, got {value}")
-
-    return checked
-
-
 body, method, work, output = map(panel, ("Cylinder", "Method", "Work", "Output"))
 
 SLENDERNESS = "Slenderness b/h: radius / half the height."
@@ -219,7 +208,7 @@ SuiteName = Annotated[
     ),
 ]
 Workers = Annotated[
-    int | None, work("Number of processes on this machine. Default: one per processor.", callback=whole(1))
+    int | None, work("Number of processes on this machine. Default: one per processor.", min=1)
 ]
 Scheduler = Annotated[
     str | None,

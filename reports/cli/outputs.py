@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-import json
-from collections.abc import Callable, Collection, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..console import command_line, interruptible, shown_progress, user_input
+from ..console import command_line
 
 if TYPE_CHECKING:
     import typer
-
-    from rockwobble.compare.runs.progress import ProgressCallback
 
 # options that change no number of the results
 _NOT_OF_PLAN = {"out", "overwrite", "workers", "scheduler", "chunk", "details", "opened"}
@@ -43,21 +38,6 @@ def claim_folder(context: typer.Context) -> None:
     )
 
 
-@contextmanager
-def results_in(
-    context: typer.Context, what: str = "runs", *, resumes: bool = True
-) -> Iterator[ProgressCallback]:
-    """Yield the progress callback of a study that writes to --out; one that `resumes` keeps runs there.
-
-    An interrupt and a folder that cannot be written end the command.
-    """
-    with interruptible(context.params["out"] if resumes else None):
-        with user_input():
-            claim_folder(context)
-        with shown_progress(what) as progress:
-            yield progress
-
-
 def plan_of(context: typer.Context) -> str:
     """Return the hash of a command: its name, its options and the content of the files that they name."""
     from rockwobble.compare.storage.provenance import fingerprint
@@ -68,46 +48,24 @@ def plan_of(context: typer.Context) -> str:
     return fingerprint({"command": context.info_name, "options": stated})
 
 
-def require_own_file(option: str, path: Path, plan: str, plan_in: Callable[[bytes], str | None]) -> None:
-    """Refuse a file that would be replaced and is of another plan.
-
-    Parameters
-    ----------
-    option : str
-        That names the file.
-    path : Path
-    plan : str
-        Hash of the plan.
-    plan_in : callable
-        Returns the hash in such a file, empty where it states none; None or a ValueError for another kind.
+def require_own_file(context: typer.Context, option: str, path: Path) -> None:
+    """Refuse a file that would be replaced and in which the hash of this plan does not stand.
 
     Raises
     ------
     ValueError
-        If it holds something else, or cannot be written.
+        If it cannot be written, or holds something else and --overwrite is not given.
     """
     from rockwobble.compare.storage.files import require_file
 
     require_file(option, path)
-    if not path.is_file() or not (content := path.read_bytes()):
-        return
-    try:
-        there = plan_in(content)
-    except (ValueError, AttributeError):
-        there = None
-    if there not in ("", plan):
-        what = "something else than this command with these options makes"
-        raise ValueError(f"{option} {path} holds {what}: name another file, or replace it by --overwrite")
-
-
-def plan_in_json(keys: Collection[str]) -> Callable[[bytes], str | None]:
-    """Reader of the hash of a plan from JSON that has these keys, see `require_own_file`."""
-
-    def plan_in(content: bytes) -> str | None:
-        found = json.loads(content)
-        return str(found.get("plan", "")) if {*keys} <= {*found} else None
-
-    return plan_in
+    if path.is_file() and not context.params["overwrite"]:
+        content = path.read_bytes()
+        if content and plan_of(context).encode() not in content:
+            raise ValueError(
+                f"{option} {path} holds something else than what this command makes with these options: name "
+                "another file, or replace it by --overwrite"
+            )
 
 
 def _suite(name: str) -> object:

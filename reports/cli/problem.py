@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -74,19 +74,17 @@ class Body(Plan):
             If an option is out of range, or two do not go together.
         """
         inertias = {name: getattr(self, name) for name in ("transverse_inertia", "axial_inertia")}
+        needs(self, ["height", "mass_centre_height"], "diameter")
+        needs(self, ["diameter"], "height")
+        excludes(self, ["diameter"], "semidiagonal", "tan_alpha")
+        needs(self, ["columns"], "slab_mass_ratio")
         if self.diameter is not None and self.height is not None:
-            if self.semidiagonal is not None or self.tan_alpha is not None:
-                raise ValueError("--diameter and --height stand in place of --semidiagonal and --tan-alpha")
             cylinder = rw.Cylinder.from_dimensions(
                 base_radius=0.5 * self.diameter,
                 height=self.height,
                 mass_centre_height=self.mass_centre_height,
                 **inertias,
             )
-        elif self.diameter is not None or self.height is not None:
-            raise ValueError("--diameter and --height go together, got one without the other")
-        elif self.mass_centre_height is not None:
-            raise ValueError("--mass-centre-height goes with --diameter and --height")
         else:
             cylinder = rw.Cylinder(
                 semidiagonal=SEMIDIAGONAL if self.semidiagonal is None else self.semidiagonal,
@@ -97,23 +95,44 @@ class Body(Plan):
 
 
 def under_slab(cylinder: rw.Cylinder, slab_mass_ratio: float | None, columns: int | None) -> RockingBody:
-    """Return a cylinder, or the frame of a slab on such cylinders where a slab is given.
-
-    Raises
-    ------
-    ValueError
-        If there are columns without a slab, or the frame is none.
-    """
+    """Return a cylinder, or the frame of a slab on such cylinders where a slab is given."""
     if slab_mass_ratio is None:
-        if columns is not None:
-            raise ValueError("--columns carry a slab, give --slab-mass-ratio as well")
         return cylinder
     return rw.WobblingFrame(cylinder, slab_mass_ratio, 3 if columns is None else columns)
 
 
 def first_given(stated: Plan, *names: str) -> str:
-    """Return the first option of some that has a value, as it is typed; empty without one."""
-    return next((f"--{name.replace('_', '-')}" for name in names if getattr(stated, name)), "")
+    """Return the first option of some that is not at its default, as it is typed; empty without one."""
+    defaults = {each.name: each.default for each in fields(stated)}  # type: ignore[arg-type]
+    return next((_flag(name) for name in names if getattr(stated, name) != defaults[name]), "")
+
+
+def _flag(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
+
+
+def needs(stated: Plan, names: Iterable[str], *needed: str) -> None:
+    """Refuse options without a meaning of their own.
+
+    Raises
+    ------
+    ValueError
+        If one of them has a value, and none of the needed.
+    """
+    if (lone := first_given(stated, *names)) and not first_given(stated, *needed):
+        raise ValueError(f"{lone} needs {' or '.join(map(_flag, needed))} as well")
+
+
+def excludes(stated: Plan, names: Iterable[str], *others: str) -> None:
+    """Refuse options that stand in place of one another.
+
+    Raises
+    ------
+    ValueError
+        If one of the names and one of the others have a value.
+    """
+    if (given := first_given(stated, *names)) and (other := first_given(stated, *others)):
+        raise ValueError(f"{given} stands in place of {other}, got both")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -171,27 +190,18 @@ class Record(ReadingOptions):
         ValueError
             If an option is out of range, two do not go together, or the record cannot be read.
         """
-        x, y, z, scale = self.record_x, self.record_y, self.record_z, self.scale
-        whole = self.record
-        if whole is not None:
-            if any(path is not None for path in (x, y, z)):
-                raise ValueError("--record holds all components, got --record-x, -y or -z beside it")
-            return rw.read_record(whole, **asdict(self.reading())).scaled(scale)
-        if x is None and y is None:
-            if lone := first_given(self, "record_z", *WAYS):
-                raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
-            if not still:
-                return rw.el_centro_1940().scaled(scale)
-            if scale != 1.0:
-                raise ValueError("--scale belongs to a record, give --record-x and --record-y as well")
-            return None
-        if x is None or y is None:
-            given, missing = ("--record-y", "--record-x") if x is None else ("--record-x", "--record-y")
+        excludes(self, ["record"], "record_x", "record_y", "record_z")
+        needs(self, ["record_z", *WAYS, *(["scale"] if still else [])], "record", "record_x", "record_y")
+        paths = [self.record] if self.record else [self.record_x, self.record_y, self.record_z]
+        if self.record is None and (self.record_x is None) != (self.record_y is None):
+            given, missing = ("--record-x", "--record-y") if self.record_x else ("--record-y", "--record-x")
             raise ValueError(
                 f"both horizontal components are needed, got {given} without {missing}: for planar motion "
                 f"give {missing} zero, one file of all by --record"
             )
-        return rw.read_record(x, y, z, **asdict(self.reading())).scaled(scale)
+        if paths[0] is not None:
+            return rw.read_record(*paths, **asdict(self.reading())).scaled(self.scale)
+        return None if still else rw.el_centro_1940().scaled(self.scale)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -224,9 +234,8 @@ class Release(Plan):
         ValueError
             If an option is out of range, or two do not go together.
         """
+        needs(self, ["rolling_rate", "release_azimuth_deg"], "release_tilt_deg")
         if self.release_tilt_deg is None:
-            if lone := first_given(self, "rolling_rate", "release_azimuth_deg"):
-                raise ValueError(f"{lone} needs a release, give --release-tilt-deg [deg] as well")
             return None
         return rw.InitialState(
             tilt=math.radians(self.release_tilt_deg),
@@ -257,29 +266,34 @@ class Steel(Plan):
     )
     mass: float | None = option(None, MASS, group="Cylinder", above=0.0)
 
-    def of_steel(self, given: str, cylinder: RockingBody, gravity: float) -> rw.Tendon:
-        """Return the tendon of one column; `given`: an option of steel.
+    def of_steel(self, bodies: Sequence[RockingBody], gravity: float) -> rw.Tendon | None:
+        """Return the tendon of one column of the one body; None without an option of steel.
 
         Raises
         ------
         ValueError
-            If an option is out of range, or one is missing.
+            If an option is out of range, one is missing, or there are several bodies, each with a mass.
         """
+        for needed in ("tendon_rigidity", "tendon_length", "mass"):
+            needs(self, _STEEL, needed)
+        needs(self, ["tendon_yield_stress"], "tendon_area")
+        excludes(self, ["tendon_yield_stress"], "tendon_yield_force")
         if self.tendon_rigidity is None or self.tendon_length is None or self.mass is None:
-            needed = ("tendon_rigidity", "tendon_length", "mass")
-            lacks = [f"--{name.replace('_', '-')}" for name in needed if getattr(self, name) is None]
-            raise ValueError(f"{given} needs {' and '.join(lacks)} as well")
-        area, stress, force = self.tendon_area, self.tendon_yield_stress, self.tendon_yield_force
-        if stress is not None:
-            if area is None or force is not None:
-                raise ValueError("--tendon-yield-stress needs --tendon-area, and no --tendon-yield-force")
-            force = stress * area  # MPa mm2
+            return None
+        if len(bodies) != 1:
+            raise ValueError(
+                f"{first_given(self, *_STEEL)} states the tendon of one body, got {len(bodies)}: give "
+                "--tendon-prestress and --tendon-stiffness, multiples of weight and base radius of each"
+            )
+        force, area = self.tendon_yield_force, self.tendon_area
+        if self.tendon_yield_stress is not None and area is not None:
+            force = self.tendon_yield_stress * area  # MPa mm2
         return rw.Tendon.from_steel(
             prestress=self.tendon_force or 0.0,
             axial_rigidity=self.tendon_rigidity,
             length=self.tendon_length,
             column_mass=1e3 * self.mass,
-            base_radius=cylinder.base_radius,
+            base_radius=bodies[0].base_radius,
             yield_force=force,
             area=None if area is None else 1e-6 * area,
             gravity=gravity,
@@ -293,31 +307,24 @@ TiedPlan = TypeVar("TiedPlan", bound=TendonPlan)
 
 
 def with_steel(
-    context: typer.Context, plan: TiedPlan, steel: Steel, cylinders: Sequence[RockingBody], gravity: float
+    context: typer.Context, plan: TiedPlan, steel: Steel, bodies: Sequence[RockingBody], gravity: float
 ) -> TiedPlan:
     """Return the plan of a study with the tendon that steel states, in multiples of the one body.
 
     Raises
     ------
     ValueError
-        If there are several bodies, of which each would need its own mass, or as `Steel.of_steel`.
+        As `Steel.of_steel`, or if the tendon is stated in weights, too.
     """
-    given = _first_stated(steel, *_STEEL)
-    if not given:
+    tendon = steel.of_steel(bodies, gravity)
+    if tendon is None:
         refuse(context, {"mass"}, "belongs to a tendon in N, give --tendon-rigidity and --tendon-length")
         return plan
-    refuse(context, _RATIOS, f"states a tendon in weights, got {given} in N beside it")
-    if len(cylinders) != 1:
-        raise ValueError(
-            f"{given} states the tendon of one body, got {len(cylinders)}: give --tendon-prestress and "
-            "--tendon-stiffness, multiples of weight and base radius of each"
-        )
-    tendon = steel.of_steel(given, cylinders[0], gravity)
+    refuse(context, _RATIOS, f"states a tendon in weights, got {first_given(steel, *_STEEL)} in N beside it")
     values = {"tendon_prestress": tendon.prestress, "tendon_stiffness": tendon.stiffness}
     if isinstance(plan, YieldPlan):
-        values |= {} if tendon.yield_force is None else {"tendon_yield": tendon.yield_force}
-    else:
-        refuse(context, _OF_YIELD, "belongs to fragility, spectrum and runs of one case")
+        return replace(plan, **values, tendon_yield=tendon.yield_force)
+    refuse(context, _OF_YIELD, "belongs to fragility, spectrum and runs of one case")
     return replace(plan, **values)
 
 
@@ -337,24 +344,14 @@ class Restraint(Steel):
         ValueError
             If an option is out of range, one is missing, or two do not go together.
         """
-        ratio = _first_stated(self, *_RATIOS)
-        drawn = _first_stated(self, *_STEEL)
-        if not drawn:
-            if not ratio:
-                return None
-            return rw.Tendon(
-                prestress=self.tendon_prestress or 0.0,
-                stiffness=self.tendon_stiffness or 0.0,
-                yield_force=self.tendon_yield,
-            )
-        if ratio:
-            raise ValueError(f"{drawn} states a tendon in N, got {ratio} in weights beside it")
-        return self.of_steel(drawn, cylinder, gravity)
-
-
-def _first_stated(plan: Plan, *names: str) -> str:
-    """Return the first option of some that the user gave, zero included; empty without one."""
-    return next((f"--{name.replace('_', '-')}" for name in names if getattr(plan, name) is not None), "")
+        excludes(self, _STEEL, *_RATIOS)
+        if not first_given(self, *_RATIOS):
+            return self.of_steel([cylinder], gravity)
+        return rw.Tendon(
+            prestress=self.tendon_prestress or 0.0,
+            stiffness=self.tendon_stiffness or 0.0,
+            yield_force=self.tendon_yield,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 
 from rockwobble.studies.plans import ValidityPlan
 
-from ..console import show_and_save, user_input
 from . import options
-from .command import takes_options
-from .outputs import results_in
+from .command import Work, saves_results
+
+if TYPE_CHECKING:
+    from rockwobble.compare.runs.progress import ProgressCallback
+    from rockwobble.compare.storage.results import Results
 
 
-@takes_options
+@saves_results
 def validity(
     context: typer.Context,
     plan: ValidityPlan,
     workers: options.Workers = None,
-    out: options.Out = Path("rockwobble-validity"),
-    overwrite: options.Overwrite = False,
-) -> None:
+) -> Work:
     """Limits of the reduced model: conditions, expected errors, and where they matter.
 
     Peak tilts of records by the reduced models and by MuJoCo (ideal recess, recess with clearance, flat
@@ -37,8 +38,9 @@ def validity(
 
     Example: rockwobble validity --quick --out validity
     """
-    with user_input(), results_in(context, "tasks") as progress:
-        from rockwobble.studies.validity.study import measure_validity
+    from rockwobble.studies.validity.study import measure_validity
 
-        found = measure_validity(out, plan, workers=workers, progress=progress)
-    show_and_save(found, out)
+    def run(resume: Path, progress: ProgressCallback) -> Results:
+        return measure_validity(resume, plan, workers=workers, progress=progress)
+
+    return Work(run, what="tasks", resumes=True)

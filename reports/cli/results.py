@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import shutil
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -17,13 +18,13 @@ from ..console import (
     echo,
     interruptible,
     open_page,
-    print_facts,
-    show_and_save,
+    save_with_page,
     shown_progress,
     user_input,
 )
 from ..pages import stored_page
 from ..pages.cases import case_lines
+from ..pages.command_line import command_lines
 from ..pages.table import number
 from ..pages.wording import some_of, written
 from ..registry import KINDS
@@ -74,9 +75,6 @@ def show(store: Store, as_json: Json = False) -> None:
         raise typer.Exit(1)
 
 
-_STATES = {"whole": ""}  # what is not said of a file
-
-
 def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
     lines = {name: number(value) for name, value in made.headline.items()}
     lines |= {
@@ -85,21 +83,20 @@ def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
         if not isinstance(value, Mapping) and name not in ("inputs", "seed")  # which follow
     }
     lines |= {
-        "made by": written("progress.made_by", {"detail": made.command}, {}),
         "made on": f"{made.date}, {made.processor}",
         "commit": written("progress.commit", {"detail": made.commit}, {}),
         "hash of the inputs": made.inputs,
         "seeds": ", ".join(f"{name} {seed}" for name, seed in made.seeds.items()),
         "versions": ", ".join(f"{name} {version}" for name, version in made.versions.items()),
-        "files": ", ".join(
-            written("progress.file", {"name": name, "detail": _STATES.get(state, state)}, {})
-            for name, state in files.items()
-        ),
+        "files": ", ".join(f"{name} ({state})".removesuffix(" (whole)") for name, state in files.items()),
         "pages": ", ".join(made.pages),
         "drawn by": "" if made.kind in KINDS else _drawn_by(made),
     }
-    heading = (f"[bold]{store}[/]: {made.kind}",)
-    print_facts(heading, {name: text for name, text in lines.items() if text}, command="made by")
+    print(f"{store}: {made.kind}")
+    echo(f"{name}: {text}" for name, text in lines.items() if text)
+    width = shutil.get_terminal_size().columns
+    command = written("progress.made_by", {"detail": made.command}, {})
+    print("made by:", *command_lines(command, width), "", sep="\n")
 
 
 def _drawn_by(made: Manifest) -> str:
@@ -282,7 +279,7 @@ def view(
         found = View.of(comparison, name)
         with user_input():
             require_motion(name, found.comparison.traces.values())
-        show_and_save(found, out)
+        save_with_page(found, out)()
     open_page(out / "view.html", opened)
 
 

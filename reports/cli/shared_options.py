@@ -15,10 +15,11 @@ from rockwobble.studies.plans import GridPlan
 from ..pages.wording import written
 from . import options
 from .options import settings
+from .problem import WAYS, Body, ReadingOptions, excludes, first_given, needs, under_slab
 
 if TYPE_CHECKING:
     from rockwobble.models import RockingBody
-from .problem import WAYS, Body, ReadingOptions, first_given, under_slab
+    from rockwobble.studies import Fragility
 
 DEFAULT_COUNT = 100  # default number of synthetic motions
 _motions = OptionsIn("Many ground motions")
@@ -62,12 +63,9 @@ class ManyMotions(ReadingOptions):
         """
         from rockwobble.models.records.p695 import recorded_far_field
 
-        if self.p695 + (self.records is not None) + (self.synthetic is not None) > 1:
-            raise ValueError(
-                "the motions are those of --p695, of --records or --synthetic, got more than one"
-            )
-        if self.records is None and (lone := first_given(self, *WAYS)):
-            raise ValueError(f"{lone} belongs to --records")
+        excludes(self, ["p695"], "records", "synthetic")
+        excludes(self, ["records"], "synthetic")
+        needs(self, WAYS, "records")
         if self.p695:
             return recorded_far_field(), _kind("p695")
         if self.records is not None:
@@ -215,10 +213,9 @@ class Hazard(Plan):
         from rockwobble.models.hazard import HAZARD_MEASURES
         from rockwobble.models.number_checks import require_one_of
 
+        alone = ("hazard_measure", "hazard_units", "hazard_years", "hazard_site", "total_dispersion")
+        needs(self, alone, "hazard")
         if self.hazard is None:
-            alone = ("hazard_measure", "hazard_units", "hazard_years", "hazard_site", "total_dispersion")
-            if lone := first_given(self, *alone):
-                raise ValueError(f"{lone} belongs to a hazard curve, give --hazard as well")
             return None
         if self.hazard_measure is None:
             raise ValueError(f"--hazard needs --hazard-measure, one of {', '.join(HAZARD_MEASURES)}")
@@ -230,6 +227,16 @@ class Hazard(Plan):
             units=self.hazard_units,
             years=self.hazard_years,
             site=self.hazard_site,
+        )
+
+    def with_risk(self, results: Fragility, site: rw.HazardCurve) -> Fragility:
+        """Return a fragility with its annual frequencies at the site."""
+        return results.with_risk(
+            site,
+            self.risk_years,
+            total_dispersion=self.total_dispersion,
+            limit=self.risk_limit,
+            target=self.target,
         )
 
 
@@ -266,22 +273,14 @@ class GridOptions(GridPlan, ReadingOptions):
         return rw.Grid(**given, motions=self._motions(), models=models or (RECESS,))
 
     def _motions(self) -> list[rw.GroundMotion]:
+        excludes(self, ["record"], "record_x", "record_y", "record_z")
+        needs(self, ["record_z", *WAYS], "record", "record_x", "record_y")
         x, y, z = self.record_x or [], self.record_y or [], self.record_z or []
-        if self.record:
-            if lone := first_given(self, "record_x", "record_y", "record_z"):
-                raise ValueError(f"--record holds all components, got {lone} beside it")
-            return [rw.read_record(path, **asdict(self.reading())) for path in self.record]
-        if not x and not y:
-            if lone := first_given(self, "record_z", *WAYS):
-                raise ValueError(f"{lone} belongs to a record, give --record, or --record-x and --record-y")
-            return [rw.el_centro_1940()]
         if len(x) != len(y) or len(z) not in (0, len(x)):
             raise ValueError(
                 "each record needs both horizontal components (zero for one: planar motion), and all a "
                 f"vertical one or none: got {len(x)}, {len(y)} and {len(z)} files"
             )
-        ups: list[Path | None] = list(z) if z else [None] * len(x)
-        return [
-            rw.read_record(east, north, up, **asdict(self.reading()))
-            for east, north, up in zip(x, y, ups, strict=True)
-        ]
+        ups: list[Path | None] = [*z] if z else [None] * len(x)
+        files = [(path, None, None) for path in self.record or ()] + [*zip(x, y, ups, strict=True)]
+        return [rw.read_record(*each, **asdict(self.reading())) for each in files] or [rw.el_centro_1940()]

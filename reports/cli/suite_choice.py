@@ -44,16 +44,12 @@ def chosen_runs(
     if not runs:
         runs = list(rc.default_runs(engines or None, supports or None, cases=suite.cases))
     else:
-        if engines:
-            places = list(dict.fromkeys(run.support for run in runs))
-            known = {run.engine for run in runs}
-            runs = [run for run in runs if run.engine in engines]
-            runs += [rw.Run(engine, place) for engine in engines if engine not in known for place in places]
-        if supports:
-            makers = list(dict.fromkeys(run.engine for run in runs))
-            known = {run.support for run in runs}
-            runs = [run for run in runs if run.support in supports]
-            runs += [rw.Run(maker, place) for place in supports if place not in known for maker in makers]
+        for field, other, named in (("engine", "support", engines), ("support", "engine", supports)):
+            if named:
+                known, others = (dict.fromkeys(getattr(run, name) for run in runs) for name in (field, other))
+                added = [name for name in named if name not in known]
+                runs = [run for run in runs if getattr(run, field) in named]
+                runs += [rw.Run(**{field: name, other: each}) for name in added for each in others]
     if time_step is not None:
         from rockwobble.compare.runs.choice import at_step
 

@@ -26,7 +26,8 @@ from ..console import (
 from ..pages.cases import case_warnings, record_lines
 from . import options
 from .command import takes_options
-from .outputs import claim_folder, plan_in_json, plan_of, require_own_file
+from .outputs import claim_folder, plan_of, require_own_file
+from .problem import excludes, needs
 
 if TYPE_CHECKING:
     from rockwobble.compare.check import Checks
@@ -38,12 +39,6 @@ _subject = OptionsIn("Subject (default: the reduced models, and the engines that
 _output = OptionsIn("Output for programs")
 Subject = dict[str, Any]  # arguments of `rockwobble.check`
 _STEP = "Time step of the engine, in s. Default: its default."
-
-
-def _require_engine(engine: str | None, time_step: float | None) -> None:
-    """Refuse a time step without an engine."""
-    if engine is None and time_step is not None:
-        raise ValueError("--time-step belongs to --engine, got it alone")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,33 +77,26 @@ class SubjectOptions(Plan):
         from rockwobble.compare.check.subject import load_model
         from rockwobble.multibody.engines.registry import find_engine
 
-        model, trajectory, suite = self.model, self.trajectory, self.suite
-        named = {"--engine": self.engine, "--model": model, "--trajectory": trajectory}
-        named |= {} if trajectory is not None else {"--suite": suite}
-        given = [name for name, value in named.items() if value is not None]
-        if len(given) > 1:
-            raise ValueError(f"one subject may be given, got {' and '.join(given)}")
-        for name, value in (("--support", self.support), ("--tolerance", self.tolerance)):
-            if value is not None and model is None and trajectory is None:
-                raise ValueError(f"{name} belongs to --model or --trajectory, got it without either")
-        _require_engine(self.engine, self.time_step)
-        if self.workers is not None and (suite is None or trajectory is not None):
-            raise ValueError("--workers belongs to the runs of a --suite, got it without one")
+        excludes(self, ["engine"], "model", "trajectory", "suite")
+        excludes(self, ["model"], "trajectory", "suite")
+        needs(self, ["support", "tolerance"], "model", "trajectory")
+        needs(self, ["time_step"], "engine")
+        needs(self, ["workers"], "suite")
+        excludes(self, ["workers"], "trajectory")
         if self.engine is not None:
             find_engine(self.engine)  # an unknown engine is refused before anything runs
-        found: Subject = {
-            name: getattr(self, name) for name in ("engine", "time_step", "workers", "support", "tolerance")
-        }
-        if model is not None:
-            found["model"] = load_model(model)
-        elif trajectory is not None:
-            cases = rw.read_suite(suite or "quick").cases
+        names = ("engine", "time_step", "workers", "support", "tolerance")
+        subject: Subject = {name: getattr(self, name) for name in names}
+        if self.model is not None:
+            subject["model"] = load_model(self.model)
+        elif self.trajectory is not None:
+            cases = rw.read_suite(self.suite or "quick").cases
             if len(cases) != 1:
                 raise ValueError(f"--trajectory needs a --suite with one case, got {len(cases)}")
-            found["trajectory"] = rc.read_trajectory(trajectory, cases[0])
-        elif suite is not None:
-            found["suite"] = rw.read_suite(suite)
-        return {name: value for name, value in found.items() if value is not None}
+            subject["trajectory"] = rc.read_trajectory(self.trajectory, cases[0])
+        elif self.suite is not None:
+            subject["suite"] = rw.read_suite(self.suite)
+        return {name: value for name, value in subject.items() if value is not None}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,20 +112,13 @@ class OutputOptions(Plan):
     out: Path | None = _output(None, "Folder for the results and their page. Default: none is written.")
     overwrite: options.Overwrite = False
 
-    def require_writable(self, plan: str) -> None:
+    def require_writable(self, context: typer.Context) -> None:
         """Refuse, by a ValueError, a file that cannot be written, or is of another plan."""
         from rockwobble.compare.storage.files import require_file
 
-        from ..pages.check import plan_in_junit
-
-        for option, path, plan_in in (
-            ("--json", self.json, plan_in_json({"passed", "counts", "results"})),
-            ("--junit", self.junit, plan_in_junit),
-        ):
-            if path is not None and self.overwrite:
-                require_file(option, path)
-            elif path is not None:
-                require_own_file(option, path, plan, plan_in)
+        for option, path in (("--json", self.json), ("--junit", self.junit)):
+            if path is not None:
+                require_own_file(context, option, path)
         if self.markdown is not None:  # file to which a page is added
             require_file("--markdown", self.markdown)
 
@@ -212,7 +193,7 @@ def check(
 
         if reason is not None and not update_baseline:
             raise ValueError("--reason belongs to --update-baseline, got it alone")
-        output.require_writable(plan := plan_of(context))
+        output.require_writable(context)
         given = subject.subject()
         if update_baseline:
             if given or only or output.out:
@@ -226,7 +207,7 @@ def check(
             echo([*record_lines(case.motion for case in cases), *case_warnings(cases)])
         found = _run(given, only)
         print(headline(found))
-        output.write(found, plan)
+        output.write(found, plan_of(context))
     if not found.passed:
         raise typer.Exit(FAILED)
 
@@ -242,7 +223,7 @@ def _run(subject: Subject, only: list[str] | None) -> Checks:
 
     for group in only or ():
         require_one_of("--only", group, tuple(GROUPS))
-    with shown_progress("checks", heading="checking", each="suite" in subject) as progress:
+    with shown_progress("checks") as progress:
         found = check(**subject, only=only, progress=progress)
     print_checks(Console(), found)
     return found
@@ -263,7 +244,7 @@ def update(reason: str | None) -> None:
     date = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
     changed: list[tuple[CheckSubject, Baseline, tuple[Entry, ...]]] = []
     for subject in baseline_subjects():
-        with shown_progress(f"cases of {subject.label}", each=False) as progress:
+        with shown_progress(f"cases of {subject.label}") as progress:
             new = baseline.new_fingerprint(subject, progress)
         old = baseline.read_baseline(subject)
         changes = baseline.baseline_changes(old, new, subject)
@@ -314,31 +295,26 @@ def certify(
         from rockwobble.compare.check.baseline import certify as make
         from rockwobble.compare.check.baseline import models, write_certificate
         from rockwobble.compare.check.groups import CLAIMING
-        from rockwobble.compare.storage.files import require_file
         from rockwobble.models.number_checks import require_one_of
         from rockwobble.models.support import SUPPORTS
 
-        _require_engine(engine, time_step)
+        needs(SubjectOptions(engine=engine, time_step=time_step), ["time_step"], "engine")
         for group in only or ():
             require_one_of("--only", group, CLAIMING)
-        require_file("--out", out)
-        plan = plan_of(context)
-        if not overwrite:
-            require_own_file("--out", out, plan, plan_in_json({"kind", "format", "fingerprint"}))
+        require_own_file(context, "--out", out)
         subject = models() if engine is None else engine_subject(engine, time_step)
         if not any(SUPPORTS[name].guided for name in subject.supports):
             given = f"{engine} with {', '.join(subject.supports)}"
             raise ValueError(f"--engine must have a recess, got {given}")
         checked = subject if engine else reduced_model()
-        groups = only or CLAIMING
-        with shown_progress("checks", heading="checking", each=False) as progress:
-            results = list(run_checks(checked, groups, progress=progress))
+        with shown_progress("checks") as progress:
+            results = list(run_checks(checked, only or CLAIMING, progress=progress))
         if failed := [result.name for result in results if result.failed]:
             complain(f"a check failed, and nothing is certified: {failed[0]}")
             raise typer.Exit(FAILED)
-        with shown_progress("cases", each=False) as progress:
+        with shown_progress("cases") as progress:
             found = make(subject, results, progress)
-        write_certificate({**found, "plan": plan}, out)
+        write_certificate({**found, "plan": plan_of(context)}, out)
     print(f"{out}: {len(found['claims'])} claims, {len(found['fingerprint'])} cases")
 
 
@@ -366,7 +342,7 @@ def verify(
         from ..pages.wording import joined
 
         stated = read_certificate(certificate)
-        with shown_progress("cases", each=False) as progress:
+        with shown_progress("cases") as progress:
             verdict = verdict_on(stated, progress=progress)
         findings = certificate_findings(stated, verdict)
     print(findings.to_json("certificate").decode() if as_json else joined(findings))

@@ -72,20 +72,6 @@ def as_json(found: Checks, plan: str = "") -> str:
     return dumps(content, indent=1) + "\n"
 
 
-def plan_in_junit(content: bytes) -> str | None:
-    """Return the hash of the command in a JUnit report of checks: empty without one, None in other files."""
-    from xml.etree import ElementTree
-
-    try:
-        root = ElementTree.fromstring(content)
-    except ElementTree.ParseError:
-        return None
-    if root.get("name") != "rockwobble check":
-        return None
-    found = root.find(".//property[@name='plan']")
-    return "" if found is None else found.get("value")
-
-
 def as_junit(found: Checks, plan: str = "") -> str:
     """Return a JUnit report with one test case for each check, in a suite for each group.
 

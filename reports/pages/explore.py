@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import importlib.metadata
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -155,12 +154,6 @@ def explore_page(
         plan=plan,
         version=importlib.metadata.version("rockwobble"),
     )
-
-
-def plan_in_page(content: bytes) -> str | None:
-    """Return the hash of the command that wrote a page; None for another file."""
-    match = re.search(rb'<meta name="rockwobble-explore" content="(\w*)">', content)
-    return match[1].decode() if match else None
 
 
 def _shaking_values(shaking: Shaking) -> dict[str, object]:

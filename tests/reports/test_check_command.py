@@ -57,11 +57,9 @@ def test_groups_that_hold(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     paths = [tmp_path / name for name in ("check.json", "check.xml", "check.md")]
     options = ["--json", str(paths[0]), "--junit", str(paths[1]), "--markdown", str(paths[2])]
     assert run(*FAST, *options) == 0
-    out, err = capsys.readouterr()
     # one line a group, and the result
-    lines = out.splitlines()
+    lines = capsys.readouterr().out.splitlines()
     assert [line.split(":")[0] for line in lines[:-1]] == ["equations of motion", "rest and uplift"]
-    assert err.splitlines()[0] == "checking ..."
     found = json.loads(paths[0].read_text())
     assert found["passed"] is True
     assert {result["group"] for result in found["results"]} == {"rest", "equations"}
@@ -114,8 +112,7 @@ def test_an_unwritable_report_is_one_line_after_the_result(
     assert run("--only", "exact", option, str(tmp_path / "a")) == 2
     out, err = capsys.readouterr()
     assert out.splitlines()[-1].startswith("1 check passed")
-    # on a slow machine with how far it is
-    assert re.fullmatch(r"checking \.\.\.\n(\d of \d checks\n)*rockwobble: [^\n]*/a\b[^\n]*\n", err)
+    assert re.fullmatch(r"(\d of \d checks[^\n]*\n)*rockwobble: [^\n]*/a\b[^\n]*\n", err)
 
 
 def test_interrupted(

@@ -107,7 +107,7 @@ def test_simulate_a_reduced_model(folder, in_this_process, capsys):
     assert call("simulate", "--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2") == 0
     captured = capsys.readouterr()
     assert "Peak tilt" in captured.out
-    assert "running recess model" in captured.err
+    assert ": recess model" in captured.err
     samples = pd.read_csv("rockwobble-simulate/run.csv")
     assert len(samples) == 201
     kept = pd.read_parquet("rockwobble-simulate/run.parquet").astype(samples.dtypes.to_dict())
@@ -168,17 +168,13 @@ def test_a_cylinder_by_its_dimensions_is_the_same_cylinder(folder, in_this_proce
     assert hollow["inputs"] != by_size["inputs"]
 
 
-@pytest.mark.parametrize("command", ["compare", "simulate", "advise"])
-def test_help_names_every_engine_and_gives_an_example(command, capsys):
-    assert call(command, "-h") == 0
-    said = capsys.readouterr().out
-    assert f" rockwobble {command} --" in said  # an example
-    assert [name for name in engine_packages() if name not in said] == []
-
-
-def test_no_command_prints_the_help(capsys):
+def test_help_lists_commands_engines_and_an_example(capsys):
     assert call() == 0
     assert "compare" in capsys.readouterr().out
+    assert call("advise", "-h") == 0
+    said = capsys.readouterr().out
+    assert " rockwobble advise --" in said
+    assert [name for name in engine_packages() if name not in said] == []
 
 
 def test_help_imports_nothing_heavy():
@@ -211,14 +207,14 @@ def test_ctrl_c_stops_a_real_run_at_once_and_leaves_no_process(tmp_path):
     script = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
     script += "from rockwobble.reports.cli.main import main; main()"
     process = subprocess.Popen(
-        [sys.executable, "-c", script, "compare", *arguments],
+        [sys.executable, "-c", script, "compare", *arguments, "--engine", "mujoco"],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
     )
     assert process.stderr is not None
-    while "running" not in (line := process.stderr.readline()):
+    while "0 of" not in (line := process.stderr.readline()):
         assert line, "it ended before it ran"
     time.sleep(1.0)
     children = _children(process.pid)

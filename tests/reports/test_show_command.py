@@ -69,8 +69,7 @@ def test_eighty_columns_hold_what_show_prints(folder, capsys, monkeypatch):
     made = read_manifests(store)[0]
     _, *lines = printed.splitlines()  # the first names the folder
     assert max(map(len, lines)) <= 80
-    below = printed[printed.index("made by\n") :].removeprefix("made by\n")
-    command = below[: below.index("made on")]
+    command = printed.partition("\nmade by:\n")[2]
     assert shlex.split(command.replace("\\\n", "")) == shlex.split(made.command)
 
 

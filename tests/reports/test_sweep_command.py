@@ -18,7 +18,7 @@ GRID = ["--semidiagonal", "1:20:4", "--tan-alpha", "0.1,0.2", "--scale", "0.3,2"
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("full_at", ["sweep.parquet", "sweep.html", "manifest.json"])
+@pytest.mark.parametrize("full_at", ["sweep.parquet", "manifest.json"])
 def test_a_full_disk_leaves_complete_chunks_only(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, full_at: str
 ) -> None:
