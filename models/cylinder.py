@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from numbers import Real
@@ -24,7 +23,7 @@ _SMALLEST, _LARGEST = 1e-70, 1e70  # [m]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class RockingBody(CompactRepr, ABC):
+class RockingBody(CompactRepr):
     """Interface of a body for models and engines: dimensions of one column, and its load."""
 
     semidiagonal: float
@@ -84,19 +83,19 @@ class RockingBody(CompactRepr, ABC):
         return self.mass_centre_height if self.height is None else 0.5 * self.height
 
     @property
-    @abstractmethod
     def carries_slab(self) -> bool:
-        """Whether a slab lies on it, so that it rocks on both its ends."""
+        """Whether a slab lies on it, be its mass 0, so that it rocks on both its ends."""
+        return isinstance(self, WobblingFrame)
 
     @property
-    @abstractmethod
     def slab_mass_ratio(self) -> float:
-        """Mass of the slab over that of the columns under it [-]."""
+        """Mass of the slab over that of the columns under it [-]: 0 where there is none."""
+        return 0.0
 
     @property
-    @abstractmethod
     def columns(self) -> int:
         """Number of columns that make the one motion."""
+        return 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -183,21 +182,6 @@ class Cylinder(RockingBody):
             axial_inertia=axial_inertia,
         )
 
-    @property
-    def carries_slab(self) -> bool:
-        """Whether a slab lies on it: no."""
-        return False
-
-    @property
-    def slab_mass_ratio(self) -> float:
-        """Mass of the slab over that of the columns under it [-]: 0, since there is none."""
-        return 0.0
-
-    @property
-    def columns(self) -> int:
-        """Number of columns: 1."""
-        return 1
-
 
 # beyond it the columns weigh no more than rounding: the motion is that of a slab alone
 LARGEST_SLAB_MASS_RATIO = 1e15
@@ -266,11 +250,6 @@ class WobblingFrame(RockingBody):
     def __repr__(self) -> str:
         ratio = f"slab_mass_ratio={brief(self.slab_mass_ratio)}"
         return line("WobblingFrame", [repr(self.cylinder), ratio, f"columns={self.columns}"])
-
-    @property
-    def carries_slab(self) -> bool:
-        """Whether a slab lies on it: yes, be its mass 0."""
-        return True
 
     @property
     def cylinder(self) -> Cylinder:

@@ -152,7 +152,7 @@ def require_axis(name: str, values: ArrayLike) -> NDArray[np.float64]:
     try:
         axis = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError):
-        raise ValueError(f"{wanted} {quoted(values)}") from None
+        axis = np.array(math.nan)
     if axis.ndim != 1:
         raise ValueError(f"{wanted} {quoted(values)}")
     wrong = np.flatnonzero(~(np.isfinite(axis) & (axis >= 0.0)))

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 Direction = Literal["x", "y", "z"]
 
 # what spreadsheets call "Unicode text"
-_UTF16 = {"utf-16-le": codecs.BOM_UTF16_LE, "utf-16-be": codecs.BOM_UTF16_BE}
+_UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 # blanks that do not break, and the minus sign of typesetters
 _TYPESET = str.maketrans({"\u00a0": " ", "\u2007": " ", "\u2009": " ", "\u202f": " ", "\u2212": "-"})
 # the largest of the networks are below 50 MB; what is larger is another file by mistake
@@ -69,7 +69,9 @@ class RecordFile:
             If it is binary.
         """
         if self.lines is None:
-            raise ValueError(f"the record {self.path} is no text: it holds null bytes")
+            raise ValueError(
+                f"the record {self.path} is no text in UTF-8, or in UTF-16 with its mark: it holds null bytes"
+            )
         return self.lines
 
     @cached_property
@@ -94,10 +96,9 @@ def open_record(path: Path) -> RecordFile:
         name = str(path)
         shown = name if name.isprintable() and len(name) <= _LONGEST_NAME else repr(name[-_LONGEST_NAME:])
         raise ValueError(f"cannot read the record {shown}: {reason}") from None
-    encoding = _utf16(content)
-    if encoding is not None:
+    if content.startswith(_UTF16):
         try:
-            content = content.decode(encoding).removeprefix("\ufeff").encode()
+            content = content.decode("utf-16").encode()
         except UnicodeDecodeError:
             raise ValueError(
                 f"the record {path} is text in UTF-16 that is damaged: save it as UTF-8"
@@ -111,20 +112,6 @@ def open_record(path: Path) -> RecordFile:
             f"the record {path} has a line of {longest:,} characters, allowed are {_LONGEST_LINE:,}: break it"
         )
     return file
-
-
-def _utf16(content: bytes) -> str | None:
-    """Return the encoding of a text in UTF-16, by its mark or by every second byte of its begin."""
-    for encoding, (zeros, others) in {"utf-16-le": (1, 0), "utf-16-be": (0, 1)}.items():
-        begin = content[:200]
-        if content.startswith(_UTF16[encoding]) or (
-            len(begin) > 20
-            and not any(begin[zeros::2])
-            and begin[others::2].isascii()
-            and all(begin[others::2])
-        ):
-            return encoding
-    return None
 
 
 _LONGEST_NAME = 150  # characters of a path in a message

@@ -68,7 +68,28 @@ def read_records(
     >>> [(motion.name, motion.peak) for motion in read_records(folder)]
     [('pulse', 0.5)]
     """
-    return _read(Path(folder), reading or Reading())
+    path, reading = Path(folder), reading or Reading()
+    if path.name.endswith(PEER_TABLE):
+        return _peer_motions(path.parent, reading)
+    if path.is_dir() and not (path / TABLE).exists() and any(_stations(path)):
+        return _peer_motions(path, reading)
+    path = path / TABLE if path.is_dir() else path
+    columns, rows = _table(path)
+    if set(columns) - set(_COLUMNS) or not ({"x", "y"} <= set(columns) or "record" in columns):
+        raise ValueError(
+            f"{path} must have the columns x and y, or record, and may have z, name, scale, level and units "
+            f"(other options are those of all rows), got {', '.join(columns)[:100] or 'none'}"
+        )
+    if not rows:
+        raise ValueError(f"{path} must list ground motions, one in a line, got none")
+    motions: list[GroundMotion] = []
+    for number, row in rows:
+        try:
+            _positive("level", row.get("level"))  # refused where it stands
+            motions.append(_motion(path.parent, row, reading))
+        except ValueError as error:
+            raise ValueError(f"{path.name}, line {number}: {error}") from None
+    return motions
 
 
 @with_argument_kinds
@@ -106,67 +127,41 @@ def read_records_by_level(
     {0.2: 'weak', 0.6: 'strong'}
     """
     table = Path(folder) / TABLE if Path(folder).is_dir() else Path(folder)
-    if not table.exists() or table.name.endswith(PEER_TABLE) or "level" not in _table(table)[0]:
+    if not table.exists() or table.name.endswith(PEER_TABLE):
         return {}
-    read = read_records(table, reading)
-    levels = [_level(row) for _, row in _table(table)[1]]
+    columns, rows = _table(table)
+    if "level" not in columns:
+        return {}
+    levels = [_positive("level", row.get("level")) for _, row in rows]
     if 0 < (without := levels.count(None)) < len(levels):
         raise ValueError(f"each row must have a level, or none: {without} of {len(levels)} have none")
     motions: dict[float, list[GroundMotion]] = {}
-    for motion, level in zip(read, levels, strict=True):
+    for motion, level in zip(read_records(table, reading), levels, strict=True):
         if level is not None:
             motions.setdefault(level, []).append(motion)
     return motions
 
 
-def _read(path: Path, reading: Reading) -> list[GroundMotion]:
-    if path.is_dir() and not (path / TABLE).exists():
-        stations, listed = _stations(path)
-        if stations or listed:
-            return _peer_motions(path, reading)
-    path = path / TABLE if path.is_dir() else path
-    if path.name.endswith(PEER_TABLE):
-        return _peer_motions(path.parent, reading)
-    columns_of_table, rows = _table(path)
-    wrong = [column for column in columns_of_table if column not in _COLUMNS]
-    if wrong or not ({"x", "y"} <= set(columns_of_table) or "record" in columns_of_table):
-        raise ValueError(
-            f"{path} must have the columns x and y, or record, and may have z, name, scale, level and units "
-            f"(other options are those of all rows), got {', '.join(columns_of_table)[:100] or 'none'}"
-        )
-    if not rows:
-        raise ValueError(f"{path} must list ground motions, one in a line, got none")
-    motions: list[GroundMotion] = []
-    for number, row in rows:
-        try:
-            _level(row)  # refused where it stands
-            motions.append(_motion(path.parent, row, reading))
-        except ValueError as error:
-            raise ValueError(f"{path.name}, line {number}: {error}") from None
-    return motions
-
-
-def _level(row: Row) -> float | None:
-    return _positive("level", row.get("level"))
-
-
-def _table(path: Path) -> tuple[list[str], list[tuple[int, Row]]]:
-    """Return the columns of records.csv, and number and cells of each row."""
+def _text(path: Path) -> io.StringIO:
     try:
-        text = bytes_of(path).decode("utf-8-sig")
-        first = text.partition("\n")[0]
-        separator = ";" if ";" in first and "," not in first else ","
-        reader = csv.DictReader(io.StringIO(text, newline=""), delimiter=separator)
-        columns = [column.strip().lower() for column in reader.fieldnames or ()]
-        reader.fieldnames = columns
-        return columns, [(reader.line_num, dict(row)) for row in reader]
-    except (OSError, ValueError, csv.Error) as error:
+        return io.StringIO(bytes_of(path).decode("utf-8-sig"), newline="")
+    except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise ValueError(f"the table of records {path} cannot be read: {reason}") from None
 
 
-def _place(folder: Path, name: str | None) -> str | Path | None:
-    return name if name == ZERO else folder / name if name else None
+def _table(path: Path) -> tuple[list[str], list[tuple[int, Row]]]:
+    """Return the columns of records.csv, and number and cells of each row."""
+    text = _text(path)
+    first = text.readline()
+    text.seek(0)
+    reader = csv.DictReader(text, delimiter=";" if ";" in first and "," not in first else ",")
+    try:
+        columns = [column.strip().lower() for column in reader.fieldnames or ()]
+        reader.fieldnames = columns
+        return columns, [(reader.line_num, dict(row)) for row in reader]
+    except csv.Error as error:
+        raise ValueError(f"the table of records {path} cannot be read: {error}") from None
 
 
 def _motion(folder: Path, row: Row, reading: Reading) -> GroundMotion:
@@ -181,11 +176,11 @@ def _motion(folder: Path, row: Row, reading: Reading) -> GroundMotion:
             raise ValueError("record holds all components, got x, y or z beside it")
         motion = record_of(folder / cells["record"], None, None, reading, name)
     else:
-        if not (cells.get("x") and cells.get("y")):
+        parts = {axis: cells[axis] for axis in "xyz" if cells.get(axis)}
+        if not {"x", "y"} <= parts.keys():
             raise ValueError("both horizontal components are needed, x and y")
-        x, y, z = (_place(folder, cells.get(axis)) for axis in ("x", "y", "z"))
-        assert x is not None
-        motion = record_of(x, y, z, reading, name)
+        paths = {axis: part if part == ZERO else folder / part for axis, part in parts.items()}
+        motion = record_of(paths["x"], paths["y"], paths.get("z"), reading, name)
     factor = _positive("scale", cells.get("scale"))
     return motion if factor is None else motion.scaled(factor)
 
@@ -204,65 +199,52 @@ def _positive(name: str, cell: object) -> float | None:
     return value
 
 
-_RSN = re.compile(r"RSN(\d{1,6})_", re.IGNORECASE)
+_RSN = re.compile(r"RSN(\d{1,6})_.*\.AT2", re.IGNORECASE)
 
 
 def _stations(folder: Path) -> tuple[list[tuple[str, list[Path]]], bool]:
     """Return name and AT2 files of each record of a folder of PEER, and whether its table lists them."""
-    tables = sorted(path for path in folder.iterdir() if path.name.endswith(PEER_TABLE))
+    paths = sorted(folder.iterdir())
+    tables = [path for path in paths if path.name.endswith(PEER_TABLE)]
     if tables:
         return _listed_stations(tables[0]), True
-    groups: dict[str, list[Path]] = {}
-    for path in sorted(folder.iterdir()):
-        number = _RSN.match(path.name)
-        if number and path.suffix.lower() == ".at2":
-            groups.setdefault(number[1], []).append(path)
-    ordered = sorted(groups.items(), key=lambda each: int(each[0]))
-    return [(f"RSN{number}", paths) for number, paths in ordered], False
+    groups: dict[int, list[Path]] = {}
+    for path in paths:
+        if number := _RSN.fullmatch(path.name):
+            groups.setdefault(int(number[1]), []).append(path)
+    return [(f"RSN{number}", groups[number]) for number in sorted(groups)], False
 
 
 def _listed_stations(table: Path) -> list[tuple[str, list[Path]]]:
-    try:
-        text = bytes_of(table).decode("utf-8-sig", errors="replace")
-        # a blank before a quoted name is none of it
-        rows = list(csv.reader(io.StringIO(text, newline=""), skipinitialspace=True))
-    except (OSError, ValueError, csv.Error) as error:
-        raise ValueError(f"the table of records {table} cannot be read: {error}") from None
-    heads = [place for place, row in enumerate(rows) if any("filename" in cell.lower() for cell in row)]
-    if not heads:
-        raise ValueError(
-            f"{table} must have the columns 'Horizontal-1 Acc. Filename' and so on, as PEER writes it"
-        )
-    header = [cell.strip().lower() for cell in rows[heads[0]]]
+    # a blank before a quoted name is none of it
+    rows = [[cell.strip() for cell in row] for row in csv.reader(_text(table), skipinitialspace=True)]
+    head = next((at for at, row in enumerate(rows) if any("filename" in cell.lower() for cell in row)), 0)
 
     def column(*words: str) -> int | None:
-        return next((at for at, cell in enumerate(header) if all(word in cell for word in words)), None)
+        titles = enumerate(rows[head] if rows else ())
+        return next((at for at, title in titles if all(word in title.lower() for word in words)), None)
 
     number, event, station = column("sequence number"), column("earthquake"), column("station name")
-    places = [
-        column("horizontal-1", "filename"),
-        column("horizontal-2", "filename"),
-        column("vertical", "filename"),
-    ]
-    if places[0] is None or places[1] is None:
+    wanted = [column(place, "filename") for place in ("horizontal-1", "horizontal-2", "vertical")]
+    if None in wanted[:2]:
         raise ValueError(
-            f"{table} must have the columns 'Horizontal-1 Acc. Filename' and 'Horizontal-2 Acc. Filename'"
+            f"{table} of PEER must have the columns 'Horizontal-1 Acc. Filename' and 'Horizontal-2 Acc. ...'"
         )
+    places = [at for at in wanted if at is not None]
     here = {path.name.lower(): path for path in table.parent.iterdir()}
     entries: list[tuple[str, list[Path]]] = []
-    for row in rows[heads[0] + 1 :]:
-        cells = [cell.strip() for cell in row]
-        if len(cells) <= max(place for place in places if place is not None):
+    for cells in rows[head + 1 :]:
+        if len(cells) <= max(places):
             if entries:
                 break  # another table follows
             continue
-        names = [cells[place].replace("\\", "/").rpartition("/")[2] for place in places if place is not None]
+        names = [cells[at].replace("\\", "/").rpartition("/")[2] for at in places]
         files = [
             here.get(name.lower(), table.parent / name) for name in names if name.lower().endswith(".at2")
         ]
         words = [f"RSN{cells[number]}" if number is not None else ""]
-        words += [cells[place].strip('"') for place in (event, station) if place is not None]
-        entries.append((", ".join(word for word in words if word), files))
+        words += [cells[at].strip('"') for at in (event, station) if at is not None]
+        entries.append((", ".join(filter(None, words)), files))
     return entries
 
 
