@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from rockwobble.models import Case, Cylinder, InitialState, RockingBody, WobblingFrame, read_suite
+from rockwobble.models import Case, Cylinder, RockingBody, WobblingFrame, read_suite
 from rockwobble.models.trace_file import case_from_plain
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2, axial_inertia=1.1)
@@ -81,12 +81,6 @@ def test_a_suite_file_holds_frames(tmp_path: Any) -> None:
         read_suite(path)
 
 
-def test_a_case_takes_a_frame() -> None:
-    case = Case(WobblingFrame(PIER), initial=InitialState(0.1), duration=1.0)
-    assert case.cylinder.slab_mass_ratio == 1.0
-    assert PIER.slab_mass_ratio == 0.0
-
-
 def test_a_frame_and_a_cylinder_are_bodies_beside_each_other() -> None:
     frame = WobblingFrame(PIER, 0.0)
     assert not isinstance(frame, Cylinder)
@@ -95,5 +89,3 @@ def test_a_frame_and_a_cylinder_are_bodies_beside_each_other() -> None:
         assert (getattr(PIER, name) == getattr(frame, name)) == (name not in ("carries_slab", "columns")), (
             name
         )
-    with pytest.raises(TypeError, match="abstract"):
-        RockingBody(semidiagonal=6.0, tan_alpha=0.2)  # type: ignore[abstract]

@@ -2,9 +2,11 @@ from __future__ import annotations
 
 import math
 import re
+from pathlib import Path
 
 import pytest
 
+from rockwobble import models
 from rockwobble.models import el_centro_1940, read_suite
 
 CASE = """
@@ -290,3 +292,14 @@ def test_a_motion_has_the_keys_of_its_kind_and_of_no_other(write, kind):
                 key,
                 said,
             )
+
+
+def test_the_suites_that_ship_are_read_by_name(tmp_path):
+    for name in ("quick", "canon"):
+        suite = read_suite(name)
+        again = read_suite(Path(models.__path__[0]) / "suites" / f"{name}.suite.toml")
+        assert [case.name for case in suite.cases] == [case.name for case in again.cases]
+        assert {run.engine for run in suite.runs} == {"mujoco", "pybullet"}
+    assert len(suite.cases) >= 40
+    with pytest.raises(ValueError, match=r"none\.toml: No such file.*that ship are canon, p695, quick"):
+        read_suite(tmp_path / "none.toml")

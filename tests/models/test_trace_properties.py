@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import pyarrow.parquet as pq
 import pytest
 
 from rockwobble.models import Case, Cylinder, Diagnostic, Run, Tendon, Trace, WobblingFrame, plain_json
 from rockwobble.models.diagnostic import Assumptions
 from rockwobble.models.trace import EagerSource, lost_trace
 
-SEEDS = range(8)
+SEEDS = range(4)  # a column or a frame, with or without a tendon
 
 
 def any_trace(seed: int, **given: Any) -> Trace:
@@ -169,16 +170,8 @@ def test_the_summary_says_what_the_trace_holds(seed: int) -> None:
 def test_a_lost_run_says_that_it_failed_and_why() -> None:
     case, run = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), duration=1.0), Run("mujoco", "flat")
     trace = lost_trace(case, run, "signal 9")
-    assert trace.summary() == {
-        "case": "free response",
-        "run": "mujoco flat",
-        "outcome": "failed",
-        "mode": "not known",
-        "peak tilt": "not known",
-        "uplift": "none",
-        "passes": "0",
-        "diagnostics": "died",
-    }
+    said = {"outcome": "failed", "mode": "not known", "peak tilt": "not known", "diagnostics": "died"}
+    assert said.items() <= trace.summary().items()
     assert [fact.detail for fact in trace.diagnostics] == ["signal 9"]
     assert math.isnan(trace.residual_twist)
 
@@ -200,8 +193,10 @@ def test_the_first_of_several_diagnostics_is_the_earliest_of_its_codes() -> None
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_trace_comes_back_from_its_file_with_the_same_bits(seed: int, tmp_path: Path) -> None:
     trace = any_trace(seed, followed_until=3.5, step_count=7, error_estimate=1e-9, settings={"cone": "round"})
-    trace.save(tmp_path / "a.parquet")
-    again = Trace.load(tmp_path / "a.parquet")
+    path = tmp_path / "a.parquet"
+    trace.save(path)
+    pq.write_table(pq.read_table(path), path, write_page_checksum=seed > 0)  # 0.2 wrote none
+    again = Trace.load(path)
     pd.testing.assert_frame_equal(again.to_frame(), trace.to_frame(), check_exact=True)
     assert plain_json.dumps(again.to_plain()) == plain_json.dumps(trace.to_plain())
     assert again.case == trace.case
@@ -213,3 +208,19 @@ def test_a_trace_comes_back_from_its_file_with_the_same_bits(seed: int, tmp_path
         np.testing.assert_array_equal(trace.to_frame()[name], trace.contact_force[:, place])
     for place, name in enumerate(("centre_x", "centre_y", "centre_z")):
         np.testing.assert_array_equal(trace.to_frame()[name], trace.centre_of_mass[:, place])
+
+
+def test_a_file_that_is_none_damaged_or_old_is_refused(tmp_path: Path) -> None:
+    trace, path = any_trace(1), tmp_path / "run.parquet"
+    trace.save(path)
+    whole = path.read_bytes()
+    place = len(whole) // 4  # among the samples; the case is at the end
+    table = pd.DataFrame({"x": [1.0]})
+    for content in (b"time,tilt", table.to_parquet(), whole[:place] + b"XXXX" + whole[place + 4 :]):
+        path.write_bytes(content)
+        with pytest.raises(ValueError, match="must be the file of a trace, cannot read it as one"):
+            Trace.load(path)
+    facts = plain_json.loads(plain_json.dumps(trace.to_plain()))
+    del facts["rest_intervals"]
+    with pytest.raises(ValueError, match=r"a trace of 0\.2 or older must be run again"):
+        Trace.from_plain(facts, trace.to_frame(), trace.case)
