@@ -126,11 +126,8 @@ def poses_of(table: Table, case: Case, *, noise: float | None = None, time_offse
         own_noise = 0.0
     stands = max(_STANDS * cylinder.alpha, _ABOVE_NOISE * own_noise) if noise is None else noise
     if "azimuth" in values and "qw" not in values:
-        tilts = values["tilt"]
-        table.require(
-            ~np.isnan(values["azimuth"]) | (np.abs(tilts) <= stands),
-            lambda at: f"azimuth must be given where the tilt is {tilts[at]:.4g} rad",
-        )
+        known = ~np.isnan(values["azimuth"]) | (np.abs(values["tilt"]) <= stands)
+        table.require(known, "azimuth must be given where the tilt is {:.4g} rad", values["tilt"])
     axis = np.where(np.isnan(pose.axis), 0.0, pose.axis)
     tilt = np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2])
     if pose.azimuth_known:
@@ -200,43 +197,32 @@ def _from_start(table: Table) -> tuple[Array, list[str]]:
 
 
 def _checked_time(table: Table, time: Array, offset: float, case: Case) -> Array:
-    time = time + offset
+    given, time = time, time + offset
     steps, count = np.diff(time, prepend=-math.inf), np.arange(len(time))
-    table.require(
-        steps > 0.0,
-        lambda at: f"time must rise [s], got {time[at] - offset:g} after {time[at - 1] - offset:g}",
-    )
+    before = np.roll(given, 1)
+    table.require(steps > 0.0, "time must rise [s], got {:g} after {:g}", given, before)
     usual = float(np.median(steps[1:]))
     longest = _COARSE * math.sqrt(case.cylinder.semidiagonal / case.gravity)
-    table.require(
-        (count != 1) | (usual <= longest),
-        lambda _: f"samples must be at most {longest:.2g} s apart for this cylinder, got {usual:g} s",
-    )
-    table.require(
-        (count == 0) | (steps <= _GAP * usual),
-        lambda at: f"a gap of {steps[at]:g} s where the usual step is {usual:g} s",
-    )
+    apart = "samples must be at most {:.2g} s apart for this cylinder, got {:g} s"
+    table.require((count != 1) | (usual <= longest), apart, longest, usual)
+    gap = "a gap of {:g} s where the usual step is {:g} s"
+    table.require((count == 0) | (steps <= _GAP * usual), gap, steps, usual)
     table.require(
         (count > 0) | (time <= 0.5 * usual),
-        lambda _: (
-            f"the trajectory begins {time[0]:g} s after the start of the run, where its pose is not known; "
-            f"if that is the start, give its time an offset of {offset - time[0]:g} s"
-        ),
+        "the trajectory begins {:g} s after the start of the run, where its pose is not known; "
+        "if that is the start, give its time an offset of {:g} s",
+        time,
+        offset - time,
     )
-    table.require(
-        (count < len(time) - 1) | (time > max(usual, _SHORTEST * case.length)),
-        lambda _: f"the trajectory ends {time[-1]:g} s after the start of the run",
-    )
+    ends = (count < len(time) - 1) | (time > max(usual, _SHORTEST * case.length))
+    table.require(ends, "the trajectory ends {:g} s after the start of the run", time)
     return time
 
 
 def _checked_angles(table: Table) -> list[str]:
     """Remarks on a table of tilts and azimuths."""
     tilt = table.complete("tilt")
-    table.require(
-        np.abs(tilt) <= math.pi,
-        lambda at: f"tilt must be between -pi and pi, got {tilt[at]:.4g} rad",
-    )
+    table.require(np.abs(tilt) <= math.pi, "tilt must be between -pi and pi, got {:.4g} rad", tilt)
     negative = int(np.count_nonzero(tilt < 0.0))
     return [f"{negative} negative tilts are read as a lean to the other side"] if negative else []
 
@@ -244,29 +230,24 @@ def _checked_angles(table: Table) -> list[str]:
 def _checked_quaternions(table: Table, axis: Array, twist: Array) -> list[str]:
     """Remarks on a table of quaternions with this axis (n, 3) and twist (n,) [rad]."""
     length = np.sqrt(sum(table.values[name] ** 2 for name in QUATERNION))
-    table.require(
-        np.abs(length - 1.0) <= _UNIT_LENGTH,
-        lambda at: f"a quaternion must have the length 1, got {length[at]:.4g}",
-    )
+    right = np.abs(length - 1.0) <= _UNIT_LENGTH
+    table.require(right, "a quaternion must have the length 1, got {:.4g}", length)
     later, start = np.arange(len(twist)) > 0, math.degrees(abs(float(twist[0])))
-    table.require(
-        later | (start <= math.degrees(_ANOTHER_ORDER)),
-        lambda _: f"the quaternion must not be turned about the axis at the start, got {start:.0f} deg",
-    )
-    table.require(
-        later | (axis[:, 2] >= 0.0), lambda _: "the quaternion holds the cylinder upside down at the start"
-    )
+    turned = "the quaternion must not be turned about the axis at the start, got {:.0f} deg"
+    table.require(later | (start <= math.degrees(_ANOTHER_ORDER)), turned, start)
+    upside_down = "the quaternion holds the cylinder upside down at the start"
+    table.require(later | (axis[:, 2] >= 0.0), upside_down)
     if "tilt" in table.values:
         tilt, given = np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2]), table.values["tilt"]
         table.require(
             np.abs(tilt - np.abs(given)) <= _SAME_TILT,
-            lambda at: (
-                f"tilt and quaternion must agree, got tilts of {given[at]:.4g} and {tilt[at]:.4g} rad; "
-                "the quaternion must be qw, qx, qy, qz with z up"
-            ),
+            "tilt and quaternion must agree, got tilts of {:.4g} and {:.4g} rad; "
+            "the quaternion must be qw, qx, qy, qz with z up",
+            given,
+            tilt,
         )
-    turned = f"turned by {math.degrees(float(twist[0])):.3g} deg about its axis at the start"
-    return [turned] if start > math.degrees(_TWISTED) else []
+    note = f"turned by {math.degrees(float(twist[0])):.3g} deg about its axis at the start"
+    return [note] if start > math.degrees(_TWISTED) else []
 
 
 def _check_positions(table: Table, pose: Pose, cylinder: RockingBody) -> None:
@@ -276,9 +257,9 @@ def _check_positions(table: Table, pose: Pose, cylinder: RockingBody) -> None:
     from_rim, radius = np.hypot(np.hypot(x, y) - cylinder.base_radius, height), cylinder.semidiagonal
     table.require(
         (np.abs(from_rim / radius - 1.0) <= _FROM_RIM) & (height >= 0.0),
-        lambda at: (
-            f"the mass centre must be R = {radius:.4g} m from the rim and above the ground, got "
-            f"{from_rim[at]:.4g} m and z = {height[at]:.4g} m; without a tilt x, y and z must be from the "
-            "original base centre, z up, in the unit of the header"
-        ),
+        "the mass centre must be R = {:.4g} m from the rim and above the ground, got {:.4g} m and z = {:.4g} "
+        "m; without a tilt x, y and z must be from the original base centre, z up, in the unit of the header",
+        radius,
+        from_rim,
+        height,
     )

@@ -30,7 +30,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -115,22 +115,23 @@ class Table:
     ignored: tuple[str, ...] = ()
     lost: int = 0
 
-    def require(self, holds: Mask, reason: Callable[[int], str]) -> None:
+    def require(self, holds: Mask, reason: str, *values: Array | float) -> None:
         """Refuse the first sample where something (n,) does not hold, with the number of its line.
 
         Raises
         ------
         ValueError
-            With the `reason` for that sample.
+            With the `reason`, a format of the `values` at that sample.
         """
         if not holds.all():
             at = int(np.argmin(holds))
-            raise ValueError(f"{self.name}, line {self.lines[at]}: {reason(at)}")
+            there = (value[at] if isinstance(value, np.ndarray) else value for value in values)
+            raise ValueError(f"{self.name}, line {self.lines[at]}: {reason.format(*there)}")
 
     def complete(self, column: str, where: Mask | None = None) -> Array:
         """Return a column that must have a value in each sample, or `where` (n,) is true."""
         known = ~np.isnan(self.values[column])
-        self.require(known if where is None else known | ~where, lambda _: f"{column} is missing")
+        self.require(known if where is None else known | ~where, f"{column} is missing")
         return self.values[column]
 
 

@@ -188,10 +188,8 @@ def trajectory_of(table: Table, given: External, case: Case) -> Trace:
     """Return the trajectory that a table holds; see `read_trajectory`."""
     poses = poses_of(table, case, noise=given.noise, time_offset=given.time_offset)
     start = int(np.argmax(poses.time > -0.5 * float(poses.time[1] - poses.time[0])))
-    table.require(
-        (np.arange(len(poses.time)) != start) | (poses.tilt < _FALLEN),
-        lambda at: f"it must not lie at the start, got a tilt of {poses.tilt[at]:.4g} rad",
-    )
+    upright = (np.arange(len(poses.time)) != start) | (poses.tilt < _FALLEN)
+    table.require(upright, "it must not lie at the start, got a tilt of {:.4g} rad", poses.tilt)
     poses = _from_start_to_end(poses, start, case.length)
     begin = uplift(poses.time, poses.tilt, poses.rolling_angle, stands=poses.stands)
     fell = bool(poses.tilt[-1] >= _FALLEN)

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 from declared_engines import Install, installer
+from faulty_subjects import answered, field
 
 from rockwobble.compare.check import GROUPS, Subject, agreement, engine, invariance, lagrange, laws
 from rockwobble.models import Trace
-from rockwobble.models.trace_source import EagerSource
 from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import engine_facts, standard_engines
 
@@ -86,21 +86,12 @@ def test_a_fault_of_an_engine_is_found(
     assert not [each for each in measure(engine("sound"), "flat") if each.failed]
 
 
-def changed(field: str, change: Any) -> Subject:
-    right = ENGINES["mujoco"]
-
-    def source(*given: Any, **options: Any) -> Trace:
-        found = right.source(*given, **options)
-        value = change(getattr(found, field))
-        if field in found.late:
-            return dataclasses.replace(found, source=EagerSource({**found.late, field: value}))
-        return dataclasses.replace(found, **{field: value})
-
-    return dataclasses.replace(right, source=source)
+def changed(name: str, change: Any) -> Subject:
+    return field(name, change)(ENGINES["mujoco"])
 
 
 @pytest.mark.parametrize(
-    ("measure", "field", "change"),
+    ("measure", "name", "change"),
     [
         (agreement.fields, "tilt_rate", lambda values: 1.001 * values),
         (agreement.fields, "twist", lambda values: values + 1e-4),
@@ -122,9 +113,9 @@ def changed(field: str, change: Any) -> Subject:
         (invariance.time_grid, "rolling_rate", lambda values: 1.00001 * values),
     ],
 )
-def test_a_wrong_field_is_found(measure: Any, field: str, change: Any) -> None:
+def test_a_wrong_field_is_found(measure: Any, name: str, change: Any) -> None:
     assert not [each for each in measure(ENGINES["mujoco"], "flat") if each.failed]
-    assert [each for each in measure(changed(field, change), "flat") if each.failed]
+    assert [each for each in measure(changed(name, change), "flat") if each.failed]
 
 
 def test_walls_that_let_the_cylinder_out_are_found() -> None:
@@ -134,14 +125,11 @@ def test_walls_that_let_the_cylinder_out_are_found() -> None:
 
 
 def test_samples_at_the_nearest_step_are_found() -> None:
-    right = ENGINES["mujoco"]
-
-    def nearest(*given: Any, **options: Any) -> Trace:
-        found = right.source(*given, **options)
+    def nearest(found: Trace) -> Trace:
         off = found.time - np.round(found.time / found.time_step) * found.time_step
         return dataclasses.replace(found, rolling_angle=found.rolling_angle - off * found.rolling_rate)
 
-    found = agreement.fields(dataclasses.replace(right, source=nearest), "flat")
+    found = agreement.fields(answered(nearest)(ENGINES["mujoco"]), "flat")
     assert {each.name for each in found if each.failed} >= {"rolling_angle"}
 
 

@@ -322,7 +322,7 @@ def judged(case: Case, path: Path) -> Judgement:
     motions = {}
     for name, table in tables.items():
         steps = np.diff(table.values["time"], prepend=-math.inf)
-        table.require(steps > 0.0, lambda _: "time must rise")
+        table.require(steps > 0.0, "time must rise")
         for column in table.values:
             table.complete(column, where=table.values["tilt"] != 0.0 if column == "azimuth" else None)
         motion = read_motion(case.runs[name], table.values)
