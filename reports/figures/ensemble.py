@@ -14,7 +14,7 @@ from rockwobble.compare.metrics.statistics import MARGIN
 from rockwobble.models.trace import NO_PEAK
 from rockwobble.studies import Ensemble
 from rockwobble.studies.ensemble_findings import main_pairs
-from rockwobble.studies.fragility.study import Row
+from rockwobble.studies.fragility.tables import Row
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles
 from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, caption, ecdf, list_axis, log_ticks

@@ -11,8 +11,8 @@ import pandas as pd
 from rockwobble.models.support import SUPPORTS
 from rockwobble.studies import Fragility
 from rockwobble.studies.fragility.intensity import MEASURES
-from rockwobble.studies.fragility.study import Row, main_contrasts
-from rockwobble.studies.fragility.tables import ALL, OVERTURNED
+from rockwobble.studies.fragility.study import main_contrasts
+from rockwobble.studies.fragility.tables import ALL, OVERTURNED, Row
 
 from .ensemble import margin_rules, ratio_axes
 from .palette import DARK, GREY, ORDER, Style, mark_styles, pale

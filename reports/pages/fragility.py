@@ -9,8 +9,8 @@ from rockwobble.models.finding import Finding
 from rockwobble.studies import Fragility
 from rockwobble.studies.fragility.fit import SEPARATED
 from rockwobble.studies.fragility.intensity import MEASURES
-from rockwobble.studies.fragility.study import Row, known_ratio, main_contrasts
-from rockwobble.studies.fragility.tables import ALL, OVERTURNED
+from rockwobble.studies.fragility.study import known_ratio, main_contrasts
+from rockwobble.studies.fragility.tables import ALL, OVERTURNED, Row, rows_of
 
 from ..figures.fragility import pictures
 from ..figures.risk import risk_pictures
@@ -42,9 +42,7 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         found.findings(),
     )
     whole = ALL if len(cylinders) > 1 else next(iter(cylinders))
-    fits: list[Row] = [
-        {str(name): value for name, value in row.items()} for row in found.fits.to_dict("records")
-    ]
+    fits = rows_of(found.fits)
     fallen = [
         {**_with_known_spread(row, fits), "median": found.median_or_bound(row["cylinder"], row["median"])}
         for row in fits
@@ -87,8 +85,7 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "unit": measure.unit.replace("-", ""),
         "notes": list(map(statement, said("wall"))),
         "efficiency": [
-            {**row, "title": MEASURES[str(row["measure"])].title}
-            for row in found.efficiency.to_dict("records")
+            {**row, "title": MEASURES[str(row["measure"])].title} for row in rows_of(found.efficiency)
         ],
         "gaps": _gaps(found),
     }
@@ -146,16 +143,13 @@ def _share(exceeded: float, runs: float) -> str:
 
 def _gaps(found: Fragility) -> list[Row]:
     medians = ("median", "median_incremental")
-    rows: Iterable[Row] = (
-        {str(name): value for name, value in row.items()} for row in found.gaps.to_dict("records")
-    )
     return [
         {
             **row,
             **{name: found.median_or_bound(row["cylinder"], row[name]) for name in medians},
             "bias": known_ratio(row["bias"]),
         }
-        for row in rows
+        for row in rows_of(found.gaps)
     ]
 
 

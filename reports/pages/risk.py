@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rockwobble.studies import Fragility
 from rockwobble.studies.fragility.risk import TARGET
-from rockwobble.studies.fragility.tables import OVERTURNED
+from rockwobble.studies.fragility.tables import OVERTURNED, rows_of
 
 from ..figures.risk import risk_pictures
 from .wording import sentence
@@ -17,9 +17,7 @@ def risk_values(results: Fragility) -> dict[str, object] | None:
     """Return the values of the template of the risk; None without a hazard."""
     if "risk" not in results.tables:
         return None
-    rows = [
-        {str(name): value for name, value in row.items()} for row in results.tables["risk"].to_dict("records")
-    ]
+    rows = rows_of(results.tables["risk"])
     scaled = [name for name in rows[0] if name.startswith("annual_frequency")]
     reference, said = str(rows[0]["method"]), results.findings().of("risk")
     return {

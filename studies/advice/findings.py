@@ -154,21 +154,22 @@ def _groups(advice: Advice) -> Iterator[Finding]:
     # an earlier version counted none that yields
     rows = {str(row["group"]): {"yielded": 0} | row for row in advice.groups.to_dict("records")}
     for group, row in rows.items():
+        yielded = int(row.get("yielded", 0))  # an earlier version counted none
         values: dict[str, Value] = {
             "name": group_name(advice, group),
             "runs": int(row["runs"] - row["failed"]),
-            "peak": float(row["peak_tilt_95"]),
         }
         grade: Level = "note"
         if not row["single"]:
             values |= {
                 "overturned": int(row["overturned"]),
                 "share": (row["chance"], row["chance_low"], row["chance_high"]),
-                "count": int(row["yielded"] or row["covered"]),
+                "count": yielded or int(row["covered"]),
             }
             grade = grade_chance(row["chance"]) if row["counts"] else "note"
-            grade = "not tested" if row["yielded"] else grade
-        kind = "one_run" if row["single"] else "yielded" if row["yielded"] else "runs"
+            grade = "not tested" if yielded else grade
+        values["peak"] = float(row["peak_tilt_95"])
+        kind = "one_run" if row["single"] else "yielded" if yielded else "runs"
         yield Finding(key=f"group.{kind}", level=grade, values=values, runs=group)
     others = [group for group in (ACCELERATION, VELOCITY) if group in rows]
     if not others:

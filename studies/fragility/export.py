@@ -139,10 +139,6 @@ def exported(results: Fragility, form: str) -> tuple[str, bytes]:
     return EXPORTS[form], {"nrml": nrml, "pelicun": pelicun}[form](results)
 
 
-def _period(results: Fragility) -> float:
-    return float(results.facts["period"])
-
-
 def nrml(results: Fragility) -> bytes:
     """Return the fragility model of OpenQuake, NRML 0.5: continuous where all limit states are fitted."""
     imt, words = _TYPES[str(results.facts["measure"])]
@@ -154,7 +150,7 @@ def nrml(results: Fragility) -> bytes:
     Tree.SubElement(model, "description").text = f"{imt} in {unit}, {words}. {results.facts['source']}"
     functions = list(limits_by_function(results))
     Tree.SubElement(model, "limitStates").text = " ".join(each.name for each in functions[0][1])
-    name = f"SA({_period(results):g})" if imt == "SA" else imt
+    name = f"SA({results.facts['period']:g})" if imt == "SA" else imt
     for label, limits in functions:
         continuous = all(each.fitted for each in limits)
         x = factor * limits[0].intensity
@@ -185,7 +181,7 @@ def pelicun(results: Fragility) -> bytes:
     the end is not known.
     """
     imt, _ = _TYPES[str(results.facts["measure"])]
-    demand = _PELICUN[imt].format(_period(results))
+    demand = _PELICUN[imt].format(results.facts["period"])
     functions = list(limits_by_function(results))
     head = ["ID", "Incomplete", "Demand-Type", "Demand-Unit", "Demand-Offset", "Demand-Directional"]
     for place in range(1, len(functions[0][1]) + 1):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any
 
 from rockwobble.compare.metrics.statistics import FEWEST
 from rockwobble.models.finding import Finding, Level, Value
@@ -13,9 +12,8 @@ from rockwobble.models.support import FLAT, SUPPORTS
 
 from .fit import ALWAYS, EXTRAPOLATED, FALLING, FITTED, NEVER, ONE_MOTION, SEPARATED, TOO_FEW
 from .intensity import MEASURES
-from .tables import OVERTURNED
+from .tables import OVERTURNED, Row
 
-Row = dict[str, Any]
 FEWEST_LEVELS = 2  # one level gives a curve no slope
 _MOST_WITHIN = 10.0  # margin above which an interval bounds nothing
 _POOR = 0.05  # below this probability the counts do not follow a lognormal curve

@@ -67,10 +67,9 @@ class Curves:
         """Return the probabilities (B, n) at logarithms of intensities (n,); NaN where there is no curve."""
         from scipy.special import ndtr
 
+        spread = np.where(np.isfinite(self.centre), self.dispersion, 1.0)
         with np.errstate(divide="ignore", invalid="ignore"):
-            z = (x[None, :] - self.centre[:, None]) / np.where(
-                np.isfinite(self.centre), self.dispersion, 1.0
-            )[:, None]
+            z = (x[None, :] - self.centre[:, None]) / spread[:, None]
         # the middle of the step of a separated curve
         shapeless = np.isin(self.kinds, [KINDS.index(FALLING), KINDS.index(ONE_MOTION)])
         z[np.isnan(z) & ~shapeless[:, None]] = 0.0
@@ -157,10 +156,8 @@ def goodness(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> 
         n, k, expected = (np.bincount(place, each, _GROUPS).astype(np.float64) for each in (n, k, expected))
     there = n > 0.0
     n, k, expected = n[there], k[there], expected[there]
-    tiny = np.finfo(float).tiny
-    lacking = xlogy(k, k / np.maximum(expected, tiny)) + xlogy(
-        n - k, (n - k) / np.maximum(n - expected, tiny)
-    )
+    missed, rest = n - k, np.maximum(n - expected, np.finfo(float).tiny)
+    lacking = xlogy(k, k / np.maximum(expected, np.finfo(float).tiny)) + xlogy(missed, missed / rest)
     deviance, degrees = max(2.0 * float(lacking.sum()), 0.0), max(len(n) - 2, 0)
     p = float(chdtrc(degrees, deviance)) if degrees else math.nan
     largest = float(np.abs(k / n - expected / n).max())
@@ -226,7 +223,6 @@ def _lowest(x: Array, where: NDArray[np.bool_]) -> Array:
     return np.asarray(np.where(where, x, math.inf).min(axis=1), dtype=np.float64)
 
 
-_BOUNDS = ("median", "low", "high")
 # tolerance of log intensities: motions of one peak differ by the rounding of their samples
 _SAME = 1e-9
 # numbers held at once in a fit of many resamples
@@ -289,13 +285,16 @@ class Sample:
         found = Curves(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
         if not side:
             return found
-        edge, beyond = (float(self.x.max()), math.inf) if side > 0.0 else (float(self.x.min()), -math.inf)
-        low, high = (edge, beyond) if side > 0.0 else (beyond, edge)
+        edge = float(self.x.max() if side > 0.0 else self.x.min())
+        beyond = math.copysign(math.inf, side)
+        low, high = sorted((edge, beyond))
         if weights is not None:
             return replace(found, low=np.minimum(found.low, low), high=np.maximum(found.high, high))
-        shape = dict.fromkeys(("centre", "dispersion"), np.full(1, math.nan)) if kind == ONE_MOTION else {}
-        bounds = {name: np.full(1, value) for name, value in zip(_BOUNDS, (beyond, low, high), strict=True)}
-        return replace(found, **shape, **bounds, kinds=np.full(1, KINDS.index(kind)))
+        bounds = {"median": beyond, "low": low, "high": high}
+        if kind == ONE_MOTION:
+            bounds |= {"centre": math.nan, "dispersion": math.nan}
+        arrays = {name: np.full(1, value) for name, value in bounds.items()}
+        return replace(found, **arrays, kinds=np.full(1, KINDS.index(kind)))
 
     def _bound(self, whole: Curves) -> tuple[str, float]:
         """Return why the median of a fitted curve is only bounded, and on which side it lies; 0 if on none.
@@ -328,14 +327,13 @@ def interval(value: float, drawn: Array, motions: int, *, above: Array | None = 
     anything: it counts as minus infinity at the lower end and as infinity at the upper one.
     """
     low, high = expanded_shares(motions)
-    ends = []
-    uppers = drawn if above is None else above
-    for share, unknown, bounds in ((low, -math.inf, drawn), (high, math.inf, uppers)):
-        ordered = np.sort(np.where(np.isnan(bounds), unknown, bounds))
-        # the nearest to the outside: between minus infinity and a number lies nothing
-        place = share * (len(ordered) - 1)
-        ends.append(float(ordered[math.floor(place) if unknown < 0.0 else math.ceil(place)]))
-    return Interval(value=value, low=ends[0], high=ends[1])
+    # an infinite end where that is not known; the nearest to the outside: between it and a number is nothing
+    lower, upper = (
+        np.sort(np.where(np.isnan(bounds), unknown, bounds))
+        for unknown, bounds in ((-math.inf, drawn), (math.inf, drawn if above is None else above))
+    )
+    ends = lower[math.floor(low * (len(lower) - 1))], upper[math.ceil(high * (len(upper) - 1))]
+    return Interval(value=value, low=float(ends[0]), high=float(ends[1]))
 
 
 def spread_interval(value: float, drawn: Array, motions: int) -> Interval:
@@ -360,7 +358,4 @@ def bands(curves: Curves, x: Array, motions: int) -> tuple[Array, Array]:
     known = np.count_nonzero(~np.isnan(drawn), axis=0)
     low, high = (np.maximum(share * (known - 1), 0.0) for share in expanded_shares(motions))
     places = np.arange(drawn.shape[1])
-    return (
-        np.asarray(drawn[np.floor(low).astype(int), places]),
-        np.asarray(drawn[np.ceil(high).astype(int), places]),
-    )
+    return drawn[np.floor(low).astype(int), places], drawn[np.ceil(high).astype(int), places]

@@ -56,6 +56,8 @@ class Exposure:
     far : ndarray, shape (R,)
         Logarithm of the intensity beyond which its factor is larger than `FAR`; infinite of a synthetic
         motion, which a factor makes no less likely.
+    curve : (float, float), optional
+        Centre and dispersion of the lognormal curve; None without.
     """
 
     x: Array
@@ -63,6 +65,7 @@ class Exposure:
     made: NDArray[np.bool_]
     uplift: Array
     far: Array
+    curve: tuple[float, float] | None = None
 
     @property
     def stripes(self) -> bool:
@@ -76,13 +79,14 @@ class Exposure:
 
     def frequencies(self, hazard: HazardCurve) -> Frequencies:
         """Return the annual frequency of each motion; of stripes that of the shares, once."""
-        if self.stripes:
-            known = np.maximum((~np.isnan(self.y)).sum(axis=0), 1)
-            shares = np.nansum(self.y, axis=0)[None] / known
-            distant = np.nansum(np.where(self.x > self.far[:, None], self.y, 0.0), axis=0)[None] / known
-            of_far = self.of_shares(hazard, distant).total
-            return replace(self.of_shares(hazard, shares), far=of_far)
-        return frequencies_of(hazard, self.x, self.y, self.uplift, self.far)
+        if not self.stripes:
+            return frequencies_of(hazard, self.x, self.y, self.uplift, self.far)
+        known = np.maximum((~np.isnan(self.y)).sum(axis=0), 1)
+        shares, distant = (
+            self.of_shares(hazard, np.nansum(each, axis=0)[None] / known)
+            for each in (self.y, np.where(self.x > self.far[:, None], self.y, 0.0))
+        )
+        return replace(shares, far=distant.total)
 
     def terms(self, hazard: HazardCurve, single: Frequencies) -> Array:
         """Return terms (R, G) of the frequency, the sum of the means of their columns; NaN where not known.
@@ -113,8 +117,8 @@ class Exposure:
 
     def largest(self, hazard: HazardCurve) -> float:
         """Return the annual frequency by the upper ends of the intervals of the shares (Clopper-Pearson)."""
-        runs, over = (~np.isnan(self.y)).sum(axis=0), np.nansum(self.y, axis=0)
-        ends = [share_interval(int(k), int(n)).high if n else 1.0 for k, n in zip(over, runs, strict=True)]
+        runs, over = (~np.isnan(self.y)).sum(axis=0).tolist(), np.nansum(self.y, axis=0).astype(int).tolist()
+        ends = [share_interval(k, n).high if n else 1.0 for k, n in zip(over, runs, strict=True)]
         longer = continued(hazard, float(self.uplift.min()))
         bound = self.of_shares(longer, np.array([ends]))
         missing = (1.0 - ends[-1]) * rate_at(longer, self.x.mean(axis=0)[-1:])
@@ -184,7 +188,6 @@ def resampled(terms: Array, weights: Array) -> Resampled:
 def risk_tables(
     blocks: Blocks,
     exposures: Mapping[tuple[str, str], Exposure],
-    curves: Mapping[tuple[str, str], tuple[float, float] | None],
     hazard: HazardCurve,
     *,
     weights: Array,
@@ -196,8 +199,8 @@ def risk_tables(
     Parameters
     ----------
     blocks : Blocks
-    exposures, curves : mapping
-        By cylinder and method; a curve by its centre and dispersion in the unit of the hazard, None without.
+    exposures : mapping
+        By cylinder and method.
     hazard : HazardCurve
     weights : ndarray, shape (B, R)
         How often each motion is drawn.
@@ -213,46 +216,44 @@ def risk_tables(
         and probability_fit of overturning, contribution and contribution_fit (p |d lambda / d ln theta|).
     """
     rows: list[dict[str, float | str]] = []
-    parts = []
-    for cylinder in blocks.cylinders:
-        reference: Resampled | None = None
-        for method in blocks.methods:
-            exposure = exposures.get((cylinder, method))
-            if exposure is None:
-                continue
-            single = exposure.frequencies(hazard)
-            drawn = resampled(exposure.terms(hazard, single), weights)
-            stated = _frequency_row(hazard, exposure, single, drawn, blocks.fewest)
-            value = float(stated["annual_frequency"])
-            reference = drawn if reference is None else reference
-            curve = curves[cylinder, method]
-            fit = math.nan if curve is None else lognormal_frequency(hazard, *curve)
-            about = {"cylinder": cylinder, "method": method}
-            rows.append(
-                {
-                    **about,
-                    **stated,
-                    "annual_frequency_fit": fit,
-                    "verdict": _verdict(stated, target),
-                    "probability": -math.expm1(-value * years),
-                    "margin": math.nan if curve is None else math.exp(curve[0]) / hazard.intensity_at(RARE),
-                    **drawn.over(reference).interval(blocks.fewest).columns("ratio"),
-                }
-            )
-            parts.append(_contributions(hazard, exposure, curve).assign(**about))
+    parts: list[pd.DataFrame] = []
+    references: dict[str, Resampled] = {}
+    for (cylinder, method), exposure in exposures.items():
+        single, curve = exposure.frequencies(hazard), exposure.curve
+        drawn = resampled(exposure.terms(hazard, single), weights)
+        reference = references.setdefault(cylinder, drawn)
+        frequency = frequency_interval(hazard, exposure, single, drawn, blocks.fewest)
+        verdict = "below" if frequency.high < target else "above" if frequency.low > target else UNDECIDED
+        most, *resting = (
+            float(np.nanmean(each)) for each in (single.most, single.head, single.tail, single.far)
+        )
+        share = 1.0 / frequency.value if frequency.value > 0.0 else math.nan
+        about = {"cylinder": cylinder, "method": method}
+        rows.append(
+            {
+                **about,
+                **frequency.columns("annual_frequency"),
+                "annual_frequency_most": most,
+                **{name: part * share for name, part in zip(_SHARES, resting, strict=True)},
+                "motions": len(exposure.y),
+                "overturning_motions": exposure.exceeding,
+                "failed": int((np.isnan(exposure.y) & exposure.made).sum()),
+                "annual_frequency_fit": lognormal_frequency(hazard, *curve) if curve else math.nan,
+                "verdict": verdict,
+                "probability": -math.expm1(-frequency.value * years),
+                "margin": math.exp(curve[0]) / hazard.intensity_at(RARE) if curve else math.nan,
+                **drawn.over(reference).interval(blocks.fewest).columns("ratio"),
+            }
+        )
+        parts.append(_contributions(hazard, exposure).assign(**about))
     return pd.DataFrame(rows), pd.concat(parts, ignore_index=True)
-
-
-def _verdict(row: Mapping[str, float], target: float) -> str:
-    """Verdict on the interval of a frequency: "below" a target, "above" it, or "inconclusive"."""
-    if row["annual_frequency_high"] < target:
-        return "below"
-    return "above" if row["annual_frequency_low"] > target else "inconclusive"
 
 
 # shares of the frequency from which it is said what they rest on
 _OPEN, _SCALED = 0.1, 0.5
-_LEVELS: Mapping[str, Level] = {"below": "satisfied", "inconclusive": "caution", "above": "not satisfied"}
+_SHARES = ("head_share", "tail_share", "far_share")
+UNDECIDED = "inconclusive"
+_LEVELS: Mapping[str, Level] = {"below": "satisfied", UNDECIDED: "caution", "above": "not satisfied"}
 
 
 def risk_findings(rows: Sequence[Mapping[str, Any]], site: Mapping[str, Any]) -> Iterator[Finding]:
@@ -270,8 +271,8 @@ def risk_findings(rows: Sequence[Mapping[str, Any]], site: Mapping[str, Any]) ->
     for row in rows:
         if row["method"] != rows[0]["method"]:
             continue
-        verdict = _verdict(row, target)
         value, low, high = (row[f"annual_frequency{end}"] for end in ("", "_low", "_high"))
+        verdict = row["verdict"]
         values = {"name": row["cylinder"], "detail": limit, "reason": verdict, "frequency_target": target}
         values |= {"frequency": (value, low, high), "years": 1.0 / value} if value > 0.0 else {}
         values |= {"frequency_high": high}
@@ -282,19 +283,18 @@ def risk_findings(rows: Sequence[Mapping[str, Any]], site: Mapping[str, Any]) ->
             runs=row["method"],
         )
     for row in rows:
-        few, runs = row["overturning_motions"], row["method"]
-        head, tail, far = (row.get(f"{part}_share", 0.0) for part in ("head", "tail", "far"))
+        few, head, tail, far = (row[name] for name in ("overturning_motions", *_SHARES))
         values = {"name": row["cylinder"], "detail": limit}
         values |= {f"frequency_{end}": row[f"annual_frequency_{end}"] for end in ("low", "high", "most")}
-        if few < FEWEST_EXCEEDING:
-            yield Finding(key="risk.few", level="caution", values=values | {"count": few}, runs=runs)
-        if head > _OPEN:
-            yield Finding(key="risk.head", level="caution", values=values | {"share": head}, runs=runs)
-        if tail > _OPEN:
-            yield Finding(key="risk.tail", level="caution", values=values | {"share": tail}, runs=runs)
-        if far > _SCALED:
-            scaled = {"share": far, "factor": FAR}
-            yield Finding(key="risk.far", level="caution", values=values | scaled, runs=runs)
+        doubts: tuple[tuple[str, bool, dict[str, Value]], ...] = (
+            ("few", few < FEWEST_EXCEEDING, {"count": few}),
+            ("head", head > _OPEN, {"share": head}),
+            ("tail", tail > _OPEN, {"share": tail}),
+            ("far", far > _SCALED, {"share": far, "factor": FAR}),
+        )
+        for name, holds, more in doubts:
+            if holds:
+                yield Finding(key=f"risk.{name}", level="caution", values=values | more, runs=row["method"])
     if total := site.get("total_dispersion"):
         yield Finding(key="risk.dispersion", values={"ratio": total})
 
@@ -316,32 +316,10 @@ def frequency_interval(
     return Interval(value=total, low=min(low, total), high=max(high, total))
 
 
-def _frequency_row(
-    hazard: HazardCurve, exposure: Exposure, single: Frequencies, drawn: Resampled, motions: int
-) -> dict[str, float | int]:
-    """Return the annual frequency with its interval and with what it rests on."""
-    total, head, tail, most, far = (
-        float(np.nanmean(each)) for each in (single.total, single.head, single.tail, single.most, single.far)
-    )
-    share = 1.0 / total if total > 0.0 else math.nan
-    return {
-        **frequency_interval(hazard, exposure, single, drawn, motions).columns("annual_frequency"),
-        "annual_frequency_most": most,
-        "head_share": head * share,
-        "tail_share": tail * share,
-        "far_share": far * share,
-        "motions": len(exposure.y),
-        "overturning_motions": exposure.exceeding,
-        "failed": int((np.isnan(exposure.y) & exposure.made).sum()),
-    }
-
-
 _POINTS = 200  # points of the picture
 
 
-def _contributions(
-    hazard: HazardCurve, exposure: Exposure, curve: tuple[float, float] | None
-) -> pd.DataFrame:
+def _contributions(hazard: HazardCurve, exposure: Exposure) -> pd.DataFrame:
     from scipy.special import ndtr
 
     x = np.linspace(math.log(hazard.intensity[0]), math.log(hazard.intensity[-1]), _POINTS)
@@ -352,11 +330,9 @@ def _contributions(
         share = np.nanmean(rows, axis=0)
     rate = rate_at(hazard, x)
     slope = -np.gradient(np.log(rate), x)
-    fit = np.full(_POINTS, np.nan)
-    if curve is not None:
-        centre, dispersion = curve
-        with np.errstate(divide="ignore"):
-            fit = np.asarray(ndtr((x - centre) / dispersion))
+    centre, dispersion = exposure.curve or (math.nan, math.nan)
+    with np.errstate(divide="ignore"):
+        fit = np.asarray(ndtr((x - centre) / dispersion))
     return pd.DataFrame(
         {
             "intensity": np.exp(x),
@@ -410,47 +386,42 @@ def measure_factor(hazard: HazardCurve, body: Mapping[str, float], period: float
 
 
 def exposures_of(
-    blocks: Blocks,
-    points: pd.DataFrame,
-    of_hazard: Mapping[str, tuple[str, float]],
-    dispersion: float | None,
-    limit: str,
-) -> tuple[dict[tuple[str, str], Exposure], dict[tuple[str, str], tuple[float, float] | None]]:
-    """Return the exposure and the lognormal curve of each cylinder and method in the unit of a hazard.
+    blocks: Blocks, of_hazard: Mapping[str, tuple[str, float]], dispersion: float | None, limit: str
+) -> dict[tuple[str, str], Exposure]:
+    """Return the exposure of each cylinder and method in the unit of a hazard.
 
     Parameters
     ----------
     blocks : Blocks
-    points : DataFrame
-        Points of the same fragility.
     of_hazard : mapping of str to (str, float)
         By cylinder: a measure of the points, and the factor on it that gives that of the hazard.
     dispersion : float or None
         Total dispersion of the curves, in the place of that of the motions.
     limit : str
     """
-    exposures, curves = {}, {}
+    exposures = {}
     for cylinder in blocks.cylinders:
         measure, factor = of_hazard[cylinder]
-        x = blocks.intensities[cylinder, measure] + math.log(factor)
+        x = blocks.intensities(cylinder, measure) + math.log(factor)
         if not blocks.made.all() and measure != blocks.measure:
             raise ValueError(
                 f"motions by level are of the measure of their levels: the hazard must be of "
                 f"{blocks.measure}, got {measure}"
             )
-        of_points = partial(blocks.of_points, points, cylinder)
+        of_points = partial(blocks.of_points, cylinder)
         as_recorded = np.nanmean(x - np.log(of_points("scale")), axis=1)
         uplift = as_recorded + np.log(np.nanmean(of_points("uplift_scale"), axis=1))
-        synthetic = "synthetic" in points and np.nanmax(of_points("synthetic"), axis=1) > 0.0
+        synthetic = np.nanmax(of_points("synthetic"), axis=1) > 0.0
         far = np.where(synthetic, np.inf, as_recorded + math.log(FAR))
         for method in blocks.methods:
             y = blocks.exceedance(cylinder, method, limit)
             if np.isnan(y).all():
                 continue
-            key = cylinder, method
-            exposures[key] = Exposure(x=x, y=y, made=blocks.made, uplift=uplift, far=far)
-            curve = Sample(x=x, y=y).curves()
-            own = float(curve.dispersion[0]) if dispersion is None else dispersion
-            fitted = KINDS[curve.kinds[0]] in (FITTED, EXTRAPOLATED)
-            curves[key] = (float(curve.centre[0]), own) if fitted else None
-    return exposures, curves
+            fit = Sample(x=x, y=y).curves()
+            own = float(fit.dispersion[0]) if dispersion is None else dispersion
+            known = KINDS[fit.kinds[0]] in (FITTED, EXTRAPOLATED)
+            curve = (float(fit.centre[0]), own) if known else None
+            exposures[cylinder, method] = Exposure(
+                x=x, y=y, made=blocks.made, uplift=uplift, far=far, curve=curve
+            )
+    return exposures

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from numbers import Real
 from operator import attrgetter
-from typing import ClassVar
+from typing import Any, ClassVar, cast
 
 import numpy as np
 import pandas as pd
@@ -26,7 +26,7 @@ from rockwobble.compare.runs.execution import (
 from rockwobble.compare.storage.provenance import result_fingerprint
 from rockwobble.models import Case, GroundMotion, RockingBody, Run
 from rockwobble.models.bounds import OVERTURNED_TILT
-from rockwobble.models.case import REDUCED_MODELS
+from rockwobble.models.case import REDUCED_MODELS, TERMS
 from rockwobble.models.number_checks import quoted, require_each, require_increasing, require_one_of
 from rockwobble.models.support import FLAT, MODELLED, RECESS, SUPPORTS
 from rockwobble.models.trace import NO_PEAK
@@ -38,6 +38,7 @@ from .intensity import intensity, measures_of, uplift_scale
 from .tables import CONTACT_LOST, SLIDES, YIELDED
 
 Row = dict[str, float | str]  # row of a run
+Shaken = tuple[Case, Mapping[int, float]]  # case, and the factors on its ground motion by their places
 # The worse plane is no run of its own: of both planes, for each motion, the one that tilts more.
 WORSE_PLANE = "worse-plane"
 _PLANES = {"planar-x": 0.0, "planar-y": 0.5 * math.pi}
@@ -97,12 +98,10 @@ def methods_of(given: Iterable[str | Run], *, restitution: float | str = 1.0) ->
     """
     chosen: list[str | Run] = []
     for method in given:
-        if isinstance(method, Run):
-            chosen.append(method)
-            continue
-        require_one_of("a reduced model", method, MODEL_LABELS)
+        if not isinstance(method, Run):
+            require_one_of("a reduced model", method, MODEL_LABELS)
         needed = (*_PLANES, method) if method == WORSE_PLANE else (method,)
-        chosen += [each for each in needed if each not in chosen]
+        chosen += [each for each in needed if isinstance(each, Run) or each not in chosen]
     if not chosen:
         raise ValueError("a fragility needs at least one method, got none")
     if restitution != 1.0 and not any(method in _PLANES for method in chosen):
@@ -143,15 +142,6 @@ _RTOL = 1e-7
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Shaking:
-    """A cylinder under a ground motion as it is, the factors on the motion, and their places (levels)."""
-
-    case: Case
-    scales: tuple[float, ...]
-    steps: tuple[int, ...]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Task:
     """One cylinder by one method under some motions, each with some factors.
 
@@ -160,7 +150,8 @@ class Task:
     name, label : str
         Name and label of the cylinder and of the method.
     run : Run
-    shakings : tuple of Shaking
+    shakings : tuple of Shaken
+        Cases with ground motions as they are, with the factors on each by their places (levels).
     contact : bool
         Whether it is asked if a reduced model keeps its contact: that takes its forces.
     gap : float, optional
@@ -170,91 +161,80 @@ class Task:
     name: str
     label: str
     run: Run
-    shakings: tuple[Shaking, ...]
+    shakings: tuple[Shaken, ...]
     contact: bool
     gap: float | None = None
 
     @property
     def points(self) -> list[tuple[str, int]]:
         """Name of the motion and place of the level of each run."""
-        return [(shaking.case.name, step) for shaking in self.shakings for step in shaking.steps]
+        return [(case.name, step) for case, factors in self.shakings for step in factors]
 
     @property
     def title(self) -> str:
         """Description of the task, for the progress callback."""
+        case, factors = self.shakings[0]
+        scale = f" × {min(factors.values()):.3g}" if len(factors) == 1 else ""
         more = f" and {len(self.shakings) - 1} more" if len(self.shakings) > 1 else ""
-        first = self.shakings[0]
-        scale = f" × {first.scales[0]:.3g}" if len(first.scales) == 1 else ""
-        return f"{self.name}, {self.label}, {first.case.name}{scale}{more}"
+        return f"{self.name}, {self.label}, {case.name}{scale}{more}"
 
     @property
     def cost(self) -> float:
         """Rough computing time [s]."""
-
-        def time(case: Case) -> float:
-            if self.run.is_model:
-                return case.length * (_KERNEL_TIME if self._of_peaks else _SOLUTION_TIME)
-            return engine_time(case, self.run)
-
-        return sum(time(shaking.case) * len(shaking.scales) for shaking in self.shakings)
+        rate = _KERNEL_TIME if self._of_peaks else _SOLUTION_TIME
+        return sum(
+            (rate * case.length if self.run.is_model else engine_time(case, self.run)) * len(factors)
+            for case, factors in self.shakings
+        )
 
     def key(self) -> str:
         """Hash that identifies the results."""
         own = {"contact": self.contact, "rtol": _RTOL} if self.run.is_model else {}
         own |= {} if self.gap is None else {"gap": self.gap}
-        shakings = [case_inputs(shaking.case) | {"scales": shaking.scales} for shaking in self.shakings]
+        shakings = [
+            case_inputs(case) | {"scales": tuple(factors.values())} for case, factors in self.shakings
+        ]
         return result_fingerprint({"shakings": shakings, "run": self.run, **own}, makers_of(self.run))
 
     @property
     def _of_peaks(self) -> bool:
         """Whether the batch kernel suffices: peaks of homogeneous cylinders, with or without a slab."""
-        own = self.shakings[0].case.cylinder
+        own = self.shakings[0][0].cylinder
         homogeneous = (own.height, own.transverse_inertia, own.axial_inertia) == (None, None, None)
         return self.run.is_model and homogeneous and not self.contact
 
     def rows(self) -> list[Row]:
         """Return a row for each motion and factor, in their order."""
         if self._of_peaks:
-            return [row for shaking in self.shakings for row in self._peaks(shaking)]
-        return [self._simulate(each.case, scale) for each in self.shakings for scale in each.scales]
+            return [row for case, factors in self.shakings for row in self._peaks(case, [*factors.values()])]
+        return [self._simulate(case, scale) for case, factors in self.shakings for scale in factors.values()]
 
-    def _peaks(self, shaking: Shaking) -> list[Row]:
+    def _peaks(self, case: Case, scales: Sequence[float]) -> list[Row]:
         from rockwobble import reduced
 
-        case, cylinder = shaking.case, shaking.case.cylinder
-        assert case.motion is not None
+        cylinder, motion = case.cylinder, cast("GroundMotion", case.motion)
+        # the processes share the cores already
+        common: dict[str, Any] = {"workers": 1, "gravity": case.gravity}
         if slides_by_model(case, self.run):
-            moved = reduced.peak_displacements(
-                [case.friction], case.motion, shaking.scales, workers=1, gravity=case.gravity
-            )[0]
+            moved = reduced.peak_displacements([case.friction], motion, scales, **common)[0]
             return [
                 _row(case, 0.0 * each, "failed" if math.isnan(each) else "stands", slides=self._exceeds(each))
                 for each in moved.tolist()
             ]
-        peaks = reduced.peak_tilts(
-            [cylinder.semidiagonal],
-            cylinder.tan_alpha,
-            case.motion,
-            shaking.scales,
-            workers=1,  # the processes share the cores already
-            gravity=case.gravity,
-            slab_mass_ratio=cylinder.slab_mass_ratio,
-            support=self.run.support,
-            **case.terms,
-            **{"rtol": _RTOL, **self.run.settings},
-        )[0]
+        common |= {**case.terms, "slab_mass_ratio": cylinder.slab_mass_ratio, "support": self.run.support}
+        common |= {"rtol": _RTOL, **self.run.settings}
+        peaks = reduced.peak_tilts([cylinder.semidiagonal], cylinder.tan_alpha, motion, scales, **common)[0]
         return [
             # a run without a peak gives its reason
             self._simulate(case, scale) if math.isnan(peak) else _row(case, peak, outcome_of_peak(peak))
-            for peak, scale in zip(peaks.tolist(), shaking.scales, strict=True)
+            for peak, scale in zip(peaks.tolist(), scales, strict=True)
         ]
 
     def _simulate(self, case: Case, scale: float) -> Row:
-        assert case.motion is not None
-        run = self.run
+        run, motion = self.run, cast("GroundMotion", case.motion)
         if run.is_model:
             run = Run(None, run.support, **{"rtol": _RTOL, **run.settings})
-        trace = simulate_run(replace(case, motion=case.motion.scaled(scale)), run)
+        trace = simulate_run(replace(case, motion=motion.scaled(scale)), run)
         lost = math.nan
         if trace.outcome not in NO_PEAK and (self.contact or not run.is_model):
             lost = float(any(fact.code in _LOST for fact in trace.diagnostics))
@@ -285,8 +265,8 @@ def _row(
     tendon = case.tendon
     if tendon is not None and beyond_yield(peak_tilt, case):
         peak_tilt, outcome, contact_lost = tendon.yield_tilt(case.cylinder), YIELDED, math.nan
-    found: Row = {"peak_tilt": peak_tilt / case.cylinder.alpha, "outcome": outcome}
-    return found | {CONTACT_LOST: contact_lost, SLIDES: slides}
+    values = (peak_tilt / case.cylinder.alpha, outcome, contact_lost, slides)
+    return dict(zip(_OF_RUN, values, strict=True))
 
 
 # The reduced runs of a task take about a second together: little is lost with it.
@@ -345,20 +325,20 @@ class RunPlan(Study[Task, pd.DataFrame]):
                 f"step_factor is for engines at their default time step, got {asked.step_factor!r}"
             )
         for cylinder in self.cylinders.values():
-            shakings = [self._shaking(cylinder, motion) for motion in self.motions]
+            case = self._case(cylinder, self.motions[0])
             for method in self.methods:
                 if method.run is not None:
-                    require_runnable(shakings[0].case, self._with_step(method.run, cylinder))
+                    require_runnable(case, self._with_step(method.run, cylinder))
 
     def motions_of_levels(self) -> list[int]:
         """Return the number of motions at each level."""
-        counts = Counter(step for steps in (self.stripes or {}).values() for step in steps)
-        return [counts[step] for step in range(len(self.options.levels or ()))]
+        places = [step for steps in (self.stripes or {}).values() for step in steps]
+        return [places.count(step) for step in range(len(self.options.levels or ()))]
 
     @property
     def scales(self) -> tuple[float, ...]:
         """Factors on the motions of a cloud."""
-        return (1.0,) if self.options.scales is None else tuple(map(float, self.options.scales))
+        return tuple(map(float, self.options.scales or (1.0,)))
 
     def factors(self, cylinder: RockingBody, motion: GroundMotion) -> dict[int, float]:
         """Return the factors on a motion by their place: one for each level of its, or of the cloud."""
@@ -369,18 +349,10 @@ class RunPlan(Study[Task, pd.DataFrame]):
         steps = range(len(asked.levels)) if self.stripes is None else self.stripes[motion.name]
         return {step: float(asked.levels[step]) / own for step in steps}
 
-    def _shaking(self, cylinder: RockingBody, motion: GroundMotion) -> Shaking:
-        case = Case(
-            cylinder,
-            motion,
-            gravity=self.options.gravity,
-            friction=self.options.friction,
-            rolling_resistance=self.options.rolling_resistance,
-            tendon=self.options.tendon,
-            name=motion.name,
-        )
-        factors = self.factors(cylinder, motion)
-        return Shaking(case=case, scales=tuple(factors.values()), steps=tuple(factors))
+    def _case(self, cylinder: RockingBody, motion: GroundMotion) -> Case:
+        asked = self.options
+        terms = {name: getattr(asked, name) for name in ("gravity", "friction", *TERMS)}
+        return Case(cylinder, motion, name=motion.name, **terms)
 
     @cached_property
     def points(self) -> pd.DataFrame:
@@ -395,17 +367,45 @@ class RunPlan(Study[Task, pd.DataFrame]):
             lifts = [uplift_scale(motion, cylinder, asked.gravity, asked.tendon) for motion in self.motions]
             for index, motion in enumerate(self.motions):
                 for step, scale in self.factors(cylinder, motion).items():
-                    found = {measure: scale * values[index] for measure, values in own.items()}
+                    row: dict[str, object] = {"cylinder": name, "motion": motion.name, "step": step}
+                    row |= {"scale": scale, "uplift_scale": lifts[index], "synthetic": motion.synthetic}
+                    row |= {measure: scale * values[index] for measure, values in own.items()}
                     if asked.levels is not None:  # one level for all, to the last bit
-                        found[asked.measure] = float(asked.levels[step])
-                    place = {"cylinder": name, "motion": motion.name, "step": step, "scale": scale}
-                    about = {"uplift_scale": lifts[index], "synthetic": motion.synthetic}
-                    rows.append(place | about | found)
+                        row[asked.measure] = float(asked.levels[step])
+                    rows.append(row)
         return pd.DataFrame(rows)
 
     def tasks(self) -> list[Task]:
-        """Runs: engines singly, reduced models some motions together."""
-        return list(self._tasks())
+        """Runs: engines singly, reduced models some motions together until they take about a second."""
+        contact = CONTACT_LOST in (self.options.limits or ())
+        tasks: list[Task] = []
+        for name, cylinder in self.cylinders.items():
+            whole: list[Shaken] = [(self._case(cylinder, m), self.factors(cylinder, m)) for m in self.motions]
+            single: list[Shaken] = [
+                (case, {step: by}) for case, scales in whole for step, by in scales.items()
+            ]
+            for method in self.methods:
+                if method.run is None:
+                    continue
+                run = self._with_step(method.run, cylinder)
+                empty = Task(
+                    name=name,
+                    label=method.label,
+                    run=run,
+                    shakings=(),
+                    contact=contact,
+                    gap=self.options.gap,
+                )
+                own, size = single, 1
+                if run.is_model:
+                    own = whole
+                    longest = max(replace(empty, shakings=(each,)).cost for each in whole)
+                    size = max(1, round(_CHUNK_TIME / longest))
+                tasks += [
+                    replace(empty, shakings=tuple(own[place : place + size]))
+                    for place in range(0, len(own), size)
+                ]
+        return tasks
 
     @staticmethod
     def row(task: Task) -> pd.DataFrame:
@@ -422,7 +422,7 @@ class RunPlan(Study[Task, pd.DataFrame]):
 
     def lost(self, task: Task, why: str) -> pd.DataFrame:
         """Table of a task whose process died: its runs failed."""
-        return pd.DataFrame([_row(task.shakings[0].case, math.nan, "failed")] * len(task.points))
+        return pd.DataFrame([_row(task.shakings[0][0], math.nan, "failed")] * len(task.points))
 
     def makers(self) -> Mapping[str, str]:
         """Versions and code of the methods."""
@@ -430,36 +430,13 @@ class RunPlan(Study[Task, pd.DataFrame]):
 
     def results(self, tables: list[pd.DataFrame]) -> pd.DataFrame:
         """Runs of all tasks, and the worse plane where it is asked for."""
-        named = [_with_labels(task, each) for task, each in zip(self.tasks(), tables, strict=True)]
-        table = pd.concat(named, ignore_index=True)
+        named = []
+        for task, own in zip(self.tasks(), tables, strict=True):
+            motions, steps = zip(*task.points, strict=True)
+            named.append(own.assign(cylinder=task.name, motion=motions, step=steps, method=task.label))
+        table = pd.concat(named, ignore_index=True)[[*KEYS, "method", *_OF_RUN]]
         worse = [worse_plane(table)] if any(method.run is None for method in self.methods) else []
         return pd.concat([table, *worse], ignore_index=True)
-
-    def _tasks(self) -> Iterator[Task]:
-        contact = CONTACT_LOST in (self.options.limits or ())
-        for name, cylinder in self.cylinders.items():
-            shakings = [self._shaking(cylinder, motion) for motion in self.motions]
-            single = [
-                replace(shaking, scales=(scale,), steps=(step,))
-                for shaking in shakings
-                for step, scale in zip(shaking.steps, shaking.scales, strict=True)
-            ]
-            for method in self.methods:
-                if method.run is None:
-                    continue
-                run = self._with_step(method.run, cylinder)
-                tasks = [
-                    Task(
-                        name=name,
-                        label=method.label,
-                        run=run,
-                        shakings=(shaking,),
-                        contact=contact,
-                        gap=self.options.gap,
-                    )
-                    for shaking in (shakings if run.is_model else single)
-                ]
-                yield from _together(tasks) if run.is_model else tasks
 
     def _with_step(self, run: Run, cylinder: RockingBody) -> Run:
         if run.is_model or run.time_step is not None or self.options.step_factor == 1.0:
@@ -504,16 +481,24 @@ def default_levels(
     A tendon raises the lowest as it raises uplift, and the highest by its way to the balance besides. In
     another measure than the peak acceleration: what the median motion has at these levels.
     """
+    from rockwobble import reduced
+
     over = [
         _intensity_of(asked, motion, cylinder)
         / intensity("peak_acceleration", motion, cylinder, gravity=asked.gravity)
         for cylinder in cylinders.values()
         for motion in motions
     ]
-    held = [_hold_of(body, asked) for body in cylinders.values()]
-    if asked.gap is not None:  # it begins to slide where the friction ends
-        begin = [min(1.0, asked.friction / body.tan_alpha) for body in cylinders.values()]
-        held = [(of * share, barrier * share) for (of, barrier), share in zip(held, begin, strict=True)]
+    held = []  # factors by which a tendon raises the couple at uplift and the velocity to reach the balance
+    for body in cylinders.values():
+        # with a gap it begins to slide where the friction ends
+        share = 1.0 if asked.gap is None else min(1.0, asked.friction / body.tan_alpha)
+        of, barrier = 1.0, 1.0
+        if asked.tendon is not None:
+            case = Case(body, duration=1.0, gravity=asked.gravity, tendon=asked.tendon)
+            of = asked.tendon.uplift_factor(body)
+            barrier = math.sqrt(min(reduced.balance_tilt_of_case(case), OVERTURNED_TILT) / body.alpha)
+        held.append((of * share, barrier * share))
     low, high = _LOWEST * min(of for of, _ in held), _HIGHEST * max(of * barrier for of, barrier in held)
     middle = float(np.median(over))
     return tuple(float(f"{middle * level:.3g}") for level in np.geomspace(low, high, LEVELS))
@@ -521,33 +506,8 @@ def default_levels(
 
 def _intensity_of(asked: FragilityPlan, motion: GroundMotion, cylinder: RockingBody) -> float:
     """Intensity of a motion by the measure of a plan."""
-    return intensity(
-        asked.measure,
-        motion,
-        cylinder,
-        gravity=asked.gravity,
-        period=asked.period,
-        friction=asked.friction,
-    )
-
-
-def _hold_of(body: RockingBody, asked: FragilityPlan) -> tuple[float, float]:
-    """Return the factors by which a tendon raises the couple at uplift and the velocity to reach balance."""
-    from rockwobble import reduced
-
-    tendon = asked.tendon
-    if tendon is None:
-        return 1.0, 1.0
-    balance = reduced.balance_tilt_of_case(Case(body, duration=1.0, gravity=asked.gravity, tendon=tendon))
-    return tendon.uplift_factor(body), math.sqrt(min(balance, OVERTURNED_TILT) / body.alpha)
-
-
-def _together(singles: Sequence[Task]) -> Iterator[Task]:
-    """Join tasks of the same cylinder and method until they take about a second."""
-    size = max(1, round(_CHUNK_TIME / max(task.cost for task in singles)))
-    for i in range(0, len(singles), size):
-        part = singles[i : i + size]
-        yield replace(part[0], shakings=tuple(shaking for task in part for shaking in task.shakings))
+    options = {"gravity": asked.gravity, "period": asked.period, "friction": asked.friction}
+    return intensity(asked.measure, motion, cylinder, **options)
 
 
 def _has_default_step(method: Method) -> bool:
@@ -555,14 +515,7 @@ def _has_default_step(method: Method) -> bool:
 
 
 KEYS = ["cylinder", "motion", "step"]
-
-
-def _with_labels(task: Task, table: pd.DataFrame) -> pd.DataFrame:
-    motions, steps = zip(*task.points, strict=True)
-    whole = table.assign(cylinder=task.name, motion=motions, step=steps, method=task.label)
-    return whole[[*KEYS, "method", "peak_tilt", "outcome", "contact_lost", SLIDES]]
-
-
+_OF_RUN = ["peak_tilt", "outcome", CONTACT_LOST, SLIDES]
 _ENDS = [*NO_PEAK, "overturned", YIELDED]  # the worst first
 
 

@@ -47,6 +47,7 @@ from .tables import (
     OVERTURNED,
     SLIDES,
     TENDON_YIELDS,
+    Row,
     blocks_of,
     contrast_table,
     count_table,
@@ -55,6 +56,7 @@ from .tables import (
     efficiency_table,
     fit_table,
     gap_table,
+    rows_of,
 )
 
 KIND = "fragility"
@@ -114,15 +116,16 @@ class Fragility(Results, kind=KIND):
     def headline(self) -> dict[str, Number]:
         """Return the medians of overturning, of too few motions its counts, and the ratios of the medians."""
         fits, contrasts = (
-            [row for row in table.to_dict("records") if row["limit"] == OVERTURNED]
+            [row for row in rows_of(table) if row["limit"] == OVERTURNED]
             for table in (self.fits, self.contrasts)
         )
-        return {
+        medians: dict[str, Number] = {
             f"{row['cylinder']}, {row['method']}, overturned of {row['runs']}": row["exceeded"]
             if row["kind"] == TOO_FEW
             else self.median_or_bound(row["cylinder"], row["median"])
             for row in fits
-        } | {
+        }
+        return medians | {
             f"{row['cylinder']}, {row['method']} / {row['against']}": known_ratio(row["ratio"])
             for row in contrasts
         }
@@ -184,7 +187,9 @@ class Fragility(Results, kind=KIND):
         ValueError
             If the hazard is of a measure or a period that this fragility does not have.
         """
-        return self._risk_tables(hazard, years, total_dispersion, limit, target)[0]
+        return self.with_risk(
+            hazard, years, total_dispersion=total_dispersion, limit=limit, target=target
+        ).tables["risk"]
 
     def with_risk(
         self,
@@ -196,7 +201,22 @@ class Fragility(Results, kind=KIND):
         target: float = TARGET,
     ) -> Fragility:
         """Return the same with the tables risk and contributions, and the hazard among its facts."""
-        risk, contributions = self._risk_tables(hazard, years, total_dispersion, limit, target)
+        require_positive("years", years, "years")
+        require_positive("target", target, "1/year")
+        facts = self.facts
+        allowed = [name for name in LIMITS if name in (OVERTURNED, *facts["limits"])]
+        require_one_of("the limit of a risk", limit, allowed)
+        if total_dispersion is not None:
+            require_positive("total_dispersion", total_dispersion)
+        of_hazard = {
+            name: measure_factor(hazard, body, facts["period"]) for name, body in facts["cylinders"].items()
+        }
+        blocks = blocks_of(self.runs, self.points, facts["limits"], str(facts["measure"]))
+        exposures = exposures_of(blocks, of_hazard, total_dispersion, limit)
+        weights = blocks.weights(int(facts["resamples"]), int(facts["seed"]))
+        risk, contributions = risk_tables(
+            blocks, exposures, hazard, weights=weights, years=years, target=target
+        )
         site = {"name": hazard.name, "title": hazard.title, "years": years, "rare": hazard.intensity_at(RARE)}
         site |= {"source": hazard.source, "total_dispersion": total_dispersion}
         site |= {"limit": limit, "target": target}
@@ -204,35 +224,14 @@ class Fragility(Results, kind=KIND):
         return replace(
             self,
             tables={**self.tables, "risk": risk, "contributions": contributions},
-            facts=plain({**self.facts, "hazard": site, "doubts": [*self.facts.get("doubts", ()), *doubts]}),
+            facts=plain({**facts, "hazard": site, "doubts": [*facts.get("doubts", ()), *doubts]}),
             manifest=None,
         )
 
-    def _risk_tables(
-        self, hazard: HazardCurve, years: float, total_dispersion: float | None, limit: str, target: float
-    ) -> tuple[pd.DataFrame, pd.DataFrame]:
-        require_positive("years", years, "years")
-        require_positive("target", target, "1/year")
-        allowed = [name for name in LIMITS if name in (OVERTURNED, *self.facts["limits"])]
-        require_one_of("the limit of a risk", limit, allowed)
-        if total_dispersion is not None:
-            require_positive("total_dispersion", total_dispersion)
-        facts = self.facts
-        of_hazard = {
-            name: measure_factor(hazard, body, facts["period"]) for name, body in facts["cylinders"].items()
-        }
-        blocks = blocks_of(self.runs, self.points, facts["limits"], str(facts["measure"]))
-        exposures, curves = exposures_of(blocks, self.points, of_hazard, total_dispersion, limit)
-        weights = blocks.weights(int(facts["resamples"]), int(facts["seed"]))
-        return risk_tables(blocks, exposures, curves, hazard, weights=weights, years=years, target=target)
-
     def findings(self) -> Findings:
         """Return medians or what bounds them, ratios of methods, remarks, and what the risk says."""
-        fits, risk = (
-            [{str(name): value for name, value in row.items()} for row in table.to_dict("records")]
-            for table in (self.fits, self.tables.get("risk", pd.DataFrame()))
-        )
-        own = fragility_findings(self.facts, fits, main_contrasts(self), self.median_or_bound)
+        contrasts, risk = main_contrasts(self), rows_of(self.tables.get("risk", pd.DataFrame()))
+        own = fragility_findings(self.facts, rows_of(self.fits), contrasts, self.median_or_bound)
         return Findings([*own, *(risk_findings(risk, self.facts["hazard"]) if risk else ())])
 
     def sheets(self) -> dict[str, bytes]:
@@ -245,13 +244,14 @@ class Fragility(Results, kind=KIND):
 
     def _main_facts(self) -> dict[str, str]:
         runs = self.runs
-        return {
-            "cylinders": str(runs["cylinder"].nunique()),
-            "motions": str(runs["motion"].nunique()),
-            "runs": str(len(runs)),
-            "failed": str(int(runs["outcome"].isin(NO_PEAK).sum())),
-            "methods": ", ".join(dict.fromkeys(runs["method"])),
+        counts = {
+            "cylinders": runs["cylinder"].nunique(),
+            "motions": runs["motion"].nunique(),
+            "runs": len(runs),
+            "failed": runs["outcome"].isin(NO_PEAK).sum(),
         }
+        methods = ", ".join(dict.fromkeys(runs["method"]))
+        return {name: str(count) for name, count in counts.items()} | {"methods": methods}
 
 
 def known_ratio(ratio: float) -> float | None:
@@ -278,21 +278,11 @@ def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Facts) -> Frag
     }
     levels = points.groupby("cylinder")[blocks.measure].nunique()
     if blocks.fewest < FEWEST or levels.min() < FEWEST_LEVELS:
-        tables |= _counts_alone(tables)
+        fits = tables["fits"]
+        counts = fits[[*_COUNTED]].reindex(columns=fits.columns)
+        tables |= {name: tables[name].iloc[:0] for name in ("curves", "contrasts", "efficiency", "gaps")}
+        tables["fits"] = counts.assign(kind=TOO_FEW, extrapolated=False)
     return Fragility(tables=tables, facts=plain(facts))
-
-
-def _counts_alone(tables: Mapping[str, pd.DataFrame]) -> dict[str, pd.DataFrame]:
-    """Return the tables of too few motions or levels that differ: counts, and nothing fitted."""
-    fits = tables["fits"].assign(kind=TOO_FEW, extrapolated=False)
-    fitted = fits.columns.difference([*_COUNTED, "kind", "extrapolated"])
-    fits[fitted] = float("nan")
-    return {"fits": fits} | {
-        name: tables[name].iloc[:0] for name in ("curves", "contrasts", "efficiency", "gaps")
-    }
-
-
-Row = dict[str, Any]
 
 
 def main_contrasts(found: Fragility) -> dict[str, list[Row]]:
@@ -303,14 +293,10 @@ def main_contrasts(found: Fragility) -> dict[str, list[Row]]:
     """
     methods: Mapping[str, Mapping[str, Any]] = found.facts["methods"]
     answers: dict[str, list[Row]] = {"planar": [], "support": [], "engine": []}
-    rows = found.contrasts.to_dict("records") if len(found.contrasts) else []
-    for row in rows:
-        if row["limit"] != OVERTURNED:
-            continue
-        question, turned = _question(methods, str(row["method"]), str(row["against"]))
-        if question:
-            named = {str(name): value for name, value in row.items()}
-            answers[question].append(_inverse(named) if turned else named)
+    for row in rows_of(found.contrasts):
+        question, turned = _question(methods, row["method"], row["against"])
+        if question and row["limit"] == OVERTURNED:
+            answers[question].append(_inverse(row) if turned else row)
     return answers
 
 
@@ -331,23 +317,16 @@ def _question(methods: Mapping[str, Mapping[str, Any]], method: str, against: st
 
 def _inverse(row: Row) -> Row:
     """Return a contrast with its methods exchanged."""
-
-    def inverse(value: float) -> float:
-        return math.inf if value == 0.0 else 1.0 / value
-
-    return row | {
-        "method": row["against"],
-        "against": row["method"],
-        "ratio": inverse(row["ratio"]),
-        "ratio_low": inverse(row["ratio_high"]),
-        "ratio_high": inverse(row["ratio_low"]),
-        # tables of earlier versions have no bounds
-        "ratio_least": inverse(row.get("ratio_most", math.nan)),
-        "ratio_most": inverse(row.get("ratio_least", math.nan)),
-        "dispersion_difference": -row["dispersion_difference"],
-        "dispersion_difference_low": -row["dispersion_difference_high"],
-        "dispersion_difference_high": -row["dispersion_difference_low"],
-    }
+    ratios = {"ratio": "ratio", "ratio_low": "ratio_high", "ratio_high": "ratio_low"}
+    ratios |= {"ratio_least": "ratio_most", "ratio_most": "ratio_least"}
+    spread = "dispersion_difference"
+    spreads = {spread: spread, f"{spread}_low": f"{spread}_high", f"{spread}_high": f"{spread}_low"}
+    return (
+        row
+        | {"method": row["against"], "against": row["method"]}
+        | {name: 1.0 / row[other] if row[other] else math.inf for name, other in ratios.items()}
+        | {name: -row[other] for name, other in spreads.items()}
+    )
 
 
 _ALL = tuple(MODEL_LABELS)

@@ -12,6 +12,8 @@ import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -86,37 +88,53 @@ def exceedance(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
 
 
 Key = tuple[str, str, str]  # cylinder, method, limit
+Row = dict[str, Any]  # of a table, by the names of its columns
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+def rows_of(table: pd.DataFrame) -> list[Row]:
+    """Rows of a table."""
+    return [{str(name): value for name, value in row.items()} for row in table.to_dict("records")]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Blocks:
     """The runs as blocks of motions and levels.
 
     Attributes
     ----------
-    cylinders, methods, motions : list of str
+    motions : list of str
         In the order in which they were run.
-    intensities : mapping of (str, str) to ndarray, shape (R, S)
-        Logarithms by cylinder and measure; of a stripe the same for all motions.
-    made : ndarray of bool, shape (R, S)
-        Whether a motion is run at a level.
+    points : mapping of str to DataFrame
+        Points by cylinder, the S levels of each of R motions one after the other; a row of NaN where a motion
+        is not run at a level.
     runs : mapping of (str, str) to DataFrame
-        By cylinder and method, the S levels of each of R motions one after the other; a row of NaN where
-        none is made.
+        Runs by cylinder and method, in the same order.
     limits : sequence of str
         That are asked about.
     measure : str
         Intensity of the levels.
     """
 
-    cylinders: list[str]
-    methods: list[str]
     motions: list[str]
-    intensities: Mapping[tuple[str, str], Array]
-    made: NDArray[np.bool_]
+    points: Mapping[str, pd.DataFrame]
     runs: Mapping[tuple[str, str], pd.DataFrame]
     limits: Sequence[str]
     measure: str
+
+    @property
+    def cylinders(self) -> list[str]:
+        """Names of the cylinders."""
+        return list(self.points)
+
+    @property
+    def methods(self) -> list[str]:
+        """Labels of the methods."""
+        return list(dict.fromkeys(method for _, method in self.runs))
+
+    @cached_property
+    def made(self) -> NDArray[np.bool_]:
+        """Whether a motion is run at a level (R, S)."""
+        return np.isfinite(self.of_points(self.cylinders[0], "scale"))
 
     @property
     def fewest(self) -> int:
@@ -136,72 +154,50 @@ class Blocks:
 
     def sample(self, cylinder: str, method: str, limit: str, measure: str | None = None) -> Sample:
         """Return the sample of a method and a limit, by one intensity; default: that of the levels."""
-        x = self.intensities[cylinder, measure or self.measure]
+        x = self.intensities(cylinder, measure or self.measure)
         return Sample(x=x, y=self.exceedance(cylinder, method, limit))
 
     def exceedance(self, cylinder: str, method: str, limit: str) -> Array:
         """Return 1, 0 or NaN for each motion and level (R, S)."""
         return exceedance(self.runs[cylinder, method], limit).reshape(len(self.motions), -1)
 
-    def of_points(self, points: pd.DataFrame, cylinder: str, column: str) -> Array:
+    def of_points(self, cylinder: str, column: str) -> Array:
         """Return a column of the points of a cylinder for each motion and level (R, S)."""
-        own = points[points["cylinder"] == cylinder]
-        return _grid(own, self.motions, self.made.shape[1])[column].to_numpy(float).reshape(self.made.shape)
+        return self.points[cylinder][column].to_numpy(float).reshape(len(self.motions), -1)
 
-    def has_measure(self, cylinder: str, measure: str) -> bool:
-        """Whether every motion has an intensity of this measure."""
-        intensities = self.intensities.get((cylinder, measure))
-        return intensities is not None and bool(np.isfinite(intensities).all())
-
-
-def _grid(table: pd.DataFrame, motions: Sequence[str], steps: int) -> pd.DataFrame:
-    """Return a row for each motion and step, NaN where the table has none."""
-    whole = pd.MultiIndex.from_product([motions, range(steps)], names=["motion", "step"])
-    return table.set_index(["motion", "step"]).reindex(whole).reset_index()
+    def intensities(self, cylinder: str, measure: str) -> Array:
+        """Logarithms of intensities (R, S), of a stripe the same; the mean of a level where none is made."""
+        with np.errstate(divide="ignore"):
+            x = np.log(self.of_points(cylinder, measure))
+        known = ~np.isnan(x)
+        if known.all():
+            return x
+        return np.where(known, x, np.where(known, x, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1))
 
 
 def blocks_of(runs: pd.DataFrame, points: pd.DataFrame, limits: Sequence[str], measure: str) -> Blocks:
     """Return the blocks of a table of runs and of the table of the points at which they were made."""
-    cylinders, methods, motions = (
-        list(dict.fromkeys(table[name]))
-        for table, name in ((runs, "cylinder"), (runs, "method"), (points, "motion"))
-    )
-    shape = len(motions), int(points["step"].max()) + 1
-    own = {name: _grid(part, motions, shape[1]) for name, part in points.groupby("cylinder", sort=False)}
-    with np.errstate(divide="ignore"):
-        intensities = {
-            (str(name), measure): _whole(np.log(part[measure].to_numpy(float)).reshape(shape))
-            for name, part in own.items()
-            for measure in MEASURES
-            if measure in part
-        }
-    made = np.isfinite(next(iter(own.values()))["scale"].to_numpy(float)).reshape(shape)
-    grouped = runs.groupby(["cylinder", "method"], sort=False)
+    motions, places = list(dict.fromkeys(points["motion"])), ["motion", "step"]
+    whole = pd.MultiIndex.from_product([motions, range(int(points["step"].max()) + 1)], names=places)
+
+    def grid(part: pd.DataFrame) -> pd.DataFrame:
+        return part.set_index(places).reindex(whole).reset_index()
+
+    of_runs = runs.groupby(["cylinder", "method"], sort=False)
     return Blocks(
-        cylinders=cylinders,
-        methods=methods,
         motions=motions,
-        intensities=intensities,
-        made=made,
-        runs={(str(key[0]), str(key[1])): _grid(part, motions, shape[1]) for key, part in grouped},
+        points={str(name): grid(part) for name, part in points.groupby("cylinder", sort=False)},
+        runs={(str(key[0]), str(key[1])): grid(part) for key, part in of_runs},
         limits=limits,
         measure=measure,
     )
-
-
-def _whole(x: Array) -> Array:
-    """Return intensities (R, S) with the mean of a level where a motion is not run at it."""
-    made = ~np.isnan(x)
-    if made.all():
-        return x
-    means = np.where(made, x, 0.0).sum(axis=0) / np.maximum(made.sum(axis=0), 1)
-    return np.where(made, x, means)
 
 
 # range of a curve: from half of the lowest intensity to twice the highest
 _POINTS, _BEYOND = 60, 2.0
 ALL = "all"  # cylinders
 _KEY = ("cylinder", "method", "limit")
+_CURVE = [*_KEY, "intensity", "probability", "low", "high"]
 _NO_FIT = {"deviance": math.nan, "degrees": 0, "p": math.nan, "largest": math.nan}
 
 
@@ -210,20 +206,17 @@ def count_table(blocks: Blocks) -> pd.DataFrame:
 
     Of a cloud each run is a row with n = 1.
     """
-    rows = []
+    tables = []
     for key in blocks.known_keys():
         x, n, k = blocks.sample(*key).counts()
-        for place, (runs, over) in enumerate(zip(n[0], k[0], strict=True)):
-            rows.append(
-                {
-                    **dict(zip(_KEY, key, strict=True)),
-                    "measure": blocks.measure,
-                    "intensity": float(f"{math.exp(x[place]):.12g}"),
-                    "n": int(runs),
-                    "k": int(over),
-                }
-            )
-    return pd.DataFrame(rows)
+        intensities = [float(f"{math.exp(each):.12g}") for each in x]
+        counts = {"intensity": intensities, "n": n[0].astype(int), "k": k[0].astype(int)}
+        tables.append(pd.DataFrame(_about(key) | {"measure": blocks.measure} | counts))
+    return pd.concat(tables, ignore_index=True)
+
+
+def _about(key: Key) -> dict[str, Any]:
+    return dict(zip(_KEY, key, strict=True))
 
 
 def fit_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, Curves]) -> pd.DataFrame:
@@ -240,7 +233,7 @@ def fit_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, 
         held = goodness(x, n[0], k[0], centre, dispersion) if kind in (FITTED, EXTRAPOLATED) else _NO_FIT
         rows.append(
             {
-                **dict(zip(_KEY, key, strict=True)),
+                **_about(key),
                 "kind": kind,
                 "runs": int(n.sum()),
                 "exceeded": int(k.sum()),
@@ -270,12 +263,6 @@ def _bounds_of_failed(sample: Sample, made: NDArray[np.bool_] | bool = True) -> 
     return math.exp(least.median[0]), math.exp(most.median[0])
 
 
-def _ratio_bounds(pair: Sequence[Sample], made: NDArray[np.bool_]) -> tuple[float, float]:
-    """Return the least and the largest logarithm of a ratio of medians, whatever failed runs would do."""
-    first, second = (np.log(_bounds_of_failed(each, made)) for each in pair)
-    return float(first[0] - second[1]), float(first[1] - second[0])
-
-
 def curve_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, Curves]) -> pd.DataFrame:
     """Return the curves point by point, each with its band.
 
@@ -290,19 +277,9 @@ def curve_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key
         first = sample.x.min() - math.log(_BEYOND) * (median != -math.inf)
         x = np.linspace(first, sample.x.max() + math.log(_BEYOND) * (median != math.inf), _POINTS)
         low, high = bands(drawn[key], x, blocks.fewest)
-        tables.append(
-            pd.DataFrame(
-                {
-                    **dict(zip(_KEY, key, strict=True)),
-                    "intensity": np.exp(x),
-                    "probability": found.at(x)[0],
-                    "low": low,
-                    "high": high,
-                }
-            )
-        )
-    columns = [*_KEY, "intensity", "probability", "low", "high"]
-    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=columns)
+        band = {"intensity": np.exp(x), "probability": found.at(x)[0], "low": low, "high": high}
+        tables.append(pd.DataFrame(_about(key) | band))
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=_CURVE)
 
 
 def contrast_table(
@@ -323,52 +300,39 @@ def contrast_table(
     rows: list[dict[str, float | str]] = []
     pairs = itertools.combinations(blocks.methods, 2)
     for limit, (against, method) in itertools.product(blocks.limits, pairs):
-        about = {"limit": limit, "method": method, "against": against}
-        entries: list[tuple[Array, Array]] = []
-        ends: list[tuple[float, float]] = []
+        entries: dict[str, list[Array]] = {}
         for cylinder in blocks.cylinders:
             pair = [blocks.sample(cylinder, name, limit) for name in (method, against)]
             unknown = (np.isnan(pair[0].y) | np.isnan(pair[1].y)) & blocks.made
             if unknown.all():
                 continue
             with np.errstate(divide="ignore", invalid="ignore"):  # curves without a median
-                ends.append(_ratio_bounds(pair, blocks.made))
+                (least, most), (other_least, other_most) = (
+                    np.log(_bounds_of_failed(each, blocks.made)) for each in pair
+                )
+                bounds = np.array([least - other_most, most - other_least])
             own, many = ([of[cylinder, name, limit] for name in (method, against)] for of in (fitted, drawn))
             if unknown.any():
                 pair = [Sample(x=each.x, y=np.where(unknown, np.nan, each.y)) for each in pair]
                 own, many = [each.curves() for each in pair], [each.curves(weights) for each in pair]
-            entries.append((_differences(own), _differences(many)))
-            row = curve_contrast(*entries[-1], blocks.fewest, margin)
-            rows.append({"cylinder": cylinder, **about, **row, **_ends(ends[-1:])})
+            entries[cylinder] = [_differences(own), _differences(many), bounds]
         if len(entries) == len(blocks.cylinders) > 1:
             with np.errstate(invalid="ignore"):  # a median beyond all levels and one below have no ratio
-                mean, means = (np.mean(each, axis=0) for each in zip(*entries, strict=True))
-            row = curve_contrast(mean, means, blocks.fewest, margin)
-            rows.append({"cylinder": ALL, **about, **row, **_ends(ends)})
+                entries[ALL] = [np.mean(each, axis=0) for each in zip(*entries.values(), strict=True)]
+        rows += [
+            {"cylinder": cylinder, "limit": limit, "method": method, "against": against}
+            | curve_contrast(one, resampled, blocks.fewest, margin)
+            | dict(zip(RATIOS_OF_FAILED, np.exp(ends).tolist(), strict=True))
+            for cylinder, (one, resampled, ends) in entries.items()
+        ]
     return pd.DataFrame(rows)
-
-
-def _ends(bounds: Sequence[tuple[float, float]]) -> dict[str, float]:
-    """Return the columns of geometric means of the bounds of a ratio, of their logarithms."""
-    with np.errstate(invalid="ignore"):
-        return {
-            name: float(np.exp(np.mean(end)))
-            for name, end in zip(RATIOS_OF_FAILED, np.transpose(bounds), strict=True)
-        }
 
 
 def _differences(pair: Sequence[Curves]) -> Array:
     """Differences (4, B): of the medians' logarithms, of dispersions, and the first's least and largest."""
-    first, second = pair
+    first, second = ([each.median, each.dispersion, each.low, each.high] for each in pair)
     with np.errstate(invalid="ignore"):  # two curves that are never reached have no ratio
-        return np.array(
-            [
-                first.median - second.median,
-                first.dispersion - second.dispersion,
-                first.low - second.high,
-                first.high - second.low,
-            ]
-        )
+        return np.asarray(np.subtract(first, [*second[:2], *second[:1:-1]]), dtype=np.float64)
 
 
 def curve_contrast(found: Array, drawn: Array, motions: int, margin: float) -> dict[str, float | str]:
@@ -404,8 +368,8 @@ def curves_of(blocks: Blocks, weights: Array | None = None) -> dict[Key, Curves]
     return {key: blocks.sample(*key).curves(weights) for key in blocks.known_keys()}
 
 
-_GAP_COLUMNS = ["cylinder", "method", "motions", "motions_with_gaps", "runs", "runs_below_gaps"]
-_GAP_COLUMNS += ["median", "median_incremental", "bias", "bias_low", "bias_high"]
+_GAPS = ["cylinder", "method", "motions", "motions_with_gaps", "runs", "runs_below_gaps"]
+_GAPS += ["median", "median_incremental", "bias", "bias_low", "bias_high"]
 
 
 def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
@@ -424,30 +388,30 @@ def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
         sample = blocks.sample(cylinder, method, OVERTURNED)
         if np.isnan(sample.y).all():
             continue
-        stopped = Sample(x=sample.x, y=incremental(sample.y))
-        whole, early = sample.curves(), stopped.curves()
+        stopped, gaps = Sample(x=sample.x, y=incremental(sample.y)), below_gaps(sample.y)
+        (whole, many), (early, many_early) = (
+            (each.curves(), each.curves(weights)) for each in (sample, stopped)
+        )
         with np.errstate(invalid="ignore"):
             value = float(early.median[0] - whole.median[0])
-            many_early, many = stopped.curves(weights), sample.curves(weights)
-            low, high = many_early.low - many.high, many_early.high - many.low
-            # equal counts give equal curves, also where both are beyond the levels
-            same = (stopped.counts(weights)[2] == sample.counts(weights)[2]).all(axis=1)
-            low, high = (np.where(same, 0.0, end) for end in (low, high))
-        found = below_gaps(sample.y)
+            ends = np.array([many_early.low - many.high, many_early.high - many.low])
+        # equal counts give equal curves, also where both are beyond the levels
+        same = (stopped.counts(weights)[2] == sample.counts(weights)[2]).all(axis=1)
+        low, high = np.where(same, 0.0, ends)
         rows.append(
             {
                 "cylinder": cylinder,
                 "method": method,
                 "motions": motions,
-                "motions_with_gaps": int(found.any(axis=1).sum()),
+                "motions_with_gaps": int(gaps.any(axis=1).sum()),
                 "runs": int((~np.isnan(sample.y)).sum()),
-                "runs_below_gaps": int(found.sum()),
+                "runs_below_gaps": int(gaps.sum()),
                 "median": float(np.exp(whole.median[0])),
                 "median_incremental": float(np.exp(early.median[0])),
                 **interval(value, low, motions, above=high).exponential().columns("bias"),
             }
         )
-    return pd.DataFrame(rows, columns=_GAP_COLUMNS)
+    return pd.DataFrame(rows, columns=_GAPS)
 
 
 def below_gaps(y: Array) -> NDArray[np.bool_]:
@@ -484,14 +448,16 @@ def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFram
     rows = []
     motions = blocks.fewest
     for cylinder in blocks.cylinders:
-        if (cylinder, method) not in blocks.runs:
-            continue
         if np.isnan(blocks.exceedance(cylinder, method, OVERTURNED)).all():  # every run failed
             continue
-        measures = [measure for measure in MEASURES if blocks.has_measure(cylinder, measure)]
-        samples = {m: blocks.sample(cylinder, method, OVERTURNED, m) for m in measures}
-        found = {m: sample.curves() for m, sample in samples.items()}
-        fitted = [m for m in measures if KINDS[found[m].kinds[0]] == FITTED]
+        samples = {
+            measure: blocks.sample(cylinder, method, OVERTURNED, measure)
+            for measure in MEASURES
+            if measure in blocks.points[cylinder]
+            and np.isfinite(blocks.of_points(cylinder, measure)[blocks.made]).all()
+        }
+        found = {measure: sample.curves() for measure, sample in samples.items()}
+        fitted = [measure for measure, curve in found.items() if KINDS[curve.kinds[0]] == FITTED]
         if not fitted:
             continue
         size = samples[fitted[0]].y.size
