@@ -16,8 +16,21 @@ from rockwobble.reduced import simulate
 from rockwobble.reports.figures.heat import Gap, Heat, Shades, contour, names
 from rockwobble.reports.figures.interactive import chart, charts
 from rockwobble.reports.figures.palette import ORDER, Style, label_styles
-from rockwobble.reports.figures.picture import TIME, Axis, Band, Bars, Line, Panel, Picture, Rule, Text, ecdf
+from rockwobble.reports.figures.picture import (
+    TIME,
+    Axis,
+    Band,
+    Bars,
+    Line,
+    Panel,
+    Picture,
+    Rule,
+    Text,
+    ecdf,
+    list_axis,
+)
 from rockwobble.reports.figures.svg import figure, svg
+from rockwobble.reports.figures.thinning import POINTS, envelope, kept_samples
 from rockwobble.reports.figures.trace import pictures as trace_pictures
 from rockwobble.studies.advice.members import top_displacement
 
@@ -32,7 +45,7 @@ def lines(count: int = 3, **options: object) -> Picture:
         *(Line(x=T, y=np.abs(np.sin(T + i)), name=name, style=styles[name]) for i, name in enumerate(styles)),
         Rule(at=4.0, axis="x", text="until here"),
         Rule(at=1.0, until=2.0, axis="x", name="strong"),
-        Text(x=5.0, y=0.5, text="words"),
+        Text(x=5.0, y=0.5, text="a step of 0.0025 s"),
         Line(x=np.array([3.0]), y=np.array([0.2]), style=Style(colour="#000000", dash="none", symbol="star")),
     ]
     return Picture(name="lines", title="Lines", panels=[Panel(x=TIME, y=ALPHA, layers=layers)], **options)
@@ -67,28 +80,17 @@ def words(content: bytes) -> str:
 def test_svg_has_the_same_bytes_and_says_what_it_shows():
     content = svg(lines())
     assert content == svg(lines())
-    for said in ("time [s]", "tilt / α [-]", "run 0", "band", "strong", "until here", "words"):
+    for said in ("time [s]", "tilt / α [-]", "run 0", "band", "strong", "until here", "a step of 0.0025 s"):
         assert said in words(content)
 
 
-def test_words_of_a_picture_keep_their_digits():
-    line = Line(x=np.array([0.0, 1.0]), y=np.array([0.0, 1.0]), name="a step of 0.0025 s")
-    picture = Picture(name="one", title="One", panels=[Panel(x=TIME, y=ALPHA, layers=[line])])
-    assert "a step of 0.0025 s" in words(svg(picture))
-
-
-def test_no_text_is_too_small_to_be_read():
-    drawn = figure(maps(np.ones((2, 2)), Shades(label="bias", unit="%", low=0.0, high=2.0)))
-    sizes = [text.get_fontsize() for text in drawn.findobj(lambda each: hasattr(each, "get_fontsize"))]
-    assert min(sizes) >= 8.0
-
-
-@pytest.mark.parametrize("width", [89.0, 183.0])
-def test_printed_type_is_6_to_8_pt_at_column_width(width):
-    drawn = figure(lines(columns=2), width=width / 25.4)
+@pytest.mark.parametrize(("width", "least", "most"), [(None, 8.0, 12.0), (89.0, 6.0, 8.0), (183.0, 6.0, 8.0)])
+def test_type_can_be_read_at_the_width_of_the_figure(width: float | None, least: float, most: float):
+    inches = width and width / 25.4  # [mm] in print, that of a screen by default
+    drawn = figure(lines(columns=2), width=inches)
     sizes = [each.get_fontsize() for each in drawn.findobj(Words) if each.get_text()]
-    assert drawn.get_figwidth() == pytest.approx(width / 25.4)
-    assert 6.0 <= min(sizes) <= max(sizes) <= 8.0
+    assert drawn.get_figwidth() == pytest.approx(inches or 8.6)
+    assert least <= min(sizes) <= max(sizes) <= most
 
 
 def test_legend_has_at_most_eight_entries_and_says_that_there_are_more():
@@ -151,28 +153,17 @@ def test_contour_is_where_the_values_are():
 
 def test_steps_of_a_distribution_count_those_without_a_value():
     x, share = ecdf(np.array([0.4, 0.1]), total=4, end=1.0)
-    assert x.tolist() == [0.0, 0.1, 0.4, 1.0]
-    assert share.tolist() == [0.0, 0.25, 0.5, 0.5]
+    assert [*zip(x, share, strict=True)] == [(0.0, 0.0), (0.1, 0.25), (0.4, 0.5), (1.0, 0.5)]
 
 
 def test_bars_start_where_others_end():
-    picture = Picture(
-        name="bars",
-        title="Bars",
-        panels=[
-            Panel(
-                x=Axis(label="share", unit="-"),
-                y=Axis(label="", unit="", ticks=[(0.0, "run")], reverse=True),
-                layers=[
-                    Bars(places=np.zeros(1), start=np.array([0.4]), end=np.ones(1), colours=["#000000"],
-                         texts=["1e-3"])
-                ],
-            )
-        ],
-    )  # fmt: skip
+    places = np.zeros(1)
+    bars = Bars(places=places, start=places + 0.4, end=places + 1.0, colours=["#000000"], texts=["1e-3"])
+    panel = Panel(x=Axis(label="share", unit="-"), y=list_axis(["run"]), layers=[bars])
+    picture = Picture(name="bars", title="Bars", panels=[panel])
     page = drawn_on_a_page(picture)
-    (bars,) = page["layers"]
-    assert [*numbers(bars["start"]), *numbers(bars["end"])] == pytest.approx([0.4, 1.0])
+    (drawn,) = page["layers"]
+    assert [*numbers(drawn["start"]), *numbers(drawn["end"])] == pytest.approx([0.4, 1.0])
     assert page["y"]["reverse"]
     assert "1e-3" in words(svg(picture))
 
@@ -222,3 +213,38 @@ def test_the_contact_path_is_joined_along_the_rim_only_when_flat():
     for points in (path, 0.5 * (path[1:] + path[:-1])):  # no chord leaves the rim in any of its places
         apart = np.hypot(*(points[:, None] - centres[::20]).T)
         assert np.abs(apart - pier.base_radius).min(axis=0).max() < 0.05 * pier.base_radius
+
+
+@pytest.mark.parametrize("count", [POINTS, POINTS + 1, 5346, 1_000_000])
+def test_at_most_the_limit_of_samples_is_drawn_with_their_extremes(count: int):
+    values = np.random.default_rng(1).normal(size=count)
+    at = count // 3
+    values[at], values[at + 1] = 50.0, -50.0  # two samples wide
+    keep = kept_samples(values)
+    assert (keep[0], keep[-1]) == (0, count - 1)
+    assert POINTS // 2 < len(keep) <= POINTS
+    assert len(keep) == count or count > POINTS
+    assert (np.diff(keep) > 0).all()
+    assert {at, at + 1} <= set(keep.tolist())
+
+
+def test_thinning_keeps_edges_of_gaps_and_extremes_of_a_path():
+    values = np.sin(np.linspace(0.0, 20.0, 10_000))
+    values[4000:6000] = np.nan
+    keep = kept_samples(values)
+    assert {3999, 4000, 5999, 6000} <= set(keep.tolist())  # a line without the gap would bridge it
+    path = np.linspace(0.0, 40.0, 20_000)
+    both = np.cos(path), np.sin(path)
+    keep = kept_samples(*both)
+    assert len(keep) <= POINTS
+    assert [np.ptp(each[keep]) for each in both] == [np.ptp(each) for each in both]
+
+
+def test_the_envelope_is_the_maximum_over_the_last_second():
+    time = np.arange(1001) * 0.01
+    values = np.abs(np.sin(np.pi * time)) * np.exp(0.5 * time)
+    upper = envelope(time, values)
+    assert np.argmax(upper > 5.0) == np.argmax(values > 5.0)
+    assert (upper[500], upper[0]) == (values[401:501].max(), values[0])
+    assert (upper >= values).all()
+    assert envelope(time[:1], values[:1]).tolist() == values[:1].tolist()
