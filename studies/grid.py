@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from rockwobble import reduced
 from rockwobble.compare.metrics.pair import outcome_of_peak
@@ -18,7 +20,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import TERMS
 from rockwobble.models.doubts import doubts_about
-from rockwobble.models.number_checks import require_one_of
+from rockwobble.models.number_checks import require_axis, require_one_of
 from rockwobble.models.shown import CompactRepr
 from rockwobble.models.support import RECESS
 from rockwobble.models.trace_file import motion_facts
@@ -45,70 +47,54 @@ class GridChunk:
     """Some sizes and scales of a grid, with one slenderness, motion and model; `run` solves them."""
 
     motion: GroundMotion
-    motion_key: str  # hash of its samples, the same for many chunks
-    label: str  # label of the motion
     model: str
     tan_alpha: float
     semidiagonals: Sequence[float]
     scales: Sequence[float]
-    options: Mapping[str, object]  # options of `reduced.peak_tilts`
+    options: Mapping[str, Any]  # options of `reduced.peak_tilts`
 
     @property
     def name(self) -> str:
         """Description of the chunk."""
         where = f"tan alpha {self.tan_alpha:g}, R from {self.semidiagonals[0]:g} m, scale from"
-        return f"{self.label}, {self.model}, {where} {self.scales[0]:g}"
+        return f"{_label(self.motion)}, {self.model}, {where} {self.scales[0]:g}"
 
     def key(self) -> str:
         """Hash that identifies the results."""
-        return result_fingerprint(
-            {
-                "motion": (self.motion_key, self.label),
-                "model": self.model,
-                "tan_alpha": self.tan_alpha,
-                "semidiagonals": np.array(self.semidiagonals),
-                "scales": np.array(self.scales),
-                "options": self.options,
-            },
-            reduced_makers(),
-        )
+        return result_fingerprint(self, reduced_makers())
 
     def run(self) -> pd.DataFrame:
-        """Return the table of the results, one row for each run."""
+        """Table of the results, one row for each run."""
+        options = {**reduced.MODELS[self.model], **self.options}
+        axes = self.semidiagonals, self.tan_alpha, self.motion, self.scales
         peaks = reduced.peak_tilts(
-            self.semidiagonals,
-            self.tan_alpha,
-            self.motion,
-            self.scales,
-            workers=1,  # the processes share the cores already
-            **{**reduced.MODELS[self.model], **self.options},
-        ).ravel()
-        sizes, scales = np.meshgrid(self.semidiagonals, self.scales, indexing="ij")
+            *axes, workers=1, **options
+        ).ravel()  # the processes share the cores already
+        sizes, scales = (each.ravel() for each in np.meshgrid(self.semidiagonals, self.scales, indexing="ij"))
         return pd.DataFrame(
             {
-                "motion": self.label,
+                "motion": _label(self.motion),
                 "model": self.model,
                 "tan_alpha": self.tan_alpha,
-                "semidiagonal": sizes.ravel(),
-                "scale": scales.ravel(),
+                "semidiagonal": sizes,
+                "scale": scales,
                 "peak_tilt": peaks,
                 "peak_tilt_over_alpha": peaks / math.atan(self.tan_alpha),
                 "outcome": [
                     # a run without a peak gives its reason
-                    self._outcome(size, scale) if math.isnan(peak) else outcome_of_peak(peak)
-                    for peak, size, scale in zip(peaks.tolist(), sizes.ravel(), scales.ravel(), strict=True)
+                    self._outcome(size, scale, options) if math.isnan(peak) else outcome_of_peak(peak)
+                    for peak, size, scale in zip(peaks.tolist(), sizes, scales, strict=True)
                 ],
             }
         )
 
-    def _outcome(self, size: float, scale: float) -> str:
-        options: dict[str, Any] = {**reduced.MODELS[self.model], **self.options}
+    def _outcome(self, size: float, scale: float, options: Mapping[str, Any]) -> str:
+        terms = {name: value for name, value in options.items() if name in ("gravity", *TERMS)}
+        others = {name: options[name] for name in options.keys() - terms.keys() - {"slab_mass_ratio"}}
         column = Cylinder(semidiagonal=float(size), tan_alpha=self.tan_alpha)
-        ratio = options.pop("slab_mass_ratio", 0.0)
-        cylinder = WobblingFrame(column, ratio) if ratio else column
-        stated = {name: options.pop(name) for name in ("gravity", *TERMS) if name in options}
-        case = Case(cylinder, self.motion.scaled(float(scale)), **stated)
-        return reduced.simulate(case, **{"rtol": _RTOL, **options}).outcome
+        body = WobblingFrame(column, options.get("slab_mass_ratio", 0.0))
+        case = Case(body, self.motion.scaled(float(scale)), **terms)
+        return reduced.simulate(case, **{"rtol": _RTOL, **others}).outcome
 
 
 @with_argument_kinds
@@ -155,7 +141,7 @@ class Grid(CompactRepr, GridPlan):
 
     def __post_init__(self) -> None:
         GridPlan.__post_init__(self)
-        _require_different("motions", [motion.name or "record" for motion in self.motions])
+        _require_different("motions", [_label(motion) for motion in self.motions])
         _require_different("models", self.models)
         for model in self.models:
             require_one_of("a model of a grid", model, reduced.MODELS)
@@ -163,7 +149,7 @@ class Grid(CompactRepr, GridPlan):
         if planar and tuple(self.models) != ("planar",):
             raise ValueError(f"{planar[0]} belongs to planar motion, got models {', '.join(self.models)}")
         for name in ("semidiagonals", "tan_alphas", "scales"):
-            object.__setattr__(self, name, _axis(name, getattr(self, name), zero=name == "scales"))
+            object.__setattr__(self, name, _axis(name, getattr(self, name)))
         if self.rows > MOST_RUNS:
             raise ValueError(
                 f"a grid has at most {MOST_RUNS:,} runs, got {self.rows:,}: sweep fewer at a time"
@@ -174,7 +160,7 @@ class Grid(CompactRepr, GridPlan):
             reduced.peak_tilts([1.0], 0.2, self.motions[0], [], **run)
 
     def doubts(self) -> list[dict[str, object]]:
-        """Return the doubts about its motions, sizes and gravity, as `doubts_of_cases` does."""
+        """Doubts about its motions, sizes and gravity, as of `doubts_of_cases`."""
         return doubts_about(
             motions=self.motions,
             cylinders=self.corners(),
@@ -183,7 +169,7 @@ class Grid(CompactRepr, GridPlan):
         )
 
     def corners(self) -> list[Cylinder]:
-        """Return the smallest and the largest cylinders of the least and of the largest slenderness."""
+        """The smallest and the largest cylinders of the least and of the largest slenderness."""
         return [
             Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
             for size in (min(self.semidiagonals), max(self.semidiagonals))
@@ -204,26 +190,21 @@ class Grid(CompactRepr, GridPlan):
         return math.prod(len(axis) for axis in axes)
 
     def chunks(self, size: int | None = None) -> Iterator[GridChunk]:
-        """Cut the grid into chunks of about `size` runs, in the order of the table."""
-        size = size or _CHUNK_SIZE
-        for motion in self.motions:
-            motion_key = _motion_key(motion)
-            for model in self.models:
-                for tan_alpha in self.tan_alphas:
-                    for sizes, scales in self._blocks(size):
-                        yield GridChunk(
-                            motion=motion,
-                            motion_key=motion_key,
-                            label=motion.name or "record",
-                            model=model,
-                            tan_alpha=tan_alpha,
-                            semidiagonals=sizes,
-                            scales=scales,
-                            options=self.options,
-                        )
+        """Chunks of about `size` runs, in the order of the table."""
+        blocks = [*self._blocks(size or _CHUNK_SIZE)]
+        axes = itertools.product(self.motions, self.models, self.tan_alphas, blocks)
+        for motion, model, tan_alpha, (sizes, scales) in axes:
+            yield GridChunk(
+                motion=motion,
+                model=model,
+                tan_alpha=tan_alpha,
+                semidiagonals=sizes,
+                scales=scales,
+                options=self.options,
+            )
 
     def describe(self) -> dict[str, object]:
-        """Return the axes and options, for a file; SI units."""
+        """Axes and options, for a file; SI units."""
         return {
             "plan": "grid of reduced runs",
             "runs": self.rows,
@@ -231,8 +212,8 @@ class Grid(CompactRepr, GridPlan):
             "tan_alphas": self.tan_alphas,
             "scales": self.scales,
             "motions": [
-                motion_facts(motion) | {"name": motion.name or "record", "fingerprint": _motion_key(motion)}
-                for motion in self.motions
+                {**motion_facts(each), "name": _label(each), "fingerprint": _fingerprint(each)}
+                for each in self.motions
             ],
             "models": self.models,
             "options": self.options,
@@ -247,17 +228,18 @@ class Grid(CompactRepr, GridPlan):
                 yield self.semidiagonals[i : i + height], self.scales[j : j + width]
 
 
-def _motion_key(motion: GroundMotion) -> str:
+def _label(motion: GroundMotion) -> str:
+    return motion.name or "record"
+
+
+def _fingerprint(motion: GroundMotion) -> str:
     return fingerprint((motion.acceleration, motion.time_step))
 
 
-def _axis(name: str, values: ArrayLike, *, zero: bool) -> tuple[float, ...]:
-    axis: NDArray[np.float64] = np.atleast_1d(np.asarray(values, dtype=np.float64))
-    if axis.ndim != 1 or not np.isfinite(axis).all():
-        raise ValueError(f"{name} must be a sequence of finite numbers, got {values!r}")
-    if (axis < 0.0).any() or (not zero and (axis == 0.0).any()):
-        raise ValueError(f"{name} must {'not be negative' if zero else 'be above zero'}, got {values!r}")
-    numbers = tuple(axis.tolist())
+def _axis(name: str, values: ArrayLike) -> tuple[float, ...]:
+    numbers = tuple(require_axis(name, values).tolist())
+    if name != "scales" and 0.0 in numbers:
+        raise ValueError(f"{name} must be above zero, got {values!r}")
     _require_different(name, numbers)
     return numbers
 
@@ -265,8 +247,5 @@ def _axis(name: str, values: ArrayLike, *, zero: bool) -> tuple[float, ...]:
 def _require_different(name: str, values: Sequence[object]) -> None:
     if not values:
         raise ValueError(f"{name} must hold at least one, got none")
-    seen: set[object] = set()
-    for value in values:
-        if value in seen:
-            raise ValueError(f"{name} must differ, got {value!r} twice")
-        seen.add(value)
+    if repeated := [value for value, count in Counter(values).items() if count > 1]:
+        raise ValueError(f"{name} must differ, got {repeated[0]!r} twice")

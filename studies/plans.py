@@ -36,9 +36,7 @@ class ModelPlan(Plan):
     plane: float | None = option(None, _PLANE, group="Reduced model", least=-math.tau, most=math.tau)
     restitution: float | str | None = option(None, _RESTITUTION, group="Reduced model", form="restitution")
     rest_tilt: float | None = option(
-        None,
-        "Tilt / alpha below which the cylinder comes to rest. 0: never.",
-        group="Reduced model",
+        None, "Tilt / alpha below which the cylinder comes to rest. 0: never.", group="Reduced model"
     )
 
 
@@ -70,23 +68,14 @@ class AdvicePlan(Copies):
 
     copies: int = option(100, _COPIES, group="Members", least=20, most=10_000)
     seed: int = option(1, _SEED, group="Members", least=0)
-    support: str = option(
-        "recess",
-        f"Support: {SUPPORT_WORDS}.",
-        group="Method",
-    )
+    support: str = option("recess", f"Support: {SUPPORT_WORDS}.", group="Method")
     gap: float | None = option(
         None,
         "Gap to a neighbour on flat ground, in m: how often a slide uses it up.",
         group="Method",
         least=0.0,
     )
-    mass: float | None = option(
-        None,
-        MASS,
-        group="Cylinder",
-        above=0.0,
-    )
+    mass: float | None = option(None, MASS, group="Cylinder", above=0.0)
 
     def __post_init__(self) -> None:
         from rockwobble.models.support import support_named  # imports numpy, which help can do without
@@ -110,12 +99,7 @@ def tendon_of(prestress: float, stiffness: float, yield_force: float | None = No
 class TendonPlan(Plan):
     """The tendon of many bodies, in multiples of weight and base radius of each."""
 
-    tendon_prestress: float = option(
-        0.0,
-        PRESTRESS,
-        group="Tendon",
-        least=0.0,
-    )
+    tendon_prestress: float = option(0.0, PRESTRESS, group="Tendon", least=0.0)
     tendon_stiffness: float = option(0.0, STIFFNESS, group="Tendon", least=0.0)
 
     @property
@@ -129,10 +113,7 @@ class YieldPlan(TendonPlan):
     """The same, and up to which force it is elastic."""
 
     tendon_yield: float | None = option(
-        None,
-        f"{YIELD}; runs that pass it are no answer. Default: none.",
-        group="Tendon",
-        above=0.0,
+        None, f"{YIELD}; runs that pass it are no answer. Default: none.", group="Tendon", above=0.0
     )
 
     def __post_init__(self) -> None:
@@ -191,11 +172,7 @@ class FragilityPlan(YieldPlan):
         1000, "Number of bootstrap resamples for the intervals.", group="Statistics", least=2
     )
     seed: int = option(0, "Random seed of resamples and synthetic motions.", group="Statistics", least=0)
-    restitution: float | str = option(
-        1.0,
-        _RESTITUTION,
-        form="restitution",
-    )
+    restitution: float | str = option(1.0, _RESTITUTION, form="restitution")
     step_factor: float = option(
         1.0,
         "Multiplies the default time step of the engines; probabilities need less accuracy than traces.",
@@ -241,11 +218,7 @@ class SpectrumPlan(YieldPlan):
     _MOST: ClassVar = 2000  # a map of more cells than a screen has pixels is a slip of the hand
 
     semidiagonals: Sequence[float] | None = option(
-        None,
-        _SIZES,
-        group="Grid",
-        form="numbers",
-        flag="--semidiagonal",
+        None, _SIZES, group="Grid", form="numbers", flag="--semidiagonal"
     )
     intensities: Sequence[float] | None = option(
         None,
@@ -314,11 +287,7 @@ class GridPlan(TendonPlan):
     }
 
     semidiagonals: Sequence[float] | None = option(
-        None,
-        _SIZES,
-        group="Grid",
-        form="numbers",
-        flag="--semidiagonal",
+        None, _SIZES, group="Grid", form="numbers", flag="--semidiagonal"
     )
     tan_alphas: Sequence[float] | None = option(
         None,

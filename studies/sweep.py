@@ -38,12 +38,8 @@ from .study import Study
 _REDUCED_CHUNK_SIZE, _ENGINE_CHUNK_SIZE = 200, 1
 # not the computing time: the table of two sweeps of the same runs is the same
 _RESULTS = (
-    "peak_tilt",
-    "uplift_time",
-    "uplift_direction",
-    "contact_resolution",
-    "residual_displacement",
-    "residual_twist",
+    *("peak_tilt", "uplift_time", "uplift_direction"),
+    *("contact_resolution", "residual_displacement", "residual_twist"),
 )
 
 
@@ -87,13 +83,12 @@ def runnable_suite(plan: Suite | Iterable[Case]) -> Suite:
 
 
 def chunks_of(suite: Suite, size: int | None = None) -> Iterator[CaseChunk]:
-    """Cut the runs of a suite into chunks, in the order of the table: method by method."""
+    """Chunks of the runs of a suite, in the order of the table: method by method."""
     for run, label in zip(suite.runs, run_labels(suite.runs), strict=True):
         step = size or (_REDUCED_CHUNK_SIZE if run.is_model else _ENGINE_CHUNK_SIZE)
-        for i in range(0, len(suite.cases), step):
-            yield CaseChunk(
-                jobs=tuple(Job(case=case, run=run, label=label) for case in suite.cases[i : i + step])
-            )
+        jobs = [Job(case=case, run=run, label=label) for case in suite.cases]
+        for i in range(0, len(jobs), step):
+            yield CaseChunk(jobs=tuple(jobs[i : i + step]))
 
 
 def describe_suite(suite: Suite) -> dict[str, object]:
@@ -283,10 +278,8 @@ def sweep(
     whole = plan if isinstance(plan, Grid) else runnable_suite(plan)
     if chunk_size is not None:
         require_in_range("chunk_size", chunk_size, Integral, least=1)
-    chunks: list[Chunk] = (
-        [*whole.chunks(chunk_size)] if isinstance(whole, Grid) else [*chunks_of(whole, chunk_size)]
-    )
-    return SweepStudy(whole, chunks).run(
+    cut = whole.chunks(chunk_size) if isinstance(whole, Grid) else chunks_of(whole, chunk_size)
+    return SweepStudy(whole, list(cut)).run(
         folder=out,
         workers=workers,
         scheduler=scheduler,
@@ -319,29 +312,24 @@ class SweepStudy(Study[Chunk, Sweep]):
 
     def results(self, tables: list[pd.DataFrame]) -> Sweep:
         """Sweep of the tables of all chunks."""
-        plan = self.plan
+        plan, rows = self.plan, {KIND: pd.concat(tables, ignore_index=True)}
         if isinstance(plan, Grid):
             stated, doubts, motions = plan.describe(), plan.doubts(), list(plan.motions)
+            rows["motions"] = _samples(motions)
         else:
             stated, doubts = describe_suite(plan), doubts_of_cases(plan.cases)
             motions = [case.motion for case in plan.cases if case.motion is not None]
         inputs = fingerprint([chunk.key() for chunk in self.chunks])
         facts = {**stated, "doubts": doubts, "record_sources": sources_of(motions), "inputs": inputs}
-        return Sweep(
-            tables={KIND: pd.concat(tables, ignore_index=True), **_motions(plan)}, facts=plain(facts)
-        )
+        return Sweep(tables=rows, facts=plain(facts))
 
 
-def _motions(plan: Grid | Suite) -> dict[str, pd.DataFrame]:
-    """Return the table of the motions of a grid; a component that one does not have is missing, not zero."""
-    if not isinstance(plan, Grid):
-        return {}
-    return {"motions": pd.concat([_samples(motion) for motion in plan.motions], ignore_index=True)}
-
-
-def _samples(motion: GroundMotion) -> pd.DataFrame:
-    samples = motion.acceleration
-    columns = {f"acceleration_{axis}": np.full(len(samples), np.nan) for axis in "xyz"}
-    columns |= {f"acceleration_{axis}": column for axis, column in zip("xyz", samples.T, strict=False)}
-    time = np.arange(len(samples)) * motion.time_step
-    return pd.DataFrame({"motion": motion.name or "record", "time": time, **columns})
+def _samples(motions: Iterable[GroundMotion]) -> pd.DataFrame:
+    """Table of the motions of a grid; a component that one does not have is missing, not zero."""
+    columns = ["motion", "time", *(f"acceleration_{axis}" for axis in "xyz")]
+    tables = []
+    for motion in motions:
+        time = np.arange(len(motion.acceleration)) * motion.time_step
+        values = [motion.name or "record", time, *motion.acceleration.T]
+        tables.append(pd.DataFrame(dict(zip(columns, values, strict=False))))
+    return pd.concat(tables, ignore_index=True).reindex(columns=columns)

@@ -86,32 +86,26 @@ def test_chunks_of_another_sweep_are_removed_on_completion_alone(tmp_path):
     pd.testing.assert_frame_equal(table, Sweep.load(tmp_path).table, check_exact=True)
 
 
-def test_a_sweep_whose_chunks_die_says_so_and_keeps_the_others(tmp_path, monkeypatch):
+def test_a_sweep_says_what_died_and_what_is_kept(tmp_path, monkeypatch):
     run_tasks = study.run_tasks
 
     def losing(*args, **options):
         assert options["tries"] == 3
-        found = run_tasks(*args, **options)
-        return [FailedTask("killed"), *found[1:]]
+        return [FailedTask("killed"), *run_tasks(*args, **options)[1:]]
 
-    monkeypatch.setattr(study, "run_tasks", losing)
-    with pytest.raises(IncompleteError, match=r"1 of 8 chunks ended their processes 3 times.*killed"):
-        sweep(grid(), chunk_size=5, out=tmp_path, workers=1)
+    def gone(*args, **options):
+        raise ClusterError("the Dask scheduler does not answer any more")
+
+    for run, words in (
+        (losing, r"1 of 8 chunks ended their processes 3 times.*killed"),
+        (gone, f"any more; 8 chunks are kept in {tmp_path}$"),
+    ):
+        monkeypatch.setattr(study, "run_tasks", run)
+        with pytest.raises(IncompleteError, match=words):
+            sweep(grid(), chunk_size=5, out=tmp_path, workers=1)
     assert len(files(tmp_path)) == 8
     with pytest.raises(ValueError, match="does not hold results"):
         Sweep.load(tmp_path)
-
-
-def test_a_cluster_that_is_gone_says_what_is_kept(tmp_path, monkeypatch):
-    run_tasks = study.run_tasks
-
-    def gone(*args, **options):
-        run_tasks(args[0], args[1][:3], **options)
-        raise ClusterError("the Dask scheduler does not answer any more")
-
-    monkeypatch.setattr(study, "run_tasks", gone)
-    with pytest.raises(IncompleteError, match=f"any more; 3 chunks are kept in {tmp_path}$"):
-        sweep(grid(), chunk_size=5, out=tmp_path, workers=1)
 
 
 def test_each_input_of_a_chunk_is_in_its_key():
@@ -133,32 +127,25 @@ def test_each_input_of_a_chunk_is_in_its_key():
     assert base == next(grid().chunks()).key()
 
 
-def test_cases_with_engines_and_models(tmp_path):
+def test_cases_with_engines_and_models():
     cases = [
         Case(PIER, initial=InitialState(tilt * PIER.alpha, rolling_rate=0.5), duration=0.5, name=f"{tilt:g}")
         for tilt in (0.3, 0.5)
     ]
     in_recess = Run("mujoco", "recess", 1e-3)
-    table = sweep(Suite(cases, [Run(None, "recess"), in_recess]), out=tmp_path, workers=1).table
-    assert table[["case", "run"]].to_numpy().tolist() == [
-        ["0.3", "recess model"],
-        ["0.5", "recess model"],
-        ["0.3", "mujoco recess"],
-        ["0.5", "mujoco recess"],
-    ]
+    events: list[Progress] = []
+    suite = Suite(cases, [Run(None, "recess"), in_recess])
+    table = sweep(suite, workers=1, chunk_size=2, progress=events.append).table
+    assert table["case"].tolist() == ["0.3", "0.5"] * 2
+    runs = ["recess model", "mujoco recess"]
+    assert table["run"].tolist() == [runs[0], runs[0], runs[1], runs[1]]
+    assert {event.label for event in events} == {f"0.3, {run} and 1 more" for run in runs}
     assert table.peak_tilt_over_alpha.tolist() == pytest.approx([0.3, 0.5, 0.3, 0.5], rel=1e-3)
     again = sweep(Suite(cases, [in_recess]), workers=1).table
     pd.testing.assert_frame_equal(again, table.tail(2).reset_index(drop=True), check_exact=True)
 
 
-def test_progress_names_the_chunks_of_a_suite():
-    cases = [Case(PIER, duration=0.1, name=name) for name in "abc"]
-    events: list[Progress] = []
-    sweep(Suite(cases, [Run(None, "recess")]), workers=1, chunk_size=2, progress=events.append)
-    assert [event.label for event in events[::2]] == ["a, recess model and 1 more", "c, recess model"]
-
-
-def test_the_manifest_says_what_was_swept(tmp_path):
+def test_manifest_and_summary_say_what_was_swept(tmp_path):
     found = sweep(grid(), out=tmp_path, workers=1)
     made = read_results(tmp_path, KIND).manifest
     assert made.headline == {"runs": 40, **found.table["outcome"].value_counts().to_dict()}
@@ -166,16 +153,14 @@ def test_the_manifest_says_what_was_swept(tmp_path):
     assert found.facts == made.about
     motions = read_results(tmp_path, KIND).table("motions")
     assert np.array_equal(motions[["acceleration_x", "acceleration_y"]], SHORT.acceleration)
-
-
-def test_a_summary_counts_outcomes_and_ranks_overturned_as_infinite(tmp_path):
-    found = sweep(grid(), out=tmp_path, workers=1)
+    assert motions["acceleration_z"].isna().all()
     summary = found.summary()
     assert list(summary["tan_alpha"]) == [0.1, 0.2]
     for (_, row), (_, own) in zip(summary.iterrows(), found.table.groupby("tan_alpha"), strict=True):
         counts = own["outcome"].value_counts().reindex(found.outcomes, fill_value=0)
         assert row[found.outcomes].to_dict() == counts.to_dict()
         fell = own["outcome"] == "overturned"
+        # an overturned run ranks as infinite
         assert row["median"] == own["peak_tilt_over_alpha"].where(~fell, math.inf).median()
         assert row["largest"] == own.loc[~fell, "peak_tilt_over_alpha"].max()
     pd.testing.assert_frame_equal(Sweep.load(tmp_path).summary(), summary, check_exact=True)
@@ -199,7 +184,7 @@ def test_a_damaged_chunk_runs_again(tmp_path, where):
     [
         (lambda: grid(semidiagonals=[]), "semidiagonals must hold at least one"),
         (lambda: grid(semidiagonals=[0.0]), "semidiagonals must be above zero"),
-        (lambda: grid(scales=[-1.0]), "scales must not be negative"),
+        (lambda: grid(scales=[-1.0]), "scales must be a sequence of finite numbers, none negative"),
         (lambda: grid(scales=[1.0, 1.0]), "scales must differ, got 1.0 twice"),
         (lambda: grid(tan_alphas=[math.nan]), "tan_alphas must be a sequence of finite numbers"),
         (lambda: grid(motions=[SHORT, SHORT]), "motions must differ, got 'short' twice"),
