@@ -24,7 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, RockingBody, Run, Trace
+from rockwobble.models import Case, Run, Trace
 from rockwobble.models.frames import column_meanings, pd
 from rockwobble.models.shown import CompactRepr
 from rockwobble.models.support import RECESS
@@ -42,7 +42,7 @@ from ..metrics.pair import (
     start_of,
     tolerance_of,
 )
-from ..runs.choice import at_step, own_model_of, references_of
+from ..runs.choice import Compared, at_step
 from ..runs.execution import SAMPLE_STEP, Job
 
 Array = NDArray[np.float64]
@@ -169,13 +169,12 @@ class ErrorBudget(CompactRepr):
 
 
 def error_budget(
-    cylinder: RockingBody, engine: Trace, reference: Trace, own: Trace, limit: Limit, agreement: Agreement
+    engine: Trace, reference: Trace, own: Trace, limit: Limit, agreement: Agreement
 ) -> ErrorBudget:
     """Return the budget of `engine` minus `reference` over their agreement.
 
     Parameters
     ----------
-    cylinder : Cylinder or WobblingFrame
     engine : Trace
         Trajectory of the engine.
     reference : Trace
@@ -188,15 +187,11 @@ def error_budget(
         Agreement of engine and reference.
     """
     start = start_of(reference)
-    times = (engine.time, reference.time, own.time, limit.time)
-    count = common_count(times)
-    keep = slice(
-        int(np.searchsorted(engine.time[:count], start - _SAME_TIME)),
-        int(np.searchsorted(engine.time[:count], agreement.end + _SAME_TIME)),
-    )
-    alpha = cylinder.alpha
-    tilts = (engine.tilt, reference.tilt, own.tilt, limit.tilt)
-    measured, asked, explained, extrapolated = (tilt[keep] / alpha for tilt in tilts)
+    motions = (engine, reference, own, limit)
+    time = engine.time[: common_count([each.time for each in motions])]
+    keep = slice(*np.searchsorted(time, [start - _SAME_TIME, agreement.end + _SAME_TIME]))
+    alpha = engine.case.cylinder.alpha
+    measured, asked, explained, extrapolated = (each.tilt[keep] / alpha for each in motions)
     return ErrorBudget(
         time=engine.time[keep],
         whole=measured - asked,
@@ -282,20 +277,13 @@ class Refined:
         return self.case.is_release or engine_facts(self.run.engine_name).smooth_uplift
 
     @property
-    def key(self) -> Key:
-        """Names of case and run."""
-        return self.case.name, self.label
-
-    @property
     def extrapolated(self) -> bool:
         """Whether the run is extrapolated itself."""
         return self.run.time_step == EXTRAPOLATED
 
 
-def limits(refined: Sequence[Refined], simulate: Simulate) -> Mapping[Key, Limit]:
-    """Return the limit of each run, by names of case and run.
-
-    A run whose finer runs fail or crash has none.
+def limits(refined: Sequence[Refined], simulate: Simulate) -> list[Limit | None]:
+    """Return the limit of each run; None of one whose finer runs fail or crash.
 
     Parameters
     ----------
@@ -303,18 +291,18 @@ def limits(refined: Sequence[Refined], simulate: Simulate) -> Mapping[Key, Limit
     simulate : callable
         Runs jobs, and returns their results in the same order.
     """
-    traces = {each.key: [] if each.extrapolated else [each.trajectory] for each in refined}
+    traces = [[] if each.extrapolated else [each.trajectory] for each in refined]
 
-    def halve(wanted: Sequence[tuple[Refined, int]]) -> None:
-        made = simulate([_job(each, times) for each, times in wanted]) if wanted else []
-        for (each, _), trace in zip(wanted, made, strict=True):
-            traces[each.key].append(trace)
+    def halve(wanted: Sequence[tuple[int, int]]) -> None:
+        finer = simulate([_job(refined[index], times) for index, times in wanted]) if wanted else []
+        for (index, _), trace in zip(wanted, finer, strict=True):
+            traces[index].append(trace)
 
     # not at all, too, where no run was at the step itself
-    halve([(each, times) for each in refined for times in range(not each.extrapolated, _ALWAYS + 1)])
-    halve([(each, _AT_MOST) for each in refined if _is_uncertain(each, traces[each.key])])
-    made = {each.key: _limit(each, traces[each.key]) for each in refined}
-    return {key: limit for key, limit in made.items() if limit is not None}
+    every = list(enumerate(refined))
+    halve([(index, times) for index, each in every for times in range(not each.extrapolated, _ALWAYS + 1)])
+    halve([(index, _AT_MOST) for index, each in every if _is_uncertain(each, traces[index])])
+    return [_limit(each, traces[index]) for index, each in every]
 
 
 def _job(refined: Refined, times: int) -> Job:
@@ -354,13 +342,7 @@ def _is_uncertain(refined: Refined, traces: Sequence[Trace]) -> bool:
 
 
 def case_budgets(
-    cases: Sequence[Case],
-    runs: Mapping[str, Run],
-    reference: Run | None,
-    results: Mapping[Key, Trace],
-    simulate: Simulate,
-    *,
-    named: str = "",
+    compared: Sequence[Compared], traces: Mapping[Key, Trace], simulate: Simulate
 ) -> dict[tuple[str, str, str], ErrorBudget]:
     """Return the budget of each run and reference: by name of the case, label and label of the reference.
 
@@ -368,69 +350,57 @@ def case_budgets(
 
     Parameters
     ----------
-    cases : sequence of Case
-    runs : mapping
-        Run of each label.
-    reference : Run or None
-        What every run is compared with; None is what its support asks for.
-    results : mapping
+    compared : sequence of Compared
+    traces : mapping
         Traces by name of the case and label.
     simulate : callable
         Runs jobs, and returns their results in the same order.
     """
-    agreements: dict[tuple[str, str, str], Agreement] = {}
+    agreements: list[tuple[Compared, dict[str, Agreement]]] = []
     refined = []
-    for case in cases:
-        for label, run in runs.items():
-            trajectory = results[case.name, label]
-            if run.is_model or trajectory.outcome == "failed":
-                continue
-            found = {
-                model: agreement
-                for model in references_of(case, run, label, reference, named=named)
-                if (agreement := _agreement(case, results[case.name, model], trajectory)) is not None
-            }
-            if not found:
-                continue
-            agreements |= {(case.name, label, model): agreement for model, agreement in found.items()}
-            model, agreement = max(found.items(), key=lambda item: item[1].end)
-            pair = make_pair(case.cylinder, results[case.name, model], trajectory, until=agreement.end)
-            refined.append(
-                Refined(
-                    case=case,
-                    run=run,
-                    label=label,
-                    trajectory=trajectory,
-                    end=agreement.end,
-                    difference=pair.tilt_difference[pair.time >= pair.start],
-                )
+    for each in compared:
+        case, trajectory = each.case, traces[each.case.name, each.label]
+        if each.run.is_model or trajectory.outcome == "failed":
+            continue
+        agreed = {
+            model: agreement
+            for model in each.references
+            if (agreement := _agreement(case, traces[case.name, model], trajectory)) is not None
+        }
+        if not agreed:
+            continue
+        agreements.append((each, agreed))
+        model = max(agreed, key=lambda model: agreed[model].end)
+        end = agreed[model].end
+        pair = make_pair(case.cylinder, traces[case.name, model], trajectory, until=end)
+        refined.append(
+            Refined(
+                case=case,
+                run=each.run,
+                label=each.label,
+                trajectory=trajectory,
+                end=end,
+                difference=pair.tilt_difference[pair.time >= pair.start],
             )
+        )
     extrapolations = limits(refined, simulate)
-    impacts = _impacts(cases, runs, results, simulate)
-
-    by_name = {case.name: case for case in cases}
-
-    def own_trace(name: str, label: str) -> Trace:
-        key = name, str(own_model_of(by_name[name], runs[label]))
-        return impacts.get(key, results[key])
-
+    own = {key: traces[key] for key in ((each.case.name, str(each.own)) for each in compared)}
+    own |= _impacts(own, simulate)
     return {
-        (name, label, model): error_budget(
-            results[name, label].case.cylinder,
-            results[name, label],
-            results[name, model],
-            own_trace(name, label),
-            extrapolations[name, label],
+        (each.case.name, each.label, model): error_budget(
+            traces[each.case.name, each.label],
+            traces[each.case.name, model],
+            own[each.case.name, str(each.own)],
+            limit,
             agreement,
         )
-        for (name, label, model), agreement in agreements.items()
-        if (name, label) in extrapolations
+        for (each, agreed), limit in zip(agreements, extrapolations, strict=True)
+        for model, agreement in agreed.items()
+        if limit is not None
     }
 
 
-def _impacts(
-    cases: Sequence[Case], runs: Mapping[str, Run], results: Mapping[Key, Trace], simulate: Simulate
-) -> dict[Key, Trace]:
+def _impacts(own: Mapping[Key, Trace], simulate: Simulate) -> dict[Key, Trace]:
     """Return planar motion with impacts, for models that go through upright: by names of case and model.
 
     Motion in one vertical plane passes upright itself, and there the base lands flat. The recess and
@@ -438,21 +408,18 @@ def _impacts(
     angular momentum about its new edge (Housner), on any support, and so do the engines: the difference is
     model form.
     """
-    keys, jobs = [], []
-    for case in cases:
-        for model in dict.fromkeys(str(own_model_of(case, run)) for run in runs.values()):
-            response = results[case.name, model]
-            if response.run.loses_at_impact or not len(landings(response)):
-                continue
-            direction, motion, initial = response.uplift_direction, case.motion, case.initial
-            plane = dataclasses.replace(
-                case,
-                motion=None if motion is None else motion.rotated(-direction),
-                initial=None if initial is None else dataclasses.replace(initial, rolling_angle=0.0),
-            )
-            keys.append((case.name, model))
-            jobs.append(Job(case=plane, run=_IMPACT, label="planar with impact"))
-    return dict(zip(keys, simulate(jobs), strict=True)) if jobs else {}
+    jobs = {}
+    for key, response in own.items():
+        if response.run.loses_at_impact or not len(landings(response)):
+            continue
+        direction, motion, initial = response.uplift_direction, response.case.motion, response.case.initial
+        plane = dataclasses.replace(
+            response.case,
+            motion=None if motion is None else motion.rotated(-direction),
+            initial=None if initial is None else dataclasses.replace(initial, rolling_angle=0.0),
+        )
+        jobs[key] = Job(case=plane, run=_IMPACT, label="planar with impact")
+    return dict(zip(jobs, simulate(list(jobs.values())), strict=True)) if jobs else {}
 
 
 def _agreement(case: Case, response: Trace, trajectory: Trace) -> Agreement | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from contextlib import nullcontext
 from pathlib import Path
 
@@ -14,13 +14,7 @@ from rockwobble.models.frames import pd
 from ..external.trajectory import External, read_trajectories
 from ..external.verdict import VERDICT_COLUMNS, Row
 from ..metrics.pair import tolerance_of
-from ..runs.choice import (
-    default_runs,
-    labels_beside_references,
-    own_model_of,
-    references_of,
-    require_runnable,
-)
+from ..runs.choice import compared_runs, default_runs, labels_beside_references, require_runnable
 from ..runs.execution import Job, open_trace_cache, simulate_all
 from ..runs.progress import ProgressCallback
 from ..storage.manifest import require_writable
@@ -101,24 +95,35 @@ def comparison(
         require_writable(out)
     if until is not None and not until > 0.0:
         raise ValueError(f"until must be positive [s], got {until!r}")
-    cases = case_or_suite.cases if isinstance(case_or_suite, Suite) else (case_or_suite,)
-    chosen = _runs(case_or_suite, runs, needed=not (external := tuple(external)))
-    for case in cases:
-        own = [own_model_of(case, run) for run in chosen]
-        for run in (*chosen, *own, *(() if reference is None else (reference,))):
-            require_runnable(case, run)
-    labels, named = labels_beside_references(chosen, reference)
-    by_label = dict(zip(labels, chosen, strict=True))
-    compared_with = {named or str(RECESS_MODEL): reference or RECESS_MODEL}
-    jobs = _jobs(cases, by_label, reference, named, also=compared_with if external else {})
+    suite = case_or_suite if isinstance(case_or_suite, Suite) else Suite((case_or_suite,), ())
+    cases, external, chosen = suite.cases, tuple(external), tuple(runs or ())
+    if not chosen and (runs is None or not external):
+        chosen = suite.runs or default_runs(cases=cases)
+        if not chosen:
+            raise ValueError("there must be at least one engine to compare with, found none installed")
+    compared = compared_runs(cases, chosen, reference)
+    for each in compared:
+        for run in (each.run, each.own, *(() if reference is None else (reference,))):
+            require_runnable(each.case, run)
+    references = {
+        labels_beside_references(chosen, reference)[1] or str(RECESS_MODEL): reference or RECESS_MODEL
+    }
+    runs_of = [(cases[0], references)] if external else []
+    runs_of += [(each.case, {**each.references, str(each.own): each.own}) for each in compared]
+    runs_of += [(each.case, {each.label: each.run}) for each in compared]
+    jobs = {
+        (case.name, label): Job(case=case, run=run, label=label)
+        for case, labelled in runs_of
+        for label, run in labelled.items()
+    }
     brought = read_trajectories(external, cases, taken={label for _, label in jobs})
     with nullcontext() if resume is None else open_trace_cache(resume, Comparison.kind) as cache:
 
         def run_all(jobs: list[Job]) -> list[Trace]:
             return simulate_all(jobs, workers=workers, progress=progress, cache=cache)
 
-        found = dict(zip(jobs, run_all(list(jobs.values())), strict=True))
-        budgets = case_budgets(cases, by_label, reference, found, run_all, named=named) if budget else {}
+        traces = dict(zip(jobs, run_all(list(jobs.values())), strict=True))
+        budgets = case_budgets(compared, traces, run_all) if budget else {}
 
         def copy_of(case: Case, run: Run) -> Trace:
             # milliseconds: not worth a process, nor a word about its progress
@@ -128,28 +133,27 @@ def comparison(
             comparison_row(
                 case,
                 name,
-                found[case.name, name],
+                traces[case.name, name],
                 label,
-                found[case.name, label],
-                own=found[case.name, str(own_model_of(case, run))],
+                traces[case.name, label],
+                own=traces[case.name, str(own)],
                 simulate=copy_of,
                 budget=budgets.get((case.name, label, name)),
                 until=until,
             )
-            for case in cases
-            for label, run in by_label.items()
-            for name in references_of(case, run, label, reference, named=named)
+            for case, label, _, own, against in compared
+            for name in against
         ]
     verdicts = [
-        external_row(cases[0], other, found[name, other], label, trajectory, until=until)
+        external_row(cases[0], other, traces[name, other], label, trajectory, until=until)
         for (name, label), trajectory in brought.items()
-        for other in compared_with
+        for other in references
     ]
     table = pd.DataFrame([*rows, *verdicts], columns=list(SUMMARY_COLUMNS))
     comparison = comparison_of(
         table.astype({"diverged": bool, "left_tolerance": bool, "agreed_passes": int}),
         cases={case.name: case for case in cases},
-        traces=found | brought,
+        traces=traces | brought,
         versions=package_versions(),
         until=until,
         budgets=budgets,
@@ -158,40 +162,6 @@ def comparison(
     if out is not None:
         comparison.save(out)
     return comparison
-
-
-def _jobs(
-    cases: Iterable[Case],
-    runs: Mapping[str, Run],
-    reference: Run | None,
-    named: str,
-    *,
-    also: Mapping[str, Run],
-) -> dict[tuple[str, str], Job]:
-    """Return the jobs to run, by name of the case and label: references, own models, then the runs."""
-    jobs: dict[tuple[str, str], Job] = {}
-    for case in cases:
-        needed = dict(also)
-        for label, run in runs.items():
-            needed |= references_of(case, run, label, reference, named=named)
-            needed[str(own_model_of(case, run))] = own_model_of(case, run)
-        jobs |= {(case.name, label): Job(case=case, run=run, label=label) for label, run in needed.items()}
-    for case in cases:
-        jobs |= {(case.name, label): Job(case=case, run=run, label=label) for label, run in runs.items()}
-    return jobs
-
-
-def _runs(case_or_suite: Case | Suite, runs: Iterable[Run] | None, *, needed: bool) -> tuple[Run, ...]:
-    chosen = tuple(runs) if runs is not None else ()
-    if runs is not None and not chosen and not needed:
-        return ()
-    if not chosen and isinstance(case_or_suite, Suite):
-        chosen = case_or_suite.runs
-    cases = case_or_suite.cases if isinstance(case_or_suite, Suite) else (case_or_suite,)
-    chosen = chosen or default_runs(cases=cases)
-    if not chosen:
-        raise ValueError("there must be at least one engine to compare with, found none installed")
-    return chosen
 
 
 def comparison_row(

@@ -240,7 +240,7 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class View(Results, kind="view"):
+class View(Comparison, kind="view"):
     """Motion to be played, with tables and facts of the comparison of one case.
 
     Examples
@@ -267,31 +267,12 @@ class View(Results, kind="view"):
 
     @cached_property
     def comparison(self) -> Comparison:
-        """The comparison of the case."""
+        """The comparison of the case, which has the findings."""
         return Comparison(tables=self.tables, facts=self.facts, manifest=self.manifest)
 
-    def headline(self) -> Mapping[str, Number]:
-        """Return the numbers of the comparison."""
-        return self.comparison.headline()
-
-    def _about(self) -> Mapping[str, object]:
-        return {}  # as of a comparison
-
-    def sheets(self) -> Mapping[str, bytes]:
-        """Return the files of the comparison."""
-        return self.comparison.sheets()
-
-    @classmethod
-    def of_stored(cls, stored: Stored) -> Self:
-        """Return the results whose files are whole.
-
-        Raises
-        ------
-        ValueError
-            If they cannot be read.
-        """
-        found = Comparison.of_stored(stored)
-        return cls(tables=found.tables, facts=found.facts, manifest=found.manifest)
+    def findings(self) -> Findings:
+        """No findings of its own."""
+        return Findings()
 
 
 def comparison_of(

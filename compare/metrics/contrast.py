@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,81 +92,29 @@ class Contrast:
     def columns(self) -> dict[str, float | int | str]:
         """Return the attributes and the verdict as columns, ends of an interval as NAME_low and NAME_high."""
         row: dict[str, float | int | str] = {}
-        for field in fields(self):
-            value = getattr(self, field.name)
-            row |= value.columns(field.name) if isinstance(value, Interval) else {field.name: value}
+        for name in (each.name for each in fields(self)):
+            value = getattr(self, name)
+            row |= value.columns(name) if isinstance(value, Interval) else {name: value}
         return row | {"verdict": self.verdict}
 
 
-def contrast(peaks: Array, against: Array, overturned: Flags, against_overturned: Flags) -> Contrast:
-    """Compare the peak tilts of one method with those of another, member by member.
-
-    Parameters
-    ----------
-    peaks, against : ndarray, shape (n,)
-        Peak tilts of the same members [alpha]; NaN where a run failed: such a member does not count.
-    overturned, against_overturned : ndarray of bool, shape (n,)
-
-    Raises
-    ------
-    ValueError
-        If fewer than two members count.
-    """
-    counts = np.isfinite(peaks) & np.isfinite(against)
-    if np.count_nonzero(counts) < 2:
-        raise ValueError(f"two members that do not fail are needed, got {np.count_nonzero(counts)}")
-    fell, fell_there = overturned[counts], against_overturned[counts]
-    logarithms = log_ratios(peaks, against, overturned, against_overturned)
-    logarithms = logarithms[~np.isnan(logarithms)]
-    only, only_there = (int((a & ~b).sum()) for a, b in ((fell, fell_there), (fell_there, fell)))
-    ratio, ratio_05, ratio_95 = (
-        quantile_interval(logarithms, share).exponential() for share in (0.5, 0.05, 0.95)
-    )
-    return Contrast(
-        count=len(fell),
-        compared=len(logarithms),
-        higher=int((logarithms > 0.0).sum()),
-        lower=int((logarithms < 0.0).sum()),
-        ratio=ratio,
-        ratio_05=ratio_05,
-        ratio_95=ratio_95,
-        ratio_p=signed_rank_p(logarithms),
-        within_reach=ratio_within_reach(logarithms),
-        overturned=int(fell.sum()),
-        against_overturned=int(fell_there.sum()),
-        both_overturned=int((fell & fell_there).sum()),
-        overturned_p=mcnemar_p(only, only_there),
-        overturned_difference=paired_difference(only, only_there, len(fell)),
-    )
-
-
-def log_ratios(peaks: Array, against: Array, overturned: Flags, against_overturned: Flags) -> Array:
-    """Return the logarithm of the ratio of each member, NaN where it has none; arguments as in `contrast`."""
-    ours = np.where(overturned, math.inf, peaks)
-    theirs = np.where(against_overturned, math.inf, against)
-    ours[np.isnan(peaks) | np.isnan(against)] = math.nan
-    # the logarithm of a run at rest is infinite; two at rest, or two overturned, have no ratio
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.log(ours) - np.log(theirs), dtype=np.float64)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class Pairs:
     """The members of an ensemble by two methods.
 
     Attributes
     ----------
-    members : ndarray of str, shape (n,)
     peaks, against : ndarray, shape (n,)
-        Peak tilts [alpha], NaN where a run failed.
+        Peak tilts [alpha], NaN where a run failed: such a member does not count.
     overturned, against_overturned : ndarray of bool, shape (n,)
+    members : ndarray of str, shape (n,), optional
     """
 
-    members: NDArray[np.str_]
     peaks: Array
     against: Array
     overturned: Flags
     against_overturned: Flags
+    members: NDArray[np.str_] = field(default_factory=lambda: np.array([], dtype=str))
 
     @property
     def failed(self) -> Flags:
@@ -174,24 +122,49 @@ class Pairs:
         return np.isnan(self.peaks) | np.isnan(self.against)
 
     def log_ratios(self) -> Array:
-        """Return the logarithms of the ratios of the members, see `log_ratios`."""
-        return log_ratios(self.peaks, self.against, self.overturned, self.against_overturned)
-
-    def ratio_bounds(self) -> tuple[float, float]:
-        """Return the least and the largest median ratio, whatever the members that failed would have done."""
-        known, unknown = self.log_ratios()[~self.failed], np.count_nonzero(self.failed)
-        known = known[~np.isnan(known)]
-        least, most = (
-            quantile_interval(np.append(known, np.full(unknown, fate)), 0.5).exponential().value
-            for fate in (-math.inf, math.inf)
+        """Return the logarithm of the ratio of each member, NaN where it has none."""
+        first, second = (
+            np.where(fell, math.inf, peaks)
+            for fell, peaks in ((self.overturned, self.peaks), (self.against_overturned, self.against))
         )
-        return least, most
+        first[self.failed] = math.nan
+        # the logarithm of a run at rest is infinite; two at rest, or two overturned, have no ratio
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(np.log(first) - np.log(second), dtype=np.float64)
+
+    def ratio_bounds(self) -> tuple[float, ...]:
+        """Return the least and the largest median ratio, whatever the members that failed would have done."""
+        known = self.log_ratios()
+        fates = (np.where(self.failed, fate, known) for fate in (-math.inf, math.inf))
+        return tuple(quantile_interval(each[~np.isnan(each)], 0.5).exponential().value for each in fates)
 
     def contrast(self) -> Contrast | None:
         """Return the contrast of the methods; None where fewer than two members ran by both."""
-        if np.count_nonzero(~self.failed) < 2:
+        counts, logarithms = ~self.failed, self.log_ratios()
+        if np.count_nonzero(counts) < 2:
             return None
-        return contrast(self.peaks, self.against, self.overturned, self.against_overturned)
+        fell, fell_there = self.overturned[counts], self.against_overturned[counts]
+        logarithms = logarithms[~np.isnan(logarithms)]
+        only, only_there = int((fell & ~fell_there).sum()), int((fell_there & ~fell).sum())
+        ratio, ratio_05, ratio_95 = (
+            quantile_interval(logarithms, share).exponential() for share in (0.5, 0.05, 0.95)
+        )
+        return Contrast(
+            count=len(fell),
+            compared=len(logarithms),
+            higher=int((logarithms > 0.0).sum()),
+            lower=int((logarithms < 0.0).sum()),
+            ratio=ratio,
+            ratio_05=ratio_05,
+            ratio_95=ratio_95,
+            ratio_p=signed_rank_p(logarithms),
+            within_reach=ratio_within_reach(logarithms),
+            overturned=int(fell.sum()),
+            against_overturned=int(fell_there.sum()),
+            both_overturned=int((fell & fell_there).sum()),
+            overturned_p=mcnemar_p(only, only_there),
+            overturned_difference=paired_difference(only, only_there, len(fell)),
+        )
 
 
 def pairs_in(
@@ -214,29 +187,16 @@ def pairs_in(
     """
     if runs.duplicated([member, "method"]).any():
         raise ValueError("each member must have one run by each method, got more")
-    names = list(runs[member].unique())
-    ours, theirs = (
-        runs[runs["method"] == name].set_index(member).reindex(names) for name in (method, against)
-    )
-    return Pairs(
-        members=np.array(names, dtype=str),
-        peaks=ours[peak].where(~ours["outcome"].isin(NO_PEAK)).to_numpy(float),
-        against=theirs[peak].where(~theirs["outcome"].isin(NO_PEAK)).to_numpy(float),
-        overturned=(ours["outcome"] == "overturned").to_numpy(bool),
-        against_overturned=(theirs["outcome"] == "overturned").to_numpy(bool),
-    )
+    names = runs[member].unique()
+    rows = [runs[runs["method"] == name].set_index(member).reindex(names) for name in (method, against)]
+    peaks, against_peaks = (each[peak].where(~each["outcome"].isin(NO_PEAK)).to_numpy(float) for each in rows)
+    fell, fell_there = ((each["outcome"] == "overturned").to_numpy(bool) for each in rows)
+    return Pairs(peaks, against_peaks, fell, fell_there, np.array(names, dtype=str))
 
 
 def pairs_of(traces: Sequence[Trace], against: Sequence[Trace]) -> Pairs:
     """Return the members of two sequences of traces (n,), in the same order; peak tilts in rad."""
-    peaks, peaks_against = (np.array([trace.peak_tilt for trace in part]) for part in (traces, against))
-    fell, fell_against = (
-        np.array([trace.outcome == "overturned" for trace in part]) for part in (traces, against)
-    )
-    return Pairs(
-        members=np.array([trace.case.name for trace in traces]),
-        peaks=peaks,
-        against=peaks_against,
-        overturned=fell,
-        against_overturned=fell_against,
-    )
+    parts = (traces, against)
+    peaks = (np.array([trace.peak_tilt for trace in part]) for part in parts)
+    fell = (np.array([trace.outcome == "overturned" for trace in part]) for part in parts)
+    return Pairs(*peaks, *fell)

@@ -263,7 +263,7 @@ def ratio_within_reach(logarithms: Array) -> float:
     Parameters
     ----------
     logarithms : ndarray, shape (n,)
-        Logarithms of the ratios, see `log_ratios`, without those that have none.
+        Logarithms of the ratios, see `Pairs.log_ratios`, without those that have none.
     """
     from scipy.special import betaincinv
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 from rockwobble.models import Case, InitialState, Run
 from rockwobble.models.case import REDUCED_MODELS, TimeStep
@@ -101,6 +102,37 @@ def _setting_names(case: Case, run: Run) -> tuple[str, ...]:
 def step_settings(run: Run) -> tuple[str, ...]:
     """Return the settings of the search for the time step of a run."""
     return tuple(name for name, way in STEP_SETTINGS.items() if way == run.time_step)
+
+
+class Compared(NamedTuple):
+    """One run of a case, and what it is compared with.
+
+    Attributes
+    ----------
+    case : Case
+    label : str
+    run : Run
+    own : Run
+        The reduced model that an exact engine would follow.
+    references : mapping of str to Run
+        By label.
+    """
+
+    case: Case
+    label: str
+    run: Run
+    own: Run
+    references: Mapping[str, Run]
+
+
+def compared_runs(cases: Sequence[Case], runs: Sequence[Run], reference: Run | None) -> list[Compared]:
+    """Return each run of each case, compared with `reference` or with what its support asks for."""
+    labels, named = labels_beside_references(runs, reference)
+    return [
+        Compared(case, label, run, own_model_of(case, run), references_of(case, run, label, reference, named))
+        for case in cases
+        for label, run in zip(labels, runs, strict=True)
+    ]
 
 
 def labels_beside_references(runs: Sequence[Run], reference: Run | None) -> tuple[tuple[str, ...], str]:
@@ -352,7 +384,7 @@ def omissions(supports: Sequence[str]) -> tuple[str, ...]:
 
 
 def references_of(
-    case: Case, run: Run, label: str, reference: Run | None = None, *, named: str = ""
+    case: Case, run: Run, label: str, reference: Run | None = None, named: str = ""
 ) -> dict[str, Run]:
     """Return the references of a run, by label: `reference`, or what its support asks for.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, fields
 from numbers import Integral, Real
-from typing import TypeVar, get_type_hints
+from typing import TypedDict, TypeVar, Unpack, get_type_hints
 
 T = TypeVar("T")
 _KEY = "option"
@@ -35,7 +35,7 @@ class Option:
     """
 
     help: str
-    group: str
+    group: str = ""
     least: float = -math.inf
     most: float = math.inf
     above: float = -math.inf
@@ -45,39 +45,27 @@ class Option:
     flag: str = ""
 
 
+class _Stated(TypedDict, total=False):
+    group: str
+    least: float
+    most: float
+    above: float
+    below: float
+    choices: tuple[str, ...]
+    form: str
+    flag: str
+
+
 @dataclass(frozen=True, slots=True)
 class OptionsIn:
     """Factory of the fields of a plan that are options under one heading of the help text."""
 
     group: str
 
-    def __call__(
-        self,
-        default: T,
-        text: str,
-        *,
-        group: str = "",
-        least: float = -math.inf,
-        most: float = math.inf,
-        above: float = -math.inf,
-        below: float = math.inf,
-        choices: tuple[str, ...] = (),
-        form: str = "",
-        flag: str = "",
-    ) -> T:
+    def __call__(self, default: T, text: str, **stated: Unpack[_Stated]) -> T:
         """Return the field of a plan that is an option: its help, and attributes of `Option`."""
-        stated = Option(
-            help=text,
-            group=group or self.group,
-            least=least,
-            most=most,
-            above=above,
-            below=below,
-            choices=choices,
-            form=form,
-            flag=flag,
-        )
-        return field(default=default, metadata={_KEY: stated})
+        stated.setdefault("group", self.group)
+        return field(default=default, metadata={_KEY: Option(help=text, **stated)})
 
 
 option = OptionsIn("Method")
@@ -104,15 +92,8 @@ class Plan:
                     require_one_of(name, word, stated.choices)
             whole = kind in (int, int | None)
             if value is not None and (whole or kind in (float, float | None)):
-                require_in_range(
-                    name,
-                    value,
-                    Integral if whole else Real,
-                    least=stated.least,
-                    most=stated.most,
-                    above=stated.above,
-                    below=stated.below,
-                )
+                ends = {end: getattr(stated, end) for end in ("least", "most", "above", "below")}
+                require_in_range(name, value, Integral if whole else Real, **ends)
 
 
 def options_of(plan: type) -> dict[str, Option]:

@@ -210,48 +210,43 @@ def run_tasks(
     [1, 2, 3]
     """
     results: dict[int, R | FailedTask] = {}
-    damaged: list[str] = []
     if cache is not None:
         cache.expect(len(tasks))
         found = {index: cache.find(task) for index, task in enumerate(tasks)}
         results |= {index: result for index, result in found.items() if result is not None}
-        damaged = [str(path) for path in cache.damaged]
     costs = [1.0 if cost is None else cost(task) for task in tasks]
     waiting = [index for index in reversed(range(len(tasks))) if index not in results]
     waiting.sort(key=lambda index: costs[index])  # the longest are taken first, from the end
     known = {index: costs[index] if math.isfinite(costs[index]) else 0.0 for index in waiting}
+    damaged = [] if cache is None else [str(path) for path in cache.damaged]
     tell = Clock(progress, list(known.values()), len(results), damaged)
     # a number that is given holds even for one task: in a process of its own it can be ended in a long call
     count = min(usable_cpus(), len(waiting)) if workers is None else workers
     brief = [index for index in waiting if count > 1 and scheduler is None and here(tasks[index])]
     waiting = [index for index in waiting if index not in brief]
-    if scheduler is not None:
-        backend = on_cluster(scheduler, makers)
-    elif count > 1:
-        backend = _in_processes(max(1, min(count, len(waiting))))
-    else:
-        backend = _here()
     tried: Counter[int] = Counter()
     running: dict[Future[R], int] = {}
+
+    def begin(index: int, submit: Callable[..., Future[R]]) -> None:
+        if not tried[index]:
+            tell("started", label(tasks[index]))
+        tried[index] += 1
+        running[submit(function, tasks[index])] = index
+
+    if scheduler is not None:
+        backend = on_cluster(scheduler, makers)
+    else:
+        backend = _in_processes(max(1, min(count, len(waiting)))) if count > 1 else _here()
     with backend as (submit, capacity, losses):
         while waiting or running or brief:
             for _ in range(min(len(waiting), capacity() - len(running))):
-                index = waiting.pop()
-                if not tried[index]:
-                    tell("started", label(tasks[index]))
-                tried[index] += 1
-                running[submit(function, tasks[index])] = index
-            while brief:
-                index = brief.pop()
-                tell("started", label(tasks[index]))
-                results[index] = result = function(tasks[index])
-                if cache is not None:
-                    cache.keep(tasks[index], result)
-                tell("finished", label(tasks[index]), known[index])
+                begin(waiting.pop(), submit)
+            if brief:
+                begin(brief.pop(), _call_here)
             for future in wait(running, timeout=_LOOK, return_when=FIRST_COMPLETED).done:
                 index = running.pop(future)
                 try:
-                    results[index] = future.result()
+                    results[index] = result = future.result()
                 except losses as error:
                     if tried[index] < tries:
                         waiting.append(index)
@@ -259,19 +254,20 @@ def run_tasks(
                     results[index] = FailedTask(str(error).partition("\n")[0] or type(error).__name__)
                 else:
                     if cache is not None:
-                        cache.keep(tasks[index], future.result())
+                        cache.keep(tasks[index], result)
                 tell("finished", label(tasks[index]), known[index])
     return [results[index] for index in range(len(tasks))]
 
 
+def _call_here(function: Callable[[T], R], task: T) -> Future[R]:
+    done: Future[R] = Future()
+    done.set_result(function(task))
+    return done
+
+
 @contextmanager
 def _here() -> Iterator[Backend]:
-    def submit(function: Callable[[T], R], task: T) -> Future[R]:
-        done: Future[R] = Future()
-        done.set_result(function(task))
-        return done
-
-    yield submit, lambda: 1, ()
+    yield _call_here, lambda: 1, ()
 
 
 @contextmanager

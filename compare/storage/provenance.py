@@ -10,11 +10,10 @@ import inspect
 import platform
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from types import ModuleType
-from typing import Protocol
 
 import numpy as np
 
@@ -23,10 +22,6 @@ from rockwobble.multibody.engines.registry import engine_packages
 
 # 128 bits: two different inputs of 10^9 results share a name with a probability of 10^-21
 _DIGITS = 32
-
-
-class _Hash(Protocol):
-    def update(self, data: bytes, /) -> None: ...
 
 
 def fingerprint(value: object) -> str:
@@ -55,42 +50,39 @@ def fingerprint(value: object) -> str:
     False
     """
     digest = hashlib.sha256()
-    _feed(digest, value)
+    for kind, content in _tagged(value):
+        digest.update(f"{kind} {len(content)}:".encode() + content)
     return digest.hexdigest()[:_DIGITS]
 
 
-def _feed(digest: _Hash, value: object) -> None:
-    """Feed a value with its kind and length in front, so that no two values feed the same bytes."""
+def _tagged(value: object) -> Iterator[tuple[str, bytes]]:
+    """The parts of a value with their kinds: with their lengths, too, no two values have the same bytes."""
     if isinstance(value, np.generic):
         value = value.item()
+    parts: Iterable[object] = ()
     if isinstance(value, str):
-        _tag(digest, "str", value.encode())  # a support is text, too
+        yield "str", value.encode()  # a support is text, too
     elif value is None or isinstance(value, bool | int):
-        _tag(digest, type(value).__name__, str(value).encode())
+        yield type(value).__name__, str(value).encode()
     elif isinstance(value, float):
-        _tag(digest, "float", value.hex().encode())
+        yield "float", value.hex().encode()
     elif isinstance(value, np.ndarray):
-        _tag(digest, f"array {value.dtype.str} {value.shape}", np.ascontiguousarray(value).tobytes())
+        yield f"array {value.dtype.str} {value.shape}", np.ascontiguousarray(value).tobytes()
     elif isinstance(value, Mapping):
-        _tag(digest, "mapping", str(len(value)).encode())
-        for key in sorted(value):
-            _feed(digest, key)
-            _feed(digest, value[key])
+        yield "mapping", str(len(value)).encode()
+        parts = (part for key in sorted(value) for part in (key, value[key]))
     elif isinstance(value, list | tuple):
-        _tag(digest, "sequence", str(len(value)).encode())
-        for item in value:
-            _feed(digest, item)
+        yield "sequence", str(len(value)).encode()
+        parts = value
     elif dataclasses.is_dataclass(value) and not isinstance(value, type):
-        _tag(digest, "dataclass", type(value).__name__.encode())
-        _feed(digest, {field.name: getattr(value, field.name) for field in dataclasses.fields(value)})
+        yield "dataclass", type(value).__name__.encode()
+        parts = ({field.name: getattr(value, field.name) for field in dataclasses.fields(value)},)
     else:
         raise ValueError(
             f"a result cannot be named by an input of type {type(value).__name__}, got {value!r}"
         )
-
-
-def _tag(digest: _Hash, kind: str, content: bytes) -> None:
-    digest.update(f"{kind} {len(content)}:".encode() + content)
+    for part in parts:
+        yield from _tagged(part)
 
 
 PACKAGES = ("rockwobble", "numpy", "scipy", "numba", "pandas", "pyarrow", *engine_packages().values())
@@ -165,14 +157,9 @@ def result_fingerprint(inputs: object, made_with: Mapping[str, str]) -> str:
     inputs : object
         As of `fingerprint`, without names that are for people alone.
     made_with : mapping
-        As of `reduced_makers`, `engine_makers` or `package_makers`.
+        As of `reduced_makers` or `engine_makers`.
     """
     return fingerprint({"inputs": inputs, "made with": made_with})
-
-
-def package_makers() -> dict[str, str]:
-    """Return versions of all and code of every folder that numbers come from."""
-    return package_versions() | {f"code of {name}": digest for name, digest in code_digests().items()}
 
 
 def reduced_makers() -> dict[str, str]:

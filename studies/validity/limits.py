@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.compare.comparison.prediction import IN_TIME
-from rockwobble.compare.metrics.contrast import log_ratios, pairs_in
+from rockwobble.compare.metrics.contrast import Pairs, pairs_in
 from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.metrics.statistics import MARGIN, quantile_interval
 from rockwobble.models.finding import Finding, Findings, Level
@@ -157,9 +157,9 @@ def _fell(table: pd.DataFrame, name: str) -> Flags:
 
 
 def _changes(table: pd.DataFrame, name: str) -> pd.Series[float]:
-    """Logarithms of the peaks of a column over those of the recess model, see `log_ratios`."""
+    """Logarithms of the peaks of a column over those of the recess model, see `Pairs.log_ratios`."""
     peaks, recess = (table[each].to_numpy(dtype=np.float64) for each in (name, RECESS))
-    return pd.Series(log_ratios(peaks, recess, _fell(table, name), _fell(table, RECESS)))
+    return pd.Series(Pairs(peaks, recess, _fell(table, name), _fell(table, RECESS)).log_ratios())
 
 
 def needs(tables: Tables) -> pd.DataFrame:

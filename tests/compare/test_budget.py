@@ -58,12 +58,12 @@ def limit(engine) -> Limit:
         end=2.0,
         difference=np.zeros(1),
     )
-    return limits([refined], simulate)["release", "x"]
+    return limits([refined], simulate)[0]
 
 
 def budget(engine, limit: Limit, cylinder: Cylinder = PIER) -> ErrorBudget:
     model = reduced.simulate(Case(cylinder, initial=CASE.initial, duration=2.0), rtol=1e-11)
-    return error_budget(PIER, engine, model, model, limit, WHOLE_RUN)
+    return error_budget(engine, model, model, limit, WHOLE_RUN)
 
 
 def test_the_parts_add_up_sample_by_sample(engine, limit):
@@ -99,7 +99,7 @@ def test_the_difference_of_two_models_is_model_form(engine, limit):
         reduced.simulate(Case(PIER, initial=CASE.initial, duration=2.0), support=m, rtol=1e-11)
         for m in ("flat", "recess")
     ]
-    found = error_budget(PIER, engine, *models, limit, WHOLE_RUN)
+    found = error_budget(engine, *models, limit, WHOLE_RUN)
     expected = (models[1].tilt - models[0].tilt) / PIER.alpha
     assert np.allclose(found.model_form, expected, rtol=0.0, atol=ROUNDING)
     assert found.rms("unexplained") == budget(engine, limit).rms("unexplained")
@@ -135,12 +135,12 @@ def test_one_run_has_no_limit():
         extrapolated(TIME, [TIME], [1.0], smooth=True)
 
 
-def test_the_end_of_the_agreement_is_left_out(make_trace, cylinder):
+def test_the_end_of_the_agreement_is_left_out(make_trace):
     # all of the difference is in the last fifth
     model = make_trace(TIME, np.full_like(TIME, 0.1))
     late = make_trace(TIME, 0.1 + np.where(TIME > 1.6 + 1e-9, 1e-3, 0.0))
     limit = Limit(time=TIME, tilt=late.tilt, error=np.zeros_like(TIME), steps=(1.0,), order=math.nan)
-    found = error_budget(cylinder, late, model, model, limit, WHOLE_RUN)
+    found = error_budget(late, model, model, limit, WHOLE_RUN)
     assert found.covered == pytest.approx(1.6)
     assert found.rms("whole") == 0.0
     assert found.whole[-1] > 0.0

@@ -14,7 +14,7 @@ import pytest
 from scipy.special import betainc, betaincinv
 from scipy.stats import PermutationMethod, beta, binom, binomtest, norm, wilcoxon
 
-from rockwobble.compare.metrics.contrast import contrast, log_ratios
+from rockwobble.compare.metrics.contrast import Contrast, Pairs
 from rockwobble.compare.metrics.statistics import (
     CONFIDENCE,
     MARGIN,
@@ -39,6 +39,12 @@ TRIALS = 2000
 # coverage asked of an interval of 95 %, and the level asked of a test at 5 %
 COVERAGE, LEVEL = (0.92, 0.97), 0.06
 UP = np.zeros(COUNT, dtype=bool)
+
+
+def contrast_of(*pairs: np.ndarray) -> Contrast:
+    contrast = Pairs(*pairs).contrast()
+    assert contrast is not None
+    return contrast
 
 
 def sample(seed: int) -> np.ndarray:
@@ -71,7 +77,7 @@ def ensembles(
 
 def ratios_of(made) -> list[np.ndarray]:
     """Log ratios of each ensemble, of the members that have one."""
-    return [row[~np.isnan(row)] for row in log_ratios(*made)]
+    return [row[~np.isnan(row)] for row in Pairs(*made).log_ratios()]
 
 
 def coverage(samples: list[np.ndarray], share: float, truth: float) -> float:
@@ -82,19 +88,19 @@ def coverage(samples: list[np.ndarray], share: float, truth: float) -> float:
 
 def test_every_member_a_tenth_larger_is_found():
     peaks = sample(1)
-    found = contrast(1.1 * peaks, peaks, UP, UP)
+    found = contrast_of(1.1 * peaks, peaks, UP, UP)
     assert (found.compared, found.higher, found.lower) == (COUNT, COUNT, 0)
     assert found.ratio_p < 1e-4
     for value in (found.ratio.low, found.ratio.value, found.ratio.high):
         assert value == pytest.approx(1.1, abs=ROUNDING)
     assert found.verdict == "beyond"
-    assert contrast(peaks, 1.1 * peaks, UP, UP).ratio_p == pytest.approx(found.ratio_p, rel=1e-9)
+    assert contrast_of(peaks, 1.1 * peaks, UP, UP).ratio_p == pytest.approx(found.ratio_p, rel=1e-9)
 
 
 def test_signed_ranks_are_those_of_scipy_where_it_is_exact():
     ours, theirs = sample(1), sample(2)
     expected = wilcoxon(np.log(ours), np.log(theirs), method="exact").pvalue
-    assert contrast(ours, theirs, UP, UP).ratio_p == pytest.approx(expected, abs=ROUNDING)
+    assert contrast_of(ours, theirs, UP, UP).ratio_p == pytest.approx(expected, abs=ROUNDING)
     # of ties, every choice of signs is tried; what overturns is larger than everything
     tied = np.array([0.1, -0.1, 0.2, 0.2, -0.3, 9.0, 9.0, 9.0])
     expected = wilcoxon(tied, method=PermutationMethod(n_resamples=np.inf)).pvalue
@@ -199,11 +205,11 @@ def test_agreement_is_claimed_by_the_interval_alone():
     assert np.mean(claimed) <= LEVEL
     peaks = sample(1)
     scattered = peaks * np.exp(0.3 * np.random.default_rng(2).standard_normal(COUNT))
-    found = contrast(scattered, peaks, UP, UP)
+    found = contrast_of(scattered, peaks, UP, UP)
     assert found.ratio_p > 0.05  # not told apart,
     assert found.verdict == "undecided"  # which is no agreement
-    assert contrast(1.001 * peaks, peaks, UP, UP).verdict == "within"
-    assert contrast(1.001 * peaks, peaks, UP, UP).ratio_p < 0.05  # nor is what is told apart far apart
+    assert contrast_of(1.001 * peaks, peaks, UP, UP).verdict == "within"
+    assert contrast_of(1.001 * peaks, peaks, UP, UP).ratio_p < 0.05  # nor is what is told apart far apart
 
 
 @pytest.mark.parametrize("count", [COUNT, 201])
@@ -238,15 +244,14 @@ def test_overturned_members_are_larger_than_all_and_failed_ones_do_not_count():
     against = np.array([8.0, 0.2, 8.0, 0.0, 0.2, 0.4])
     fell, fell_there = peaks == 8.0, against == 8.0
     np.testing.assert_allclose(
-        log_ratios(peaks, against, fell, fell_there),
+        Pairs(peaks, against, fell, fell_there).log_ratios(),
         [math.nan, math.inf, -math.inf, math.nan, math.log(1.5), math.nan],
         atol=ROUNDING,
     )
-    found = contrast(peaks, against, fell, fell_there)
+    found = contrast_of(peaks, against, fell, fell_there)
     assert (found.count, found.compared, found.higher, found.lower) == (5, 3, 2, 1)
     assert (found.overturned, found.against_overturned, found.both_overturned) == (2, 2, 1)
-    with pytest.raises(ValueError, match="two members"):
-        contrast(peaks[4:], against[4:], fell[4:], fell_there[4:])
+    assert Pairs(peaks[4:], against[4:], fell[4:], fell_there[4:]).contrast() is None  # of one member
 
 
 def test_who_overturns_by_one_method_alone_decides():
@@ -257,8 +262,8 @@ def test_who_overturns_by_one_method_alone_decides():
     assert mcnemar_p(few, 0) < 0.05 <= mcnemar_p(few - 1, 0)
     # as many fall by each method, but never the same: no test of two samples would ask who they are
     fell = np.arange(COUNT) < 8
-    assert contrast(sample(1), sample(2), fell, np.roll(fell, 8)).overturned_p == 1.0
-    assert contrast(sample(1), sample(2), fell, UP).overturned_p == pytest.approx(2.0**-7, abs=ROUNDING)
+    assert contrast_of(sample(1), sample(2), fell, np.roll(fell, 8)).overturned_p == 1.0
+    assert contrast_of(sample(1), sample(2), fell, UP).overturned_p == pytest.approx(2.0**-7, abs=ROUNDING)
 
 
 @pytest.mark.parametrize(("only", "only_there"), [(0.1, 0.1), (0.3, 0.1), (0.4, 0.3)])

@@ -18,7 +18,7 @@ from showing import loads_as_it_was, shows_itself
 
 from rockwobble import reduced
 from rockwobble.compare.comparison.driver import comparison
-from rockwobble.compare.metrics.contrast import contrast
+from rockwobble.compare.metrics.contrast import Pairs
 from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import simulate_run
@@ -605,14 +605,14 @@ def test_nothing_is_graded_that_nothing_was_run_for():
 def test_ratios_of_overturned_copies_are_counts():
     peaks = np.linspace(0.1, 0.3, 20)
     fell, stands = np.arange(20) < 15, np.zeros(20, dtype=bool)
-    most = ratios_of(contrast(peaks, peaks, stands, fell))
+    most = ratios_of(Pairs(peaks, peaks, stands, fell).contrast())
     assert math.isnan(most["ratio"])  # 0: fifteen overturn there alone
     assert [most[name] for name in ("members", "count", "higher", "lower")] == [20, 20, 0, 15]
     assert (most["overturned"], most["against_overturned"]) == (0, 15)
-    both = ratios_of(contrast(2.0 * peaks, peaks, fell, fell))
+    both = ratios_of(Pairs(2.0 * peaks, peaks, fell, fell).contrast())
     assert (both["count"], both["higher"]) == (5, 5)
     assert math.isnan(both["ratio"])  # of five
-    assert ratios_of(contrast(2.0 * peaks, peaks, stands, stands))["ratio"] == pytest.approx(2.0)
+    assert ratios_of(Pairs(2.0 * peaks, peaks, stands, stands).contrast())["ratio"] == pytest.approx(2.0)
 
 
 @pytest.mark.slow
