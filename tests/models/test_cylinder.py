@@ -19,13 +19,7 @@ def test_size_and_slenderness_locate_the_mass_centre() -> None:
     assert cylinder.alpha == pytest.approx(math.asin(0.6), rel=ROUNDING)
 
 
-def test_from_dimensions_takes_the_whole_height() -> None:
-    cylinder = Cylinder.from_dimensions(base_radius=3.0, height=8.0)
-    assert (cylinder.semidiagonal, cylinder.tan_alpha) == (5.0, 0.75)
-    assert cylinder == Cylinder(semidiagonal=5.0, tan_alpha=0.75)
-
-
-@pytest.mark.parametrize("tan_alpha", [1e-200, 1e-3, 0.2, 1.0, 4.0 / 3.0, 3.0, 1e200])
+@pytest.mark.parametrize("tan_alpha", [1e-200, 0.2, 4.0 / 3.0, 1e200])
 def test_dimensions_survive_the_round_trip_at_any_slenderness(tan_alpha: float) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
     again = Cylinder.from_dimensions(base_radius=cylinder.base_radius, height=2.0 * cylinder.half_height)
@@ -33,18 +27,13 @@ def test_dimensions_survive_the_round_trip_at_any_slenderness(tan_alpha: float) 
     assert again.tan_alpha == pytest.approx(tan_alpha, rel=ROUNDING)
 
 
-@pytest.mark.parametrize("diameter", [1e-3, 1.6, 300.0])
-def test_a_diameter_is_twice_the_base_radius(diameter: float) -> None:
-    named = Cylinder.from_dimensions(diameter=diameter, height=9.0)
-    assert named == Cylinder.from_dimensions(base_radius=0.5 * diameter, height=9.0)
-
-
-@pytest.mark.parametrize(
-    ("sizes", "number"), [({}, "neither"), ({"base_radius": 1.0, "diameter": 2.0}, "both")]
-)
-def test_one_of_base_radius_and_diameter_is_given(sizes: dict[str, float], number: str) -> None:
-    with pytest.raises(ValueError, match=rf"^base_radius or diameter must be given .* got {number}$"):
-        Cylinder.from_dimensions(height=9.0, **sizes)
+def test_one_of_base_radius_and_diameter_is_given() -> None:
+    cylinder = Cylinder.from_dimensions(diameter=6.0, height=8.0)
+    assert cylinder == Cylinder.from_dimensions(base_radius=3.0, height=8.0)
+    assert (cylinder.semidiagonal, cylinder.tan_alpha) == (5.0, 0.75)
+    for sizes, number in ({}, "neither"), ({"base_radius": 1.0, "diameter": 2.0}, "both"):
+        with pytest.raises(ValueError, match=rf"^base_radius or diameter must be given .* got {number}$"):
+            Cylinder.from_dimensions(height=9.0, **sizes)
 
 
 def test_a_general_body_keeps_its_outline_apart_from_its_mass_centre() -> None:
@@ -68,27 +57,19 @@ def test_a_value_is_frozen_hashable_and_travels() -> None:
     assert len({cylinder, Cylinder(semidiagonal=6.0, tan_alpha=0.2)}) == 1
 
 
-@pytest.mark.parametrize("name", ["base_radius", "diameter", "height", "mass_centre_height"])
-def test_from_dimensions_names_its_own_argument(name: str) -> None:
-    given = {"height": 10.0, **({} if name == "diameter" else {"base_radius": 1.0}), name: -1.0}
-    with pytest.raises(ValueError, match=rf"^{name} must be positive \[m\], got -1.0"):
-        Cylinder.from_dimensions(**given)
-
-
 def test_refuses_inertias_that_no_distribution_of_mass_has() -> None:
-    Cylinder(semidiagonal=6.0, tan_alpha=0.2, transverse_inertia=1.0, axial_inertia=2.0)
-    with pytest.raises(ValueError, match=r"^axial_inertia must not exceed twice .* got 2.01 and 1 \[m\^2\]"):
-        Cylinder(semidiagonal=6.0, tan_alpha=0.2, transverse_inertia=1.0, axial_inertia=2.01)
-
-
-def test_one_inertia_is_held_against_the_default_of_the_other() -> None:
-    # b = 3, 2h = 8: I1 = (27 + 64)/12 = 7.58, I2 = 4.5
-    with pytest.raises(ValueError, match=r"got 15.2 and 7.58333"):
-        Cylinder(semidiagonal=5.0, tan_alpha=0.75, axial_inertia=15.2)
-    Cylinder(semidiagonal=5.0, tan_alpha=0.75, axial_inertia=15.1)
-    with pytest.raises(ValueError, match=r"got 4.5 and 2.2 "):
-        Cylinder(semidiagonal=5.0, tan_alpha=0.75, transverse_inertia=2.2)
-    Cylinder(semidiagonal=5.0, tan_alpha=0.75, transverse_inertia=2.3)
+    """One that is given is compared with the default of the other: I1 = (27 + 64)/12 = 7.58, I2 = 4.5."""
+    for transverse, axial in ((1.0, 2.0), (None, 15.1), (2.3, None)):
+        Cylinder(semidiagonal=5.0, tan_alpha=0.75, transverse_inertia=transverse, axial_inertia=axial)
+    for transverse, axial, words in (
+        *(
+            (1.0, 2.01, "got 2.01 and 1 "),
+            (None, 15.2, "got 15.2 and 7.58333"),
+            (2.2, None, "got 4.5 and 2.2 "),
+        ),
+    ):
+        with pytest.raises(ValueError, match=rf"^axial_inertia must not exceed twice .* {words}"):
+            Cylinder(semidiagonal=5.0, tan_alpha=0.75, transverse_inertia=transverse, axial_inertia=axial)
 
 
 def test_refuses_a_slenderness_that_leaves_no_base() -> None:
@@ -96,7 +77,7 @@ def test_refuses_a_slenderness_that_leaves_no_base() -> None:
         Cylinder(semidiagonal=1e-60, tan_alpha=1e-300)
 
 
-@pytest.mark.parametrize("size", [1e-300, 1e-71, 1e71, 1e300])
+@pytest.mark.parametrize("size", [1e-71, 1e71])
 def test_refuses_a_size_whose_inertia_is_no_number(size: float) -> None:
     with pytest.raises(ValueError, match=r"^semidiagonal must be from 1e-70 to 1e\+70 m, got"):
         Cylinder(semidiagonal=size, tan_alpha=0.2)

@@ -18,39 +18,24 @@ SAMPLES = np.array([[0.0, 0.0], [3.0, -4.0], [1.0, 2.0]])
 
 def test_duration_spans_the_samples_and_peak_is_the_horizontal_resultant() -> None:
     motion = GroundMotion(np.column_stack([SAMPLES, [90.0, 0.0, -90.0]]), 0.5)
-    assert motion.duration == 1.0
-    assert motion.peak == 5.0
-    assert motion.has_vertical
+    assert (motion.duration, motion.peak, motion.has_vertical) == (1.0, 5.0, True)
     assert not GroundMotion(SAMPLES, 0.5).has_vertical
 
 
-def test_samples_are_a_copy_that_nobody_can_change() -> None:
-    samples = SAMPLES.copy()
-    motion = GroundMotion(samples, 0.5)
-    samples[1] = 0.0
-    assert motion.peak == 5.0
+@pytest.mark.parametrize(
+    "send", [lambda motion: motion, copy.deepcopy, lambda motion: pickle.loads(pickle.dumps(motion))]
+)
+def test_samples_are_a_copy_of_floats_that_nobody_can_change(send: Any) -> None:
+    samples = np.asfortranarray(SAMPLES.astype(np.int32))
+    motion = send(GroundMotion(samples, np.float32(0.5), "pulse"))
+    samples[1] = 0
+    assert np.array_equal(motion.acceleration, SAMPLES)
+    assert (motion.time_step, type(motion.time_step), motion.name) == (0.5, float, "pulse")
+    assert (motion.acceleration.dtype, motion.acceleration.flags.c_contiguous) == (np.float64, True)
     with pytest.raises(ValueError, match="read-only"):
         motion.acceleration[0, 0] = 1.0
     with pytest.raises(dataclasses.FrozenInstanceError):
-        motion.time_step = 1.0  # type: ignore[misc]
-
-
-@pytest.mark.parametrize(
-    "send", [copy.copy, copy.deepcopy, lambda motion: pickle.loads(pickle.dumps(motion))]
-)
-def test_a_copy_is_equal_and_read_only_too(send: Any) -> None:
-    motion = GroundMotion(SAMPLES, 0.5, "pulse")
-    sent = send(motion)
-    assert np.array_equal(sent.acceleration, SAMPLES)
-    assert (sent.time_step, sent.name) == (0.5, "pulse")
-    assert not sent.acceleration.flags.writeable
-
-
-def test_samples_are_contiguous_floats_whatever_was_given() -> None:
-    motion = GroundMotion(np.asfortranarray(SAMPLES.astype(np.int32)), np.float32(0.5))
-    assert motion.acceleration.dtype == np.float64
-    assert motion.acceleration.flags.c_contiguous
-    assert type(motion.time_step) is float
+        motion.time_step = 1.0
 
 
 def test_scaling_takes_all_three_components_and_keeps_the_name() -> None:
@@ -70,50 +55,21 @@ def test_rotation_is_counter_clockwise_seen_from_above_and_leaves_the_vertical()
     )
 
 
-def test_rotation_keeps_the_peak() -> None:
-    motion = GroundMotion(np.random.default_rng(1).normal(size=(200, 2)), 0.01)
-    assert motion.rotated(1.234).peak == pytest.approx(motion.peak, rel=ROUNDING)
-
-
-@pytest.mark.parametrize(
-    "bad", [[], [[1.0, 2.0]], [1.0, 2.0], [[1.0], [2.0]], np.ones((3, 4)), np.ones((2, 2, 2))]
-)
+@pytest.mark.parametrize("bad", [[], [[1.0, 2.0]], [1.0, 2.0], np.ones((3, 4)), np.ones((2, 2, 2))])
 def test_refuses_a_shape_that_is_no_motion(bad: Any) -> None:
-    with pytest.raises(
-        ValueError, match=r"^acceleration must have shape \(n, 2\) or \(n, 3\) with n >= 2, got \("
-    ):
+    with pytest.raises(ValueError, match=r"^acceleration must have shape \(n, 2\) or \(n, 3\) with n >= 2"):
         GroundMotion(bad, 0.1)
 
 
-@pytest.mark.parametrize(
-    "bad", [[["a", "b"], ["c", "d"]], [[1.0, 2.0], [3.0]], None, [[{}, 1], [1, 1]], np.eye(2) * 1j]
-)
-def test_refuses_what_is_no_number(bad: Any) -> None:
-    with pytest.raises(ValueError, match=r"^acceleration must "):
-        GroundMotion(bad, 0.1)
-
-
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("value", [math.nan, -math.inf])
 def test_names_the_first_sample_that_is_not_finite(value: float) -> None:
     samples = np.zeros((5, 3))
-    samples[3, 2] = value
-    samples[4, 0] = value
-    with pytest.raises(
-        ValueError, match=f"^acceleration must be finite, got {value} in sample 3 of component z$"
-    ):
+    samples[3, 2] = samples[4, 0] = value
+    with pytest.raises(ValueError, match=f"must be finite, got {value} in sample 3 of component z$"):
         GroundMotion(samples, 0.1)
 
 
-@pytest.mark.parametrize("bad", [math.nan, math.inf, "2"])
-def test_refuses_a_factor_or_an_angle_that_is_no_number(bad: Any) -> None:
-    motion = GroundMotion(SAMPLES, 0.1)
-    with pytest.raises(ValueError, match=r"^factor must be a finite number, got "):
-        motion.scaled(bad)
-    with pytest.raises(ValueError, match=r"^angle must be a finite number \[rad\], got "):
-        motion.rotated(bad)
-
-
-@pytest.mark.parametrize("degrees", [7.0, 45.0, 90.0, -90.0, 360.0])
+@pytest.mark.parametrize("degrees", [7.0, -90.0, 360.0])
 def test_an_angle_in_degrees_is_refused_with_its_likely_meaning(degrees: float) -> None:
     motion = GroundMotion(SAMPLES, 0.1)
     message = rf"^angle must be from -2 pi to 2 pi \[rad\], got {degrees}: .* math.radians\({degrees:g}\)$"
@@ -123,8 +79,12 @@ def test_an_angle_in_degrees_is_refused_with_its_likely_meaning(degrees: float) 
 
 
 def test_refuses_to_scale_beyond_what_a_float_holds() -> None:
-    with pytest.raises(ValueError, match=r"^acceleration must be finite, got inf in sample 1 of component x"):
-        GroundMotion(SAMPLES, 0.1).scaled(1e308)
+    for factor, words in (
+        (1e308, "acceleration must be finite, got inf"),
+        (math.nan, "factor must be a finite"),
+    ):
+        with pytest.raises(ValueError, match=f"^{words}"):
+            GroundMotion(SAMPLES, 0.1).scaled(factor)
 
 
 # FEMA P-695, tables A-4A (larger peak of the two components [g]) and A-4D (factor of normalisation)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from collections.abc import Callable, Mapping
@@ -121,38 +122,29 @@ def test_any_motion_is_read_and_turned_round_with_its_sign(
             assert part.notes == (("offset of the sensor not removed",) if name == "a.EW" else ())
 
 
-# the largest sample may be off by 2 % of the peak that is stated; by a factor of 2 the file is damaged
-@pytest.mark.parametrize(
-    ("ratio", "verdict"),
-    [
-        (0.49, "refused"),
-        (0.51, "noted"),
-        (0.985, "agrees"),
-        (1.03, "noted"),
-        (2.05, "refused"),
-        (-1.0, "agrees"),  # headers state it with either sign
-    ],
-)
-@pytest.mark.parametrize("name", ["a.EW", "csmip.V2", "geonet.V2A"])
+# the largest sample may be off by 2 % of the stated peak of either sign; by a factor of 2 the file is damaged
+VERDICTS = {0.49: "refused", 0.51: "noted", 0.985: "agrees", 1.03: "noted", 2.05: "refused", -1.0: "agrees"}
+
+
+@pytest.mark.parametrize("ratio", VERDICTS)
 def test_the_peak_of_the_header_is_compared_with_that_of_the_samples(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, ratio: float, verdict: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ratio: float
 ) -> None:
     monkeypatch.setattr(networks, "STATED", ratio)
     parts = any_motion(np.random.default_rng(5))
-    if verdict == "refused":
-        with pytest.raises(ValueError, match=r"the header states a peak of .*: the file is damaged"):
-            read(tmp_path, name, WITH_PEAKS[name](parts))
-        return
-    for part in read(tmp_path, name, WITH_PEAKS[name](parts)):
-        said = [match for note in part.notes if (match := NOTE_OF_A_PEAK.fullmatch(note))]
-        assert len(said) == (verdict == "noted")
-        due = parts[str(part.direction)]
-        largest = np.abs(
-            due - due.mean() if name == "a.EW" else due
-        ).max()  # which NIED states without the mean
-        for match in said:
-            assert float(match[1]) == pytest.approx(ratio * largest, rel=1e-3)
-            assert float(match[2]) == pytest.approx(largest, rel=1e-3)
+    for name in ("a.EW", "csmip.V2"):
+        if VERDICTS[ratio] == "refused":
+            with pytest.raises(ValueError, match=r"the header states a peak of .*: the file is damaged"):
+                read(tmp_path, name, WITH_PEAKS[name](parts))
+            continue
+        for part in read(tmp_path, name, WITH_PEAKS[name](parts)):
+            said = [match for note in part.notes if (match := NOTE_OF_A_PEAK.fullmatch(note))]
+            assert len(said) == (VERDICTS[ratio] == "noted")
+            due = parts[str(part.direction)]
+            due = due - due.mean() if name == "a.EW" else due  # NIED states it without the mean
+            for match in said:
+                found = (float(match[1]), float(match[2]))
+                assert found == pytest.approx((ratio * np.abs(due).max(), np.abs(due).max()), rel=1e-3)
 
 
 @pytest.mark.parametrize("name", WITH_PEAKS)
@@ -192,27 +184,22 @@ def test_csmnc_names_a_component_by_its_direction(tmp_path: Path) -> None:
         assert (part.direction, part.azimuth, part.label) == (axis, None, name.upper())
 
 
-QUADRANTS = [(f"{a}{angle:02d}{b}", a, angle, b) for a in "NS" for angle in (0, 30, 90) for b in "EW"]
-
-
-@pytest.mark.parametrize(("name", "first", "angle", "second"), QUADRANTS)
-def test_a_quadrant_bearing_is_converted_to_an_azimuth(
-    tmp_path: Path, name: str, first: str, angle: int, second: str
-) -> None:
+def test_a_quadrant_bearing_is_converted_to_an_azimuth(tmp_path: Path) -> None:
     parts = {"x": any_motion(np.random.default_rng(7))["x"]}
-    north = math.cos(math.radians(angle)) * (1.0 if first == "N" else -1.0)
-    east = math.sin(math.radians(angle)) * (1.0 if second == "E" else -1.0)
-    for file, content in {
-        "a.V1A": networks.geonet(parts, {"x": name}, corrected=False),
-        "a.dat": networks.csmnc(parts["x"], name),
-        "a.V2": networks.csmip(parts, {"x": name}, volume=2),
-    }.items():
-        (part,) = read(tmp_path, file, content)
-        assert part.azimuth is not None
-        assert 0.0 <= part.azimuth < 360.0
-        assert math.cos(math.radians(part.azimuth)) == pytest.approx(north, abs=1e-12)
-        assert math.sin(math.radians(part.azimuth)) == pytest.approx(east, abs=1e-12)
-        assert part.direction == ("x" if east > 1.0 - 1e-12 else "y" if north > 1.0 - 1e-12 else None)
+    for first, angle, second in itertools.product("NS", (0, 30, 90), "EW"):
+        name = f"{first}{angle:02d}{second}"
+        north = math.cos(math.radians(angle)) * (1.0 if first == "N" else -1.0)
+        east = math.sin(math.radians(angle)) * (1.0 if second == "E" else -1.0)
+        for file, content in {
+            "a.V1A": networks.geonet(parts, {"x": name}, corrected=False),
+            "a.dat": networks.csmnc(parts["x"], name),
+            "a.V2": networks.csmip(parts, {"x": name}, volume=2),
+        }.items():
+            (part,) = read(tmp_path, file, content)
+            azimuth = math.radians(part.azimuth or 0.0)
+            assert 0.0 <= azimuth < 2.0 * math.pi
+            assert (math.cos(azimuth), math.sin(azimuth)) == pytest.approx((north, east), abs=1e-12)
+            assert part.direction == ("x" if east > 1.0 - 1e-12 else "y" if north > 1.0 - 1e-12 else None)
 
 
 @pytest.mark.parametrize("columns", ["H1,H2,Up", [1, 3, 2], "time,Chan 1: H1,h2,up"])

@@ -79,35 +79,23 @@ WHOLE = {
 
 
 COUNTS = np.round(1e4 * PARTS["x"]).astype(np.int64) - 12000
+ALL = WHOLE | {
+    "knet.EW": networks.knet("E-W", np.tile(COUNTS, 3)),
+    "esm.ASC": networks.esm(PARTS["x"]),
+    "smc.smc": networks.smc(PARTS["x"]),
+    "csmip.V1": networks.csmip(PARTS, AZIMUTHS, volume=1),
+    "csmnc.dat": networks.csmnc(PARTS["x"]),
+}
 
 
-@pytest.mark.parametrize(
-    ("code", "direction", "ending"),
-    [
-        ("E-W", "x", ".EW"),
-        ("N-S", "y", ".NS"),
-        ("U-D", "z", ".UD"),
-        ("1", "y", ".NS1"),
-        ("2", "x", ".EW1"),
-        ("3", "z", ".UD1"),
-        ("4", "y", ".NS2"),
-        ("5", "x", ".EW2"),
-        ("6", "z", ".UD2"),
-    ],
-)
-def test_knet_is_counts_times_the_scale_factor_with_the_offset(
-    tmp_path: Path, code: str, direction: str, ending: str
-) -> None:
-    (part,) = components(tmp_path, f"TST0010102030405{ending}", networks.knet(code, COUNTS))
-    assert part.direction == direction
-    assert ("borehole" in part.label, "surface" in part.label) == (code in "123", code in "456")
-    assert_read(part, COUNTS * 3920.0 / 6182761.0, "cm/s2")
-    assert part.notes == ("offset of the sensor not removed",)
-
-
-def test_esm_of_afad_writes_the_kind_in_small_letters(tmp_path: Path) -> None:
-    (part,) = components(tmp_path, "raw.asc", networks.esm(PARTS["x"], kind="Acceleration"))
-    assert_read(part, PARTS["x"], "cm/s2")
+def test_knet_is_counts_times_the_scale_factor_with_the_offset(tmp_path: Path) -> None:
+    codes = {"E-W": "x", "N-S": "y", "U-D": "z", "1": "y", "2": "x", "3": "z", "4": "y", "5": "x", "6": "z"}
+    for code, direction in codes.items():
+        (part,) = components(tmp_path, f"TST0010102030405.{code}", networks.knet(code, COUNTS))
+        assert part.direction == direction
+        assert ("borehole" in part.label, "surface" in part.label) == (code in "123", code in "456")
+        assert_read(part, COUNTS * 3920.0 / 6182761.0, "cm/s2")
+        assert part.notes == ("offset of the sensor not removed",)
 
 
 @pytest.mark.parametrize(
@@ -129,17 +117,11 @@ def test_corrected_smc(
     assert_read(part, sign * PARTS["x"], "cm/s2", SMC_DIGITS * np.abs(PARTS["x"]).max())
 
 
-@pytest.mark.parametrize(
-    ("text", "azimuth"), [("N16E", 16.0), ("S74E", 106.0), ("S16W", 196.0), ("N80W", 280.0), ("S00W", 180.0)]
-)
-def test_other_azimuths_are_kept_and_stated(tmp_path: Path, text: str, azimuth: float) -> None:
-    (part,) = components(tmp_path, "a.V1A", networks.geonet(PARTS, {"x": text}, corrected=False))
-    assert (part.direction, part.azimuth, part.label) == (None, azimuth, text)
-    degrees = f"{azimuth:.0f} DEG"
-    (part,) = components(tmp_path, "a.V2", networks.csmip(PARTS, {"x": degrees}, volume=2))
-    assert (part.direction, part.azimuth) == (None, azimuth)
-    (part,) = components(tmp_path, "a.V2c", networks.cosmos(PARTS, {"x": (degrees, int(azimuth), "HN1")}))
-    assert (part.direction, part.azimuth) == (None, azimuth)
+def test_an_azimuth_in_degrees_is_kept_and_stated(tmp_path: Path) -> None:
+    (part,) = components(tmp_path, "a.V2", networks.csmip(PARTS, {"x": "106 DEG"}, volume=2))
+    assert (part.direction, part.azimuth) == (None, 106.0)
+    (part,) = components(tmp_path, "a.V2c", networks.cosmos(PARTS, {"x": ("106 DEG", 106, "HN1")}))
+    assert (part.direction, part.azimuth) == (None, 106.0)
     assert_read(part, PARTS["x"], "cm/s2")
 
 
@@ -160,21 +142,14 @@ def test_down_is_turned_up_and_said(tmp_path: Path) -> None:
         assert_read(part, -PARTS["z"], "cm/s2")
 
 
-@pytest.mark.parametrize(
-    ("unit", "name", "factor"),
-    [
-        ("g.     (02)", "g", 1.0),
-        ("gal(10)", "cm/s2", 1.0),
-        ("in/sec2(07)", "cm/s2", 2.54),
+def test_channels_of_cosmos_by_codes_of_unit_and_stream(tmp_path: Path) -> None:
+    for unit, name, factor in (
+        *(("g.     (02)", "g", 1.0), ("gal(10)", "cm/s2", 1.0), ("in/sec2(07)", "cm/s2", 2.54)),
         ("mg(11)", "g", 1e-3),
-    ],
-)
-def test_units_of_cosmos_by_their_code(tmp_path: Path, unit: str, name: str, factor: float) -> None:
-    (part,) = components(tmp_path, "a.V2c", networks.cosmos(PARTS, {"x": COSMOS_NAMES["x"]}, unit=unit))
-    assert_read(part, factor * PARTS["x"], name)
-
-
-def test_a_vertical_channel_of_cosmos_by_its_stream(tmp_path: Path) -> None:
+    ):
+        channel = networks.cosmos(PARTS, {"x": COSMOS_NAMES["x"]}, unit=unit)
+        (part,) = components(tmp_path, "a.V2c", channel)
+        assert_read(part, factor * PARTS["x"], name)
     # as the files of CESMD for Alaska have it: code 0, which is none, and "Other"
     (part,) = components(tmp_path, "a.V2c", networks.cosmos(PARTS, {"z": ("Other", 0, "BNZ")}))
     assert (part.direction, part.azimuth) == ("z", None)
@@ -216,9 +191,8 @@ class TestRefusals:
         assert "340 deg" in refusal(tmp_path, "a.V2c", vertical)
         assert "340 deg" in refusal(tmp_path, "a.V2c", other)
 
-    @pytest.mark.parametrize(
-        ("name", "content", "network"),
-        [
+    def test_others_are_refused_by_their_names(self, tmp_path: Path) -> None:
+        for name, content, network in (
             ("a.v1", "UNCORRECTED ACCELEROGRAM DATA\nX\nUNIVERSIDAD DE CHILE - RENADIC\n", "RENADIC"),
             ("a.V1", "* VOL1DS FILE:  5520/01\n", "BHRC"),
             ("a.v2", "CORRECTED ACCELEROGRAM  IIA001  40.1.0 COMP S00E\nDATA OF VOLUME I\n", "Volume I"),
@@ -226,32 +200,18 @@ class TestRefusals:
             ("a.VT2", "PEER\nX\nVELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 2, DT= .01\n 1 2\n", "VT2"),
             ("a.vol", "invented\n", "GeoNet"),
             ("a.zip", b"PK\x03\x04\0\0", "packed or binary"),
-            ("a.h5", b"\x89HDF\r\n\x1a\n\0", "packed or binary"),
             ("a.gse", "WID2 2001/02/03\n", "GSE2"),
             ("a.html", "<!DOCTYPE html>\n", "web page"),
-        ],
-    )
-    def test_others_are_refused_by_their_names(
-        self, tmp_path: Path, name: str, content: str | bytes, network: str
-    ) -> None:
-        message = refusal(tmp_path, name, content)
-        assert network in message
-        assert ": " in message  # what to do
+        ):
+            message = refusal(tmp_path, name, content)
+            assert network in message
+            assert ": " in message  # what to do
 
     # the last third of the lines is lost, or a cell in the middle is damaged
-    @pytest.mark.parametrize(
-        "name", WHOLE | {"knet.EW": "", "esm.ASC": "", "smc.smc": "", "csmip.V1": "", "csmnc.dat": ""}
-    )
+    @pytest.mark.parametrize("name", ALL)
     @pytest.mark.parametrize("damage", ["cut", "letters", "infinite"])
     def test_damage_is_refused_by_the_format(self, tmp_path: Path, name: str, damage: str) -> None:
-        whole = WHOLE | {
-            "knet.EW": networks.knet("E-W", np.tile(COUNTS, 3)),
-            "esm.ASC": networks.esm(PARTS["x"]),
-            "smc.smc": networks.smc(PARTS["x"]),
-            "csmip.V1": networks.csmip(PARTS, AZIMUTHS, volume=1),
-            "csmnc.dat": networks.csmnc(PARTS["x"]),
-        }
-        content = whole[name]
+        content = ALL[name]
         lines = (content if isinstance(content, str) else content.decode("shift-jis")).splitlines()
         # in the middle of the samples of the last component
         titles = [
@@ -339,31 +299,13 @@ class TestWaveforms:
 
 
 def test_every_reader_recognises_its_own_files_alone(tmp_path: Path) -> None:
-    files = WHOLE | {
-        "a.EW": networks.knet("E-W", COUNTS),
-        "a.ASC": networks.esm(PARTS["x"]),
-        "a.smc": networks.smc(PARTS["x"]),
-        "a.V1": networks.csmip(PARTS, AZIMUTHS, volume=1),
-        "csmnc.dat": networks.csmnc(PARTS["x"]),
-        "a.sac": networks.sac(PARTS["x"]),
-        "a.mseed": networks.miniseed(PARTS["x"]),
-    }
-    for name, content in files.items():
+    binary = {"a.sac": networks.sac(PARTS["x"]), "a.mseed": networks.miniseed(PARTS["x"])}
+    for name, content in (ALL | binary).items():
         path = tmp_path / name
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
         file = open_record(path)
         claims = [reader.NAME for reader in READERS if reader.recognizes(file)]
         assert len(set(claims) - {"columns"}) == 1, (name, claims)
-
-
-def test_a_folder_of_a_station_is_one_record(tmp_path: Path) -> None:
-    for name, code in {"EW": "E-W", "NS": "N-S", "UD": "U-D"}.items():
-        (tmp_path / f"TST0010102030405.{name}").write_text(networks.knet(code, COUNTS))
-    motion = read_record(tmp_path)
-    assert motion.has_vertical
-    factor = 3920.0 / 6182761.0 / 100.0
-    np.testing.assert_allclose(motion.acceleration[:, 0], COUNTS * factor, rtol=1e-12)
-    assert "offset of the sensor not removed" in str(motion.source)
 
 
 def test_a_folder_of_kiknet_is_its_sensor_at_the_surface(tmp_path: Path) -> None:
@@ -399,9 +341,7 @@ def test_a_step_that_contradicts_the_file_is_refused(tmp_path: Path) -> None:
 def test_a_header_with_nothing_or_noise_behind_it_is_refused(tmp_path: Path) -> None:
     random = np.random.default_rng(1)
     # tables of .bbp announce no length
-    whole = [content for name, content in WHOLE.items() if isinstance(content, str) and "bbp" not in name]
-    whole += [networks.knet("E-W", COUNTS), networks.esm(PARTS["x"]), networks.smc(PARTS["x"])]
-    for content in [*whole, networks.csmnc(PARTS["x"])]:
+    for content in (each for name, each in ALL.items() if isinstance(each, str) and "bbp" not in name):
         lines = content.splitlines()
         for kept in range(1, 22, 2):  # headers, and a line or two of samples
             for noise in (b"", random.bytes(300), bytes(random.choice(list(b"0123456789.-+ \nEe:,()"), 300))):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -53,7 +52,7 @@ def unit_vector(azimuth: float) -> NDArray[np.float64]:
     return np.array([math.sin(math.radians(azimuth)), math.cos(math.radians(azimuth))])
 
 
-@pytest.mark.parametrize("first", [0, 44, 45, 46, 135, 250])
+@pytest.mark.parametrize("first", [44, 45, 46, 250])
 @pytest.mark.parametrize("turn", [90, -90])
 def test_x_is_the_azimuth_nearer_to_east(write: Write, first: int, turn: int) -> None:
     """Where both are as near, x is clockwise of y as seen from above; turned to north they are one motion."""
@@ -74,35 +73,27 @@ def test_x_is_the_azimuth_nearer_to_east(write: Write, first: int, turn: int) ->
 def test_a_record_summary_states_samples_step_and_components(write: Write, count: int, step: float) -> None:
     """A mean above a twentieth of the peak is said beside it."""
     chance = np.random.default_rng(count)
-    for offset in (0.0, 0.04, 0.06, 0.5):
+    for offset in (0.0, 0.04, 0.06):
         values = chance.choice([-1.0, 1.0], (count, 2)) * chance.uniform(0.2, 1.0, (count, 2))
         values -= values.mean(axis=0)
-        values /= np.abs(values).max(axis=0) * np.array([3.0, 2.0])
-        values[:, 0] += offset / 3.0
-        columns = [step * np.arange(count), *values.T.round(6)]
-        rows = "\n".join(",".join(f"{cell:.6f}" for cell in row) for row in np.column_stack(columns))
+        values = (values / np.abs(values).max(axis=0) / [3.0, 2.0] + [offset / 3.0, 0.0]).round(6)
+        times = step * np.arange(count)
+        rows = "\n".join(f"{t:.6f},{a:.6f},{b:.6f}" for t, (a, b) in zip(times, values, strict=True))
         motion = read_record(write(f"time,090,N [g]\n{rows}\n"), units="g")
-        x, y = (column.round(6) for column in values.T)
+        x, y = values.T
         mean = f" (mean {x.mean():.3g} g)" if abs(x.mean()) > 0.05 * np.abs(x).max() else ""
         assert motion.source is not None
-        first, east, north = motion.source.line.split("; ")[:3]
-        duration = (count - 1) * step
-        assert first == f"x.txt: columns, {count} samples of {step:g} s, {duration:.5g} s"
-        assert east == f"x: 090 [g] {np.abs(x).max():.4g} g{mean} at 90 deg"
-        assert north == f"y: N [g] {np.abs(y).max():.4g} g"
-        assert motion.source.duration == pytest.approx(duration, rel=EXACT)
+        assert motion.source.line.split("; ")[:3] == [
+            f"x.txt: columns, {count} samples of {step:g} s, {(count - 1) * step:.5g} s",
+            f"x: 090 [g] {np.abs(x).max():.4g} g{mean} at 90 deg",
+            f"y: N [g] {np.abs(y).max():.4g} g",
+        ]
 
 
-@pytest.mark.parametrize("before", [196, 197])
-def test_a_format_is_known_by_the_first_200_characters_of_a_line(write: Write, before: int) -> None:
-    path = write("NPTS".rjust(before + 4, ".") + "\nwords\n")
-    assert any("NPTS" in line for line in open_record(path).head) == (before + 4 <= 200)
-
-
-@pytest.mark.parametrize("line", [59, 60])
-def test_a_format_is_known_by_the_first_60_lines(write: Write, line: int) -> None:
-    path = write("\n".join([*["words"] * line, "a mark", *["words"] * 70]))
-    assert ("A MARK" in open_record(path).head) == (line < 60)
+def test_a_format_is_known_by_200_characters_of_60_lines(write: Write) -> None:
+    head = open_record(write("\n".join([*["words"] * 59, "NPTS".rjust(200), "TOO LATE"]))).head
+    assert (len(head), head[-1][-4:]) == (60, "NPTS")
+    assert not open_record(write("NPTS".rjust(201))).head[0].endswith("NPTS")
 
 
 # one unit in m/s^2, and how files spell it; in capitals and with blanks and brackets as well
@@ -148,15 +139,13 @@ def of_times(times: NDArray[np.float64], values: NDArray[np.float64]) -> str:
     return "".join(f"{t:.9g},{value!r}\n" for t, value in zip(times.tolist(), values.tolist(), strict=True))
 
 
-@pytest.mark.parametrize("drift", [-0.06, -0.04, 0.06])
-@pytest.mark.parametrize("count", [400])
-def test_components_may_drift_apart_by_a_twentieth_of_a_step(write: Write, drift: float, count: int) -> None:
+@pytest.mark.parametrize("drift", [-0.06, 0.04])
+def test_components_may_drift_apart_by_a_twentieth_of_a_step(write: Write, drift: float) -> None:
     """Over the whole record, by their steps, or from the start."""
-    step, values = 0.01, np.random.default_rng(1).normal(size=count)
-    x = write("t,a [g]\n" + of_times(step * np.arange(count), values), "x")
-    other_step = step * (1.0 + drift / count)
-    slower = write("t,a [g]\n" + of_times(other_step * np.arange(count), values), "slower")
-    later = write("t,a [g]\n" + of_times(step * (np.arange(count) + drift), values), "later")
+    step, times, values = 0.01, 0.01 * np.arange(400), np.random.default_rng(1).normal(size=400)
+    x = write("t,a [g]\n" + of_times(times, values), "x")
+    slower = write("t,a [g]\n" + of_times((1.0 + drift / 400) * times, values), "slower")
+    later = write("t,a [g]\n" + of_times(times + step * drift, values), "later")
     for y, words in ((slower, "one time step"), (later, "start at one time")):
         if abs(drift) > 0.05:
             with pytest.raises(ValueError, match=f"the components of a record must .*{words}, got"):
@@ -184,9 +173,7 @@ def test_what_is_left_of_a_longer_component_is_little_or_over(
     padded[:, longer] = 9.81 * values
     padded[:count, 1 - longer] = 9.81 * values[:count]
     for way, due in (("cut", cut), ("pad", padded)):
-        motion = read_record(x, y, lengths=way)
-        assert motion.acceleration == pytest.approx(due, rel=EXACT)
-        assert f"{count}" in str(motion.source)
+        assert read_record(x, y, lengths=way).acceleration == pytest.approx(due, rel=EXACT)
     if more > 0.01 * (count + more) and size > 0.05:
         with pytest.raises(
             ValueError, match=rf"got {count + more} samples in .* {100 * size:.0f} % of its peak"
@@ -224,56 +211,46 @@ def test_components_are_resampled_to_the_largest_step_that_divides_theirs(
             assert slopes == pytest.approx(np.repeat(slopes.mean(axis=1), every).reshape(-1, every), abs=1e-9)
 
 
-@pytest.mark.parametrize("digits", [1, 16, 17, 40])
 @pytest.mark.parametrize("head", ["UNITS OF G\nNPTS= 27, DT= .01 SEC\n", "dt=0.01 s, acc in g\n"])
-def test_more_digits_than_a_number_has_are_numbers_that_touch(write: Write, digits: int, head: str) -> None:
+def test_more_digits_than_a_number_has_are_numbers_that_touch(write: Write, head: str) -> None:
     """Whole numbers of fixed columns without a blank between them cannot be parted."""
-    chance = np.random.default_rng(digits)
-    cells = ["".join(map(str, chance.integers(1, 10, digits))) for _ in range(27)]
-    rows = [" ".join(cells[at : at + 6]) for at in range(0, 27, 6)]
-    path = write(head + "\n".join(rows) + "\n")
-    if digits > 16:
-        with pytest.raises(ValueError, match=r"^x\.txt.*touch|holds more than the samples"):
-            read_record(path, "zero", columns="values")
-        return
-    found = read_record(path, "zero", columns="values").acceleration[:, 0] / 9.81
-    assert found == pytest.approx([float(cell) for cell in cells], rel=1e-15)
+    for digits in (16, 17):
+        chance = np.random.default_rng(digits)
+        cells = ["".join(map(str, chance.integers(1, 10, digits))) for _ in range(27)]
+        path = write(head + "\n".join(" ".join(cells[at : at + 6]) for at in range(0, 27, 6)) + "\n")
+        if digits > 16:
+            with pytest.raises(ValueError, match=r"^x\.txt.*touch|holds more than the samples"):
+                read_record(path, "zero", columns="values")
+        else:
+            samples = read_record(path, "zero", columns="values").acceleration[:, 0] / 9.81
+            assert samples == pytest.approx([float(cell) for cell in cells], rel=1e-15)
 
 
-@pytest.mark.parametrize(("ratio", "refused"), [(0.997e6, False), (1.003e6, True)])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_a_spike_of_a_million_times_all_others_is_no_sample(
-    write: Write, ratio: float, refused: bool, sign: float
+@pytest.mark.parametrize(
+    ("fill", "ratio", "refused"),
+    [
+        *((None, 0.997e6, False), (None, 1.003e6, True), ("9999.9", 4.9, False), ("9999.9", 5.1, True)),
+        *(("12345", 5.1, True), ("9990", 5.1, False)),
+    ],
+)
+def test_a_spike_or_a_fill_value_is_no_sample(
+    write: Write, fill: str | None, ratio: float, refused: bool, sign: float
 ) -> None:
-    """Among samples it is refused; behind the last it is left out, and said."""
-    others = MOTION[:, 0] / np.abs(MOTION[:, 0]).max() * 0.25
-    spike = sign * 0.25 * ratio
+    """A million times all others, or of nines or 12345 and five times them: refused, left out at the end."""
+    others = MOTION[:, 0] / np.abs(MOTION[:, 0]).max() * 2500.0
+    spike = sign * float(fill or 2500.0 * ratio)
+    others *= abs(spike) / ratio / 2500.0
+    refused = refused and (fill != "12345" or sign < 0.0)
     times = 0.01 * np.arange(len(others) + 1)
     within, behind = np.insert(others, 20, spike), np.append(others, spike)
+    path = write("t,a [m/s2]\n" + of_times(times, within))
     if refused:
-        with pytest.raises(
-            ValueError, match=rf"sample 21 of a is {re.escape(f'{spike:g}')}, which stands for a missing"
-        ):
-            read_record(write("t,a [m/s2]\n" + of_times(times, within)), "zero")
-    else:
-        found = read_record(write("t,a [m/s2]\n" + of_times(times, within)), "zero")
-        assert found.acceleration[:, 0] == pytest.approx(within, rel=EXACT)
-    motion = read_record(write("t,a [m/s2]\n" + of_times(times, behind)), "zero")
-    assert motion.acceleration[:, 0] == pytest.approx(others if refused else behind, rel=EXACT)
-    assert ("1 fill value of" in str(motion.source)) == refused
-
-
-@pytest.mark.parametrize("fill", ["-999", "-9999.9", "99999", "-12345", "9990"])
-@pytest.mark.parametrize("times", [4.9, 5.1])
-def test_a_fill_value_is_five_times_all_other_numbers(write: Write, fill: str, times: float) -> None:
-    """Of nines alone, or -12345; where the motion itself is as large, it is a sample."""
-    value = float(fill)
-    others = MOTION[:, 0] / np.abs(MOTION[:, 0]).max() * abs(value) / times
-    samples = np.insert(others, 20, value)
-    path = write("t,a [cm/s2]\n" + of_times(0.01 * np.arange(len(samples)), samples))
-    if times > 5.0 and set(fill.lstrip("-").replace(".0", "")) in ({"9"}, {"9", "."}, set("12345")):
-        with pytest.raises(ValueError, match=r"sample 21 of a is .*, which stands for a missing one"):
+        with pytest.raises(ValueError, match=r"sample 21 of a is .*, which stands for a missing"):
             read_record(path, "zero")
     else:
-        found = read_record(path, "zero").acceleration[:, 0]
-        assert found == pytest.approx(0.01 * samples, rel=EXACT)
+        assert read_record(path, "zero").acceleration[:, 0] == pytest.approx(within, rel=EXACT)
+    if refused or fill is None:
+        motion = read_record(write("t,a [m/s2]\n" + of_times(times, behind)), "zero")
+        assert motion.acceleration[:, 0] == pytest.approx(others if refused else behind, rel=EXACT)
+        assert ("1 fill value of" in str(motion.source)) == refused

@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import math
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -96,13 +98,8 @@ def test_values_of_a_range(write, given):
 
 def test_lists_of_runs_make_each_combination(write):
     text = '[[runs]]\nengine = ["mujoco", "pybullet"]\ntime_step = [1e-4, 2e-4]\n' + CASE
-    runs = read_suite(write(text)).runs
-    assert [(run.engine, run.support, run.time_step) for run in runs] == [
-        ("mujoco", "recess", 1e-4),
-        ("mujoco", "recess", 2e-4),
-        ("pybullet", "recess", 1e-4),
-        ("pybullet", "recess", 2e-4),
-    ]
+    runs = [(run.engine, run.support, run.time_step) for run in read_suite(write(text)).runs]
+    assert runs == [(name, "recess", step) for name in ("mujoco", "pybullet") for step in (1e-4, 2e-4)]
 
 
 def test_files_of_a_record_stand_beside_the_suite(write, tmp_path, monkeypatch):
@@ -114,14 +111,6 @@ def test_files_of_a_record_stand_beside_the_suite(write, tmp_path, monkeypatch):
     monkeypatch.chdir("/")
     (case,) = read_suite(path).cases
     assert case.motion.acceleration.tolist() == [[0.0, 0.0], [3.0, 6.0], [0.0, 0.0]]
-
-
-def test_times_uplift_needs_something_to_scale(write):
-    motion = 'motion = { x = "x.txt", y = "x.txt", units = "g", times_uplift = 2 }'
-    path = write(replaced(STILL, motion), "still.suite.toml")
-    write("0 0\n.1 0\n", "x.txt")
-    with pytest.raises(ValueError, match=r"motion.times_uplift: needs a horizontal .*, got none"):
-        read_suite(path)
 
 
 def test_times_uplift_is_the_peak_over_g_tan_alpha(write):
@@ -157,13 +146,10 @@ ENGINE = '[[runs]]\nengine = "mujoco"\n'
 # in place of a part of the case: what is said of it
 WRONG_PARTS = {
     (SLOPE, "tan_alpha = -0.2"): "cases[0].cylinder.tan_alpha: must be positive, got -0.2",
-    (SLOPE, "tan_alpha = [0.2, 0]"): "cases[0].cylinder.tan_alpha[1]: must be positive, got 0",
     (SLOPE, "tan_alpha = [0.2, 0.2]"): "tan_alpha[1]: must differ from the others, got 0.2",
     (SLOPE, "tan_alpha = []"): "tan_alpha: must hold at least one value, got []",
     (SLOPE, "tan_alpha = true"): "tan_alpha: must be a number, a list, or a range such",
-    (SLOPE, "tan_alpha = nan"): "tan_alpha: must be a finite number, got nan",
     (SLOPE, "tan_alfa = 0.2"): "cases[0].cylinder.tan_alfa: is not known here, did you mean tan_alpha?",
-    (", tan_alpha = 0.2", ""): "cases[0].cylinder.tan_alpha: must be given: either semidiagonal",
     (SLOPE, "tan_alpha = 0.2, base_radius = 1"): "cylinder.semidiagonal: must be left out: it does not go",
     (SLOPE, "tan_alpha = 0.2, axial_inertia = 99"): "cases[0].cylinder: axial_inertia must not exceed twice",
     (SLOPE, "tan_alpha = { from = 1, to = 3, step = 0.7 }"): "step must divide the range from 1 to 3, in",
@@ -177,11 +163,8 @@ WRONG_PARTS = {
         SLOPE,
         "tan_alpha = { from = 1, to = 2, step = 1e-9 }",
     ): "step must divide the range from 1 to 2, in at most",
-    (SLOPE, "tan_alpha = { from = 1, to = 2, count = 1.5 }"): "must be a positive whole number, got 1.5",
     (LENGTH, ""): "cases[0].duration: must be given [s]: only a record has a length",
     (LENGTH, "duration = 8\ncolour = 1"): "colour: is not known here, allowed are name, cylinder, motion",
-    (LENGTH, "duration = 8\nfriction = -1"): "cases[0].friction: must not be negative, got -1",
-    (LENGTH, f"duration = 1{400 * '0'}"): "cases[0].duration: must be a finite number, got 1000",
     (
         "tilt_over_alpha = 0.5",
         "tilt = 0.1, tilt_deg = 5",
@@ -195,18 +178,11 @@ WRONG_PARTS = {
         STILL,
         'motion = { record = "el_centro_1940", time_shift = 0.005 }',
     ): "must be a whole number of the rec",
-    (
-        STILL,
-        'motion = { record = "el_centro_1940", time_shift = -60 }',
-    ): "must leave a part of the record, wh",
-    (STILL, 'motion = { record = "p695" }'): "cases[0].motion.pair: must be given: 1 to 22",
-    (STILL, 'motion = { x = "x.csv" }'): "cases[0].motion.y: must be given: a record has two",
     (STILL, 'motion = { x = "x.csv", y = "y.csv" }'): "cases[0].motion: cannot read the record ",
     (
         STILL,
         'motion = { x = "x.csv", y = "y.csv", units = "ft" }',
     ): "cases[0].motion: units must be one of g, m/s2, ",
-    (STILL, 'motion = { pulse = "sine", period = 1, amplitude = 1 }'): "pulse must be one of one-sine, one-",
     (STILL, 'motion = { pulse = "one-sine", amplitude = 1 }'): "motion.period: must be given with a pulse",
     (
         STILL,
@@ -244,9 +220,6 @@ def test_every_error_of_a_suite_file_names_its_key(write, text, words):
 
 @pytest.mark.slow
 def test_importing_the_models_loads_no_pydantic():
-    import subprocess
-    import sys
-
     script = "import sys, rockwobble.models; print('pydantic' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
