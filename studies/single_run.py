@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 _FILE = "run.parquet"
 _WIDE = 0.1  # scatter of the copies from which on a number is about so large
-_COPIES = 20  # enough to say from when on they diverge
+_PLAN = AdvicePlan(copies=20)  # enough copies to say from when on they diverge
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -68,10 +68,8 @@ class SingleRun(Results, kind="run"):
 
     def _doubt(self) -> Iterator[Finding]:
         trace, single = self.trace, self.facts.get("single_trace", {})
-        part, falls = (
-            single.get("copies_part", math.inf),
-            overturning_time(trace),
-        )  # unknown for results of earlier versions
+        # unknown for results of earlier versions
+        part, falls = single.get("copies_part", math.inf), overturning_time(trace)
         if not math.isfinite(part):
             return
         late = falls if math.isfinite(falls) else trace.peak_time
@@ -227,62 +225,57 @@ def single_run(
         Called with a `Progress` at the start and at the end of each stage.
     """
     model = run if run.is_model else own_model_of(case, run)
-    plan = AdvicePlan(copies=_COPIES)
     stage = stages(progress, [1.0, 1.0])
     with stage(Job(case=case, run=run).label):
         # an engine in a process of its own, so that Ctrl-C also stops it in the middle of a long call
         (trace,) = simulate_all([Job(case=case, run=run)], workers=1 if model == run else 2)
-    part, scatter = math.inf, math.nan
-    if not len(trace.time):
-        return single_run_of(trace, part, answer, plan.perturbation)
-    error = NO_ERROR
-    with stage(f"{plan.copies} copies of the {model}"):
-        own = trace if model == run else simulate_run(case, model)
-        slid: list[list[float]] = []
-        if len(own.time) and own.mode not in ("", REST):
-            case = with_time_to_fall(case, own)
-            copies = [simulate_run(each, model, sample_step=BAND_STEP) for each in plan.perturbed(case)]
-            if trace.mode == SLIDES == own.mode and model == run:
-                slid = [[each.peak_displacement, each.residual_displacement] for each in copies]
-            elif own.mode != SLIDES:
-                part = copies_divergence_time(case, own, copies)
-                scatter = scatter_of(own.peak_tilt, (copy.peak_tilt for copy in copies))
-                other = _other_model(case, own)
-                error = peak_error(case, trace, own, other, copies=copies, simulate=simulate_run)
-    return single_run_of(trace, part, answer, plan.perturbation, slid, scatter, error)
+    single: dict[str, object] = {"answer": answer}
+    if len(trace.time):
+        with stage(f"{_PLAN.copies} copies of the {model}"):
+            own = trace if model == run else simulate_run(case, model)
+            if len(own.time) and own.mode not in ("", REST):
+                single |= _copies(case, trace, own, model)
+    return single_run_of(trace, single)
 
 
-def _other_model(case: Case, own: Trace) -> Trace:
-    """The response on the other support, whose difference is the model form; its own in a plane."""
-    other = FLAT_MODEL if own.run.support == RECESS else RECESS_MODEL
-    return own if own.run.is_planar or case.tendon is not None else simulate_run(case, other)
+def _copies(case: Case, trace: Trace, own: Trace, model: Run) -> dict[str, object]:
+    """What copies of a run add to it: arguments of `single_run_of`; `own` is that of the model."""
+    case = with_time_to_fall(case, own)
+    copies = [simulate_run(each, model, sample_step=BAND_STEP) for each in _PLAN.perturbed(case)]
+    if own.mode == SLIDES:
+        moved = [[each.peak_displacement, each.residual_displacement] for each in copies]
+        return {"slid": moved} if trace is own else {}
+    # the response on the other support, whose difference is the model form; its own in a plane
+    other = own
+    if not own.run.is_planar and case.tendon is None:
+        other = simulate_run(case, FLAT_MODEL if own.run.support == RECESS else RECESS_MODEL)
+    return {
+        "copies_part": copies_divergence_time(case, own, copies),
+        "scatter": scatter_of(own.peak_tilt, (copy.peak_tilt for copy in copies)),
+        "error": peak_error(case, trace, own, other, copies=copies, simulate=simulate_run),
+    }
 
 
-def single_run_of(
-    trace: Trace,
-    part: float = math.inf,
-    answer: str = "",
-    perturbation: float = AdvicePlan().perturbation,
-    slid: Sequence[Sequence[float]] = (),
-    scatter: float = math.nan,
-    error: PeakError = NO_ERROR,
-) -> SingleRun:
-    """Results of a trace; its copies: when they diverge [s], slides (n, 2) [m], scatter; its error."""
+def single_run_of(trace: Trace, single: Mapping[str, object] | None = None) -> SingleRun:
+    """Results of a trace, with what is known of its copies.
+
+    Parameters
+    ----------
+    trace : Trace
+    single : mapping, optional
+        copies_part, from when on they diverge [s]; perturbation of their input; scatter of their peaks over
+        that of the trace; error of its peak, a `PeakError`; slid, their slides (n, 2) [m]; answer, the
+        command that says what they do.
+    """
     job = Job(case=trace.case, run=trace.run)
     left_out = ("rest_intervals", "extrema", "passes")
+    none = {"copies_part": math.inf, "perturbation": _PLAN.perturbation, "scatter": math.nan}
     facts = {
         "inputs": job_fingerprint(job),
         "run": job.label,
         "case": case_facts(trace.case),
         "result": {name: value for name, value in trace.to_plain().items() if name not in left_out},
-        "single_trace": {
-            "copies_part": part,
-            "perturbation": perturbation,
-            "scatter": scatter,
-            "answer": answer,
-            "error": error,
-        }
-        | ({"slid": slid} if slid else {}),
+        "single_trace": {**none, "answer": "", "error": NO_ERROR, **(single or {})},
         "columns": {"run.csv": COLUMNS, "passes.csv": PASS_COLUMNS},
     }
     return SingleRun(tables={"run": trace.to_frame()}, facts=plain(facts), trace=trace)

@@ -64,7 +64,7 @@ def made_up(job: Job, peak: float, outcome: str = "stands") -> Trace:
     return dataclasses.replace(reduced.simulate(job.case, sample_step=1.0), peak_tilt=peak, outcome=outcome)
 
 
-def test_failed_runs_are_counted_and_named(monkeypatch):
+def test_failed_runs_are_counted_and_named_and_are_no_members(monkeypatch):
     def simulate(job: Job) -> Trace:
         if job.label == "flat-ground model" and job.case.name.endswith("#2"):
             return made_up(job, math.nan, "failed")
@@ -75,12 +75,22 @@ def test_failed_runs_are_counted_and_named(monkeypatch):
     methods = found.methods.set_index("method")
     assert methods["failed"].to_dict() == {"recess model": 0, "flat-ground model": 1}
     assert methods.loc["flat-ground model", "failed_members"] == "release #2"
-    assert found.contrasts.loc[0, ["count", "masked"]].tolist() == [6, "release #2"]
     assert len(found.members) == 14
     # of six members that do not differ; what failed has no part in the counts and quantiles of its method
-    assert found.contrasts.loc[0, ["compared", "ratio"]].tolist() == [6, 1.0]
+    pairs = ["count", "compared", "ratio", "masked"]
+    assert found.contrasts.loc[0, pairs].tolist() == [6, 6, 1.0, "release #2"]
     assert methods.loc["flat-ground model", ["runs", "uplifted", "overturned"]].tolist() == [7, 6, 0]
     assert math.isfinite(methods.loc["flat-ground model", "peak_median"])
+    # the last of four is how far it came before it failed: no peak
+    members = found.members[found.members["member"].str[-1].astype(int) < 5].reset_index(drop=True)
+    members.loc[members["method"] == "recess model", "outcome"] = ["overturned"] * 2 + ["stands", "failed"]
+    members.loc[members["member"] == "release #2", "outcome"] = "overturned"
+    members.loc[members["member"].str[-1].astype(int) < 3, "peak_tilt"] = 8.0
+    for labels in (["recess model", "flat-ground model"], ["flat-ground model", "recess model"]):
+        again = ensemble_of(members, {**found.facts, "methods": dict.fromkeys(labels, "")})
+        assert again.contrasts.loc[0, ["count", "masked"]].tolist() == [3, "release #4"]
+        row = again.methods.set_index("method").loc["recess model"]
+        assert row[["runs", "uplifted", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
 
 
 def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch):
@@ -107,20 +117,6 @@ def test_members_are_paired_by_name_and_not_by_row(monkeypatch):
     assert ensemble_of(shuffled, found.facts).contrasts.loc[0, "ratio_95_low"] == 1.0
     with pytest.raises(ValueError, match="one run by each method"):
         ensemble_of(pd.concat([found.members, found.members[:1]]), found.facts)
-
-
-def test_a_failed_run_is_no_member_that_stands():
-    found = ensemble(CASE, runs=[], copies=4, workers=1)
-    members = found.members
-    recess = members["method"] == "recess model"
-    members.loc[recess, "outcome"] = ["overturned", "overturned", "stands", "failed"]
-    # the last is how far it came before it failed: no peak
-    members.loc[recess, "peak_tilt"] = [8.0, 8.0, 0.3, 0.4]
-    again = ensemble_of(members, found.facts)
-    assert again.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
-    turned = ensemble_of(members, {**found.facts, "methods": {"flat-ground model": "", "recess model": ""}})
-    assert turned.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
-    assert again.methods.loc[0, ["runs", "uplifted", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
 
 
 def test_bounds_hold_whatever_the_runs_that_failed_would_have_done(monkeypatch):
@@ -167,12 +163,12 @@ def test_every_input_is_in_the_hash_of_an_ensemble():
 
 
 def test_far_field_motions_have_their_peak_and_their_names(monkeypatch):
-    def made_up(pair: int) -> GroundMotion:
-        return GroundMotion([[0.0, 0.0], [float(pair), 0.0]], 0.01, f"pair {pair}")
+    def pair(number: int) -> GroundMotion:
+        return GroundMotion([[0.0, 0.0], [float(number), 0.0]], 0.01, f"pair {number}")
 
-    monkeypatch.setattr(p695, "p695_far_field", made_up)
+    monkeypatch.setattr(p695, "p695_far_field", pair)
     motions = far_field_motions(peak=3.0)
     assert [motion.peak for motion in motions] == pytest.approx([3.0] * 22, abs=ROUNDING)
-    assert [motion.name for motion in motions] == [f"pair {pair}" for pair in range(1, 23)]
+    assert [motion.name for motion in motions] == [f"pair {number}" for number in range(1, 23)]
     with pytest.raises(ValueError, match="peak must be positive"):
         far_field_motions(peak=-1.0)

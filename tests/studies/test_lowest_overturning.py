@@ -77,14 +77,6 @@ def test_a_coarse_grid_is_filled_and_nothing_beyond_it_is_run():
     assert far.run == []
 
 
-def test_a_search_ends_at_a_known_overturning():
-    def edge(levels: np.ndarray) -> np.ndarray:
-        return np.where(levels >= 1.2345, FALL, 0.0)
-
-    assert search(edge, 1.0, np.array([1.2345, 3.0])) == 1.2345
-    assert search(edge, 2.0, np.array([1.0, 2.0])) == 2.0
-
-
 def test_a_failed_run_stands_and_hides_nothing_beyond_its_own_step():
     window = Window(1.5003, 0.02, 0.3)
 
@@ -107,6 +99,9 @@ def test_searches_side_by_side_find_what_each_finds_alone():
     assert np.array_equal(found, alone, equal_nan=True)
     assert all(0.0 <= low - edge <= STEP for low, edge in zip(found[:2], edges[:2], strict=True))
     assert math.isnan(found[2])
+    for start, grid, known in ((1.0, [1.2345, 3.0], 1.2345), (2.0, [1.0, 2.0], 2.0)):
+        # a search ends at a known overturning
+        assert search(lambda levels: np.where(levels >= 1.2345, FALL, 0.0), start, np.array(grid)) == known
 
 
 @pytest.mark.parametrize("stands", [True, False])

@@ -10,7 +10,7 @@ from rockwobble import reduced, sweep
 from rockwobble.compare import IncompleteError, Progress
 from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.progress import FailedTask
-from rockwobble.compare.storage.claim import CACHE, claim_folder
+from rockwobble.compare.storage.claim import CACHE
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
 from rockwobble.studies import Grid, Sweep, study
@@ -64,25 +64,6 @@ def test_a_grid_that_grows_keeps_what_is_there(tmp_path):
     assert (events[0].found, events[0].total) == (4, 8)
     assert before < set(files(tmp_path).values())
     pd.testing.assert_frame_equal(table, sweep(grid(), workers=1).table, check_exact=True)
-    pd.testing.assert_frame_equal(table, Sweep.load(tmp_path).table, check_exact=True)
-
-
-def test_chunks_of_another_sweep_are_removed_on_completion_alone(tmp_path):
-    sweep(grid(tan_alphas=[0.1]), out=tmp_path, workers=1, chunk_size=5)
-    other = set(files(tmp_path))
-
-    def interrupt(event):
-        if event.done > event.found:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5, progress=interrupt)
-    assert len(files(tmp_path)) == len(other) + 1
-    sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5)
-    assert other < set(files(tmp_path))
-    with claim_folder(tmp_path, plan="this", command="sweep", overwrite=True):
-        table = sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5).table
-    assert not other & set(files(tmp_path))
     pd.testing.assert_frame_equal(table, Sweep.load(tmp_path).table, check_exact=True)
 
 
@@ -164,19 +145,6 @@ def test_manifest_and_summary_say_what_was_swept(tmp_path):
         assert row["median"] == own["peak_tilt_over_alpha"].where(~fell, math.inf).median()
         assert row["largest"] == own.loc[~fell, "peak_tilt_over_alpha"].max()
     pd.testing.assert_frame_equal(Sweep.load(tmp_path).summary(), summary, check_exact=True)
-
-
-@pytest.mark.parametrize("where", [100, -100])  # in the data, and in what the file says of itself
-def test_a_damaged_chunk_runs_again(tmp_path, where):
-    first = sweep(grid(), out=tmp_path, workers=1).table
-    path = next((tmp_path / CACHE / KIND).glob("*.parquet"))
-    content = bytearray(path.read_bytes())
-    content[where] ^= 1  # a single bit
-    path.write_bytes(content)
-    events = []
-    again = sweep(grid(), out=tmp_path, workers=1, progress=events.append).table
-    assert (events[-1].found, events[-1].total) == (1, 2)
-    pd.testing.assert_frame_equal(first, again, check_exact=True)
 
 
 @pytest.mark.parametrize(
