@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from faulty_subjects import larger as larger_case
 
 from rockwobble import reduced
 from rockwobble.compare.check import Result, check, external_model, suite
@@ -27,8 +28,7 @@ BOTH = pytest.mark.skipif("pybullet" not in available_engines(), reason="pybulle
 
 def larger(case: Case, **options: Any) -> Trace:
     """The reduced model of a cylinder that is 0.5 % too large."""
-    cylinder = dataclasses.replace(case.cylinder, semidiagonal=1.005 * case.cylinder.semidiagonal)
-    return reduced.simulate(dataclasses.replace(case, cylinder=cylinder), **options)
+    return reduced.simulate(larger_case(case, 1.005), **options)
 
 
 def found(case: Case, *runs: Run, reference: Any = reduced.simulate) -> list[Result]:
@@ -141,13 +141,13 @@ def test_suite_takes_first_seconds_of_releases_and_nothing_of_rest() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("spin", [0.5, 0.05, 0.0])
-def test_a_release_through_upright_detects_only_a_wrong_model(spin: float) -> None:
-    case = dataclasses.replace(release_case(0.5, spin, 2.5), name=f"release, {spin:g} rad/s")
+def test_a_release_through_upright_detects_only_a_wrong_model() -> None:
     runs = [Run("mujoco", support) for support in ("recess", "flat")]
-    assert not [f for f in found(case, *runs) if f.failed]
-    wrong = [f for f in found(case, *runs, reference=larger) if f.failed]
-    assert len([f for f in wrong if f.name.endswith("first seconds")]) == 2
+    for spin in (0.5, 0.0):
+        case = dataclasses.replace(release_case(0.5, spin, 2.5), name=f"release, {spin:g} rad/s")
+        assert not [f for f in found(case, *runs) if f.failed]
+        wrong = [f for f in found(case, *runs, reference=larger) if f.failed]
+        assert len([f for f in wrong if f.name.endswith("first seconds")]) == 2
 
 
 def test_a_run_has_one_of_twice_or_half_its_step_beside_it() -> None:
