@@ -24,21 +24,14 @@ def values_in_g(path: Path, **options: str) -> list[float]:
     return list(motion.acceleration[:, 0] / 9.81)
 
 
-@pytest.mark.parametrize(
-    "header",
-    [
-        "NPTS=      6, DT=   .0100 SEC,",
-        "NPTS=6,DT=.01",
-        "npts: 6, dt: 1.0E-02 sec",
-        "NPTS=  6, DT= 1.D-2 SEC",
-        "     6    .0100    NPTS, DT(SEC)",
-        "6, 0.01, NPTS, DT",
-    ],
-)
-def test_each_form_of_the_header_line(write: Write, header: str) -> None:
-    path = write(TITLE + UNITS + header + "   \n" + SIX)
-    assert values_in_g(path) == pytest.approx(IN_G, rel=1e-15)
-    assert read_record(path, path).time_step == 0.01
+def test_each_form_of_the_header_line(write: Write) -> None:
+    for header in (
+        *("NPTS=      6, DT=   .0100 SEC,", "NPTS=6,DT=.01", "npts: 6, dt: 1.0E-02 sec"),
+        *("NPTS=  6, DT= 1.D-2 SEC", "     6    .0100    NPTS, DT(SEC)", "6, 0.01, NPTS, DT"),
+    ):
+        path = write(TITLE + UNITS + header + "   \n" + SIX)
+        assert values_in_g(path) == pytest.approx(IN_G, rel=1e-15)
+        assert read_record(path, path).time_step == 0.01
 
 
 @pytest.mark.parametrize(
