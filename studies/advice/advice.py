@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, cast
 
@@ -153,16 +153,16 @@ class Advice(Results, kind=KIND):
 
     def headline(self) -> dict[str, Number]:
         """Outcome, grade, the shares that overturn, and the largest tilt as given; how far a slide goes."""
+        response = self.response
+        about = {"case": self.facts["case"], "outcome as given": response["outcome"]}
         if self.slides:
-            return {
-                "case": self.facts["case"],
+            return about | {
                 "outcome as given": SLIDES,
-                "peak displacement as given [m]": self.response["displacement"],
-                "residual displacement as given [m]": self.response["residual_displacement"],
+                "peak displacement as given [m]": response["displacement"],
+                "residual displacement as given [m]": response["residual_displacement"],
             }
         return {
-            "case": self.facts["case"],
-            "outcome as given": self.response["outcome"],
+            **about,
             "grade": overall(self.grades.values()),
             **{f"overturning, {row['group']}": row["chance"] for row in self.groups.to_dict("records")},
             "largest tilt as given [deg]": math.degrees(self.peak * self.cylinder.alpha),
@@ -411,6 +411,7 @@ def advise(
     perturbed: list[Trace] = []
     others: list[Trace] = []
     groups: dict[str, list[Case]] = {}
+    tables: dict[str, pd.DataFrame] = {}
     with stage(f"{plan.copies} perturbed copies"):
         if moves:  # run in this process: others take longer to begin than hundreds of reduced runs
             groups[COPIES] = plan.perturbed(case)
@@ -424,8 +425,8 @@ def advise(
     with stage("other records as strong, planar analysis and the vertical component"):
         records, source = ({}, "") if trace.outcome in NO_PEAK else other_records(case)
         slides = trace.mode == SLIDES
-        slid = slide_rows({COPIES: plan.perturbed(case), **records} if slides else {}, model)
         if slides:  # nothing of it uplifts
+            tables["slides"] = slide_rows({COPIES: plan.perturbed(case), **records}, model)
             records = {}
         groups |= records
         for name, cases in records.items():
@@ -437,7 +438,13 @@ def advise(
             if name == VERTICAL:
                 groups[name] = [each.case for each in traces]
     with stage("weaker shaking by the same records"):
-        weaker = weaker_rows(case, groups, model)
+        is_shaken = case.motion is not None and case.motion.peak > 0.0
+        weaker = [
+            row
+            for factor in (weaker_factors(uplift_of(case)) if is_shaken else ())
+            for name, cases in groups.items()
+            for row in run_rows(name, cases[:WEAKER_COUNT], model, factor)
+        ]
     with stage("other scales of the ground motion"):
         scaled = dataclasses.replace(case, motion=None, duration=case.length) if slides else case
         scales, lowest = scan_scales(scaled, model.support)
@@ -446,11 +453,10 @@ def advise(
     data = spread_from(band, trace.peak_tilt / alpha)
     prediction, verification, engine = None, None, None
     both = moves and slides_and_rocks(case, plan.support, demands_of(trace)["slip"])
-    slipped: pd.DataFrame | None = None
     if run is not None:
         with stage(str(run)):
             if both:
-                slipped = engine_rows(groups[COPIES], run)
+                tables["slipped"] = engine_rows(groups[COPIES], run)
             if moves:
                 shorter, reference = trusted_part(case, trace, data)
                 verification, prediction, engine = verify_run(shorter, run, reference)
@@ -464,13 +470,10 @@ def advise(
         if verification is not None and verification.outcome != "failed":
             methods = verification.agreed_until if verification.diverged else math.inf
         trust = trust_of(methods, data, trace.peak_time, float(trace.time[-1]))
-    members = pd.DataFrame(
-        rows, columns=None if rows else ["group", "outcome", "peak_tilt", "yields", "member"]
-    )
-    tables = {
+    columns = ["group", "outcome", "peak_tilt", "yields", "member"]
+    members = pd.DataFrame(rows, columns=None if rows else columns)
+    tables |= {
         "members": members,
-        **({"slides": slid} if slides else {}),
-        **({} if slipped is None else {"slipped": slipped}),
         "band": band,
         "weaker": pd.DataFrame(weaker, columns=None if weaker else list(members.columns)),
         "scales": scales,
@@ -565,11 +568,6 @@ def advice_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, object]) -
     )
 
 
-def _opened(tilt: float) -> float:
-    """Return a tilt [alpha], at least that at which a base counts as open: chatter below is no response."""
-    return max(tilt, CLOSED_TILT)  # this order keeps NaN
-
-
 def _moves(outcome: str, uplift_time: float) -> bool:
     return math.isfinite(uplift_time) and outcome not in NO_PEAK
 
@@ -586,7 +584,7 @@ def _samples(trace: Trace | None, alpha: float) -> pd.DataFrame:
 
 def _problem(case: Case) -> dict[str, object]:
     """Facts of a case, without the samples of its motion."""
-    motion, cylinder = case.motion, case.cylinder
+    motion = case.motion
     shaking = motion and {
         **motion_facts(motion),
         "has_vertical": motion.has_vertical,
@@ -595,7 +593,7 @@ def _problem(case: Case) -> dict[str, object]:
     }
     return {
         "case": case.name,
-        "cylinder": dataclasses.asdict(cylinder),
+        "cylinder": dataclasses.asdict(case.cylinder),
         "motion": shaking,
         "release": dataclasses.asdict(case.initial) if case.is_release and case.initial else None,
         "length": case.length,
@@ -668,16 +666,3 @@ def vertical_effect(
     return dataclasses.replace(about, ratios=ratios), {
         name: traces for name, traces in runs.items() if name == kept
     }
-
-
-def weaker_rows(case: Case, groups: Mapping[str, Sequence[Case]], model: Run) -> list[dict[str, float | str]]:
-    """Run the groups under weaker shaking, at most `WEAKER_COUNT` of each; none of what is only released."""
-    motion = case.motion
-    if motion is None or motion.peak == 0.0:
-        return []
-    return [
-        row
-        for factor in weaker_factors(uplift_of(case))
-        for name, cases in groups.items()
-        for row in run_rows(name, cases[:WEAKER_COUNT], model, factor)
-    ]

@@ -57,6 +57,7 @@ PEAKS = {name: f"{name}_peak" for name in ("shear", "force")}
 # demands of which is said what acts together with them, and what that is
 _LEADING = ("shear", "moment")
 _TOGETHER = ("shear", "force", "moment")
+_PAIRS = tuple(itertools.product(_LEADING, _TOGETHER))
 _NOT_PLANE = "all runs stay in one plane, in which no moment arises: a real motion leaves it"
 
 
@@ -92,53 +93,45 @@ def demands_of(trace: Trace) -> dict[str, float]:
         in which the friction of the case does not suffice and in which contact is lost, at base or top. All
         zero, and a force of one weight, where nothing moves.
     """
-    cylinder = trace.case.cylinder
+    cylinder, tendon = trace.case.cylinder, trace.case.tendon
     moving = trace.open_base & (trace.time <= overturning_time(trace))
     ends = [(_BASE, trace.contact_force, trace.friction_needed)]
     if cylinder.slab_mass_ratio > 0.0:
         ends.append((_TOP, trace.top_contact_force, trace.top_friction_needed))
-    entries: dict[str, float] = {}
-    largest = trace.peak_tilt / cylinder.alpha
+    largest, balance = trace.peak_tilt / cylinder.alpha, balance_of(trace.case) / cylinder.alpha
     if trace.outcome == "overturned":
-        largest = float(trace.tilt[moving].max()) / cylinder.alpha if moving.any() else 0.0
-    balance = balance_of(trace.case) / cylinder.alpha
+        largest = float(trace.tilt[moving].max(initial=0.0)) / cylinder.alpha
     if trace.outcome == "overturned" or largest > balance:
         largest = max(PASSED * balance, largest)
-    tendon = trace.case.tendon
-    pull = {}
-    if tendon is not None:
-        pull = {_TENDON: tendon.tension(cylinder, min(largest * cylinder.alpha, OVERTURNED_TILT))}
-    if not moving.any():
-        for names, *_ in ends:
-            entries |= dict(zip(names, (0.0, 0.0, 1.0), strict=True))
-        together = {f"{name}_with_{part}": float(part == "force") for name, part in _pairs()}
-        return entries | {
-            **{"moment": 0.0, "shear_and_wall": 0.0, "tilt": largest},
-            **{"shear_peak": 0.0, "force_peak": 1.0},
-            **{**pull, **together, **_none_missing()},
-        }
     lengths = np.diff(trace.time, append=trace.time[-1])[moving]
+    tilt, kappa = trace.tilt[moving], np.abs(trace.restraining_moment[moving]) / cylinder.base_radius
+    forces = [(names, force[moving], friction[moving]) for names, force, friction in ends]
+    if not moving.any():  # one sample at rest
+        lengths = tilt = kappa = np.zeros(1)
+        forces = [(names, np.array([[0.0, 0.0, 1.0]]), np.zeros(1)) for names, *_ in ends]
     lost, slips = np.zeros((2, len(lengths)), dtype=bool)
     series: dict[str, Array] = {}
-    for names, force, friction in ends:
-        x, y, normal = force[moving].T
-        series |= dict(zip(names, (friction[moving], np.hypot(x, y), normal), strict=True))
+    for names, force, friction in forces:
+        x, y, normal = force.T
+        series |= dict(zip(names, (friction, np.hypot(x, y), normal), strict=True))
         lost |= normal <= 0.0
-        slips |= friction[moving] > trace.case.friction
-    kappa = np.abs(trace.restraining_moment[moving]) / cylinder.base_radius
-    series["moment"] = (1.0 + np.cos(trace.tilt[moving])) * kappa
+        slips |= friction > trace.case.friction
+    series["moment"] = (1.0 + np.cos(tilt)) * kappa
     series["shear_and_wall"] = series["shear"] + series["moment"]
-    places = {name: _usual(values) for name, values in series.items()}
-    entries = {name: float(series[name][place]) for name, place in places.items()}
+    # sample that is not exceeded in 99 % of the time: a mean with infinity would be none
+    rank = max(math.ceil((1.0 - SPIKES) * len(lengths)) - 1, 0)
+    entries = {name: float(np.partition(values, rank)[rank]) for name, values in series.items()}
     entries |= {peak: float(series[name].max()) for name, peak in PEAKS.items()}
     usual = np.logical_and.reduce([series[name] <= entries[name] for name in (*_BASE, *_SUMS)])
     usual &= series["force"] > 0.0
-    for name, part in _pairs():
+    for name, part in _PAIRS:
         place = int(np.where(usual, series[name], -math.inf).argmax())
         entries[f"{name}_with_{part}"] = float(series[part][place]) if usual.any() else math.nan
+    entries["tilt"] = largest
+    if tendon is not None:
+        entries[_TENDON] = tendon.tension(cylinder, min(largest * cylinder.alpha, OVERTURNED_TILT))
     time = max(float(lengths.sum()), 1e-300)
-    shares = {"slip": lengths[slips & ~lost].sum() / time, "lost": lengths[lost].sum() / time}
-    return entries | {"tilt": largest, **pull, **shares}
+    return entries | {"slip": lengths[slips & ~lost].sum() / time, "lost": lengths[lost].sum() / time}
 
 
 def weaker_factors(threshold: float) -> list[float]:
@@ -203,25 +196,20 @@ def demand_table(
         return pd.DataFrame(columns=[*_COLUMNS, "per_tonne", "for_mass"])
     rows: list[dict[str, Any]] = []
     yields, falls = (_most(groups, column) for column in ("yields", "overturns"))
+    moves = any(runs["tilt"].gt(0.0).any() for *_, runs in groups if facts.is_recess)
     for name, unit in UNITS.items():
-        if name in _TOP and not cylinder.slab_mass_ratio > 0.0:
+        lacks_slab = name in _TOP and not cylinder.slab_mass_ratio > 0.0
+        lacks_recess = name in _RECESS and not facts.is_recess
+        if lacks_slab or lacks_recess or (name == _TENDON and name not in members):
             continue
-        if name in _RECESS and not facts.is_recess:
-            continue
-        if name == _TENDON and name not in members:
-            continue
-        rows.append({"demand": name, "unit": unit, **_largest(name, groups)})
+        row = {"demand": name, "unit": unit, **_largest(name, groups)}
         if yields is not None and name != _TENDON:
-            rows[-1] |= yields | {"value": math.nan, "reason": "yields"}
-            continue
-        if name in PEAKS:
-            rows[-1]["peak"] = _largest(PEAKS[name], groups)["value"]
-        if (
-            name == "moment"
-            and rows[-1]["value"] == 0.0
-            and any(runs["tilt"].gt(0.0).any() for *_, runs in groups)
-        ):
-            rows[-1] |= {"value": math.nan, "reason": _NOT_PLANE}
+            row |= yields | {"value": math.nan, "reason": "yields"}
+        elif name in PEAKS:
+            row["peak"] = _largest(PEAKS[name], groups)["value"]
+        elif name == "moment" and row["value"] == 0.0 and moves:
+            row |= {"value": math.nan, "reason": _NOT_PLANE}
+        rows.append(row)
     recess = {row["demand"]: row for row in rows}
     limits = {name: row["value"] for name, row in recess.items() if not math.isnan(row["value"])}
     for name in _LEADING:
@@ -229,23 +217,22 @@ def demand_table(
             recess[name] |= _together(name, groups, limits)
     if "tilt" in recess:
         if math.isnan(recess["moment"]["value"]):
-            lone = {name: recess["moment"][name] for name in ("value", "reason")}
-            recess["shear_and_wall"] |= lone
+            recess["shear_and_wall"] |= {name: recess["moment"][name] for name in ("value", "reason")}
         theta = recess["tilt"]["value"] * cylinder.alpha
         overhang, height = (b * part for part in rim_overhang(theta))
         walls = {"wall_height": height, "clearance": max(overhang, height * math.tan(theta))}
-        rows += [
-            recess["tilt"] | {"demand": name, "unit": "m", "value": each} for name, each in walls.items()
-        ]
+        end = {}
         if falls is not None and yields is None:
-            for row in rows[-len(walls) :]:
-                row |= falls | {"value": math.nan, "reason": "overturns"}
+            end = falls | {"value": math.nan, "reason": "overturns"}
+        rows += [
+            recess["tilt"] | {"demand": name, "unit": "m", "value": size} | end
+            for name, size in walls.items()
+        ]
     table = pd.DataFrame(rows, columns=_COLUMNS)
     arms = table["unit"].map({"weights": gravity, "weights × b": gravity * b}).astype(float)
     table["per_tonne"] = table["value"] * arms
-    top = table["demand"].isin(_TOP)
-    carried = np.where(top, cylinder.slab_mass_ratio, 1.0 + cylinder.slab_mass_ratio)
-    carried = np.where(table["demand"] == _TENDON, 1.0, carried)
+    slab = cylinder.slab_mass_ratio
+    carried = table["demand"].map({**dict.fromkeys(_TOP, slab), _TENDON: 1.0}).fillna(1.0 + slab)
     table["for_mass"] = table["per_tonne"] * carried * (math.nan if mass is None else mass)
     return table
 
@@ -319,17 +306,3 @@ def _together(
         return {}
     place = int(usual[name].to_numpy().argmax())
     return {f"with_{part}": float(usual[part].iloc[place]) for part in _TOGETHER}
-
-
-def _pairs() -> list[tuple[str, str]]:
-    return list(itertools.product(_LEADING, _TOGETHER))
-
-
-def _none_missing() -> dict[str, float]:
-    return dict.fromkeys(SHARES, 0.0)
-
-
-def _usual(values: Array) -> int:
-    """Index of the sample that is not exceeded in 99 % of the time: a mean with infinity would be none."""
-    rank = max(math.ceil((1.0 - SPIKES) * len(values)) - 1, 0)
-    return int(np.argpartition(values, rank)[rank])

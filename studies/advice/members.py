@@ -107,7 +107,7 @@ def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
     }, source
 
 
-def member_row(group: str, trace: Trace, factor: float = 1.0) -> dict[str, float | str]:
+def member_row(trace: Trace, group: str, factor: float = 1.0) -> dict[str, float | str]:
     """Return the row of a run.
 
     group, member, factor [-], model, outcome, peak_tilt [alpha], yields, see `beyond_yield`, and demands.
@@ -124,9 +124,9 @@ def member_row(group: str, trace: Trace, factor: float = 1.0) -> dict[str, float
     }
 
 
-def member_rows(group: str, traces: Iterable[Trace], factor: float = 1.0) -> list[dict[str, float | str]]:
+def member_rows(group: str, traces: Iterable[Trace]) -> list[dict[str, float | str]]:
     """Return the rows of some runs, see `member_row`."""
-    return list(in_threads(partial(member_row, group, factor=factor), traces))
+    return list(in_threads(partial(member_row, group=group), traces))
 
 
 def run_rows(
@@ -135,8 +135,9 @@ def run_rows(
     """Run cases of one group by a reduced model, with a factor on their ground motions; return their rows."""
 
     def row(case: Case) -> dict[str, float | str]:
-        trace = simulate_run(scaled(case, factor), model, sample_step=DEMAND_STEP)
-        return member_row(group, trace, factor)
+        motion = case.motion if case.motion is None or factor == 1.0 else case.motion.scaled(factor)
+        trace = simulate_run(dataclasses.replace(case, motion=motion), model, sample_step=DEMAND_STEP)
+        return member_row(trace, group, factor)
 
     # a motion that never uplifts is the same at every lower scale: one run stands for all
     still = [each for each in cases if not each.is_release and uplift_of(each) > factor * (1.0 + _CLOSE)]
@@ -159,13 +160,6 @@ def uplift_of(case: Case, motion: GroundMotion | None = None) -> float:
     return tendon_uplift_factor(case) * uplift_factor(
         motion, case.cylinder.tan_alpha, case.gravity, until=case.length
     )
-
-
-def scaled(case: Case, factor: float) -> Case:
-    """Return a case with its ground motion scaled."""
-    if factor == 1.0 or case.motion is None:
-        return case
-    return dataclasses.replace(case, motion=case.motion.scaled(factor))
 
 
 def with_vertical(motion: GroundMotion) -> GroundMotion | None:
@@ -238,9 +232,9 @@ def group_table(members: pd.DataFrame) -> pd.DataFrame:
         yields = known["yields"].astype(bool)
         fell = (known["outcome"] == "overturned") & ~yields
         single = all_alike(known)
-        chance = Interval(value=math.nan, low=math.nan, high=math.nan)
-        if not single:
-            chance = share_interval(int(fell.sum()), len(known))
+        chance = share_interval(int(fell.sum()), len(known))
+        if single:
+            chance = Interval(value=math.nan, low=math.nan, high=math.nan)
         values = known[numbers].assign(peak_tilt=known["peak_tilt"].mask(fell | yields, math.inf))
         values = values[:1] if single else values
         upper = dict.fromkeys(numbers, (math.nan, 0))

@@ -74,27 +74,18 @@ def scan_scales(case: Case, support: str = RECESS) -> tuple[pd.DataFrame, pd.Dat
             return run(factors)
 
         peaks = run(FACTORS)
-        start = 0.0
-        if not case.is_release:
+        start, alpha, stands = 0.0, case.cylinder.alpha, not case.is_release
+        if stands:
             plane = AZIMUTH.get(name)
             start = uplift_factor(motion, tan_alpha, gravity, plane=plane, until=case.length)
             start *= tendon_uplift_factor(case)
-        alpha, stands = case.cylinder.alpha, not case.is_release
         search = search_lowest(FACTORS, peaks, start=start, step=step, alpha=alpha, stands=stands)
         found = run_searches([search], at)[0]
         factor = float(np.fmin(found, lowest_on_grid(FACTORS, peaks[None])[0]))
         again = run(factor * np.array(CONFIRMING), rtol=CHECK_RTOL)
         lowest.append((name, factor, bool(overturned(again).all()), start))
-        tables.append(
-            pd.DataFrame(
-                {
-                    "series": name,
-                    "factor": FACTORS,
-                    "peak_tilt": peaks,
-                    "yields": beyond_yield(peaks, case),
-                }
-            )
-        )
+        columns = {"series": name, "factor": FACTORS, "peak_tilt": peaks, "yields": beyond_yield(peaks, case)}
+        tables.append(pd.DataFrame(columns))
     return pd.concat(tables, ignore_index=True), pd.DataFrame(lowest, columns=_LOWEST)
 
 
@@ -130,16 +121,10 @@ def planar_runs(cases: Sequence[Case], support: str = RECESS) -> pd.DataFrame:
     Columns: member, scale, and the peak tilts 3d, planar_x, planar_y [rad].
     """
     scales = np.array(PLANAR_SCALES)
-    tables = [
-        pd.DataFrame(
-            {
-                "member": case.name,
-                "scale": scales,
-                **{name: _peaks(case, scales, series=name, support=support) for name in SERIES},
-            }
-        )
-        for case in cases
-    ]
+    tables = []
+    for case in cases:
+        peaks = {name: _peaks(case, scales, series=name, support=support) for name in SERIES}
+        tables.append(pd.DataFrame({"member": case.name, "scale": scales, **peaks}))
     return pd.concat(tables, ignore_index=True)
 
 

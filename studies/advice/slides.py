@@ -48,15 +48,12 @@ def slides_and_rocks(case: Case, support: str, slip: float) -> bool:
 
 def engine_rows(cases: Sequence[Case], run: Run) -> pd.DataFrame:
     """Outcome, peak_tilt [alpha] and displacement [m] of an engine under copies of a case."""
-    jobs = [Job(case=case, run=run) for case in cases[:ENGINE_COPIES]]
-    traces = simulate_all(jobs)
-    return pd.DataFrame(
-        {
-            "outcome": [trace.outcome for trace in traces],
-            "peak_tilt": [trace.peak_tilt / trace.case.cylinder.alpha for trace in traces],
-            "displacement": [trace.peak_displacement for trace in traces],
-        }
-    )
+    traces = simulate_all([Job(case=case, run=run) for case in cases[:ENGINE_COPIES]])
+    rows = [
+        (trace.outcome, trace.peak_tilt / trace.case.cylinder.alpha, trace.peak_displacement)
+        for trace in traces
+    ]
+    return pd.DataFrame(rows, columns=["outcome", "peak_tilt", "displacement"])
 
 
 def engine_finding(rows: pd.DataFrame | None, engine: str, peak: float) -> Finding:
@@ -100,21 +97,13 @@ def slide_findings(
         if group != COPIES:
             name = f"{len(runs)} {kind}, same {'PGA' if group == ACCELERATION else 'PGV'}"
             most, end = runs[["displacement", "residual_displacement"]].quantile(0.95, interpolation="higher")
-            values: dict[str, Value] = {
-                "name": name,
-                "displacement_most": float(most),
-                "displacement_end": float(end),
-            }
-            yield Finding(key="mode.slide_group", values=values, runs=str(group))
+            ends = {"displacement_most": float(most), "displacement_end": float(end)}
+            yield Finding(key="mode.slide_group", values={"name": name, **ends}, runs=str(group))
         if gap is not None and len(runs):
-            yield _gap(name, int((runs["displacement"] > gap).sum()), len(runs), gap)
-
-
-def _gap(name: str, used: int, runs: int, gap: float) -> Finding:
-    interval = share_interval(used, runs)
-    share = (used / runs, interval.low, interval.high)
-    values: dict[str, Value] = {"name": name, "length": gap, "share": share}
-    return Finding(key="mode.gap", level=grade_chance(share[0]), values=values)
+            used = share_interval(int((runs["displacement"] > gap).sum()), len(runs))
+            share = used.value, used.low, used.high
+            values: dict[str, Value] = {"name": name, "length": gap, "share": share}
+            yield Finding(key="mode.gap", level=grade_chance(used.value), values=values)
 
 
 def usual_support(case: Case, *, friction_given: bool) -> str:
