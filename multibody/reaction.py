@@ -262,7 +262,7 @@ class UpliftWatch:
     def _open(self, time: float, still: Array) -> tuple[float, float]:
         """Return time and direction of an uplift under a load of eccentricity `still` (2,), and note it."""
         self.missing = 1.0 - float(np.hypot(*still)) / self._body.base_radius
-        return time, _azimuth(still)
+        return time, float(np.arctan2(still[1], still[0]))
 
 
 def _without_spikes(values: Array) -> Array:
@@ -270,7 +270,3 @@ def _without_spikes(values: Array) -> Array:
     padded = np.pad(values, ((_SPIKE // 2, _SPIKE // 2), (0, 0)), mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, _SPIKE, axis=0)
     return np.asarray(np.median(windows, axis=-1))
-
-
-def _azimuth(vector: Array) -> float:
-    return float(np.arctan2(vector[1], vector[0]))

@@ -189,12 +189,7 @@ class Recorder:
         if stop < count:
             # whatever the engine did after the end, the side on the ground included, is no part of the run
             inside = slice(stop)
-            time, gained, lost, acceleration = (
-                time[inside],
-                gained[inside],
-                lost[inside],
-                acceleration[inside],
-            )
+            time, gained, lost, acceleration = (each[inside] for each in (time, gained, lost, acceleration))
             poses, after, state = _rows(poses, inside), _rows(after, inside), _rows(state, inside)
             wall = wall and _rows(wall, inside)
         if self._watch is not None and self.uplift is None:
@@ -315,9 +310,8 @@ class Recorder:
         touching = state.depth > -FLIGHT * b
         slipped: Array = self._slipped + self._scene.time_step * np.cumsum(state.slip_rate * touching)
         self._slipped = float(slipped[-1])
-        for name, happens in (("slip_time", slipped > SLIP * b), ("flight_time", state.depth < -FLIGHT * b)):
-            if math.isnan(getattr(self, name)) and happens.any():
-                setattr(self, name, float(time[np.argmax(happens)]))
+        self.slip_time = _first_time(self.slip_time, time, slipped > SLIP * b)
+        self.flight_time = _first_time(self.flight_time, time, state.depth < -FLIGHT * b)
         return slipped
 
     def _watch_tendon(self, time: Array, poses: Steps) -> Array:
@@ -327,9 +321,7 @@ class Recorder:
             return np.zeros(len(time))
         elongation = restraint.elongation(poses.position, axis_of(poses.quaternion), height)
         self.elongation = max(self.elongation, float(elongation.max()))
-        yields = elongation > restraint.yield_elongation
-        if math.isnan(self.yield_time) and yields.any():
-            self.yield_time = float(time[np.argmax(yields)])
+        self.yield_time = _first_time(self.yield_time, time, elongation > restraint.yield_elongation)
         return elongation
 
     def _stop(self, time: Array, state: Kinematics, gained: Array, wall: Wall | None) -> int:
@@ -391,6 +383,11 @@ class Recorder:
         self.last_row = known[-1]
 
 
+def _first_time(known: float, time: Array, happens: NDArray[np.bool_]) -> float:
+    """First time of an event [s]: the one that is known, or in these steps; NaN before."""
+    return float(time[np.argmax(happens)]) if math.isnan(known) and happens.any() else known
+
+
 def _after(last: Array, rows: Array) -> Array:
     """One row and then rows (n, k), stored by component."""
     joined = np.empty((rows.shape[1], len(rows) + 1))
@@ -424,8 +421,7 @@ class WallWatch:
         """Duration of contact until each time [s], and its impulse per unit mass [m/s]."""
         if wall is None:
             return np.zeros(len(time)), np.zeros(len(time))
-        if math.isnan(self.first) and wall.touching.any():
-            self.first = float(time[np.argmax(wall.touching)])
+        self.first = _first_time(self.first, time, wall.touching)
         contact: Array = self._contact + self._step * np.cumsum(wall.touching, dtype=np.float64)
         impulse: Array = self._impulse + self._step * np.cumsum(wall.force)
         self._contact, self._impulse = float(contact[-1]), float(impulse[-1])

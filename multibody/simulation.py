@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockwobble.models import Case, Diagnostic, InitialState, RockingBody, Run, Trace
+from rockwobble.models import Case, Diagnostic, InitialState, Run, Trace
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.case import TimeStep
 from rockwobble.models.mode import SLIDES, expected_mode
@@ -229,8 +229,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         passes=passes,
         facts=(
             *diagnostics(recorder, passes, resolution, scale.time),
-            *_yield(method["case"], recorder, scale),
-            *_column_facts(method["case"].cylinder),
+            *_facts_of_terms(method["case"], recorder, scale),
         ),
         rest_intervals=np.array(recorder.rests.after_motion(), dtype=float).reshape(-1, 2) * scale.time,
         extrema=_extrema(recorder, scene, scale),
@@ -239,24 +238,17 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
     )
 
 
-def _column_facts(cylinder: RockingBody) -> tuple[Diagnostic, ...]:
-    """Return the fact that one column stands for all in the scene of a frame, if it does."""
-    columns = cylinder.columns if cylinder.slab_mass_ratio else 1
-    return (Diagnostic(code="one_column", size=columns),) if columns > 1 else ()
-
-
-def _yield(case: Case, recorder: Recorder, scale: Scale) -> Iterator[Diagnostic]:
-    """Diagnostic of a tendon that would have yielded, the swing after the end of the record included."""
+def _facts_of_terms(case: Case, recorder: Recorder, scale: Scale) -> Iterator[Diagnostic]:
+    """Facts of a tendon that would have yielded, in the swing after the end too, and of columns left out."""
     tendon = case.tendon
-    if tendon is None or tendon.yield_force is None or math.isnan(recorder.yield_time):
-        return
-    elongation = recorder.elongation * scale.length
-    yield Diagnostic(
-        code="tendon_yield",
-        time=recorder.yield_time * scale.time,
-        size=tendon.prestress + tendon.stiffness * elongation / case.cylinder.base_radius,
-        bound=tendon.yield_force,
-    )
+    if tendon is not None and tendon.yield_force is not None and not math.isnan(recorder.yield_time):
+        elongation = recorder.elongation * scale.length
+        size = tendon.prestress + tendon.stiffness * elongation / case.cylinder.base_radius
+        time = recorder.yield_time * scale.time
+        yield Diagnostic(code="tendon_yield", time=time, size=size, bound=tendon.yield_force)
+    columns = case.cylinder.columns if case.cylinder.slab_mass_ratio else 1
+    if columns > 1:  # one stands for all
+        yield Diagnostic(code="one_column", size=columns)
 
 
 def _extrema(recorder: Recorder, scene: Scene, scale: Scale) -> Array:

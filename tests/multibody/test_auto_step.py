@@ -35,12 +35,6 @@ def test_the_error_is_as_estimated(
     assert step_fact(run).code == "settled"
 
 
-def test_a_run_with_a_given_step_has_no_estimate(pier: Cylinder) -> None:
-    run = multibody.simulate(Case(pier, initial=InitialState(0.1), duration=0.02))
-    assert np.isnan(run.error_estimate)
-    assert np.isnan(run.settled_until)
-
-
 def test_the_step_scales_with_size() -> None:
     small = Cylinder(semidiagonal=0.06, tan_alpha=0.2)
     release = InitialState(small.alpha / 2, rolling_rate=5.0)
@@ -164,6 +158,10 @@ def test_closeness_ends_at_the_last_pass_before_a_divergence() -> None:
         ({"time_step": "auto", "step_tolerance": 0.0}, "step_tolerance must be positive"),
         ({"time_step": 1e-4, "step_tolerance": 1e-3}, 'goes with time_step="auto"'),
         ({"time_step": "auto", "nonsense": 1}, "not a setting"),
+        ({"time_step": "extrapolated", "finest_step": 0.0}, "finest_step must be positive"),
+        ({"time_step": "extrapolated", "finest_step": 3e-4}, "finest_step must be at most 0.00025"),
+        ({"time_step": "auto", "finest_step": 1e-4}, "finest_step"),
+        ({"time_step": 1e-4, "finest_step": 1e-4}, 'goes with time_step="extrapolated"'),
     ],
 )
 def test_what_is_refused(pier: Cylinder, arguments: dict[str, Any], line: str) -> None:

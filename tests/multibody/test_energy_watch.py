@@ -45,14 +45,6 @@ def test_a_base_that_opens_and_closes_at_once_says_nothing(engine: str) -> None:
     assert "energy" not in {fact.code for fact in run.facts}
 
 
-def test_a_fall_from_beyond_the_balance_has_no_energy_and_says_nothing(engine: str) -> None:
-    # until the rim of the falling side slips
-    run = multibody.simulate(Case(PIER, initial=InitialState(0.6), duration=0.3), engine=engine)
-    assert run.outcome == "overturned"
-    assert run.energy[0] < 0.0
-    assert run.facts == ()
-
-
 def watch(energy: Any, error: Any, **given: float) -> EnergyWatch:
     found = EnergyWatch(1e-3, given.get("least", 0.0), given.get("balance", 0.0))
     for part in np.split(np.arange(len(energy)), [300]):

@@ -34,11 +34,3 @@ def test_mean_about_the_pose_of_the_step(centre: float) -> None:
 def test_excitation_in_chunks_equals_the_whole_record() -> None:
     means = StepMeans(MOTION, UNIT, 1e-3)
     np.testing.assert_array_equal(np.vstack([means(0, 13), means(13, 40)]), means(0, 53))
-
-
-def test_time_and_acceleration_scale() -> None:
-    scale = froude_scale(0.06, 9.81)
-    small = GroundMotion(MOTION.acceleration, 0.002)
-    np.testing.assert_allclose(
-        StepMeans(small, scale, 1e-3)(0, 50), StepMeans(MOTION, UNIT, 1e-3)(0, 50), atol=1e-12
-    )

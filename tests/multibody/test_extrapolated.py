@@ -16,12 +16,10 @@ from rockwobble.models import (
     Case,
     Cylinder,
     Diagnostic,
-    InitialState,
     Trace,
     el_centro_1940,
 )
 from rockwobble.multibody.extrapolated_step import extrapolation
-from rockwobble.multibody.guard import LARGEST_STEP
 
 ALPHA = 0.2
 # of alpha, after a release: what the second order leaves of an engine of first order
@@ -188,20 +186,3 @@ def test_a_failed_run_is_said() -> None:
     (fact,) = extrapolation([fails, *good[1:]], ALPHA).facts
     assert (fact.code, fact.detail) == ("not_extrapolated", "fails")
     assert extrapolation([*good[:2], fails], ALPHA) is fails
-
-
-@pytest.mark.parametrize(
-    ("arguments", "line"),
-    [
-        ({"time_step": "extrapolated", "finest_step": 0.0}, "finest_step must be positive"),
-        (
-            {"time_step": "extrapolated", "finest_step": 0.3 * LARGEST_STEP},
-            "finest_step must be at most 0.00025",
-        ),
-        ({"time_step": "auto", "finest_step": 1e-4}, "finest_step"),
-        ({"time_step": 1e-4, "finest_step": 1e-4}, 'goes with time_step="extrapolated"'),
-    ],
-)
-def test_what_is_refused(pier: Cylinder, arguments: dict[str, Any], line: str) -> None:
-    with pytest.raises(ValueError, match=line):
-        multibody.simulate(Case(pier, initial=InitialState(0.1), duration=0.1), **arguments)

@@ -73,20 +73,6 @@ def test_el_centro_from_rest(size: float, tan_alpha: float, scale: float, name: 
     assert np.sqrt(np.mean((alone.tilt - model.tilt) ** 2) / np.mean(model.tilt**2)) > 0.1
 
 
-@pytest.mark.parametrize("name", [name for name in ("mujoco", "pybullet") if name in ENGINES])
-def test_creep_on_flat_ground_falls_with_slip_removed_per_step(name: str) -> None:
-    frame = WobblingFrame(Cylinder(semidiagonal=6.0, tan_alpha=0.2), 1.0, columns=1)
-    case = Case(frame, el_centro_1940().scaled(2.0), duration=8.0)
-    model = reduced.simulate(case, support="flat")
-    shares, errors = np.array([1.6, 1.8, 2.0]), []
-    for share in shares:
-        engine = multibody.simulate(case, engine=name, support="flat", friction_damping=share)
-        errors.append(np.sqrt(np.mean((engine.tilt - model.tilt) ** 2) / np.mean(model.tilt**2)))
-    # a material point of the rim creeps by (1/share - 1/2) of a step: 0.125, 0.056 and nothing
-    assert errors[0] / errors[1] == pytest.approx(0.125 / (1.0 / 1.8 - 0.5), rel=0.2)
-    assert errors[2] < 0.1 * errors[1]
-
-
 def test_a_joint_that_holds_the_slab_down_or_drags_it_says_so() -> None:
     pytest.importorskip("exudyn")
     # under a light slab the top is at fault before the base
@@ -123,12 +109,3 @@ def test_an_engine_without_a_slab_refuses_it_by_name(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(MujocoEngine, "facts", without)
     with pytest.raises(ValueError, match="mujoco has no scene of a frame"):
         multibody.simulate(release(), engine="mujoco")
-
-
-def test_a_frame_without_a_slab_is_its_column() -> None:
-    initial = InitialState(0.1, rolling_rate=0.5)
-    frame, alone = (
-        multibody.simulate(Case(body, initial=initial, duration=0.5))
-        for body in (WobblingFrame(SQUAT, 0.0), SQUAT)
-    )
-    assert np.array_equal(frame.tilt, alone.tilt)

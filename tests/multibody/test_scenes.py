@@ -126,15 +126,6 @@ def test_corners_stand_evenly_on_the_rim() -> None:
     np.testing.assert_allclose(np.diff(np.sort(angles)), 18.0, atol=1e-9)
 
 
-def test_an_outline_off_the_mass_centre() -> None:
-    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.3, height=8.0)
-    model = _compiled("flat", standing=True, components="", cylinder=cylinder)
-    for index in range(1, model.ngeom):
-        bottom = model.geom_pos[index][2] - model.geom_size[index][1 if index == 1 else 2]
-        assert bottom == pytest.approx(-cylinder.mass_centre_height)
-        assert 2 * model.geom_size[index][1 if index == 1 else 2] == pytest.approx(8.0)
-
-
 def _compiled(
     support: str,
     *,

@@ -141,24 +141,6 @@ def test_froude_scaling(name: str) -> None:
     assert big.energy == pytest.approx(factor * small.energy, rel=1e-9)
 
 
-@pytest.mark.slow
-def test_in_a_ring_the_tendon_keeps_the_column_off_the_walls() -> None:
-    tendon, pier = Tendon(prestress=1.0, stiffness=2.0), Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    motion = el_centro_1940().scaled(2.0 * tendon.uplift_factor(pier))
-    tied, free = (
-        run(Case(pier, motion, duration=8.0, tendon=held), "mujoco", "ring") for held in (tendon, None)
-    )
-    assert tied.outcome == "stands"
-    assert tied.wall_contact[-1] < free.wall_contact[-1]
-    # the way from the anchor to the base, from the place of the mass centre and its lean
-    moves = ~np.isnan(tied.rolling_angle)
-    out = np.column_stack([np.cos(tied.rolling_angle), np.sin(tied.rolling_angle)])[moves]
-    sine, cosine = np.sin(tied.tilt[moves]), np.cos(tied.tilt[moves])
-    axis = np.column_stack([sine[:, None] * out, cosine])
-    base = tied.centre_of_mass[moves] - pier.mass_centre_height * axis
-    assert tied.elongation[moves] == pytest.approx(np.linalg.norm(base, axis=1), abs=2e-5 * pier.base_radius)
-
-
 def test_a_swing_that_yields_the_tendon_says_so() -> None:
     free = run(released(Tendon(prestress=0.2, stiffness=4.0)), "mujoco")
     force = 0.2 + 0.9 * (free.peak_tendon_force - 0.2)

@@ -61,20 +61,18 @@ def test_rolling_resistance_holds_what_sits_on_its_balance() -> None:
     assert (trace.outcome, trace.peak_tilt) == ("stands", trace.tilt[0])
 
 
+@pytest.mark.parametrize("slab", [0.0, 1.3])
 @pytest.mark.parametrize("tendon", [Tendon(prestress=0.5), Tendon(prestress=0.3, stiffness=1.0)])
-def test_a_tendon_moves_the_balance_away_from_alpha(tendon: Tendon) -> None:
-    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+def test_a_tendon_moves_the_balance_away_from_alpha(tendon: Tendon, slab: float) -> None:
+    pier = WobblingFrame(Cylinder(semidiagonal=6.0, tan_alpha=0.2), slab)
 
     def released(tilt: float) -> Trace:
         return simulate(Case(pier, initial=InitialState(tilt), duration=10.0, tendon=tendon))
 
     balance = balance_tilt_of_case(Case(pier, initial=InitialState(0.1), duration=1.0, tendon=tendon))
-    assert balance > 1.4 * pier.alpha
-    assert [released(share * balance).outcome for share in (0.99, 1.0, 1.01)] == [
-        "stands",
-        "undecided",
-        "overturned",
-    ]
+    assert balance > 1.2 * pier.alpha
+    ends = [released(share * balance).outcome for share in (0.99, 1.0, 1.01)]
+    assert ends == ["stands", "undecided", "overturned"]
     back = released(pier.alpha)
     assert (back.outcome, back.peak_tilt) == ("stands", pier.alpha)
 

@@ -1,6 +1,7 @@
 """The exact solutions: limits, invariances, where they end, steady wobble, tables made without this code."""
 
 import math
+from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -10,7 +11,6 @@ from stating import table
 from rockwobble.models import Cylinder, InitialState
 from rockwobble.reduced.body import Body, body_of
 from rockwobble.reduced.exact import (
-    FreeResponse,
     angle_of_turn,
     free_response,
     limiting_angle_of_turn,
@@ -77,15 +77,9 @@ def test_four_times_the_size_takes_twice_the_time_to_the_last_bit(tan_alpha: flo
     slow = 1e-3 * rate  # tilt rate
     one = free_response(small, release(small, 0.4, rate, slow * small.alpha))
     four = free_response(large, release(large, 0.4, 0.5 * rate, 0.5 * slow * small.alpha))
-    assert four == FreeResponse(
-        minimum_tilt=one.minimum_tilt,
-        maximum_tilt=one.maximum_tilt,
-        half_period=2.0 * one.half_period,
-        period=2.0 * one.period,
-        angle_of_turn=one.angle_of_turn,
-        energy=4.0 * one.energy,
-        angular_momentum=8.0 * one.angular_momentum,
-    )
+    factors = {"half_period": 2.0, "period": 2.0, "energy": 4.0, "angular_momentum": 8.0}
+    for field in fields(one):
+        assert getattr(four, field.name) == factors.get(field.name, 1.0) * getattr(one, field.name)
     for period in (rocking_period, wobbling_period):
         assert period(large, 0.4 * large.alpha) == 2.0 * period(small, 0.4 * small.alpha)
 
@@ -97,37 +91,6 @@ def test_mirror_image() -> None:
     assert left.period == right.period
     assert left.minimum_tilt == right.minimum_tilt
     assert angle_of_turn(PIER, release(PIER, 0.5, -0.3)) == left.angle_of_turn
-
-
-@pytest.mark.parametrize("tan_alpha", [1e-3, 0.2, 1e3])
-@pytest.mark.parametrize("spin", [1e-12, 1e-2, 0.99, -0.5])
-@pytest.mark.parametrize("way", [0.0, 1e-6, 1.0 - 1e-6])
-@pytest.mark.parametrize("sense", [-1.0, 1.0])
-def test_every_point_of_the_cycle_has_the_same_response(
-    tan_alpha: float, spin: float, way: float, sense: float
-) -> None:
-    cylinder = Cylinder(semidiagonal=3.0, tan_alpha=tan_alpha)
-    body = body_of(cylinder, 9.81)
-    start = 0.6 * cylinder.alpha
-    expected = free_response(
-        cylinder, InitialState(tilt=start, rolling_rate=spin * steady_wobble_rate(cylinder, start))
-    )
-
-    low, high, L = expected.minimum_tilt, expected.maximum_tilt, expected.angular_momentum
-    tilt = low + way * (high - low)
-    # energy below the maximum, in differences
-    fall = 2.0 * 9.81 * 3.0 * math.sin(body.alpha - 0.5 * (high + tilt)) * math.sin(0.5 * (high - tilt))
-    climb = 0.5 * L**2 * (1.0 / inertia(body, tilt) - 1.0 / inertia(body, high))
-    tilt_rate = sense * math.sqrt(2.0 * (fall - climb) / body.A) if way else 0.0
-    found = free_response(
-        cylinder,
-        InitialState(tilt=tilt, tilt_rate=tilt_rate, rolling_rate=L / inertia(body, tilt)),
-        gravity=9.81,
-    )
-    # the intermediate state is rounded; steady wobble at 0.6 alpha magnifies that by 1e2 at most
-    budget = 1e-12
-    for name in ("minimum_tilt", "maximum_tilt", "period", "angle_of_turn", "energy", "angular_momentum"):
-        assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=budget), name
 
 
 def test_a_planar_release_in_motion_rises_to_the_tilt_of_its_energy() -> None:

@@ -119,7 +119,7 @@ def drawn() -> Iterator[Any]:
             random = np.random.default_rng(seed)
             size, tan_alpha = 10.0 ** random.uniform((-3.0, math.log10(0.05)), (3.0, math.log10(5.0)))
             cylinder, gravity = Cylinder(semidiagonal=size, tan_alpha=tan_alpha), random.uniform(0.1, 30.0)
-            near = seed % 4 == 0  # the steady wobble
+            near = seed % 4 == 0  # the steady wobble, or a turning point
             highest = 0.4 if kind != "maximum" else 0.6 if near else 0.95
             tilt = random.uniform(0.01, highest) * cylinder.alpha
             rate = steady_wobble_rate(cylinder, tilt, gravity=gravity)
@@ -127,7 +127,7 @@ def drawn() -> Iterator[Any]:
                 initial = InitialState(tilt=tilt, rolling_rate=random.uniform(1.0, 1.15) * rate)
             elif kind == "between":
                 spin = rate * 10.0 ** random.uniform(-15.0, 0.0)
-                moving = random.uniform(-0.5, 0.5) * rate * tilt
+                moving = random.uniform(-0.5, 0.5) * rate * tilt * (1e-6 if near else 1.0)
                 initial = InitialState(tilt=tilt, tilt_rate=moving, rolling_rate=spin)
             else:
                 share = 10.0 ** (random.uniform(-6.0, -0.5) if near else random.uniform(-15.0, -0.3))

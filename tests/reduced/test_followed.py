@@ -69,21 +69,6 @@ def test_still_ground_after_the_record_changes_no_peak(model: str) -> None:
     assert later > 10
 
 
-@pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("tilt_rate", [0.05, -0.05])  # it rises at the end, or passes upright before that
-def test_a_free_response_that_is_cut_has_the_peak_of_its_swing(model: str, tilt_rate: float) -> None:
-    spin = 0.0 if "planar" in model else 0.4
-    start = InitialState(0.3 * PIER.alpha, tilt_rate, 0.4, spin)
-    short, long = (
-        reduced.simulate(Case(PIER, initial=start, duration=duration), rtol=1e-10, **MODELS[model])
-        for duration in (0.2, 20.0)
-    )
-    loses = model == "planar with impacts" and tilt_rate < 0.0
-    assert loses or short.peak_within_run < 0.99 * long.peak_within_run
-    assert short.peak_tilt == pytest.approx(long.peak_within_run, rel=SAME)
-    assert short.time[-1] == 0.2
-
-
 def test_what_had_its_maximum_over_still_ground_or_stands_is_not_followed() -> None:
     released = Case(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=0.1)
     weak = Case(PIER, el_centro_1940().scaled(0.3))

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import re
 import shutil
 import subprocess
@@ -11,12 +12,14 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, bounds, el_centro_1940
+from rockwobble.models import Case, Cylinder, InitialState, bounds, el_centro_1940
 from rockwobble.reduced import _compile
 from rockwobble.reduced._compile import _is_ours
 from rockwobble.reduced.integration import result
 
 pytestmark = pytest.mark.slow
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 
 def test_scipy_is_loaded_by_what_uses_it():
@@ -126,7 +129,7 @@ def test_compiled_code_is_kept_by_the_content_of_its_sources(made: Path) -> None
 
 @pytest.mark.parametrize("options", [{"support": "recess"}, {"support": "flat"}, {"plane": 0.0}])
 def test_a_column_of_times_is_solved_by_what_is_compiled(options):
-    case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940().scaled(2.0), duration=3.0)
+    case = Case(PIER, el_centro_1940().scaled(2.0), duration=3.0)
     problem = reduced.simulate(case, **options).source.problem
     column = np.linspace(0.0, 3.0, 20).reshape(10, 2)[:, 0]
     before = list(problem._set_up.integrate.signatures)  # of bodies with a tendon, too, where one has run
@@ -134,3 +137,16 @@ def test_a_column_of_times_is_solved_by_what_is_compiled(options):
     assert result.samples.tolist() == problem.solve(column.copy())[0].samples.tolist()
     # for strided arrays it would be compiled anew, for ten seconds
     assert problem._set_up.integrate.signatures == before
+
+
+def test_a_response_is_the_same_after_a_journey_and_compiles_nothing():
+    # compiled code that travels with a response would be compiled again where it arrives, for many seconds
+    response = reduced.simulate(Case(PIER, initial=InitialState(0.1, rolling_rate=0.1), duration=1.0))
+    sent = pickle.loads(pickle.dumps(response))
+    there, here = (each.source.problem for each in (sent, response))
+    assert there.solve(np.empty(0))[0].peak == here.solve(np.empty(0))[0].peak
+    assert there._set_up.integrate is here._set_up.integrate
+    np.testing.assert_array_equal(sent.centre_of_mass, response.centre_of_mass)
+    assert sent.contact_point.shape == (len(sent.time), 2)
+    assert sent.passes.equals(response.passes)
+    assert sent.peak_displacement == response.peak_displacement == np.hypot(*response.displacement.T).max()

@@ -25,23 +25,18 @@ AGREEMENT = 1e-12  # relative to the terms of each sum; measured 4e-14, and 4e-1
 DIGITS = 40
 
 
-class Momenta(NamedTuple):
-    """Kinetic energy A theta'^2/2 + B phi'^2/2 - G phi' tau' + C tau'^2/2, tau = phi + psi, in vectors."""
+def quadratic_form(body: Body, share: float, theta: Any) -> tuple[Any, Any, Any]:
+    """B, G and C of a column and its share of the slab, per unit of the mass that gravity works on.
 
-    B: Any
-    G: Any
-    C: Any
-
-
-def quadratic_form(body: Body, share: float, theta: Any) -> Momenta:
-    """Return it for a column and its share of the slab, per unit of the mass that gravity works on."""
+    The kinetic energy is A theta'^2/2 + B phi'^2/2 - G phi' tau' + C tau'^2/2, tau = phi + psi, in vectors.
+    """
 
     def kinetic(phi_rate: int, tau_rate: int) -> Any:
         state = State(theta, mp.mpf(0), mp.mpf(0), mp.mpf(phi_rate), mp.mpf(tau_rate - phi_rate))
         return kinetic_energy(body, state, share) / (1 + 2 * mp.mpf(share))
 
     B, C = 2 * kinetic(1, 0), 2 * kinetic(0, 1)
-    return Momenta(B, (B + C) / 2 - kinetic(1, 1), C)
+    return B, (B + C) / 2 - kinetic(1, 1), C
 
 
 def momenta(body: Body, share: float, theta: Any, phi_rate: Any, tau_rate: Any) -> tuple[Any, Any]:
@@ -134,11 +129,6 @@ def resisted(given: Sample, share: float) -> Sample:
     return given._replace(body=given.body._replace(delta=delta), column=given.column._replace(delta=delta))
 
 
-def creep(given: Sample) -> float:
-    """The rate below which the couple of the models vanishes [rad/s]."""
-    return float(creep_rate(given.body, np.sin(given.theta)))
-
-
 def pressed(motion: Motion) -> Any:
     """Return the normal force on both ends of a column, over its mass."""
     return motion.force[2] + motion.top[2]
@@ -196,7 +186,7 @@ def test_accelerations_and_forces_of_a_random_state(seed: int, recess: bool, sha
     body, ground, started = given.body, given.ground, (given.theta, given.omega, given.phi, given.Lambda)
     with mp.workdps(DIGITS):
         state = state_of(given)
-        eps = mp.mpf(creep(given)) if share else mp.mpf(0)
+        eps = mp.mpf(float(creep_rate(body, np.sin(given.theta)))) if share else mp.mpf(0)
         motion = newton_euler(given.column, state, vector(*ground), recess, given.slab, eps)
         if share and pressed(motion) <= 0:  # without contact there is no couple
             motion = newton_euler(free.column, state, vector(*ground), recess, given.slab)

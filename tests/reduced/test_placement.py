@@ -91,28 +91,19 @@ def outward(phi: float) -> np.ndarray:
 def test_forces_after_the_end_are_those_of_still_ground(model: str, cut: bool) -> None:
     """Newton: mass times the acceleration of the mass centre, by second differences, and the weight."""
     strong = np.array([[0.0, 0.0], [2.6, 1.1], [2.2, 1.6]]) * UPLIFT * (1.0 if cut else 0.5)
-    longer = np.vstack([strong, np.full((4, 2), 3.0 * UPLIFT)])
-    end = 0.8
-    motion = GroundMotion(longer if cut else strong, 0.5 * end)
-    options = {} if model == "recess" else {"support": "flat"} if model == "flat" else {"plane": 0.4}
-    h = 1e-3
+    end, h, count = 0.8, 1e-3, 7 if cut else 3
+    motion = GroundMotion(np.vstack([strong, np.full((4, 2), 3.0 * UPLIFT)])[:count], 0.5 * end)
+    options = {"plane": 0.4} if model == "planar" else reduced.MODELS[model]
     case = Case(PIER, motion, duration=end if cut else end + 0.6)
     trace = reduced.simulate(case, rtol=1e-12, sample_step=h, **options)
     assert trace.time[-1] > end + 0.5
     at = np.flatnonzero((trace.tilt > 0.01 * PIER.alpha) & (trace.tilt < 1.0))[1:-1]
     at = at[np.abs(trace.time[at] - end) > 1.5 * h]
-    late = trace.time[at] > end
-    ground = np.zeros((len(at), 3))
-    for axis in range(2):
-        given = np.interp(
-            trace.time[at],
-            motion.time_step * np.arange(len(motion.acceleration)),
-            motion.acceleration[:, axis],
-        )
-        ground[:, axis] = np.where(late, 0.0, given)
+    late, samples = trace.time[at] > end, motion.time_step * np.arange(count)
+    columns = [np.interp(trace.time[at], samples, column) for column in motion.acceleration.T]
+    ground = np.where(late, 0.0, [*columns, 0.0 * columns[0]]).T
     if model == "planar":
-        along = ground[:, :2] @ outward(0.4)
-        ground[:, :2] = along[:, None] * outward(0.4)
+        ground[:, :2] = (ground[:, :2] @ outward(0.4))[:, None] * outward(0.4)
     place = trace.centre_of_mass
     motion_of_mass = (place[at + 1] - 2.0 * place[at] + place[at - 1]) / h**2
     force = (motion_of_mass + ground + [0.0, 0.0, G]) / G

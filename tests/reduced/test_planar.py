@@ -32,16 +32,6 @@ def test_each_impact_takes_its_share_on_ground_that_accelerates_evenly(restituti
     assert potential[1:] / potential[:-1] == pytest.approx(restitution**2, rel=1e-8)
 
 
-def test_impacts_that_accumulate_end_at_rest():
-    release = InitialState(0.5 * PIER.alpha)
-    for restitution in (0.5, 0.0):
-        response = reduced.simulate(
-            Case(PIER, initial=release, duration=20.0), plane=0.0, restitution=restitution, rest_tilt=0.0
-        )
-        assert response.rests
-        assert np.isnan(response.rolling_angle[-1])
-
-
 def test_hops_shorter_than_a_step_land_where_they_must():
     """A release at 1e-4 alpha: a hop takes the time of a step and less."""
     initial = InitialState(1e-4 * PIER.alpha)

@@ -21,22 +21,6 @@ def changed(x: Trace, y: Trace) -> bool:
 
 
 @pytest.mark.slow
-def test_the_same_function_of_time_sampled_finer():
-    firm, off = 0, []
-    for seed in range(140):
-        given = problem(seed, models=("recess", "flat"), time_steps=(0.005, 0.01, 0.02))
-        if given.chatters:
-            continue
-        plain = given.simulate()
-        if is_firm(given, plain, FIRM):
-            firm += 1
-            finer = {parts: given.simulate(motion=resampled(given.motion, parts)) for parts in (2, 5)}
-            off += [(seed, parts) for parts, response in finer.items() if changed(plain, response)]
-    assert firm > 100
-    assert not off
-
-
-@pytest.mark.slow
 def test_coarse_samples_of_large_cylinders_are_the_same_function_of_time():
     """Within one sample the direction of the ground may turn right round; the first motion tells."""
     count = 0
@@ -118,18 +102,16 @@ def planar_at_first(given: Problem, seed: int) -> GroundMotion:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("late", [False, True])
-def test_rotated_by_any_angle(late):
+def test_rotated_by_any_angle():
     firm, off = 0, []
     for seed in range(100):
         given = problem(seed, models=("recess", "flat"), slenderness=(0.05, 1.0))
         if given.chatters:
             continue
-        if late:
-            given = given._replace(motion=planar_at_first(given, seed))
+        given = given._replace(motion=planar_at_first(given, seed))
         plain = given.simulate()
         # where the rounding of the first part chose a side, a copy with another first part would tell nothing
-        later = slice((seed + 1) % 2, (seed + 1) % 2 + 1) if late else slice(None)
+        later = slice((seed + 1) % 2, (seed + 1) % 2 + 1)
         if is_firm(given, plain, FIRM, components=later):
             firm += 1
             turned = [given.simulate(motion=given.motion.rotated(angle)) for angle in (0.7, -2.3, 3.0)]

@@ -75,18 +75,6 @@ def test_a_shaken_release_at_rest_turns_to_where_the_tilt_goes(support):
     assert 10 < rises < 50
 
 
-def test_turning_points_take_turns_within_a_motion():
-    count = 0
-    for seed in range(60):
-        response = problem(seed, released=seed % 3 == 0).simulate()
-        extrema = response.extrema
-        motion = np.searchsorted(response.rest_intervals[:, 0], extrema[:, 0])
-        same = motion[1:] == motion[:-1]
-        assert (extrema[1:, 3] != extrema[:-1, 3])[same].all(), seed
-        count += same.sum()
-    assert count > 1000
-
-
 def test_a_near_pass_turns_to_the_side_of_the_momentum():
     count = 0
     for seed in range(60):

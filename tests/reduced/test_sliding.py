@@ -52,21 +52,17 @@ def test_slide_turns_mirrors_and_scales_with_its_ground(seed: int) -> None:
     samples, friction = shaking(seed)
     trace = slide(samples, 0.02, friction)
     peak = trace.peak_displacement
-    turned, mirrored, harder = samples.copy(), samples.copy(), samples.copy()
-    turned[:, :2] = samples[:, :2] @ np.array([[0.6, 0.8], [-0.8, 0.6]])
-    mirrored[:, :2] *= -1.0
-    harder[:, :2] *= 1.1
-    place = trace.displacement[:25]
-    expected = place @ np.array([[0.6, 0.8], [-0.8, 0.6]])
-    np.testing.assert_allclose(slide(turned, 0.02, friction).displacement[:25], expected, atol=1e-9 * peak)
-    np.testing.assert_allclose(slide(mirrored, 0.02, friction).displacement[:25], -place, atol=EXACT * peak)
-    np.testing.assert_allclose(
-        slide(harder, 0.02, 1.1 * friction).displacement[:25], 1.1 * place, atol=1e-9 * peak
-    )
-    np.testing.assert_allclose(
-        slide(samples, 0.06, friction).displacement[:25], 9.0 * place, atol=1e-8 * peak
-    )
+    place, turn = trace.displacement[:25], np.array([[0.6, 0.8], [-0.8, 0.6]])
+    turned, mirrored, harder = samples.copy(), samples * [-1.0, -1.0, 1.0], samples * [1.1, 1.1, 1.0]
+    turned[:, :2] = samples[:, :2] @ turn
     finer = np.column_stack([np.interp(np.arange(49) / 2, np.arange(25), each) for each in samples.T])
+    for other, expected, limit in (
+        (slide(turned, 0.02, friction), place @ turn, 1e-9),
+        (slide(mirrored, 0.02, friction), -place, EXACT),
+        (slide(harder, 0.02, 1.1 * friction), 1.1 * place, 1e-9),
+        (slide(samples, 0.06, friction), 9.0 * place, 1e-8),
+    ):
+        np.testing.assert_allclose(other.displacement[:25], expected, atol=limit * peak)
     np.testing.assert_allclose(slide(finer, 0.01, friction).displacement[:49:2], place, atol=1e-9 * peak)
 
 

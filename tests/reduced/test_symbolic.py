@@ -218,7 +218,6 @@ def test_recess_equations_are_lagranges(motion: tuple[Any, Any], share: Any) -> 
     body = constants(I1, I2, share)
     assert on_symbols(equations.recess_rhs)(body, *STATE)[0] == omega
     for residual in recess_residuals(body, motion):
-        assert not is_nonzero_somewhere(residual)  # one point: the changed ones below are not zero there
         assert vanishes(residual)
 
 

@@ -96,21 +96,6 @@ def test_a_tendon_without_prestress_and_stiffness_is_none(plane: float | None) -
     assert with_it.uplift_time == without.uplift_time
 
 
-@pytest.mark.parametrize("gamma", BODIES.values(), ids=BODIES)
-@pytest.mark.parametrize("tendon", TENDONS, ids=repr)
-def test_the_balance_tilt_is_the_top_of_the_potential(tendon: Tendon, gamma: float) -> None:
-    case = rw.Case(body_of(PIER, gamma), initial=rw.InitialState(0.1), duration=1.0, tendon=tendon)
-    pier, balance = apart(PIER, tendon, gamma), Problem(case).body.balance
-    d = 1e-4
-    if math.isinf(balance):
-        assert potential(pier, 0.5 * math.pi) > potential(pier, 0.5 * math.pi - d)
-    else:
-        slope = potential(pier, balance + d) - potential(pier, balance - d)
-        bend = potential(pier, balance + d) + potential(pier, balance - d) - 2.0 * potential(pier, balance)
-        # the tilt that a Newton step would add; of the differences
-        assert abs(0.5 * slope * d / bend) < 1e-6
-
-
 @pytest.mark.parametrize("length", [0.0, 0.02])
 @pytest.mark.parametrize("seed", range(3))
 def test_a_fall_that_is_cut_short_is_a_fall(seed: int, length: float) -> None:
@@ -150,12 +135,6 @@ def test_forces_balance_momentum_of_column_and_slab(gamma: float) -> None:
         top = gamma * G * trace.top_contact_force[5:-5]
         slab = top + pull + gamma * weight - 2.0 * gamma * acceleration
         assert np.abs(slab).max() < 2e-4 * G
-
-
-def test_at_rest_the_ground_carries_weight_and_prestress() -> None:
-    tendon = Tendon(prestress=0.5)
-    case = rw.Case(PIER, rw.el_centro_1940().scaled(0.1), duration=1.0, tendon=tendon)
-    assert np.allclose(reduced.simulate(case).contact_force[:, 2], 1.5, rtol=1e-14)
 
 
 def test_yield_is_said_at_the_tilt_at_which_it_begins() -> None:
