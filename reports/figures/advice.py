@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Literal
 
 import numpy as np
-import pandas as pd
 
 from rockwobble.compare.metrics.pair import overturned
 from rockwobble.models.bounds import OVERTURNED_TILT
@@ -18,7 +17,7 @@ from rockwobble.studies.spectrum.parts import SERIES
 
 from .ensemble import peak_shares
 from .palette import GREY, Style, model_style, run_styles
-from .picture import TIME, Array, Axis, Band, Line, Panel, Picture, Rule, caption
+from .picture import TIME, Axis, Band, Line, Panel, Picture, Rule, caption, table_line, ticks_at
 from .spectrum import NAMES, series_styles
 
 SHORT = {"copies": "copies", "acceleration": "same acceleration", "velocity": "same velocity"}
@@ -71,9 +70,8 @@ def _peaks(results: Advice) -> Panel:
         here = Style(colour=model_style(results.facts["model"]).colour, dash="none", symbol="diamond")
         copies = members[(members["group"] == "copies") & (members["outcome"] != "failed")]
         rank = float((copies["peak_tilt"] < results.peak).mean()) if results.copies_differ else math.nan
-        layers.append(
-            Line(x=np.array([results.peak]), y=np.array([rank]), name="as given", style=here, size=7.0)
-        )
+        at = np.array([results.peak]), np.array([rank])
+        layers.append(Line(x=at[0], y=at[1], name="as given", style=here, size=7.0))
     return Panel(
         x=Axis(label="largest tilt / α", unit="-", low=0.0, high=end),
         y=Axis(label="share of the runs", unit="-", low=0.0, high=1.03),
@@ -83,36 +81,17 @@ def _peaks(results: Advice) -> Panel:
 
 
 def _tilt(results: Advice) -> Panel:
-    band, trace, engine = results.band, results.trace, results.engine
-    layers: list[Band | Line | Rule] = [
-        Band(
-            x=band["time"].to_numpy(float),
-            low=_cut(results, band["low"]),
-            high=_cut(results, band["high"]),
-            name="90 % of the copies",
-        )
-    ]
-    if results.verification is not None and len(engine):
+    model, most = results.facts["model"], _STANDS * _balance(results)
+    time, low, high = (results.band[name].to_numpy(float) for name in ("time", "low", "high"))
+    band = Band(x=time, low=np.minimum(low, most), high=np.minimum(high, most), name="90 % of the copies")
+    layers: list[Band | Line | Rule] = [band]
+    shown = [(results.trace, model, model_style(model), 1.1)]
+    if results.verification is not None and len(results.engine):
         label = results.verification.label
-        style = run_styles([label])[label]
-        layers.append(
-            Line(
-                x=engine["time"].to_numpy(float),
-                y=_cut(results, engine["tilt"]),
-                name=label,
-                style=style,
-                width=1.8,
-            )
-        )
-    layers.append(
-        Line(
-            x=trace["time"].to_numpy(float),
-            y=_cut(results, trace["tilt"]),
-            name=results.facts["model"],
-            style=model_style(results.facts["model"]),
-            width=1.1,
-        )
-    )
+        shown.insert(0, (results.engine, label, run_styles([label])[label], 1.8))
+    for table, name, style, width in shown:
+        cut = table.assign(tilt=table["tilt"].clip(upper=most))
+        layers.append(table_line(cut, "time", "tilt", name, style, width=width))
     trust = results.trust
     if trust.kind != "trace":
         side: Literal["left", "right"] = "right" if trust.until < 0.6 * results.facts["length"] else "left"
@@ -129,34 +108,17 @@ def _scales(results: Advice) -> Panel:
         if not len(rows):
             continue
         peaks = rows["peak_tilt"].to_numpy(float)
-        tilt = np.where(
-            overturned(peaks), side, np.minimum(peaks / results.cylinder.alpha, _STANDS * balance)
-        )
+        cut = np.minimum(peaks / results.cylinder.alpha, _STANDS * balance)
+        shown = rows.assign(tilt=np.where(overturned(peaks), side, cut))
         marked = replace(styles[name], symbol="circle")
-        layers.append(
-            Line(
-                x=rows["factor"].to_numpy(float), y=tilt, name=NAMES[name], style=marked, size=2.5, width=1.0
-            )
-        )
+        layers.append(table_line(shown, "factor", "tilt", NAMES[name], marked, width=1.0, size=2.5))
     # five ticks above zero at most, so that they do not collide
     step = 0.25 * 2.0 ** max(0, math.ceil(math.log2(balance / 1.25)))
-    levels = [(step * place, f"{step * place:g}") for place in range(int(balance / step) + 1)]
+    levels = [*ticks_at(step * place for place in range(int(balance / step) + 1)), (side, "overturns")]
+    scale = Axis(label="scale of the ground motion", unit="-", log=True, low=_SCALES[0], high=_SCALES[-1])
     return Panel(
-        x=Axis(
-            label="scale of the ground motion",
-            unit="-",
-            log=True,
-            low=_SCALES[0],
-            high=_SCALES[-1],
-            ticks=[(tick, f"{tick:g}") for tick in _SCALES],
-        ),
-        y=Axis(
-            label="largest tilt / α",
-            unit="-",
-            low=-0.02,
-            high=1.4 * balance,
-            ticks=[*levels, (side, "overturns")],
-        ),
+        x=replace(scale, ticks=ticks_at(_SCALES)),
+        y=Axis(label="largest tilt / α", unit="-", low=-0.02, high=1.4 * balance, ticks=levels),
         layers=layers,
         title="Other scales of this shaking",
     )
@@ -168,14 +130,13 @@ def _friction(results: Advice) -> Panel:
     most = [value for value in (available, usual) if value is not None and math.isfinite(value)]
     # a demand beyond any friction is drawn at the top
     top = 1.5 * max([*most, results.cylinder.tan_alpha])
-    needed = np.where(trace["tilt"] > 0.0, np.minimum(trace["friction_needed"], top), 0.0)
-    layers: list[Line | Rule] = [
-        Line(x=trace["time"].to_numpy(float), y=needed, style=model_style(results.facts["model"]), width=0.9)
-    ]
-    if available is not None:
-        layers.append(Rule(at=available, axis="y", text="available"))
-    else:
-        layers.append(Rule(at=results.cylinder.tan_alpha, axis="y", text="b/h", colour=GREY))
+    needed = trace.assign(
+        needed=np.where(trace["tilt"] > 0.0, np.minimum(trace["friction_needed"], top), 0.0)
+    )
+    style = model_style(results.facts["model"])
+    slides = Rule(at=results.cylinder.tan_alpha, axis="y", text="b/h", colour=GREY)
+    layers: list[Line | Rule] = [table_line(needed, "time", "needed", style=style, width=0.9)]
+    layers.append(slides if available is None else Rule(at=available, axis="y", text="available"))
     return Panel(
         x=TIME,
         y=Axis(label="friction demand", unit="-", low=0.0, high=top),
@@ -188,7 +149,3 @@ def _balance(results: Advice) -> float:
     """Balance tilt, at most pi/2 [alpha]."""
     tendon = results.facts.get("tendon")
     return min(tendon["balance_tilt"], OVERTURNED_TILT / results.cylinder.alpha) if tendon else 1.0
-
-
-def _cut(results: Advice, tilts: pd.Series[float]) -> Array:
-    return np.minimum(tilts.to_numpy(float), _STANDS * _balance(results))

@@ -11,7 +11,7 @@ from rockwobble.compare.comparison.summary import rows_of
 
 from .case_view import CaseView
 from .palette import Style, pale
-from .picture import TIME, Axis, Bars, Layer, Line, Panel, Picture, Rule, Text, caption, list_axis
+from .picture import TIME, Axis, Bars, Layer, Line, Panel, Picture, Rule, Text, caption, list_axis, ticks_at
 from .thinning import envelope
 
 # blue, pale orange and vermilion of Okabe and Ito: apart in every kind of colour vision and in grey
@@ -79,7 +79,7 @@ def _stack(bars: Sequence[Bar], name: str, case: str | None = None) -> Picture |
         layers.append(Bars(places=places, start=starts, end=ends, colours=colours, name=words, hatch=hatch))
     whole = [f"{budget.rms('whole'):.1e} α" for _, budget, _ in bars]
     layers += [Text(x=1.02, y=place + 0.3, text=text) for place, text in zip(places, whole, strict=True)]
-    shares = [(share, f"{share:g}") for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
+    shares = ticks_at((0.0, 0.25, 0.5, 0.75, 1.0))
     panel = Panel(
         x=Axis(label="share of the parts", unit="-", low=0.0, high=1.25, ticks=shares),
         y=list_axis([label for label, _, _ in bars]),

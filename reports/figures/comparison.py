@@ -51,24 +51,19 @@ def tilt_picture(view: CaseView, name: str = "figure") -> Picture:
 def _tilts(view: CaseView, runs: Sequence[str], support: Support) -> Panel:
     shown = dict.fromkeys([*runs, *map(view.partner, runs)])
     traces = view.traces
+    alpha, widths = view.case.cylinder.alpha, {label: 1.6 if label in runs else 0.9 for label in shown}
     layers = [
         Line(
             x=traces[label].time,
-            y=traces[label].tilt / view.case.cylinder.alpha,
+            y=traces[label].tilt / alpha,
             name=label,
             style=view.styles[label],
-            width=1.6 if label in runs else 0.9,
+            width=width,
         )
-        for label in shown
+        for label, width in widths.items()
     ]
-    y = tilt_axis([line.y for line in layers], balance_of(view.case) / view.case.cylinder.alpha)
-    return Panel(
-        x=TIME,
-        y=y,
-        layers=layers,
-        title=support.words,
-        height=_HEIGHT,
-    )
+    y = tilt_axis([line.y for line in layers], balance_of(view.case) / alpha)
+    return Panel(x=TIME, y=y, layers=layers, title=support.words, height=_HEIGHT)
 
 
 def _differences(view: CaseView, reference: str) -> Panel:
@@ -157,7 +152,7 @@ def turn_picture(view: CaseView, name: str, *, notes: bool = True) -> Picture:
                 notes=[f"minimum tilt {tilt:.2g} α" for tilt in tilts] if notes else (),
             )
         )
-    x = Axis(label=TIME.label, unit=TIME.unit, low=0.0, high=view.case.length)
+    x = replace(TIME, low=0.0, high=view.case.length)
     return Picture(
         name=name,
         caption=caption("turns", name=view.case.name),

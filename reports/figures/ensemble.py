@@ -17,7 +17,20 @@ from rockwobble.studies.ensemble_findings import main_pairs
 from rockwobble.studies.fragility.tables import Row
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles
-from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, caption, ecdf, list_axis, log_ticks
+from .picture import (
+    Array,
+    Axis,
+    Line,
+    Panel,
+    Picture,
+    Rule,
+    Text,
+    caption,
+    ecdf,
+    list_axis,
+    log_ticks,
+    ticks_at,
+)
 
 # beyond the largest ratio, and at least beyond the margin
 _ROOM = 1.25
@@ -88,15 +101,9 @@ def _ratios(found: Ensemble, rows: list[Row]) -> Panel:
         has = ~np.isnan(logs)
         ratios, members = np.exp(logs[has]), each.members[has]
         inside = (ratios > 0.0) & np.isfinite(ratios)
+        y, notes = np.full(inside.sum(), place - 0.2), list(map(str, members[inside]))
         layers += [
-            Line(
-                x=ratios[inside],
-                y=np.full(inside.sum(), place - 0.2),
-                name="members",
-                style=_DOTS,
-                opacity=0.6,
-                notes=list(map(str, members[inside])),
-            ),
+            Line(x=ratios[inside], y=y, name="members", style=_DOTS, opacity=0.6, notes=notes),
             _bar(row, "05 95", place, (low, high), "5 to 95 % of the members", 1.0),
             _bar(row, "low high", place, (low, high), "95 % interval of the median", 3.5),
             *_beyond(ratios, place, low, high),
@@ -105,9 +112,9 @@ def _ratios(found: Ensemble, rows: list[Row]) -> Panel:
             at = np.array([row["ratio"]]), np.array([place + 0.2])
             layers.append(Line(x=at[0], y=at[1], name="median", style=_MEDIAN))
         names.append(f"{row['method']}\n/ {row['against']}, n = {has.sum()}")
-    x, y = ratio_axes("ratio of peaks", low, high, log_ticks(low, high), names)
+    x_axis, y_axis = ratio_axes("ratio of peaks", low, high, log_ticks(low, high), names)
     title = "Ratio of the peaks of each member"
-    return Panel(x=x, y=y, layers=layers, title=title, height=_LINE * len(rows) + 1.4)
+    return Panel(x=x_axis, y=y_axis, layers=layers, title=title, height=_LINE * len(rows) + 1.4)
 
 
 def margin_rules(margin: float) -> list[Rule]:
@@ -122,8 +129,7 @@ def ratio_axes(
     label: str, low: float, high: float, ticks: Sequence[float], names: Sequence[str]
 ) -> tuple[Axis, Axis]:
     """Return the axis of ratios, and one with the names below each other."""
-    shown = [(tick, f"{tick:g}") for tick in ticks if low <= tick <= high]
-    x = Axis(label=label, unit="-", log=True, low=low, high=high, ticks=shown)
+    x = Axis(label=label, unit="-", log=True, low=low, high=high, ticks=ticks_at(ticks, low, high))
     return x, list_axis(names)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -16,7 +17,7 @@ from rockwobble.studies.fragility.tables import ALL, OVERTURNED, Row
 
 from .ensemble import margin_rules, ratio_axes
 from .palette import DARK, GREY, ORDER, Style, mark_styles, pale
-from .picture import Axis, Band, Line, Panel, Picture, Rule, caption
+from .picture import Axis, Band, Line, Panel, Picture, Rule, caption, table_line, ticks_at
 
 # support of a panel, and its title
 _PANELS = {"planar": "Planar analysis"} | {each: each.words.capitalize() for each in SUPPORTS.values()}
@@ -120,42 +121,23 @@ def _panel(results: Fragility, cylinder: str, labels: Sequence[str], title: str)
         colour = _COLOURS[index % len(_COLOURS)]
         own = curves[curves["method"] == label]
         if len(own):
-            x = own["intensity"].to_numpy(float)
-            low, high = (own[end].to_numpy(float) for end in ("low", "high"))
+            x, low, high = (own[name].to_numpy(float) for name in ("intensity", "low", "high"))
             shade = "#d9d9d9" if colour == DARK else pale(pale(colour))
             backs.append(Band(x=x, low=low, high=high, colour=shade, name="95 % bands"))
-            fronts.append(
-                Line(
-                    x=x,
-                    y=own["probability"].to_numpy(float),
-                    name=label,
-                    style=Style(colour=colour, dash=style.dash),
-                    width=1.8,
-                )
-            )
+            line = Style(colour=colour, dash=style.dash)
+            fronts.append(table_line(own, "intensity", "probability", label, line, width=1.8))
         part = _groups(counts[counts["method"] == label])
         mark = Style(colour=colour, dash="none", symbol=style.symbol)
-        fronts.append(
-            Line(
-                x=part["intensity"].to_numpy(float),
-                y=(part["k"] / part["n"]).to_numpy(float),
-                name="" if len(own) else label,
-                style=mark,
-                size=4.0,
-                notes=[f"{label}: {k} of {n}" for k, n in zip(part["k"], part["n"], strict=True)],
-            )
+        notes = [f"{label}: {k} of {n}" for k, n in zip(part["k"], part["n"], strict=True)]
+        marks = table_line(
+            part.assign(share=part["k"] / part["n"]), "intensity", "share", style=mark, size=4.0
         )
+        fronts.append(replace(marks, name="" if len(own) else label, notes=notes))
     shown = counts["intensity"]
     ends = 0.9 * float(shown.min()), 1.1 * float(shown.max())
+    x_axis = Axis(label=measure.title, unit=measure.unit, log=True, low=ends[0], high=ends[1])
     return Panel(
-        x=Axis(
-            label=measure.title,
-            unit=measure.unit,
-            log=True,
-            low=ends[0],
-            high=ends[1],
-            ticks=[(tick, f"{tick:g}") for tick in _TICKS if ends[0] <= tick <= ends[1]],
-        ),
+        x=replace(x_axis, ticks=ticks_at(_TICKS, *ends)),
         y=Axis(label="probability of overturning", unit="-", low=-0.02, high=1.02),
         layers=[*backs, Rule(at=0.5, axis="y", colour=GREY), *fronts],
         title=title,

@@ -292,6 +292,27 @@ def ecdf(values: Array, *, total: int | None = None, end: float | None = None) -
     return x, counts / max(len(values) if total is None else total, 1)
 
 
+def table_line(
+    rows: pd.DataFrame,
+    x: str,
+    y: str,
+    name: str = "",
+    style: Style = _LINE,
+    width: float = 1.4,
+    size: float = 5.0,
+) -> Line:
+    """A line over two columns of a table."""
+    at, values = (rows[column].to_numpy(float) for column in (x, y))
+    return Line(x=at, y=values, name=name, style=style, width=width, size=size)
+
+
+def ticks_at(
+    values: Iterable[float], low: float = -math.inf, high: float = math.inf
+) -> list[tuple[float, str]]:
+    """Ticks of an axis at some values within its ends."""
+    return [(value, f"{value:g}") for value in values if low <= value <= high]
+
+
 def group_lines(
     groups: Mapping[str, pd.DataFrame], x: str, y: str, *, lines: bool = True, filled: str = ""
 ) -> list[Line]:
@@ -307,16 +328,11 @@ def group_lines(
         Column of flags: marks without are open.
     """
     styles = mark_styles(list(groups), lines=lines)
-    return [
-        Line(
-            x=rows[x].to_numpy(float),
-            y=rows[y].to_numpy(float),
-            name=name,
-            style=styles[name],
-            filled=rows[filled].to_numpy(bool) if filled else True,
-        )
-        for name, rows in groups.items()
-    ]
+    drawn = [table_line(rows, x, y, name, styles[name]) for name, rows in groups.items()]
+    if not filled:
+        return drawn
+    flags = [rows[filled].to_numpy(bool) for rows in groups.values()]
+    return [replace(line, filled=marks) for line, marks in zip(drawn, flags, strict=True)]
 
 
 def bar_ends(first: Array, second: Array) -> Array:

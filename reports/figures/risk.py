@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-import pandas as pd
-from numpy.typing import NDArray
-
 from rockwobble.studies import Fragility
 
 from .palette import DARK, GREY, ORDER, Style, mark_styles
-from .picture import Axis, Line, Panel, Picture, Rule, caption
+from .picture import Axis, Line, Panel, Picture, Rule, caption, table_line
 
 _MOST = 4  # methods of a panel: more lines cannot be told apart
 _COLOURS = (DARK, *ORDER)
@@ -29,6 +25,9 @@ def risk_pictures(results: Fragility) -> list[Picture]:
 def _picture(results: Fragility, cylinder: str, place: int) -> Picture:
     hazard = results.facts["hazard"]
     table = results.contributions[results.contributions["cylinder"] == cylinder]
+    scaled = ["contribution", "contribution_fit"]
+    table = table.astype(dict.fromkeys(scaled, float))
+    table[scaled] *= 1e4
     labels = list(dict.fromkeys(table["method"]))[:_MOST]
     first = table[table["method"] == labels[0]]
     x = first["intensity"].to_numpy(float)
@@ -38,24 +37,23 @@ def _picture(results: Fragility, cylinder: str, place: int) -> Picture:
         own, colour = table[table["method"] == label], _COLOURS[index % len(_COLOURS)]
         line = Style(colour=colour, dash=style.dash)
         pale = Style(colour=colour, dash="dot")
-        shares.append(Line(x=x, y=own["probability"].to_numpy(float), name=label, style=line, width=1.8))
-        products.append(Line(x=x, y=_scaled(own, "contribution"), name=label, style=line, width=1.8))
+        shares.append(table_line(own, "intensity", "probability", label, line, width=1.8))
+        products.append(table_line(own, "intensity", "contribution", label, line, width=1.8))
         if index == 0:
             name = f"{label}, lognormal curve"
-            shares.append(Line(x=x, y=own["probability_fit"].to_numpy(float), name=name, style=pale))
-            products.append(Line(x=x, y=_scaled(own, "contribution_fit"), name=name, style=pale))
+            shares.append(table_line(own, "intensity", "probability_fit", name, pale))
+            products.append(table_line(own, "intensity", "contribution_fit", name, pale))
     words, _, unit = str(hazard["title"]).rpartition(" [")
     drawn = table[table["method"].isin(labels)].groupby("intensity")["contribution"].max()
     shown = drawn.index[drawn >= _LEAST * drawn.max()]
     low = max(float(shown.min()) / 3.0, float(x[0]))
     axis = Axis(label=words.partition(",")[0], unit=unit.rstrip("]"), log=True, low=low, high=float(x[-1]))
-    rate = first["annual_frequency"].to_numpy(float)
-    curve = Line(x=x, y=rate, name="hazard", style=Style(colour=GREY, dash="solid"), width=1.8)
+    curve = table_line(first, "intensity", "annual_frequency", "hazard", Style(colour=GREY), width=1.8)
     panels = [
         Panel(
             x=axis,
             y=Axis(label="exceedance", unit="1/year", log=True),
-            layers=[curve, *(_period(years) for years in _RETURN_PERIODS)],
+            layers=[curve, *(Rule(at=1.0 / n, axis="y", text=f"{n} years") for n in _RETURN_PERIODS)],
             title="Hazard",
             height=2.6,
         ),
@@ -83,11 +81,3 @@ def _picture(results: Fragility, cylinder: str, place: int) -> Picture:
         columns=3,
         legend="panels",
     )
-
-
-def _period(years: int) -> Rule:
-    return Rule(at=1.0 / years, axis="y", text=f"{years} years")
-
-
-def _scaled(table: pd.DataFrame, column: str) -> NDArray[np.float64]:
-    return 1e4 * table[column].to_numpy(float)
