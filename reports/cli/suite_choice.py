@@ -10,7 +10,6 @@ import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
-from rockwobble.models.finding import Value
 
 from ..console import complain
 from ..pages.cases import case_warnings, group_of, record_lines
@@ -19,6 +18,7 @@ from .problem import PROBLEM, refuse
 
 if TYPE_CHECKING:
     from rockwobble.models.case import TimeStep
+    from rockwobble.models.finding import Value
 
 
 def refuse_problem_options(context: typer.Context, suite: str) -> None:

@@ -32,8 +32,7 @@ from ..figures.picture import Line, Picture
 from ..figures.playback import playback
 from .cases import case_lines, group_of
 from .diagnostics import code_counts, remarks
-from .page import Page
-from .sentences import fragment
+from .page import Page, fragment
 from .table import Row, enumeration
 from .wording import lines_of, some_of, statement, words
 

@@ -14,7 +14,10 @@ from rockwobble.models import GroundMotion, el_centro_1940
 from rockwobble.models.support import RECESS
 from rockwobble.models.synthetic import pulse, synthetic_motions
 
-from .sentences import fragment
+from ..figures.interactive import chart
+from ..figures.palette import Style
+from ..figures.picture import TIME, Axis, Line, Panel, Picture, ticks_at
+from .page import fragment
 
 MOST_RECORDS = 10  # limit for a page: each is some 100 kB of it
 _MOST_PEAK = 20.0  # [g]: to which the slider of the intensity brings the weakest ground motion
@@ -22,6 +25,23 @@ _MOST_PEAK = 20.0  # [g]: to which the slider of the intensity brings the weakes
 _SYNTHETIC_LENGTH, _SYNTHETIC_PEAK, _PULSE_PERIOD, _SEED = 12.0, 3.0, 0.8, 1
 
 _LEFT = 56  # [pixel] left margin of the graphs over time
+# legends of its panels
+_COMPONENTS = {"east": "#0072B2", "north": "#D55E00"}
+_PATHS = {
+    "base at rest": "#bbbbbb",
+    "contact point (flat ground)": "#0072B2",
+    "top of the column": "#D55E00",
+}
+_VERDICTS = {
+    "no uplift": "#e8e8e8",
+    "peak below α/4": "#dbe9f6",
+    "to α/2": "#9ecae1",
+    "to 3α/4": "#4292c6",
+    "to α": "#08519c",
+    "beyond α": "#E69F00",
+    "overturns": "#B00020",
+    "not decided": "#808080",
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -173,69 +193,32 @@ def _doubles(values: ArrayLike) -> str:
     return base64.b64encode(np.asarray(values, dtype="<f8").tobytes()).decode()
 
 
+def _panel(
+    x: Axis, y: Axis, height: float, entries: Mapping[str, Style], **look: object
+) -> dict[str, object]:
+    """An empty panel as `charts.js` takes it, which the page fills; entries are those of its legend."""
+    nothing = np.empty(0)
+    lines = [Line(x=nothing, y=nothing, name=name, style=style, width=2.0) for name, style in entries.items()]
+    empty = chart(Panel(x=x, y=y, layers=lines, height=height), Picture(name="explore", panels=()))
+    return empty | {"layers": []} | look
+
+
 def _panels() -> dict[str, dict[str, object]]:
-    """Return the empty panels that the page fills, as `charts.js` takes them."""
-
-    def axis(title: str, unit: str, *, log: bool = False, low: float | None = None) -> dict[str, object]:
-        ends = {"low": low, "high": None}
-        # a logarithmic axis of the map spans little more than a decade
-        marks = [factor * 10.0**power for power in range(-4, 4) for factor in (1, 2, 5)] if log else []
-        ticks = [[mark, f"{mark:g}"] for mark in marks]
-        return {
-            "title": f"{title} [{unit}]",
-            "unit": f" {unit}",
-            "log": log,
-            "ticks": ticks,
-            "reverse": False,
-            **ends,
-        }
-
-    def panel(height: int, x: dict[str, object], y: dict[str, object], **more: object) -> dict[str, object]:
-        shown: dict[str, object] = {"second": None, "equal": False, "link": "", "ground": "#ffffff"}
-        shown |= {"legend": [], "more": 0}
-        return {"height": height, "x": x, "y": y, "layers": [], **shown, **more}
-
-    def entry(name: str, colour: str, dash: str = "") -> dict[str, object]:
-        return {"name": name, "colour": colour, "dash": dash, "symbol": "", "width": 2}
-
-    time = axis("time", "s")
+    """The panels of the page by name."""
+    # a logarithmic axis of the map spans little more than a decade
+    ticks = ticks_at(factor * 10.0**power for power in range(-4, 4) for factor in (1, 2, 5))
+    size = Axis(label="size R", unit="m", log=True, ticks=ticks)
+    peak = Axis(label="peak ground acceleration", unit="g", log=True, ticks=ticks)
+    east, north = Axis(label="east", unit="m"), Axis(label="north", unit="m")
+    over_time = {"link": TIME.title, "left": _LEFT}
+    tilt, ground = Axis(label="tilt", unit="deg", low=0.0), Axis(label="ground", unit="g")
     return {
-        "tilt": panel(230, time, axis("tilt", "deg", low=0.0), link="time", left=_LEFT),
-        "ground": panel(
-            200,
-            time,
-            axis("ground", "g"),
-            link="time",
-            left=_LEFT,
-            legend=[entry("east", "#0072B2", "solid"), entry("north", "#D55E00", "solid")],
-        ),
-        "path": panel(
-            300,
-            axis("east", "m"),
-            axis("north", "m"),
-            equal=True,
-            legend=[
-                entry("base at rest", "#bbbbbb", "solid"),
-                entry("contact point (flat ground)", "#0072B2", "solid"),
-                entry("top of the column", "#D55E00", "solid"),
-            ],
-        ),
-        "map": panel(
-            300,
-            axis("size R", "m", log=True),
-            axis("peak ground acceleration", "g", log=True),
-            legend=[
-                entry(name, colour)
-                for name, colour in (
-                    ("no uplift", "#e8e8e8"),
-                    ("peak below α/4", "#dbe9f6"),
-                    ("to α/2", "#9ecae1"),
-                    ("to 3α/4", "#4292c6"),
-                    ("to α", "#08519c"),
-                    ("beyond α", "#E69F00"),
-                    ("overturns", "#B00020"),
-                    ("not decided", "#808080"),
-                )
-            ],
-        ),
+        "tilt": _panel(TIME, tilt, 1.84, {}, **over_time),
+        "ground": _panel(TIME, ground, 1.6, _styles(_COMPONENTS), **over_time),
+        "path": _panel(east, north, 2.4, _styles(_PATHS), equal=True),
+        "map": _panel(size, peak, 2.4, _styles(_VERDICTS, dash="")),
     }
+
+
+def _styles(colours: Mapping[str, str], dash: str = "solid") -> dict[str, Style]:
+    return {name: Style(colour=colour, dash=dash) for name, colour in colours.items()}

@@ -9,13 +9,13 @@ from rockwobble.models.finding import Finding
 from rockwobble.studies import Fragility
 from rockwobble.studies.fragility.fit import SEPARATED
 from rockwobble.studies.fragility.intensity import MEASURES
+from rockwobble.studies.fragility.risk import TARGET
 from rockwobble.studies.fragility.study import known_ratio, main_contrasts
 from rockwobble.studies.fragility.tables import ALL, OVERTURNED, Row, rows_of
 
 from ..figures.fragility import pictures
 from ..figures.risk import risk_pictures
 from .page import Page
-from .risk import risk_values
 from .wording import sentence, statement
 
 _QUESTIONS = {
@@ -23,6 +23,8 @@ _QUESTIONS = {
     "support": "Support:",
     "engine": "Engine:",
 }
+_FREQUENCY = ("risk.frequency", "risk.none")
+_UNIT = 1e4  # frequencies in 1e-4 a year
 
 
 def page_of(found: Fragility) -> Page:
@@ -66,7 +68,7 @@ def fragility_values(found: Fragility) -> dict[str, object]:
     return {
         "facts": found.facts,
         "modes": list(map(statement, findings.of("mode"))),
-        "risk": risk_values(found),
+        "risk": _risk_values(found),
         "measure": measure,
         "bodies": list(map(sentence, said("body", "one_column"))),
         "scaling": " ".join(map(sentence, said("levels", "own_levels", "cloud"))),
@@ -161,3 +163,22 @@ def _states(found: Fragility) -> list[Row]:
         made = rows.setdefault(key, {"cylinder": key[0], "method": key[1]})
         made[str(row["limit"])] = found.median_or_bound(key[0], float(row["median"]))
     return list(rows.values())
+
+
+def _risk_values(found: Fragility) -> dict[str, object] | None:
+    """Values of the part on the annual frequency of overturning; None without a hazard."""
+    if "risk" not in found.tables:
+        return None
+    rows = rows_of(found.tables["risk"])
+    scaled = [name for name in rows[0] if name.startswith("annual_frequency")]
+    reference, said = str(rows[0]["method"]), found.findings().of("risk")
+    return {
+        "hazard": {"limit": OVERTURNED, "target": TARGET, "source": ""} | found.facts["hazard"],
+        "rows": [{**row, **{name: _UNIT * row[name] for name in scaled}} for row in rows],
+        "main": [sentence(each) for each in said if each.key in _FREQUENCY],
+        "reference": reference,
+        "remarks": [
+            f"{each.runs}: {sentence(each)}".removeprefix(": ") for each in said if each.key not in _FREQUENCY
+        ],
+        "pictures": [picture.name for picture in risk_pictures(found)],
+    }

@@ -12,16 +12,17 @@ in a document, and left out of a terminal unless details are asked for.
 from __future__ import annotations
 
 import html
+import math
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Literal
 
-from jinja2 import Environment
+from jinja2 import Environment, PackageLoader, StrictUndefined
 from markdown_it import MarkdownIt
 from rich.cells import cell_len
 from rich.console import Console
@@ -30,8 +31,9 @@ from rich.text import Text
 
 from ..figures.interactive import charts, colour_bar
 from ..figures.picture import Picture
+from .cases import conditions, source_lines
 from .command_line import command_lines
-from .sentences import environment
+from .diagnostics import warnings
 from .table import Row, Table, columns_of, number
 from .wording import sentence
 
@@ -300,12 +302,31 @@ def to_html(text: str) -> str:
     return str(parser.renderer.render(tokens, parser.options, {}))
 
 
+def fragment(template: str, **values: object) -> str:
+    """A piece of a page, in which values are text and no markup."""
+    return _templates(autoescape=True).get_template(template).render(**values)
+
+
+def _templates(autoescape: bool | Callable[[str | None], bool]) -> Environment:
+    made = Environment(
+        loader=PackageLoader("rockwobble.reports.pages", "templates"),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        autoescape=autoescape,
+    )
+    filters = {"warnings": warnings, "conditions": conditions, "sources": source_lines}
+    texts = {"number": number, "code": lambda text: MarkdownText(f"`{text}`"), "md": MarkdownText}
+    made.filters |= filters | texts
+    made.tests["known"] = math.isfinite
+    return made
+
+
 @cache
 def _environment() -> Environment:
-    found = environment(autoescape=lambda name: str(name).endswith(".html.j2"))
-    found.finalize = _escape
-    found.filters |= {"number": number, "code": lambda text: MarkdownText(f"`{text}`"), "md": MarkdownText}
-    return found
+    made = _templates(autoescape=lambda name: str(name).endswith(".html.j2"))
+    made.finalize = _escape
+    return made
 
 
 def _escape(value: object) -> object:

@@ -8,8 +8,7 @@ from ..figures.case_view import case_views
 from ..figures.playback import playback, require_motion
 from .cases import case_lines
 from .comparison import headline, run_diagnostics
-from .page import Page
-from .sentences import fragment
+from .page import Page, fragment
 
 
 def page_of(results: View) -> Page:

@@ -207,7 +207,7 @@ def test_ctrl_c_stops_a_real_run_at_once_and_leaves_no_process(tmp_path):
     script = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
     script += "from rockwobble.reports.cli.main import main; main()"
     process = subprocess.Popen(
-        [sys.executable, "-c", script, "compare", *arguments, "--engine", "mujoco"],
+        [sys.executable, "-c", script, "compare", *arguments],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
