@@ -109,17 +109,19 @@ def test_numbers_of_a_row(made_up, case, cylinder):
     assert row.diagnostics == ""
 
 
-def test_flat_ground_gets_a_row_for_each_model(made_up, case):
+def test_a_suite_is_cases_times_runs_with_a_row_for_each_reference(made_up, case, cylinder, monkeypatch):
     made_up()
-    found = comparison(case, runs=[Run("mujoco", "recess"), Run("mujoco", "flat")], workers=1)
-    assert found.summary[["support", "reference_support"]].to_numpy().tolist() == [
-        ["recess", "recess"],
-        ["flat", "recess"],
-        ["flat", "flat"],
-    ]
-    labels = ("recess model", "flat-ground model", "mujoco recess", "mujoco flat")
-    assert set(found.traces) == {("synthetic", label) for label in labels}
-    assert found.summary.diverged.tolist() == [False, False, False]
+    # no engine runs, so none needs to be installed: PyBullet is not everywhere
+    monkeypatch.setattr(driver, "require_runnable", lambda case, run: None)
+    other = Case(cylinder, case.motion, name="second")
+    found = comparison(Suite([case, other], [Run("mujoco", "recess"), Run("pybullet", "flat")]), workers=1)
+    rows = [("mujoco", "recess", "recess"), ("pybullet", "flat", "recess"), ("pybullet", "flat", "flat")]
+    expected = [(name, *row) for name in ("synthetic", "second") for row in rows]
+    columns = ["case", "engine", "support", "reference_support"]
+    assert [*found.summary[columns].itertuples(index=False, name=None)] == expected
+    labels = ("recess model", "flat-ground model", "mujoco recess", "pybullet flat")
+    assert set(found.traces) == {(name, label) for name in ("synthetic", "second") for label in labels}
+    assert not found.summary.diverged.any()
 
 
 def test_a_window_narrows_only_the_rms(made_up, case, cylinder):
@@ -133,13 +135,6 @@ def test_a_window_narrows_only_the_rms(made_up, case, cylinder):
     assert row.agreement_time == pytest.approx(5.01)
 
 
-def test_diagnostics_are_in_the_summary_by_code(made_up, case):
-    facts = (Diagnostic(code="slip", time=2.0), Diagnostic(code="energy", time=0.0), Diagnostic(code="slip"))
-    made_up({"outcome": "failed", "facts": facts, "peak_tilt": math.nan}, {"outcome": "overturned"})
-    row = comparison(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
-    assert (row.outcome, row.reference_outcome, row.diagnostics) == ("failed", "overturned", "slip, energy")
-
-
 def test_two_that_never_move_agree(made_up, case):
     still = {"tilt": np.zeros(1001), "uplift_time": math.nan, "uplift_direction": math.nan, "rests": True}
     made_up(still, still)
@@ -150,10 +145,12 @@ def test_two_that_never_move_agree(made_up, case):
 
 def test_a_run_that_fails_half_way_is_compared_up_to_there(made_up, case, cylinder):
     tilt = np.where(np.arange(1001) > 400, np.nan, 0.3 * cylinder.alpha)
-    fact = Diagnostic(code="not_finite", time=4.01)
-    made_up({"tilt": tilt, "outcome": "failed", "facts": (fact,), "peak_tilt": math.nan})
+    facts = (Diagnostic(code="not_finite", time=4.01), *[Diagnostic(code="slip", time=2.0)] * 2)
+    failed = {"tilt": tilt, "outcome": "failed", "facts": facts, "peak_tilt": math.nan}
+    made_up(failed, {"outcome": "overturned"})
     row = comparison(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
-    assert row.diagnostics == "not_finite"
+    assert (row.outcome, row.reference_outcome) == ("failed", "overturned")
+    assert row.diagnostics == "not_finite, slip"
     assert math.isnan(row.peak_tilt)
     assert row.tilt_rms == 0.0
     assert (row.agreement_time, row.diverged) == (4.0, True)
@@ -171,21 +168,6 @@ def test_a_run_that_left_nothing_is_a_failed_row(monkeypatch, made_up, case):
     assert (row.outcome, row.diverged, row.diagnostics) == ("failed", True, "died")
     assert row.reference_peak_tilt == pytest.approx(0.3)
     assert math.isnan(row.tilt_rms)
-
-
-def test_a_suite_is_cases_times_runs(made_up, case, cylinder, monkeypatch):
-    made_up()
-    # no engine runs, so none needs to be installed: PyBullet is not everywhere
-    monkeypatch.setattr(driver, "require_runnable", lambda case, run: None)
-    other = Case(cylinder, case.motion, name="second")
-    suite = Suite([case, other], [Run("mujoco", "recess"), Run("pybullet", "recess")])
-    summary = comparison(suite, workers=1).summary
-    assert summary[["case", "engine"]].to_numpy().tolist() == [
-        ["synthetic", "mujoco"],
-        ["synthetic", "pybullet"],
-        ["second", "mujoco"],
-        ["second", "pybullet"],
-    ]
 
 
 def test_files_hold_the_whole_result(made_up, case, tmp_path):
@@ -206,23 +188,17 @@ def test_files_hold_the_whole_result(made_up, case, tmp_path):
     assert manifest.versions["mujoco"]
 
 
-def test_a_folder_that_cannot_be_written_is_refused_before_anything_runs(monkeypatch, case, tmp_path):
+def test_bad_folders_and_windows_are_refused_before_anything_runs(monkeypatch, case, tmp_path):
     monkeypatch.setattr(execution, "run_job", lambda _: pytest.fail("it ran"))
     (tmp_path / "taken").write_text("")
-    with pytest.raises(ValueError, match="must be a folder"):
-        comparison(case, runs=[Run("mujoco", "recess")], workers=1, out=tmp_path / "taken")
     (tmp_path / "manifest.json").write_text('{"name": "app"}')
-    with pytest.raises(ValueError, match=r"output folder must have no manifest\.json but one of rockwobble"):
-        comparison(case, runs=[Run("mujoco", "recess")], workers=1, out=tmp_path)
-
-
-@pytest.mark.parametrize("until", [0.0, -1.0, math.nan])
-def test_a_window_that_is_none_is_refused_before_anything_runs(
-    monkeypatch: pytest.MonkeyPatch, case: Case, until: float
-) -> None:
-    monkeypatch.setattr(execution, "run_job", lambda _: pytest.fail("it ran"))
-    with pytest.raises(ValueError, match=r"until must be positive \[s\], got "):
-        comparison(case, runs=[Run("mujoco", "recess")], workers=1, until=until)
+    for words, bad in (
+        ("must be a folder", {"out": tmp_path / "taken"}),
+        (r"output folder must have no manifest\.json but one of rockwobble", {"out": tmp_path}),
+        *((r"until must be positive \[s\], got ", {"until": until}) for until in (0.0, -1.0, math.nan)),
+    ):
+        with pytest.raises(ValueError, match=words):
+            comparison(case, runs=[Run("mujoco", "recess")], workers=1, **bad)
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,6 @@ BETWEEN = 0.1
 SLIP = 1e-3
 
 ENGINES = [name for name in ("mujoco", "pybullet") if name in multibody.available_engines()]  # with contact
-MODELS = {"recess": "recess", "flat": "flat"}
 
 
 def _agree(run: multibody.Trajectory, model: Trace, alpha: float, start: float) -> None:
@@ -43,7 +42,7 @@ def test_force_of_a_free_response(engine: str, support: str, tan_alpha: float) -
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
     initial = InitialState(cylinder.alpha / 2, rolling_rate=0.5)
     run = multibody.simulate(Case(cylinder, initial=initial, duration=2.5), engine=engine, support=support)
-    model = reduced.simulate(Case(cylinder, initial=initial, duration=2.5), **reduced.MODELS[MODELS[support]])
+    model = reduced.simulate(Case(cylinder, initial=initial, duration=2.5), support=support)
     _agree(run, model, cylinder.alpha, 0.0)
 
 
@@ -52,7 +51,7 @@ def test_force_under_el_centro(support: str) -> None:
     # standing, uplift and two passes; the record has a kink at every sample
     cylinder, motion = Cylinder(semidiagonal=10.0, tan_alpha=0.1), el_centro_1940()
     run = multibody.simulate(Case(cylinder, motion, duration=6.0), support=support)
-    model = reduced.simulate(Case(cylinder, motion, duration=6.0), **reduced.MODELS[MODELS[support]])
+    model = reduced.simulate(Case(cylinder, motion, duration=6.0), support=support)
     _agree(run, model, cylinder.alpha, model.uplift_time + 0.1)
     standing = model.time < model.uplift_time - 0.1
     # the window of the mean, 8 ms, rounds the corners of the record
@@ -67,7 +66,7 @@ def test_a_steady_wobble_holds_where_friction_suffices_and_says_where_not(engine
     period = reduced.wobbling_period(cylinder, tilt)
     initial = InitialState(tilt, rolling_rate=2.0 * math.pi / period)
     needed = float(
-        reduced.simulate(Case(cylinder, initial=initial, duration=period), **reduced.MODELS[MODELS[support]])
+        reduced.simulate(Case(cylinder, initial=initial, duration=period), support=support)
         .friction_needed.max()
     )  # fmt: skip
 

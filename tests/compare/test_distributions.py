@@ -86,21 +86,11 @@ def coverage(samples: list[np.ndarray], share: float, truth: float) -> float:
     return float(np.mean([item.low <= truth <= item.high for item in found]))
 
 
-def test_every_member_a_tenth_larger_is_found():
-    peaks = sample(1)
-    found = contrast_of(1.1 * peaks, peaks, UP, UP)
-    assert (found.compared, found.higher, found.lower) == (COUNT, COUNT, 0)
-    assert found.ratio_p < 1e-4
-    for value in (found.ratio.low, found.ratio.value, found.ratio.high):
-        assert value == pytest.approx(1.1, abs=ROUNDING)
-    assert found.verdict == "beyond"
-    assert contrast_of(peaks, 1.1 * peaks, UP, UP).ratio_p == pytest.approx(found.ratio_p, rel=1e-9)
-
-
 def test_signed_ranks_are_those_of_scipy_where_it_is_exact():
     ours, theirs = sample(1), sample(2)
     expected = wilcoxon(np.log(ours), np.log(theirs), method="exact").pvalue
     assert contrast_of(ours, theirs, UP, UP).ratio_p == pytest.approx(expected, abs=ROUNDING)
+    assert contrast_of(theirs, ours, UP, UP).ratio_p == pytest.approx(expected, abs=ROUNDING)
     # of ties, every choice of signs is tried; what overturns is larger than everything
     tied = np.array([0.1, -0.1, 0.2, 0.2, -0.3, 9.0, 9.0, 9.0])
     expected = wilcoxon(tied, method=PermutationMethod(n_resamples=np.inf)).pvalue
@@ -132,17 +122,8 @@ def test_the_interval_of_the_median_has_its_coverage_with_ties():
     assert coverage(at_it, 0.5, 0.0) >= COVERAGE[0]
 
 
-def test_an_interval_ends_where_the_binomial_distribution_says():
-    values = np.arange(1.0, 31.0)
-    for index in (8, 9, 10):  # at a whole index the probability is that of a sum
-        left_out = 2.0 * binom.cdf(index - 1, 30, 0.5)
-        inside = quantile_interval(values, 0.5)
-        assert (inside.low < index) == (left_out > 1.0 - CONFIDENCE)
-    assert inside.low + inside.high == pytest.approx(31.0, abs=1e-9)
-
-
-@pytest.mark.parametrize("count", [6, 7, 22, 44, 301])
-@pytest.mark.parametrize("share", [0.03, 0.16, 0.5, 0.84, 0.97])
+@pytest.mark.parametrize("count", [6, 22, 301])
+@pytest.mark.parametrize("share", [0.03, 0.5, 0.84])
 def test_an_end_of_the_interval_of_a_quantile_leaves_out_its_part(count: int, share: float) -> None:
     # of the values 1, 2, ... an end is the index of its order statistic, whose share of what is drawn has the
     # beta distribution
@@ -156,7 +137,7 @@ def test_an_end_of_the_interval_of_a_quantile_leaves_out_its_part(count: int, sh
     assert outside == pytest.approx(parts, rel=1e-9)  # of the root
 
 
-@pytest.mark.parametrize("total", [1, 6, 22, 301])
+@pytest.mark.parametrize("total", [1, 22, 301])
 def test_an_end_of_the_interval_of_a_share_leaves_out_its_part(total: int) -> None:
     part = 0.5 * (1.0 - CONFIDENCE)
     for count in range(0, total + 1, max(1, total // 7)):
@@ -169,7 +150,7 @@ def test_an_end_of_the_interval_of_a_share_leaves_out_its_part(total: int) -> No
     assert binom.pmf(0, total, largest_share_unseen(total)) == pytest.approx(1.0 - CONFIDENCE, rel=1e-9)
 
 
-@pytest.mark.parametrize(("only", "only_there"), [(0.1, 0.1), (0.3, 0.1), (0.0, 0.4)])
+@pytest.mark.parametrize(("only", "only_there"), [(0.1, 0.1), (0.0, 0.4)])
 def test_interval_of_a_difference_of_shares_tends_to_the_normal_one(only: float, only_there: float) -> None:
     count = 100_000_000
     ends = paired_difference(round(only * count), round(only_there * count), count)
@@ -205,11 +186,13 @@ def test_agreement_is_claimed_by_the_interval_alone():
     assert np.mean(claimed) <= LEVEL
     peaks = sample(1)
     scattered = peaks * np.exp(0.3 * np.random.default_rng(2).standard_normal(COUNT))
-    found = contrast_of(scattered, peaks, UP, UP)
-    assert found.ratio_p > 0.05  # not told apart,
-    assert found.verdict == "undecided"  # which is no agreement
-    assert contrast_of(1.001 * peaks, peaks, UP, UP).verdict == "within"
-    assert contrast_of(1.001 * peaks, peaks, UP, UP).ratio_p < 0.05  # nor is what is told apart far apart
+    # what is not told apart does not agree by that, nor is what is told apart far apart
+    for trial, verdict, apart in ((scattered, "undecided", False), (1.001 * peaks, "within", True)):
+        found = contrast_of(trial, peaks, UP, UP)
+        assert (found.verdict, found.ratio_p < 0.05) == (verdict, apart)
+    found = contrast_of(1.1 * peaks, peaks, UP, UP)
+    assert (found.verdict, found.compared, found.higher, found.lower) == ("beyond", COUNT, COUNT, 0)
+    assert (found.ratio.low, found.ratio.value, found.ratio.high) == pytest.approx((1.1,) * 3, abs=ROUNDING)
 
 
 @pytest.mark.parametrize("count", [COUNT, 201])
@@ -266,7 +249,7 @@ def test_who_overturns_by_one_method_alone_decides():
     assert contrast_of(sample(1), sample(2), fell, UP).overturned_p == pytest.approx(2.0**-7, abs=ROUNDING)
 
 
-@pytest.mark.parametrize(("only", "only_there"), [(0.1, 0.1), (0.3, 0.1), (0.4, 0.3)])
+@pytest.mark.parametrize(("only", "only_there"), [(0.1, 0.1), (0.4, 0.3)])
 def test_the_interval_of_a_difference_of_shares_has_its_coverage(only, only_there):
     rest = 1.0 - only - only_there
     counts = np.random.default_rng(11).multinomial(COUNT, [only, only_there, rest], size=TRIALS)

@@ -26,77 +26,47 @@ def case(cylinder):
     return Case(cylinder, initial=InitialState(0.3 * cylinder.alpha), duration=10.0, name="synthetic")
 
 
-@pytest.fixture
-def predicted(case, cylinder, make_trace):
-    """Predict with perturbed copies whose distance grows e-fold in each second, from their disturbance."""
+def traces_of(case: Case, make_trace, uplift: float):
+    """Traces that differ by so many alpha from uplift on, and copies that part e-fold in each second."""
+    after = np.maximum(TIME - uplift, 0.0)
+    level = np.where(uplift > TIME, 0.0, 0.3 * case.cylinder.alpha)
 
-    def call(error, *, passes=(), rolls_off=None):
-        level = np.full_like(TIME, 0.3 * cylinder.alpha)
-        own = make_trace(TIME, level, passes=passes)
+    def trace(difference, **fields):
+        return make_trace(TIME, level + difference * case.cylinder.alpha, uplift_time=uplift, **fields)
 
-        def simulate(disturbed: Case, _: Run):
-            relative = disturbed.gravity / case.gravity - 1.0
-            return make_trace(TIME, level + relative * cylinder.alpha * np.exp(TIME))
+    def simulate(disturbed: Case, _: Run):
+        relative = disturbed.gravity / case.gravity - 1.0
+        return trace(relative * np.where(uplift > TIME, 0.0, np.exp(after)))
 
-        reference = own
-        if rolls_off is not None:
-            reference = make_trace(TIME, level + np.where(rolls_off <= TIME, 0.02 * cylinder.alpha, 0.0))
-        return predict(
+    return trace, simulate
+
+
+@pytest.mark.parametrize("uplift", [0.0, 2.0])
+def test_the_first_of_three_causes_ends_the_agreement(case, cylinder, make_trace, uplift):
+    if uplift:  # the first second is that after uplift, as after a release
+        case = Case(cylinder, GroundMotion(np.ones((1001, 2)), 0.01), name="synthetic")
+    trace, simulate = traces_of(case, make_trace, uplift)
+
+    def found(passes=(), form=math.inf, error=1e-5, tolerance=0.01):
+        own = trace(0.0, passes=[(uplift + time, tilt) for time, tilt in passes])
+        reference = own if math.isinf(form) else trace(np.where(uplift + form <= TIME, 0.02, 0.0))
+        prediction = predict(
             case,
             reference=reference,
             own=own,
             contact_resolution=1e-5,
             error=error,
             simulate=simulate,
-        )
-
-    return call
-
-
-def test_a_prediction_under_shaking_counts_from_uplift(cylinder, make_trace):
-    motion = GroundMotion(np.ones((1001, 2)), 0.01)
-    case = Case(cylinder, motion, name="synthetic")
-    after = np.maximum(TIME - 2.0, 0.0)
-    level = np.where(TIME < 2.0, 0.0, 0.3 * cylinder.alpha)
-
-    def trace(difference, **fields):
-        return make_trace(TIME, level + difference * cylinder.alpha, uplift_time=2.0, **fields)
-
-    def simulate(disturbed: Case, _: Run):
-        relative = disturbed.gravity / case.gravity - 1.0
-        return trace(relative * np.where(TIME < 2.0, 0.0, np.exp(after)))
-
-    def found(passes=(), form=0.0, tolerance=0.01):
-        return predict(
-            case,
-            reference=trace(form),
-            own=trace(0.0, passes=passes),
-            contact_resolution=1e-5,
-            error=1e-5,
-            simulate=simulate,
             tolerance=tolerance,
         )
+        return prediction.reason, prediction.length
 
-    # as after a release: the first second is that after uplift
-    assert found().length == pytest.approx(np.log(1e3 * 1.787), abs=0.02)
-    assert found(tolerance=1e-3).length == pytest.approx(np.log(1e2 * 1.787), abs=0.02)
-    assert (found([(5.0, 1e-6)]).reason, found([(5.0, 1e-6)]).length) == ("pass", 3.0)
-    form = found(form=np.where(TIME >= 4.0, 0.02, 0.0))
-    assert (form.reason, form.length) == ("model form", pytest.approx(2.0))
-
-
-def test_a_copy_with_the_early_error_of_the_engine_diverges(predicted):
     # RMS of exp(t) in the first second: sqrt((e^2 - 1)/2) = 1.787; 1e-5/1.787 exp(t) = 0.01
-    found = predicted(1e-5)
-    assert found.reason == "growth"
-    assert found.length == pytest.approx(np.log(1e3 * 1.787), abs=0.02)  # two samples
-
-
-def test_the_first_of_the_three_counts(predicted):
-    assert predicted(1e-5, passes=[(4.0, 1e-6), (2.0, 1e-4)]).reason == "pass"
-    assert predicted(1e-5, passes=[(4.0, 1e-6)]).length == 4.0
-    found = predicted(1e-5, passes=[(4.0, 1e-6)], rolls_off=3.0)
-    assert (found.reason, found.length) == ("model form", pytest.approx(3.0))
+    assert found() == ("growth", pytest.approx(np.log(1e3 * 1.787), abs=0.02))  # two samples
+    assert found(tolerance=1e-3) == ("growth", pytest.approx(np.log(1e2 * 1.787), abs=0.02))
+    assert found([(4.0, 1e-6), (2.0, 1e-4)]) == ("pass", 4.0)
+    assert found([(4.0, 1e-6)], form=3.0) == ("model form", pytest.approx(3.0))
+    assert found(error=1e-9) == ("", 10.0)  # a small error and no close pass end nothing
 
 
 def test_upright_itself_ends_an_agreement_though_a_fall_follows(cylinder):
@@ -111,11 +81,6 @@ def test_upright_itself_ends_an_agreement_though_a_fall_follows(cylinder):
     assert landed == pytest.approx(response.extrema[1, 0], abs=0.01)  # a sample
     found = close_pass(response, 1e-5, 6.0)
     assert (found.reason, found.length) == ("pass", landed - response.uplift_time)
-
-
-def test_a_small_error_and_no_close_pass_end_nothing(predicted):
-    found = predicted(1e-9)
-    assert (found.reason, found.length) == ("", 10.0)
 
 
 @pytest.mark.parametrize(

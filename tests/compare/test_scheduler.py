@@ -46,34 +46,28 @@ def table_cache(folder, kind="study"):
     return open_table_cache(folder, kind, name=lambda task: f"{task:032d}")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_results_come_in_the_order_of_the_tasks(workers):
     told: list[Progress] = []
     tasks = [-3, 2, -1, 5]
     found = run_tasks(abs, tasks, workers=workers, cost=lambda task: float(task), progress=told.append)
     assert found == [3, 2, 1, 5]
-    assert [event.label for event in told if event.state == "started"] == [
-        "5",
-        "2",
-        "-1",
-        "-3",
-    ]  # longest first
+    started = [event.label for event in told if event.state == "started"]
+    assert started == ["5", "2", "-1", "-3"]  # longest first
     assert [event.done for event in told if event.state == "finished"] == [1, 2, 3, 4]
     assert told[-1].share == pytest.approx(1.0)
     assert told[-1].left == pytest.approx(0.0)
 
 
 @pytest.mark.slow
-def test_processes_are_kept_and_are_not_this_one():
-    pids = run_tasks(os.getpgid, [0] * 8, workers=2)
+def test_processes_are_kept_and_run_all_but_brief_tasks():
+    pids = run_tasks(process_of, [0] * 8, workers=2)
     assert len(set(pids)) <= 2
-    assert os.getpgid(0) not in pids
-
-
-def test_a_task_of_milliseconds_runs_here_among_others_that_do_not():
+    assert os.getpid() not in pids
     found = run_tasks(process_of, [1, 2, 3], workers=2, here=lambda task: task == 2)
     assert [process == os.getpid() for process in found] == [False, True, False]
+    # a single task has a process of its own on request
+    assert run_tasks(process_of, [0], workers=2) != [os.getpid()] == run_tasks(process_of, [0])
 
 
 def test_bad_input_is_raised_here_with_where_it_came_from():
@@ -83,14 +77,11 @@ def test_bad_input_is_raised_here_with_where_it_came_from():
 
 
 @pytest.mark.slow
-def test_a_process_that_dies_loses_only_its_own_task():
+def test_a_process_that_dies_loses_only_its_own_task(tmp_path):
     found = run_tasks(signalled, [0, int(signal.SIGABRT), 0], workers=2)
     assert (found[0], found[2]) == (None, None)
     assert found[1] == FailedTask(f"the process ended with status -{signal.SIGABRT.value}")
-
-
-@pytest.mark.slow
-def test_a_task_whose_process_was_ended_from_outside_begins_again(tmp_path):
+    # one that was ended from outside begins again
     again, once = (str(tmp_path / name) for name in ("a", "b"))
     assert run_tasks(die_once, [again], workers=2, tries=2) == [again]
     assert [type(each) for each in run_tasks(die_once, [once], workers=2)] == [FailedTask]
@@ -143,10 +134,6 @@ def test_a_damaged_file_is_named_and_its_task_runs_again(tmp_path):
         assert path.read_bytes() == whole
 
 
-def test_a_single_task_gets_its_own_process_on_request():
-    assert run_tasks(os.getpgid, [0], workers=2) != [os.getpgid(0)] == run_tasks(os.getpgid, [0])
-
-
 def test_a_lost_task_is_not_kept(tmp_path):
     with table_cache(tmp_path) as cache:
         found = run_tasks(killed, [1], workers=2, cache=cache)
@@ -168,29 +155,24 @@ def test_one_run_at_a_time_writes_to_a_folder_and_leftovers_go(tmp_path):
 
 
 @pytest.mark.slow
-def test_no_scheduler_is_one_clear_line(monkeypatch):
+def test_no_scheduler_or_no_workers_are_one_clear_line(monkeypatch):
     monkeypatch.setattr(dask_backend, "_PATIENCE", 0.5)
     with pytest.raises(ValueError, match="no Dask scheduler answers at 'tcp://127"):
         run_tasks(abs, [1], scheduler="tcp://127.0.0.1:1")
     with pytest.raises(ValueError, match=r"has an address such as tcp://.*, got 'nonsense'"):
         run_tasks(abs, [1], scheduler="nonsense")
-
-
-@pytest.mark.slow
-def test_a_cluster_without_workers_is_said(monkeypatch):
     distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=None) as cluster:
-        address = cluster.scheduler_address
-        monkeypatch.setattr(dask_backend, "_PATIENCE", 1.0)
-        with pytest.raises(ClusterError, match="has had no worker for 1 s: start one by dask worker inproc"):
-            run_tasks(abs, [1], scheduler=address)
+    with (
+        distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=None) as cluster,
+        pytest.raises(ClusterError, match=r"has had no worker for 0\.5 s: start one by dask worker"),
+    ):
+        run_tasks(abs, [1], scheduler=cluster.scheduler_address)
 
 
 def test_dask_gives_the_same_and_refuses_other_code():
     distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
-    ) as cluster:
+    alone = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    with distributed.LocalCluster(**alone) as cluster:
         address = cluster.scheduler_address
         assert run_tasks(abs, [-2, 1, -3], scheduler=address) == [2, 1, 3]
         with pytest.raises(ClusterError, match="must have what the caller has: call"):
@@ -198,37 +180,24 @@ def test_dask_gives_the_same_and_refuses_other_code():
 
 
 @pytest.mark.slow
-def test_an_unimportable_function_is_reported_by_the_scheduler(tmp_path):
-    # the script's own functions are those of __main__, which is another module there
-    script = tmp_path / "script.py"
-    script.write_text(
-        textwrap.dedent(
-            """
-            from rockwobble.compare.runs.scheduler import run_tasks
-            def own(_): pass
-            print(run_tasks(own, [1, 2], workers=2)[0].why)
-            """
-        )
-    )
-    run = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60, check=True)
-    assert run.stdout.startswith("the process ended with status 1: AttributeError: ")
-    assert "'own'" in run.stdout
-
-
-@pytest.mark.slow
 def test_a_script_without_a_main_guard_runs_once(tmp_path):
+    # its own functions are those of __main__, which is another module there
     script = tmp_path / "plain.py"
     script.write_text(
         textwrap.dedent(
             """
             from rockwobble.compare.runs.scheduler import run_tasks
-            print("top")
+            def own(_): pass
             print(sum(run_tasks(abs, [-1, 2, -4], workers=2)))
+            print(run_tasks(own, [1, 2], workers=2)[0].why)
             """
         )
     )
-    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60, check=True)
-    assert done.stdout.split() == ["top", "7"]
+    run = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60, check=True)
+    total, why = run.stdout.splitlines()
+    assert total == "7"
+    assert why.startswith("the process ended with status 1: AttributeError: ")
+    assert "'own'" in why
 
 
 @pytest.mark.slow
@@ -261,13 +230,9 @@ def _runs(pid: int) -> bool:
 
 
 @pytest.mark.slow
-def test_an_answer_that_cannot_travel_is_an_error_of_its_task():
+def test_answers_that_cannot_travel_and_output_do_no_harm():
     with pytest.raises((TypeError, AttributeError, RuntimeError), match="pickle"):
         run_tasks(memoryview, [b"", b""], workers=2)
-
-
-@pytest.mark.slow
-def test_output_of_a_task_does_not_mix_with_its_answer():
     assert run_tasks(os.system, ["echo noise", "echo more"], workers=2) == [0, 0]
     assert run_tasks(print, ["noise", "more"], workers=2) == [None, None]
 
