@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from rockwobble.models import Case, RockingBody, Trace
+from rockwobble.models import Case, Trace
 
 from ..metrics.pair import rms
 from .lagrange import shape_of
@@ -30,29 +30,33 @@ _LARGEST_LOSS = 0.2  # largest rolling resistance, over the base radius
 Change = Callable[[Case, float], Case]
 
 
-def _of_body(change: Callable[[RockingBody, float], RockingBody]) -> Change:
-    return lambda case, scale: dataclasses.replace(case, cylinder=change(case.cylinder, scale))
+def _of_body(name: str) -> Change:
+    """Return the change that scales a field of the body."""
+
+    def change(case: Case, scale: float) -> Case:
+        body, shape = case.cylinder, shape_of(case.cylinder)
+        inertias = {"transverse_inertia": shape.I1, "axial_inertia": shape.I2}
+        other = {name: scale * inertias.get(name, getattr(body, name))}
+        return dataclasses.replace(case, cylinder=dataclasses.replace(body, **other))
+
+    return change
 
 
 def _with_loss(case: Case, share: float) -> Case:
     return dataclasses.replace(case, rolling_resistance=share * case.cylinder.base_radius)
 
 
+def _with_motion(case: Case, scale: float) -> Case:
+    return case if case.motion is None else dataclasses.replace(case, motion=case.motion.scaled(scale))
+
+
 CANDIDATES: Mapping[str, Change] = {
     "gravity": lambda case, scale: dataclasses.replace(case, gravity=scale * case.gravity),
-    "size": _of_body(lambda body, scale: dataclasses.replace(body, semidiagonal=scale * body.semidiagonal)),
-    "slenderness tan alpha": _of_body(
-        lambda body, scale: dataclasses.replace(body, tan_alpha=scale * body.tan_alpha)
-    ),
-    "transverse inertia": _of_body(
-        lambda body, scale: dataclasses.replace(body, transverse_inertia=scale * shape_of(body).I1)
-    ),
-    "axial inertia": _of_body(
-        lambda body, scale: dataclasses.replace(body, axial_inertia=scale * shape_of(body).I2)
-    ),
-    "ground acceleration": lambda case, scale: dataclasses.replace(
-        case, motion=None if case.motion is None else case.motion.scaled(scale)
-    ),
+    "size": _of_body("semidiagonal"),
+    "slenderness tan alpha": _of_body("tan_alpha"),
+    "transverse inertia": _of_body("transverse_inertia"),
+    "axial inertia": _of_body("axial_inertia"),
+    "ground acceleration": _with_motion,
 }
 
 

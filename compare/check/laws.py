@@ -21,6 +21,7 @@ import numpy as np
 from rockwobble.models import Case, GroundMotion, InitialState, Tendon
 from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.cylinder import PIER
+from rockwobble.multibody.engines.registry import engine_facts
 
 from . import lagrange
 from .lagrange import Shape, kinetic, potential, shape_of
@@ -229,9 +230,10 @@ def force_at_rest(subject: Subject, support: str) -> Iterator[Result]:
     trace = subject.simulate(Case(PIER, steady(ground, 0.4)), support, sample_step=0.1)
     off = trace.contact_force[1:4] - (ground + np.array([0.0, 0.0, GRAVITY])) / GRAVITY
     bound = subject.tolerance_bound(1.0, "Newton's law", "weights")
-    if math.isfinite(trace.time_step):
+    if subject.run is not None and math.isfinite(trace.time_step):
+        rounding = engine_facts(subject.label).rounding
         # error, in the mean of a sample, of a contact point known to rounding and corrected within a step
-        most = subject.rounding * PIER.base_radius * _MEAN / (GRAVITY * trace.time_step**2)
+        most = rounding * PIER.base_radius * _MEAN / (GRAVITY * trace.time_step**2)
         bound = dataclasses.replace(bound, most=bound.most + most)
     yield at_most("contact force at rest", largest(off), bound)
 

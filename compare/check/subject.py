@@ -18,7 +18,6 @@ from rockwobble.models.number_checks import require_in_range
 from rockwobble.models.shown import CompactRepr
 from rockwobble.models.support import MODELLED, RECESS
 from rockwobble.multibody.engines.registry import engine_facts, find_engine
-from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 from rockwobble.reduced.restoring import TERMS
 
 from ..external.trajectory import measurement
@@ -37,10 +36,8 @@ _ENGINE_FIELDS = ("slip", "contact_offset", "energy_error", "residual_displaceme
 MODEL_TOLERANCE, _MODEL_RTOL = 1e-10, 1e-11
 # relative to alpha: contact at the default step; a tenth to a half of it was measured with all engines
 ENGINE_TOLERANCE = 1e-5
-# Rounding errors that the tolerance allows: thousands of steps add them up in part. In single precision they
-# are more than what the finest steps leave, and the order shows at coarse ones, in multiples of the default
+# rounding errors that the tolerance allows: thousands of steps add them up in part
 _ROUNDINGS = 1e4
-_STEPS, _COARSE_STEPS = (4.0, 2.0, 1.0), (10.0, 7.0, 4.0)
 # tolerance for the same motion, rotated or mirrored: solvers stop at a tolerance, and a pass magnifies the
 # rest
 ENGINE_REPEATABILITY = 1e-5
@@ -70,14 +67,6 @@ class Subject(CompactRepr):
         Relative accuracy that it claims: of alpha, of a time or of an energy.
     repeatability : float
         Difference of the same motion stated in another way, over alpha.
-    rounding : float
-        Relative rounding error of the arithmetic of an engine.
-    steps : tuple of float
-        Time steps of the check of the order, the coarsest first [s].
-    order : float
-        Order of the error in the time step.
-    at_step : callable, optional
-        Returns the subject at another time step.
     reference : callable, optional
         The independent model that it is compared with, called as `reduced.simulate`.
     run : Run, optional
@@ -93,10 +82,6 @@ class Subject(CompactRepr):
     features: frozenset[str]
     tolerance: float
     repeatability: float
-    rounding: float = 0.0
-    steps: tuple[float, ...] = ()
-    order: float = 1.0
-    at_step: Callable[[float], Subject] | None = None
     reference: Simulate | None = None
     run: Run | None = None
     cases: tuple[Case, ...] | None = None
@@ -181,13 +166,6 @@ def engine(name: str, time_step: TimeStep | None = None, **settings: object) -> 
         features=facts.terms.union({"stepper", REFERENCE}, abilities),
         tolerance=tolerance,
         repeatability=ENGINE_REPEATABILITY,
-        rounding=facts.rounding,
-        steps=tuple(
-            times * REFERENCE_TIME_STEP
-            for times in (_STEPS if tolerance == ENGINE_TOLERANCE else _COARSE_STEPS)
-        ),
-        order=facts.order,
-        at_step=lambda step: engine(name, step, **settings),
         reference=reduced.simulate,
         run=Run(name, found.supports[0], time_step, **settings),
     )
