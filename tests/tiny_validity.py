@@ -1,11 +1,10 @@
-"""The limits measured on a tiny grid, once for all tests that ask for it, in whatever process they run."""
+"""The limits measured on a tiny grid, once for all tests of a process; engine runs once for all processes."""
 
 from __future__ import annotations
 
 import dataclasses
 import os
 import pickle
-import time
 from contextlib import contextmanager
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -24,8 +23,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from rockwobble.models import Case, Trace
-
-_PATIENCE = 300.0  # for the process that measures [s]
 
 TINY = dataclasses.replace(
     QUICK,
@@ -53,37 +50,20 @@ TINY = dataclasses.replace(
 
 @cache
 def tiny_tables(base: Path) -> dict[str, pd.DataFrame]:
-    """Return the tables of all parts; of several processes of a session the first to ask measures for all.
-
-    `base` is pytest's temporary folder of this process, beside those of the others.
-    """
-    folder = _shared(base)
-    ended = folder / "ended"
-    try:
-        folder.mkdir()
-    except FileExistsError:
-        deadline = time.monotonic() + _PATIENCE
-        while not ended.exists():
-            assert time.monotonic() < deadline, f"whoever measures in {folder} does not come to an end"
-            time.sleep(0.2)
-    try:
-        with kept_engine_runs(base):
-            return measure_all(TINY, folder, workers=1)  # and nothing of what is kept there
-    finally:
-        ended.touch()
-
-
-def _shared(base: Path) -> Path:
-    return (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "tiny-validity"
+    """Tables of all parts; `base` is pytest's temporary folder of this process."""
+    with kept_engine_runs(base):
+        return measure_all(TINY, base / "tiny-validity", workers=1)
 
 
 @contextmanager
 def kept_engine_runs(base: Path) -> Iterator[None]:
-    """Keep every engine run of the measurement beside it, and make none twice: they take most of its time."""
+    """Keep every engine run beside the folders of all processes, and make none twice: they take most time."""
     make = multibody.simulate
+    shared = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "engine-runs"
+    shared.mkdir(exist_ok=True)
 
     def once(case: Case, **options: Any) -> Trace:
-        kept = _shared(base) / fingerprint([case, options])
+        kept = shared / fingerprint([case, options])
         if not kept.exists():
             part = kept.with_suffix(f".{os.getpid()}")  # another process finds it whole or not at all
             part.write_bytes(pickle.dumps(make(case, **options)))
@@ -98,5 +78,5 @@ def kept_engine_runs(base: Path) -> Iterator[None]:
 
 @cache
 def tiny_validity(base: Path) -> Validity:
-    """Return the study."""
+    """The study of these tables."""
     return validity_of(tiny_tables(base), TINY)

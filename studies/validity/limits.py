@@ -14,7 +14,7 @@ from rockwobble.compare.comparison.prediction import IN_TIME
 from rockwobble.compare.metrics.contrast import Pairs, pairs_in
 from rockwobble.compare.metrics.pair import overturned
 from rockwobble.compare.metrics.statistics import MARGIN, quantile_interval
-from rockwobble.models.finding import Finding, Findings, Level
+from rockwobble.models.finding import Finding, Findings, Level, Value
 from rockwobble.models.support import FLAT, RECESS, RECESSES_FIRST, RING, SUPPORTS
 from rockwobble.models.trace import NO_PEAK
 
@@ -93,10 +93,12 @@ def contrasts(tables: Tables) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def _ends(table: pd.DataFrame, method: str, name: str = "ratio") -> tuple[float, float]:
-    """Least and largest of a column of the contrasts of a method over the points; NaN without any."""
-    values = table.loc[table["method"] == method, name]
-    return float(values.min()), float(values.max())
+def _ends(table: pd.DataFrame, method: str, column: str = "ratio", name: str = "ratio") -> dict[str, float]:
+    """NAME_least and NAME_largest of a column of a method over the points; NaN without any."""
+    values = table.loc[table["method"] == method, column]
+    return {
+        f"{name}_{end}": float(each) for end, each in (("least", values.min()), ("largest", values.max()))
+    }
 
 
 def cells(tables: Tables) -> pd.DataFrame:
@@ -325,12 +327,16 @@ def findings_of(tables: Tables, structure: Structure) -> Findings:
     return Findings(each for group in groups for each in group)
 
 
+def _said(key: str, level: Level = "note", /, **values: Value) -> Finding:
+    return Finding(key=f"limit_{key}", level=level, values=values)
+
+
 def _scope(structure: Structure) -> Iterator[Finding]:
     if structure.slab_mass_ratio:
-        yield Finding(key="limit_scope.slab", values={"ratio": structure.slab_mass_ratio})
+        yield _said("scope.slab", ratio=structure.slab_mass_ratio)
     if tendon := structure.tendon:
-        given = {"given": tendon.prestress, "given_stiffness": tendon.stiffness, "factor": structure.uplift}
-        yield Finding(key="limit_scope.tendon", values=given)
+        given = {"given": tendon.prestress, "given_stiffness": tendon.stiffness}
+        yield _said("scope.tendon", **given, factor=structure.uplift)
 
 
 def _model(tables: Tables, table: pd.DataFrame) -> Iterator[Finding]:
@@ -347,47 +353,41 @@ def _model(tables: Tables, table: pd.DataFrame) -> Iterator[Finding]:
     if contradicted := decided["runs_contradicted"] or beyond:
         runs = {"runs": decided["runs_contradicted"] or math.nan, "runs_all": decided["runs_all"]}
         counts = {"count": beyond or math.nan, "count_all": points}
-        yield Finding(key="limit_model.contradicted", level="not satisfied", values={**runs, **counts})
+        yield _said("model.contradicted", "not satisfied", **runs, **counts)
     else:
-        lowest, highest = _ends(table, RECESS)
         key = "established" if within else "undecided"
         level: Level = "satisfied" if within else "not tested"
         counts = {"count": within, "count_all": points, "share": MARGIN}
-        ends = {"runs": members, "ratio_least": lowest, "ratio_largest": highest}
-        yield Finding(key=f"limit_model.{key}", level=level, values={**ends, **counts})
+        yield _said(f"model.{key}", level, runs=members, **_ends(table, RECESS), **counts)
     bands: dict[str, str] = {**dict(zip(RECESSES_FIRST, RECESSES_FIRST, strict=True)), "copy": PERTURBED}
-    strays = {
-        f"ratio_{name}_{end}": value
-        for name, method in bands.items()
-        for end, value in zip(("least", "largest"), _ends(table, method, "ratio_95"), strict=True)
-    }
+    strays: dict[str, float] = {}
+    for name, method in bands.items():
+        strays |= _ends(table, method, "ratio_95", f"ratio_{name}")
     if not contradicted and not all(map(math.isnan, strays.values())):
-        yield Finding(key="limit_model.strays", level="caution", values={**strays, "runs": members})
+        yield _said("model.strays", "caution", **strays, runs=members)
         if not np.isfinite(table.loc[table["against"] == RECESS.model, "ratio_95_high"]).any():
-            yield Finding(key="limit_model.unbounded", level="caution")
+            yield _said("model.unbounded", "caution")
     # False without such recesses, and of too few records to know
     if strays[f"ratio_{RING}_largest"] > 1.0:
-        yield Finding(key="limit_clearance.unconservative", level="caution")
+        yield _said("clearance.unconservative", "caution")
 
 
 def _requirements(tables: Tables) -> Iterator[Finding]:
     peaks = tables["peaks"]
+    yield _said("requirement.friction", ratio=largest(peaks["friction"] / peaks["tan_alpha"]))
     moving = peaks.dropna(subset="least_normal")
-    friction = {"ratio": largest(peaks["friction"] / peaks["tan_alpha"])}
-    yield Finding(key="limit_requirement.friction", values=friction)
     normal, tan_alpha = moving["least_normal"], moving["tan_alpha"]
     kept, lost_from = limit_of(tan_alpha, normal > 0.0)
     values = {"runs": len(moving), "bound": float(normal[tan_alpha <= kept].min())}
     if lost := int((normal <= 0.0).sum()):
         weakest = float(moving.loc[normal <= 0.0, "intensity"].min())
         values |= {"runs_lost": lost, "ratio": lost_from, "factor": weakest}
-    key = "contact_lost" if lost else "contact"
-    yield Finding(key=f"limit_requirement.{key}", values=values)
-    yield Finding(key="limit_requirement.recess", values={"ratio": largest(peaks["moment"])})
+    yield _said("requirement.contact_lost" if lost else "requirement.contact", **values)
+    yield _said("requirement.recess", ratio=largest(peaks["moment"]))
     if "tension" in peaks:
-        yield Finding(key="limit_requirement.tendon", values={"ratio": largest(peaks["tension"])})
+        yield _said("requirement.tendon", ratio=largest(peaks["tension"]))
     yield _stiffness(soft_contacts(tables))
-    yield Finding(key="limit_requirement.question")
+    yield _said("requirement.question")
 
 
 def _stiffness(table: pd.DataFrame) -> Finding:
@@ -398,75 +398,69 @@ def _stiffness(table: pd.DataFrame) -> Finding:
     held, _ = limit_of(known["time_constant"], off <= SMALL)
     stiff = table[table["time_constant"] <= held]  # none where it is NaN
     failed = stiff[stiff["failed"]]
-    values = {
-        "bound": least(known.loc[known["time_constant"] == held, "softness"]),
-        "share": largest(off[known["time_constant"] <= held]),
-        "runs": len(stiff),
-        "runs_ended": len(stiff) - len(failed),
-        "ratio": largest(failed["softness"]),
-        "given_least": least(failed["damping"]),
-        "given_largest": largest(failed["damping"]),
-    }
-    return Finding(key="limit_requirement.stiffness", values=values)
+    return _said(
+        "requirement.stiffness",
+        bound=least(known.loc[known["time_constant"] == held, "softness"]),
+        share=largest(off[known["time_constant"] <= held]),
+        runs=len(stiff),
+        runs_ended=len(stiff) - len(failed),
+        ratio=largest(failed["softness"]),
+        given_least=least(failed["damping"]),
+        given_largest=largest(failed["damping"]),
+    )
 
 
 def _records(tables: Tables, table: pd.DataFrame) -> Iterator[Finding]:
     runs = tables["records"]
-    tails = _ends(table, HALVED, "ratio_95")
-    if math.isfinite(tails[0]):
+    low, high = _ends(table, HALVED, "ratio_05"), _ends(table, HALVED, "ratio_95", "ratio_95")
+    if math.isfinite(high["ratio_95_least"]):
         # nine in ten have the same peak at half the step
-        low = _ends(table, HALVED, "ratio_05")[0]
-        converged = low >= 1.0 / (1.0 + MARGIN) and tails[1] <= 1.0 + MARGIN
-        names = ("ratio_least", "ratio_largest", "ratio_95_least", "ratio_95_largest")
+        converged = low["ratio_least"] >= 1.0 / (1.0 + MARGIN) and high["ratio_95_largest"] <= 1.0 + MARGIN
         key = "converged" if converged else "not_converged"
-        level: Level = "note" if converged else "caution"
-        values = dict(zip(names, (*_ends(table, HALVED), *tails), strict=True))
-        yield Finding(key=f"limit_records.{key}", level=level, values=values)
+        yield _said(f"records.{key}", "note" if converged else "caution", **_ends(table, HALVED), **high)
     ring = runs["method"] == RING
     if ring.any():
         standing = runs.loc[ring & (runs["outcome"] == "stands"), "peak"]
         if passed := int((standing >= 1.0).sum()):
-            values = {"runs": passed, "runs_all": len(standing), "peak": largest(standing)}
-            yield Finding(key="limit_records.beyond_alpha", level="caution", values=values)
+            most = largest(standing)
+            yield _said("records.beyond_alpha", "caution", runs=passed, runs_all=len(standing), peak=most)
         touched = runs[(runs["method"] != HALVED) & (runs["contact_time"] > 0.0)]
-        values = {"runs": len(touched), "share": largest(touched["loss"])}
-        yield Finding(key="limit_records.touched", values=values)
+        yield _said("records.touched", runs=len(touched), share=largest(touched["loss"]))
     if failed := int(runs["outcome"].isin(NO_PEAK).sum()):
-        undecided = int((runs["outcome"] == "undecided").sum())
-        values = {"runs": len(runs), "count": failed - undecided, "count_undecided": undecided}
-        yield Finding(key="limit_records.left_out", values=values)
+        open_ended = int((runs["outcome"] == "undecided").sum())
+        counts = {"count": failed - open_ended, "count_undecided": open_ended}
+        yield _said("records.left_out", runs=len(runs), **counts)
 
 
 def _releases(tables: Tables) -> Iterator[Finding]:
     table, engine = tables["free_response"], _confirmations(tables["verification"])
     values = {**engine, "runs_contradicted": engine["runs_contradicted"] or math.nan}
     if table["flat_turn"].isna().all():
-        yield Finding(key="limit_release.confirmed", values=values)
+        yield _said("release.confirmed", **values)
         return
     off = (table["flat_turn"] - table["turn"]).abs()
     turns = (table["flat_turn"] / table["turn"] - 1.0).abs()
     periods = (table["flat_period"] / table["period"] - 1.0).abs()
     alike, _ = limit_of(table["tan_alpha"], (turns <= ALIKE) & (periods <= ALIKE))
-    yield Finding(key="limit_release.alike", values={"ratio": alike})
+    yield _said("release.alike", ratio=alike)
     worst = table.iloc[int(np.nanargmax(off))]
-    differences = {
-        "share_period": largest(periods),
-        "share_peak": max(largest(table["flat_peak"]) - 1.0, 0.0),
-        "share_turn": largest(turns),
-        "bound": math.degrees(largest(off)),
-        "ratio": float(worst["tan_alpha"]),
-        "peak": float(worst["release"]),
-        "factor": float(worst["spin"]),
-    }
-    yield Finding(key="limit_release.off", values=differences)
+    yield _said(
+        "release.off",
+        share_period=largest(periods),
+        share_peak=max(largest(table["flat_peak"]) - 1.0, 0.0),
+        share_turn=largest(turns),
+        bound=math.degrees(largest(off)),
+        ratio=float(worst["tan_alpha"]),
+        peak=float(worst["release"]),
+        factor=float(worst["spin"]),
+    )
     unsure = engine["runs_all"] - engine["runs"] - engine["runs_contradicted"]
-    yield Finding(key="limit_release.decided", values={**values, "runs_open": unsure or math.nan})
+    yield _said("release.decided", **values, runs_open=unsure or math.nan)
 
 
 def _forces(tables: Tables, structure: Structure) -> Iterator[Finding]:
     free, peaks, slip = (tables[name] for name in ("free_response", "peaks", "slip"))
-    needed = {"ratio": largest(free["friction"] / free["tan_alpha"])}
-    yield Finding(key="limit_force.friction", values=needed)
+    yield _said("force.friction", ratio=largest(free["friction"] / free["tan_alpha"]))
     # slip is counted at the base; under a slab it shows as a tilt that errs, or as energy that ends the run
     slipped = (slip[["slip", "tilt_rms"]] > SLIPPED).any(axis="columns") | slip["outcome"].isin(NO_PEAK)
     slips_at, sticks = largest(slip.loc[slipped, "share"]), slip.loc[~slipped, "share"]
@@ -475,18 +469,17 @@ def _forces(tables: Tables, structure: Structure) -> Iterator[Finding]:
     if not structure.slab_mass_ratio:  # where slip at the base is not all
         nearest = slip[slip["share"] == slips_at]
         values |= {"ratio": largest(nearest["slip"]), "share_tilt": largest(nearest["tilt_rms"])}
-    yield Finding(key="limit_force.slip", values=values)
+    yield _said("force.slip", **values)
     normal = free["least_normal"]
-    values = {
-        "bound": least(peaks["least_normal"]),
-        "bound_free": float(normal.min()),
-        "ratio": float(free["tan_alpha"].iloc[int(np.nanargmin(normal))]),
-        "ratio_lost": limit_of(free["tan_alpha"], normal > 0.0)[1],
-    }
-    yield Finding(key="limit_force.normal", values=values)
+    yield _said(
+        "force.normal",
+        bound=least(peaks["least_normal"]),
+        bound_free=float(normal.min()),
+        ratio=float(free["tan_alpha"].iloc[int(np.nanargmin(normal))]),
+        ratio_lost=limit_of(free["tan_alpha"], normal > 0.0)[1],
+    )
     moving = peaks.dropna(subset="moment")
-    slight, _ = limit_of(moving["tan_alpha"], moving["moment"] <= SLIGHT)
-    yield Finding(key="limit_force.moment", values={"ratio": slight})
+    yield _said("force.moment", ratio=limit_of(moving["tan_alpha"], moving["moment"] <= SLIGHT)[0])
 
 
 def _rings(tables: Tables) -> Iterator[Finding]:
@@ -497,34 +490,31 @@ def _rings(tables: Tables) -> Iterator[Finding]:
     free, touched = ring["motion"] == FREE, ring[ring["contact_time"] > 0.0]
     shaken = ring[~free]
     at_end = shaken.groupby("clearance")["at_end"].max()
-    values = {
-        "ratio": float(str(at_end.idxmin())) if len(at_end) else math.nan,
-        "ratio_end": float(at_end.min()),
-        "bound": largest(shaken["twist"].abs()),
-        "bound_free": largest(ring.loc[free, "twist"].abs()),
-    }
-    yield Finding(key="limit_ring.place", values=values)
-    values = {"runs": len(touched), "runs_all": len(ring), "share": largest(touched["loss"])}
-    yield Finding(key="limit_ring.touched", values=values)
+    yield _said(
+        "ring.place",
+        ratio=float(str(at_end.idxmin())) if len(at_end) else math.nan,
+        ratio_end=float(at_end.min()),
+        bound=largest(shaken["twist"].abs()),
+        bound_free=largest(ring.loc[free, "twist"].abs()),
+    )
+    yield _said("ring.touched", runs=len(touched), runs_all=len(ring), share=largest(touched["loss"]))
     # the one whose peak is farthest from that of the recess model
     known = shaken[shaken["outcome"] != "failed"]
     ratio = known["peak"] / known["recess_peak"]
     with np.errstate(divide="ignore"):
         far = int(np.nanargmax(np.abs(np.log(ratio))))
     names = ("tan_alpha", "turn", "clearance", "inclination", "friction")
-    values = {"ratio": float(ratio.iloc[far])} | {
-        f"given_{name}": float(known[name].iloc[far]) for name in names
-    }
-    values["given_inclination"] = values["given_inclination"] or math.nan  # 0: they lean by alpha
-    yield Finding(key="limit_ring.worst", values=values)
+    given = {f"given_{name}": float(known[name].iloc[far]) for name in names}
+    given["given_inclination"] = given["given_inclination"] or math.nan  # 0: they lean by alpha
+    yield _said("ring.worst", ratio=float(ratio.iloc[far]), **given)
     halved = (shaken["halved_peak"] / shaken["peak"] - 1.0).abs()
-    values = {
-        "runs": int((halved <= SMALL).sum()),
-        "runs_all": int(np.isfinite(halved).sum()),
-        "share": largest(halved),
-        "count": int(table["outcome"].isin(NO_PEAK).sum()) or math.nan,
-    }
-    yield Finding(key="limit_ring.halved", values=values)
+    yield _said(
+        "ring.halved",
+        runs=int((halved <= SMALL).sum()),
+        runs_all=int(np.isfinite(halved).sum()),
+        share=largest(halved),
+        count=int(table["outcome"].isin(NO_PEAK).sum()) or math.nan,
+    )
 
 
 def has_walls(table: pd.DataFrame) -> pd.Series[bool]:
