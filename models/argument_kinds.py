@@ -17,7 +17,7 @@ import inspect
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar, cast
+from typing import Any, Literal, TypeVar, cast
 
 C = TypeVar("C", bound=Callable[..., Any])
 
@@ -71,20 +71,11 @@ class _Names(dict[str, Any]):
             return _AnyKind  # elements of an array are checked where it is read
         if known in (Any, object) or isinstance(known, TypeVar):
             return Any
-        return _instance_of(known) if getattr(known, "__module__", "").startswith("rockwobble") else known
+        if isinstance(known, type) and known.__module__.startswith("rockwobble"):
+            from pydantic import InstanceOf
 
-
-def _instance_of(kind: Any) -> Any:
-    if not isinstance(kind, type):
-        return kind
-    from pydantic import PlainValidator
-
-    def same(value: object) -> object:
-        if not isinstance(value, kind):
-            raise ValueError(kind.__name__)  # noqa: TRY004  # which pydantic asks for
-        return value
-
-    return Annotated[Any, PlainValidator(same)]
+            return InstanceOf[known]  # type: ignore[misc, valid-type]
+        return known
 
 
 def _check(parameter: inspect.Parameter, function: Callable[..., Any]) -> Callable[[object], object]:

@@ -18,7 +18,7 @@ from .case import Case, Run
 from .diagnostic import Assumptions, Diagnostic, cell_of
 from .mode import REST, ROCKS, ROCKS_AND_SLIDES, ROCKS_IN_PLANE, SLIDES
 from .shown import Shown, line
-from .trace_source import Array, EagerSource, Source, friction_of, no_passes
+from .trace_file import Array, EagerSource, Source, friction_of, no_passes
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -1,26 +1,37 @@
-"""A trace as a Parquet file and back, with the same bits: samples as the table, the rest in its metadata."""
+"""What a trace is made of, and its Parquet file: samples as the table, the rest in its metadata.
+
+The sampled quantities of a trace have a source, which has them at hand or computes them when they are first
+asked for. A trace comes back from its file with the same bits.
+"""
 
 from __future__ import annotations
 
+import io
+import math
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
+from . import plain_json
 from .case import Case, InitialState, Run
 from .cylinder import cylinder_of
 from .diagnostic import Assumptions, Diagnostic
 from .ground_motion import GroundMotion
-from .parquet_file import pack, read
 from .plain_json import Facts, JsonObject, fields_of
 from .record_source import source_from_plain
+from .shown import CompactRepr
 from .tendon import Tendon
-from .trace_source import Array, EagerSource
 
 if TYPE_CHECKING:
     import pandas as pd
 
+Array = NDArray[np.float64]
+# the name of our part of the metadata of a Parquet file, beside that of pandas
+METADATA = b"rockwobble"
 # name: (unit, meaning), of the samples as a table
 COLUMNS = {
     "time": ("s", "from the start of the run"),
@@ -73,6 +84,50 @@ OF_FRAMES = VECTORS["top_contact_force"]  # columns that only the trace of a fra
 OF_TENDONS = ("elongation", "tendon_force")  # and of a body with a tendon
 # columns of the trace itself; the others in a table of samples belong to its source
 FIELDS = ("time", "tilt", "tilt_rate", "rolling_angle", "twist", "contact_point", "centre_of_mass")
+
+
+class Source(Protocol):
+    """Source of the lazily computed quantities of a trace."""
+
+    def quantities(self) -> Mapping[str, Array]:
+        """Return the sampled quantities beyond the fields of a trace, (n,) or (n, 3)."""
+        ...
+
+    def assumptions(self, until: float) -> Assumptions | None:
+        """Return whether contact and friction held until a time [s]; None if it does not know."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class EagerSource(CompactRepr):
+    """A source that has everything at hand, such as an engine or a stored file."""
+
+    values: Mapping[str, Array]
+    held: Assumptions | None = None
+
+    def quantities(self) -> Mapping[str, Array]:
+        """Return the quantities, each (n,) or (n, 3)."""
+        return self.values
+
+    def assumptions(self, until: float) -> Assumptions | None:
+        """Return the assumptions of the whole motion, as far as they are known."""
+        return self.held
+
+
+def no_passes() -> pd.DataFrame:
+    """Return an empty table of passes."""
+    import pandas as pd
+
+    table = pd.DataFrame({name: np.empty(0) for name in ("time", "minimum_tilt", "angle_of_turn")})
+    return table.assign(resolved=np.empty(0, dtype=bool))
+
+
+def friction_of(force: Array) -> Array:
+    """Return horizontal over normal force (n,) of `force` (n, 3); inf where N is not positive."""
+    horizontal, normal = np.hypot(force[:, 0], force[:, 1]), force[:, 2]
+    pressed = normal > 0.0
+    needed = np.where(pressed, horizontal / np.where(pressed, normal, 1.0), math.inf)
+    return np.where(np.isnan(normal), math.nan, needed)
 
 
 def trace_arguments(facts: Facts, samples: pd.DataFrame) -> JsonObject:
@@ -136,6 +191,49 @@ def case_from_plain(given: Facts) -> Case:
         "tendon": (tendon := given.get("tendon")) and Tendon(**tendon),
     }
     return Case(**{**given, **fields})
+
+
+def pack(table: pd.DataFrame, about: Mapping[str, object]) -> bytes:
+    """Return a table as the bytes of a Parquet file with `about` in its metadata."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    packed = pa.Table.from_pandas(table, preserve_index=False)
+    metadata = {**(packed.schema.metadata or {}), METADATA: plain_json.dumps(about).encode()}
+    split = [field.name for field in packed.schema if pa.types.is_floating(field.type)]
+    buffer = io.BytesIO()
+    pq.write_table(
+        packed.replace_schema_metadata(metadata),
+        buffer,
+        compression="zstd",
+        use_byte_stream_split=split,  # takes a quarter off the size of numbers under zstd
+        use_dictionary=[name for name in packed.column_names if name not in split],
+        write_page_checksum=True,
+    )
+    return buffer.getvalue()
+
+
+def read(content: bytes) -> tuple[pd.DataFrame, JsonObject]:
+    """Return the table of a file written by `pack`, and its metadata.
+
+    Raises
+    ------
+    ValueError or OSError
+        If it cannot be read, or its data are damaged.
+    """
+    import pyarrow.parquet as pq
+
+    table = pq.read_table(io.BytesIO(content), page_checksum_verification=True)
+    return table.to_pandas(), read_about(content)
+
+
+def read_about(source: bytes | Path) -> JsonObject:
+    """Metadata of a Parquet file; empty where rockwobble did not write it."""
+    import pyarrow.parquet as pq
+
+    metadata = pq.read_schema(io.BytesIO(source) if isinstance(source, bytes) else source).metadata or {}
+    values: JsonObject = plain_json.loads(metadata.get(METADATA, b"{}"))
+    return values
 
 
 def to_parquet(samples: pd.DataFrame, facts: Mapping[str, object], case: Case) -> bytes:

@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Diagnostic, Trace
-from rockwobble.models.trace_source import EagerSource
+from rockwobble.models.trace_file import EagerSource
 
 from .auto_step import (
     Attempt,

@@ -18,7 +18,7 @@ from rockwobble.models.mode import SLIDES, expected_mode
 from rockwobble.models.number_checks import require_positive, require_sample_step
 from rockwobble.models.support import RECESS, support_named
 from rockwobble.models.trace import NO_PEAK
-from rockwobble.models.trace_source import EagerSource
+from rockwobble.models.trace_file import EagerSource
 
 from .auto_step import AUTO, STEP_TOLERANCE, Progress, find_step
 from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, engine_fault, engine_for

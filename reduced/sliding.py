@@ -21,7 +21,7 @@ from rockwobble.models.cpus import grid_in_threads
 from rockwobble.models.number_checks import require_axis, require_positive
 from rockwobble.models.shown import CompactRepr
 from rockwobble.models.support import FLAT
-from rockwobble.models.trace_source import Array
+from rockwobble.models.trace_file import Array
 
 from ._compile import announce
 from .integration.sliding import Slide, slide

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import CLOSED_TILT, Assumptions, Diagnostic
 from rockwobble.models.shown import CompactRepr
-from rockwobble.models.trace_source import Array, friction_of
+from rockwobble.models.trace_file import Array, friction_of
 
 from . import forces, kernels
 from .integration.result import MAXIMUM, MINIMUM

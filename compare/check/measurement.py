@@ -24,7 +24,7 @@ from rockwobble.models import (
 from rockwobble.models.cylinder import PIER
 from rockwobble.models.finding import Finding, Value
 from rockwobble.models.shown import CompactRepr
-from rockwobble.models.trace_source import EagerSource
+from rockwobble.models.trace_file import EagerSource
 
 Outcome = Literal["passed", "FAILED", "no baseline", "not run"]
 PASSED: Outcome = "passed"

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Generic, TypedDict, TypeVar
 
 from rockwobble.models import plain_json
-from rockwobble.models.parquet_file import pack, read
+from rockwobble.models.trace_file import pack, read
 
 from ..storage.claim import CACHE, claim_on
 from ..storage.files import remove_folders, remove_leftovers, sole_writer, write_whole

@@ -14,10 +14,10 @@ from pathlib import Path
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.argument_kinds import with_argument_kinds
 from rockwobble.models.case import TimeStep
-from rockwobble.models.parquet_file import pack, read
 from rockwobble.models.shown import CompactRepr
 from rockwobble.models.support import RECESS
 from rockwobble.models.trace import lost_trace
+from rockwobble.models.trace_file import pack, read
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.extrapolated_step import FINEST
 from rockwobble.multibody.scene import REFERENCE_TIME_STEP, froude_scale

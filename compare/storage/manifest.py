@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockwobble.models import plain_json
-from rockwobble.models.parquet_file import pack
 from rockwobble.models.shown import CompactRepr
+from rockwobble.models.trace_file import pack
 
 from .files import replace_files, require_folder
 from .provenance import code_digests, commit, package_versions, processor

@@ -19,7 +19,7 @@ from .component import Component, Direction, open_record
 from .directions import NORTH, at_the_surface, for_place, in_order, turned_to_north
 from .formats import read_components
 from .reading import Reading
-from .units import factor
+from .units import settled_unit
 
 ZERO = "zero"  # stands for a file: planar motion
 _G = METRES_PER_SECOND_SQUARED["g"]
@@ -125,7 +125,7 @@ def record_of(
         components = _resampled(components)
     first = max(components, key=lambda part: part.path.name != ZERO)
     _require_same_clock([first, *(part for part in components if part is not first)])
-    units_used = ["" if part.path.name == ZERO else _unit(part, reading.units) for part in components]
+    units_used = ["" if each.path.name == ZERO else settled_unit(each, reading.units) for each in components]
     components, changes = _equally_long(components, reading.lengths)
     with np.errstate(over="ignore"):  # GroundMotion refuses what is not finite
         samples = np.column_stack(
@@ -154,11 +154,6 @@ def record_of(
     if reading.rotate is None:
         return motion
     return motion.rotated(math.radians(math.fmod(float(reading.rotate), 360.0)))
-
-
-def _unit(part: Component, units: str | None) -> str:
-    factor(part.path, part.unit, units)  # refuses what is silent or contradicts
-    return part.unit or str(units)
 
 
 def _azimuth(part: Component, axis: str) -> float | None:

@@ -6,7 +6,8 @@ import re
 from pathlib import Path
 
 from ..number_checks import quoted
-from ..record_source import ALLOWED_UNITS, METRES_PER_SECOND_SQUARED, USUAL_UNITS
+from ..record_source import ALLOWED_UNITS, USUAL_UNITS
+from .component import Component
 
 _SPELLINGS = {  # units without blanks and signs of powers and products, "sec" as "s"
     "g": "g g's gs",
@@ -87,20 +88,20 @@ def stated_unit(path: Path, header: list[str]) -> str | None:
     return next(iter(entries), None)
 
 
-def factor(path: Path, stated: str | None, given: str | None) -> float:
-    """Return the factor to m/s^2 from the unit that the file states and the one that the caller gives.
+def settled_unit(component: Component, given: str | None) -> str:
+    """Unit that the file of a component states, or the one that the user gives.
 
     Raises
     ------
     ValueError
         If there is neither, or the two contradict each other.
     """
-    unit = stated or given
+    unit, name = component.unit or given, component.path.name
     if unit is None:
-        raise ValueError(f"{path.name} does not say its unit: give units, such as {', '.join(USUAL_UNITS)}")
-    if given is not None and given != unit:
-        raise ValueError(f"{path.name} says that it is in {unit}, but units is {given!r}")
-    return METRES_PER_SECOND_SQUARED[unit]
+        raise ValueError(f"{name} does not say its unit: give units, such as {', '.join(USUAL_UNITS)}")
+    if given not in (None, unit):
+        raise ValueError(f"{name} says that it is in {unit}, but units is {given!r}")
+    return unit
 
 
 def _require_acceleration(path: Path, header: list[str]) -> None:

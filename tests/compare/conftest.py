@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 from rockwobble.models import Case, Cylinder, Run, Trace
-from rockwobble.models.trace_source import Array, EagerSource
+from rockwobble.models.trace_file import Array, EagerSource
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from typing import Any
 
 from rockwobble.compare.check import Subject
 from rockwobble.models import Case, GroundMotion, Trace, WobblingFrame
-from rockwobble.models.trace_source import EagerSource
+from rockwobble.models.trace_file import EagerSource
 
 Faulty = Callable[[Subject], Subject]
 

@@ -13,7 +13,7 @@ from rockwobble import comparison
 from rockwobble.compare import Comparison
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite
-from rockwobble.models.parquet_file import read_about
+from rockwobble.models.trace_file import read_about
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2, height=11.0)
 SHAKE = GroundMotion(

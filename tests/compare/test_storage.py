@@ -27,7 +27,7 @@ from rockwobble.compare.storage.manifest import (
     write_pages,
     write_results,
 )
-from rockwobble.models.parquet_file import read_about
+from rockwobble.models.trace_file import read_about
 
 TABLE = pd.DataFrame({"peak": [0.1, float("nan")], "run": ["a", "b"]})
 MADE = {"command": "rockwobble study", "seeds": {"members": 3}, "headline": {"largest": 0.1}}

@@ -9,7 +9,7 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, InitialState, WobblingFrame, el_centro_1940
-from rockwobble.models.trace_source import friction_of
+from rockwobble.models.trace_file import friction_of
 from rockwobble.reduced.body import body_of
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

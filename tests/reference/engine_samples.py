@@ -9,7 +9,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, RockingBody, Run, Trace
 from rockwobble.models.support import FLAT
-from rockwobble.models.trace_source import EagerSource
+from rockwobble.models.trace_file import EagerSource
 from rockwobble.multibody.scene import Scene, scaled_body, starting_state
 
 PASS = ("time", "minimum_tilt", "angle_of_turn")

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import re
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..component import Component, Direction, RecordFile
 from ..headers import compare_peak
 from ..numbers import block_of_numbers
@@ -14,7 +11,6 @@ from ..reading import Reading
 
 NAME = "K-NET/KiK-net"
 _HEADER_LINES = 17
-_MOST_LINES, _LONGEST_LINE = 200_000, 200  # two hours at 200 Hz, and [characters]
 _KEY_WIDTH = 18  # [characters]
 _SCALE = re.compile(r"(\d{1,9}(?:\.\d{1,9})?)\s*\(gal\)\s*/\s*(\d{1,12})", re.IGNORECASE)
 _DECIMAL = re.compile(r"\d{1,6}(?:\.\d{1,6})?")
@@ -61,7 +57,7 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
             f"{file.name} ({NAME}): 'Dir.' must be one of {', '.join(_DIRECTIONS)}, got {code[:20]!r}"
         )
     direction, label = _DIRECTIONS[code.upper()]
-    values = _counts(file) * (numerator / denominator)
+    values = block_of_numbers(file, _HEADER_LINES) * (numerator / denominator)
     if len(values) < 2:
         raise ValueError(f"{file.name} ({NAME}): no counts follow the header")
     duration = _DECIMAL.fullmatch(header.get("DURATION TIME(S)", ""))
@@ -85,22 +81,6 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
             notes=("offset of the sensor not removed", *notes),
         )
     ]
-
-
-def _counts(file: RecordFile) -> NDArray[np.float64]:
-    """Return the counts, which blanks part; the slow way names the line that is damaged."""
-    lines = file.text[_HEADER_LINES:]
-    longer = next((at for at, line in enumerate(lines) if len(line) > _LONGEST_LINE), None)
-    if longer is not None or len(lines) > _MOST_LINES:
-        raise ValueError(
-            f"{file.name} ({NAME}), line {_HEADER_LINES + 1 + (longer or 0)}: expected 8 counts a line, at "
-            f"most {_MOST_LINES} lines, got {lines[longer or 0][:40]!r}"
-        )
-    try:
-        counts = np.array(" ".join(lines).split(), dtype=np.float64)
-    except ValueError:
-        return block_of_numbers(file, _HEADER_LINES)
-    return counts if len(counts) and np.isfinite(counts).all() else block_of_numbers(file, _HEADER_LINES)
 
 
 def _number(
