@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
@@ -70,11 +70,13 @@ def comparison() -> Comparison:
         return rw.comparison(case, runs=runs)
 
 
-@pytest.fixture
-def six_records(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture(scope="module")
+def six_records() -> Iterator[None]:
     """Six other records in each advice, and two intensities in a plane: all take most of its time."""
-    monkeypatch.setattr(p695, "PAIRS", 6)
-    monkeypatch.setattr(scales, "PLANAR_SCALES", (1.0, 2.0))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(p695, "PAIRS", 6)
+        patch.setattr(scales, "PLANAR_SCALES", (1.0, 2.0))
+        yield
 
 
 @pytest.fixture
