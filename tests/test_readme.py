@@ -59,6 +59,15 @@ def test_links_lead_to_files() -> None:
     assert [target for target in targets if not (CHECKOUT / target).exists()] == []
 
 
+def test_the_description_for_an_index_has_no_link_into_the_checkout() -> None:
+    config = tomllib.loads((CHECKOUT / "pyproject.toml").read_text(encoding="utf-8"))
+    described = README
+    for each in config["tool"]["hatch"]["metadata"]["hooks"]["fancy-pypi-readme"]["substitutions"]:
+        described = re.sub(each["pattern"], each["replacement"], described)
+    assert [link for link in re.findall(r"\]\(([^)]+)\)", described) if not link.startswith("https:")] == []
+    assert len(described.split()) > 0.9 * len(README.split())
+
+
 def test_no_document_says_another_version_author_or_address() -> None:
     project = tomllib.loads((CHECKOUT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     citation = (CHECKOUT / "CITATION.cff").read_text(encoding="utf-8")

@@ -44,10 +44,7 @@ if TYPE_CHECKING:
 
 Cylinders = Annotated[
     list[str] | None,
-    options.body(
-        "Named cylinder, such as pier=6,0.2; may be repeated.",
-        metavar="NAME=R,TAN_ALPHA",
-    ),
+    options.body("Named cylinder, such as pier=6,0.2; may be repeated.", metavar="NAME=R,TAN_ALPHA"),
 ]
 
 
@@ -259,11 +256,7 @@ def _runs(
 
 SuiteFile = Annotated[
     str | None,
-    typer.Argument(
-        metavar="[SUITE]",
-        help=f"Suite instead of a grid: {options.SUITES}.",
-        show_default=False,
-    ),
+    typer.Argument(metavar="[SUITE]", help=f"Suite instead of a grid: {options.SUITES}.", show_default=False),
 ]
 Models = Annotated[
     list[str] | None,
@@ -273,8 +266,7 @@ Models = Annotated[
     ),
 ]
 ChunkSize = Annotated[
-    int | None,
-    options.work("Number of runs in a chunk. Default: about one second of work.", min=1),
+    int | None, options.work("Number of runs in a chunk. Default: about one second of work.", min=1)
 ]
 
 

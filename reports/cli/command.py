@@ -14,7 +14,7 @@ from typer.core import TyperCommand
 
 from rockwobble.compare.runs.plan import Option, options_of
 
-from ..console import FAILED, echo, interruptible, save_with_page, shown_progress, user_input
+from ..console import FAILED, echo, interruptible, open_page, save_with_page, shown_progress, user_input
 from .options import Out, Overwrite, levels, numbers, restitution
 from .outputs import claim_folder
 
@@ -74,6 +74,8 @@ class Work:
         Whether what is folded on the page is printed, too.
     failed : callable
         Whether results are none, so that the exit code is 1.
+    opened : bool, optional
+        Whether the page is opened in the browser; None: in a terminal.
     """
 
     run: Callable[..., Results]
@@ -82,6 +84,7 @@ class Work:
     resumes: bool = False
     details: bool = False
     failed: Callable[[Any], object] = lambda results: False
+    opened: bool | None = False
 
 
 def saves_results(command: Callable[..., Work]) -> Callable[..., None]:
@@ -97,6 +100,7 @@ def saves_results(command: Callable[..., Work]) -> Callable[..., None]:
             with user_input(), shown_progress(work.what) as progress:
                 results = work.run(progress=progress, **({"resume": out} if work.resumes else {}))
             save_with_page(results, out)(details=work.details)
+        open_page(out / f"{command.__name__}.html", work.opened)
         if work.failed(results):
             raise typer.Exit(FAILED)
 

@@ -173,11 +173,7 @@ _SUPPORTS = f"Support: {SUPPORT_WORDS}; a support with walls needs an engine"
 _DEFAULT = "Default: MuJoCo and PyBullet (DART where PyBullet is missing)"
 Engines = Annotated[list[str] | None, method(f"{ENGINES}. {_DEFAULT}.", callback=engine_names)]
 EnginesOrAll = Annotated[
-    list[str] | None,
-    method(
-        f"{ENGINES}. {_DEFAULT}. all: every installed engine.",
-        callback=_standing_alone,
-    ),
+    list[str] | None, method(f"{ENGINES}. {_DEFAULT}. all: every installed engine.", callback=_standing_alone)
 ]
 Support = Annotated[str, method(f"{_SUPPORTS}.")]
 Supports = Annotated[list[str] | None, method(f"{_SUPPORTS}; may be repeated. Default: recess and flat.")]
@@ -201,11 +197,7 @@ Settings = Annotated[
 ]
 SuiteName = Annotated[
     str | None,
-    typer.Argument(
-        metavar="[SUITE]",
-        help=f"Suite of cases and runs: {SUITES}.",
-        show_default=False,
-    ),
+    typer.Argument(metavar="[SUITE]", help=f"Suite of cases and runs: {SUITES}.", show_default=False),
 ]
 Workers = Annotated[
     int | None, work("Number of processes on this machine. Default: one per processor.", min=1)
@@ -219,13 +211,8 @@ Scheduler = Annotated[
 ]
 Out = Annotated[Path, output("Folder for the results.")]
 Overwrite = Annotated[
-    bool,
-    output(
-        "Overwrite results of another command or of other options. Default: refused.",
-        "--overwrite",
-    ),
+    bool, output("Overwrite results of another command or of other options. Default: refused.", "--overwrite")
 ]
 Open = Annotated[
-    bool | None,
-    output("Open the page in the browser. Default: yes in a terminal.", "--open/--no-open"),
+    bool | None, output("Open the page in the browser. Default: yes in a terminal.", "--open/--no-open")
 ]

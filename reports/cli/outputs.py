@@ -30,10 +30,7 @@ def claim_folder(context: typer.Context) -> None:
     stated = context.params
     context.with_resource(
         claim.claim_folder(
-            stated["out"],
-            plan=plan_of(context),
-            command=command_line(),
-            overwrite=stated["overwrite"],
+            stated["out"], plan=plan_of(context), command=command_line(), overwrite=stated["overwrite"]
         )
     )
 

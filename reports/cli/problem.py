@@ -209,16 +209,10 @@ class Release(Plan):
     """The options that state a release."""
 
     release_tilt_deg: float | None = _release(
-        None,
-        "Tilt at release, in deg. Without a record the ground is then still.",
-        least=0.0,
-        below=90.0,
+        None, "Tilt at release, in deg. Without a record the ground is then still.", least=0.0, below=90.0
     )
     release_azimuth_deg: float = _release(
-        0.0,
-        "Tilt direction at release, in deg, counter-clockwise from x (east).",
-        least=-360.0,
-        most=360.0,
+        0.0, "Tilt direction at release, in deg, counter-clockwise from x (east).", least=-360.0, most=360.0
     )
     rolling_rate: float = _release(0.0, "Rolling rate at release, in rad/s.")
     duration: float | None = _release(
@@ -360,13 +354,9 @@ class Problem(Release, Record, Restraint, Body):
 
     gravity: float = _ground(9.81, GRAVITY)
     friction: float = _ground(
-        1.0,
-        f"{FRICTION} The reduced models assume no sliding and warn where it would occur.",
+        1.0, f"{FRICTION} The reduced models assume no sliding and warn where it would occur."
     )
-    rolling_resistance: float = _ground(
-        0.0,
-        ROLLING,
-    )
+    rolling_resistance: float = _ground(0.0, ROLLING)
 
     def case(self) -> rw.Case:
         """Return the case that they state.

@@ -18,11 +18,7 @@ if TYPE_CHECKING:
 
 
 @saves_results
-def validity(
-    context: typer.Context,
-    plan: ValidityPlan,
-    workers: options.Workers = None,
-) -> Work:
+def validity(context: typer.Context, plan: ValidityPlan, workers: options.Workers = None) -> Work:
     """Limits of the reduced model: conditions, expected errors, and where they matter.
 
     Peak tilts of records by the reduced models and by MuJoCo (ideal recess, recess with clearance, flat

@@ -13,15 +13,7 @@ import typer
 
 import rockwobble as rw
 
-from ..console import (
-    complain,
-    echo,
-    interruptible,
-    open_page,
-    save_with_page,
-    shown_progress,
-    user_input,
-)
+from ..console import complain, echo, interruptible, user_input
 from ..pages import stored_page
 from ..pages.cases import case_lines
 from ..pages.command_line import command_lines
@@ -29,12 +21,12 @@ from ..pages.table import number
 from ..pages.wording import some_of, written
 from ..registry import KINDS
 from . import options
-from .command import takes_options
+from .command import Work, saves_results
 from .options import settings
-from .outputs import claim_folder
 from .problem import Problem, given_options, refuse
 
 if TYPE_CHECKING:
+    from rockwobble.compare.runs.progress import ProgressCallback
     from rockwobble.compare.storage.manifest import Manifest
     from rockwobble.models.finding import Value
 
@@ -219,16 +211,13 @@ def _inches(width: str | None, forms: Collection[str]) -> float | None:
 
 Stored = Annotated[
     Path | None,
-    typer.Argument(
-        help="Folder of a stored comparison. Without it the case is run.",
-        show_default=False,
-    ),
+    typer.Argument(help="Folder of a stored comparison. Without it the case is run.", show_default=False),
 ]
 CaseName = Annotated[str | None, typer.Option("--case", help="Name of the case, if the folder has several.")]
 Engine = Annotated[str | None, options.method(f"{options.ENGINE}. Default: mujoco.")]
 
 
-@takes_options
+@saves_results
 def view(
     context: typer.Context,
     problem: Problem,
@@ -238,10 +227,8 @@ def view(
     support: options.Support = "recess",
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
-    out: options.Out = Path("rockwobble-view"),
-    overwrite: options.Overwrite = False,
     opened: options.Open = None,
-) -> None:
+) -> Work:
     """3D animation of one case: the cylinder of an engine, with the reduced model translucent over it.
 
     Without options: MuJoCo in a recess under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
@@ -255,32 +242,27 @@ def view(
 
     from ..figures.playback import require_motion
 
-    with interruptible():
-        with user_input():
-            if folder is not None:
-                others = set(given_options(context)) - {"folder", "case_name", "out", "overwrite", "opened"}
-                refuse(context, others, "states a run and does not go with a stored one")
-                comparison = rw.Comparison.load(folder)
-                name = _chosen_case(comparison, case_name)
-            elif case_name is not None:
-                raise ValueError("--case chooses from a folder, give the folder of a comparison as well")
-            else:
-                case = problem.case()
-                asked = rw.Run(engine or _default_engine(support), support, time_step)
-                (run,) = with_settings(case, [asked], settings(setting))
-                require_runnable(case, run)
-                name = case.name
-                require_motion(name, [rw.simulate(case)])  # before an engine runs for seconds
-            claim_folder(context)
-        if folder is None:
-            echo(case_lines(case))
-            with user_input(), shown_progress() as progress:
-                comparison = rw.comparison(case, runs=[run], progress=progress)
-        found = View.of(comparison, name)
-        with user_input():
-            require_motion(name, found.comparison.traces.values())
-        save_with_page(found, out)()
-    open_page(out / "view.html", opened)
+    if folder is not None:
+        others = set(given_options(context)) - {"folder", "case_name", "out", "overwrite", "opened"}
+        refuse(context, others, "states a run and does not go with a stored one")
+        stored = rw.Comparison.load(folder)
+        name = _chosen_case(stored, case_name)
+        require_motion(name, stored.of_case(name).traces.values())
+        return Work(lambda progress: View.of(stored, name), opened=opened)
+    if case_name is not None:
+        raise ValueError("--case chooses from a folder, give the folder of a comparison as well")
+    case = problem.case()
+    asked = rw.Run(engine or _default_engine(support), support, time_step)
+    (run,) = with_settings(case, [asked], settings(setting))
+    require_runnable(case, run)
+    require_motion(case.name, [rw.simulate(case)])  # before an engine runs for seconds
+
+    def compared(progress: ProgressCallback) -> View:
+        found = View.of(rw.comparison(case, runs=[run], progress=progress), case.name)
+        require_motion(case.name, found.comparison.traces.values())
+        return found
+
+    return Work(compared, case_lines(case), opened=opened)
 
 
 def _default_engine(support: str) -> str:

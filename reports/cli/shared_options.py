@@ -118,8 +118,7 @@ class ManyMethods:
         ),
     ] = None
     engine: Annotated[
-        list[str] | None,
-        options.method(f"{options.ENGINES}. Default: none.", callback=options.engine_names),
+        list[str] | None, options.method(f"{options.ENGINES}. Default: none.", callback=options.engine_names)
     ] = None
     support: options.Supports = None
     setting: options.Settings = None
@@ -173,8 +172,7 @@ class Hazard(Plan):
     """The options that state the hazard of a site."""
 
     hazard: Path | None = _hazard(
-        None,
-        "Hazard curve, for the annual frequency: CSV of two named columns or of OpenQuake.",
+        None, "Hazard curve, for the annual frequency: CSV of two named columns or of OpenQuake."
     )
     hazard_measure: str | None = _hazard(
         None,

@@ -55,8 +55,7 @@ class SubjectOptions(Plan):
         None, "Trajectory to check (CSV with time, tilt, azimuth); --suite states its case."
     )
     suite: str | None = _subject(
-        None,
-        f"Suite whose engine runs are compared with the models: {options.SUITES}.",
+        None, f"Suite whose engine runs are compared with the models: {options.SUITES}."
     )
     support: str | None = _subject(
         None, "Support of the model or trajectory: recess or flat. Default: recess."
@@ -165,14 +164,10 @@ def check(
     update_baseline: Annotated[
         bool,
         typer.Option(
-            "--update-baseline",
-            help="Show the changes of new baselines; written only with --reason.",
+            "--update-baseline", help="Show the changes of new baselines; written only with --reason."
         ),
     ] = False,
-    reason: Annotated[
-        str | None,
-        typer.Option(help="Reason for new baselines, kept in their file."),
-    ] = None,
+    reason: Annotated[str | None, typer.Option(help="Reason for new baselines, kept in their file.")] = None,
 ) -> None:
     """Physical checks of reduced models and engines, and comparison with their baselines.
 
@@ -189,7 +184,13 @@ def check(
     Example: rockwobble check --only equations --only conserved
     """
     with interruptible(), user_input():
-        from ..pages.check import headline
+        from rich.console import Console
+
+        from rockwobble.compare.check import GROUPS
+        from rockwobble.compare.check import check as checks_of
+        from rockwobble.models.number_checks import require_one_of
+
+        from ..pages.check import headline, print_checks
 
         if reason is not None and not update_baseline:
             raise ValueError("--reason belongs to --update-baseline, got it alone")
@@ -205,28 +206,15 @@ def check(
         if "suite" in given:
             cases = given["suite"].cases
             echo([*record_lines(case.motion for case in cases), *case_warnings(cases)])
-        found = _run(given, only)
+        for group in only or ():
+            require_one_of("--only", group, tuple(GROUPS))
+        with shown_progress("checks") as progress:
+            found = checks_of(**given, only=only, progress=progress)
+        print_checks(Console(), found)
         print(headline(found))
         output.write(found, plan_of(context))
     if not found.passed:
         raise typer.Exit(FAILED)
-
-
-def _run(subject: Subject, only: list[str] | None) -> Checks:
-    """Run the checks, and print them."""
-    from rich.console import Console
-
-    from rockwobble.compare.check import GROUPS, check
-    from rockwobble.models.number_checks import require_one_of
-
-    from ..pages.check import print_checks
-
-    for group in only or ():
-        require_one_of("--only", group, tuple(GROUPS))
-    with shown_progress("checks") as progress:
-        found = check(**subject, only=only, progress=progress)
-    print_checks(Console(), found)
-    return found
 
 
 def update(reason: str | None) -> None:
@@ -248,18 +236,15 @@ def update(reason: str | None) -> None:
             new = baseline.new_fingerprint(subject, progress)
         old = baseline.read_baseline(subject)
         changes = baseline.baseline_changes(old, new, subject)
-        for each in changes or ["same"]:
-            print(f"{subject.label}: {each}")
+        print(*(f"{subject.label}: {each}" for each in changes or ["same"]), sep="\n")
         if changes:
             changed.append((subject, old, new))
-    texts = dict[Path, bytes]()
+    if changed and not (reason or "").strip():
+        raise ValueError("nothing was changed: a new baseline needs a --reason, got none")
     for subject, old, new in changed:
-        if not (reason or "").strip():
-            raise ValueError("nothing was changed: a new baseline needs a --reason, got none")
+        path = baseline.baseline_path(subject)
         text = baseline.updated_baseline(old, new, subject, reason=reason or "", date=date)
-        texts[baseline.baseline_path(subject)] = text.encode()
-    for path, content in texts.items():
-        replace_files(path.parent, {path.name: content})
+        replace_files(path.parent, {path.name: text.encode()})
         print(f"Written: {path}")
 
 

@@ -112,12 +112,8 @@ def test_reference_identifiers_are_well_formed_and_all_citations_resolve() -> No
 
 
 def test_nothing_is_documented_that_is_not_there() -> None:
-    missing = []
-    for name in documented():
-        module, _, last = name.rpartition(".")
-        if not hasattr(importlib.import_module(module), last):
-            missing.append(name)
-    assert missing == []
+    names = [name.rpartition(".")[::2] for name in documented()]
+    assert [each for each in names if not hasattr(importlib.import_module(each[0]), each[1])] == []
 
 
 def test_every_name_at_the_top_is_on_the_first_page() -> None:
@@ -127,9 +123,8 @@ def test_every_name_at_the_top_is_on_the_first_page() -> None:
 
 
 def test_every_command_has_its_help_on_a_page() -> None:
-    shown = "".join(
-        page.read_text(encoding="utf-8") for page in (DOCS / "reference" / "commands").glob("*.md")
-    )
+    pages = (DOCS / "reference" / "commands").glob("*.md")
+    shown = "".join(page.read_text(encoding="utf-8") for page in pages)
     groups = " ".join(re.findall(r"\{rockwobble-commands\} (.+)", shown)).split()
     of_groups = {name for name, entry in COMMANDS.items() if entry.group in groups}
     commands = typer.main.get_command(app).commands  # type: ignore[attr-defined]
@@ -166,9 +161,8 @@ def levels_of(key: str) -> set[str]:
 
 def constants(node: ast.AST) -> set[str]:
     """Texts of an expression."""
-    return {
-        each.value for each in ast.walk(node) if isinstance(each, ast.Constant) if isinstance(each.value, str)
-    }
+    values = (each.value for each in ast.walk(node) if isinstance(each, ast.Constant))
+    return {value for value in values if isinstance(value, str)}
 
 
 def test_levels_of_keys_on_their_page_are_those_of_the_code() -> None:
@@ -191,14 +185,8 @@ def test_levels_of_keys_on_their_page_are_those_of_the_code() -> None:
 @pytest.mark.slow
 def test_published_findings_have_the_levels_of_their_page() -> None:
     seen: set[str] = set()
-    for folder in (
-        "advice/pier",
-        "advice/tower",
-        "ensemble/p695-2",
-        "fragility/p695",
-        "risk/p695",
-        "validity",
-    ):
+    studies = ("advice/pier", "advice/tower", "ensemble/p695-2", "fragility/p695", "risk/p695", "validity")
+    for folder in studies:
         path = ROOT / "reports" / "published" / folder
         findings = KINDS[read_manifests(path)[0].kind].results_class().load(path).findings()
         assert [each for each in findings if each.level not in levels_of(each.key)] == []

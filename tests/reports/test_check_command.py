@@ -21,7 +21,6 @@ from showing import is_golden, loads_as_it_was
 from rockwobble.compare.check import FAILED, NOT_RUN, PASSED, Checks, Result, Subject, baseline, groups
 from rockwobble.compare.check.measurement import Bound, at_most, not_run
 from rockwobble.compare.storage.files import replace_files
-from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.check import as_junit, print_checks
 from rockwobble.reports.pages.wording import sentence
 
@@ -115,18 +114,6 @@ def test_an_unwritable_report_is_one_line_after_the_result(
     assert re.fullmatch(r"(\d of \d checks[^\n]*\n)*rockwobble: [^\n]*/a\b[^\n]*\n", err)
 
 
-def test_interrupted(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
-    def interrupted(subject: Subject, support: str) -> Iterator[Result]:
-        raise KeyboardInterrupt
-
-    monkeypatch.setitem(groups.GROUPS, "exact", check_of(interrupted))
-    assert run("--only", "exact", "--json", str(tmp_path / "a.json")) == 130
-    assert capsys.readouterr().err.splitlines()[-1] == "rockwobble: interrupted, nothing was written"
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_junit_counts_failures_and_what_did_not_run() -> None:
     root = ElementTree.fromstring(as_junit(checks(GOOD, BAD, NONE, LEFT)))
     agreement = root.find("testsuite[@name='agreement']")
@@ -136,10 +123,7 @@ def test_junit_counts_failures_and_what_did_not_run() -> None:
     assert failure is not None
     assert failure.get("message") == sentence(BAD.finding(), short=True)
     assert failure.text == sentence(BAD.finding())
-
-
-def test_junit_is_xml_whatever_an_engine_says() -> None:
-    strange = at_most("a\x1b[0m<&>", 1.0, Bound(0.0, "\x00"), "\x07", "\x08")
+    strange = at_most("a\x1b[0m<&>", 1.0, Bound(0.0, "\x00"), "\x07", "\x08")  # whatever an engine says
     assert ElementTree.fromstring(as_junit(checks(strange))) is not None
 
 
@@ -151,26 +135,17 @@ def test_results_are_saved_shown_and_drawn_again(
     out = tmp_path / "checks"
     assert run("--only", "agreement", "--out", str(out)) == 1
     assert capsys.readouterr().out.splitlines()[-1].startswith(f"Written to {out}: check.html, ")
+    loads_as_it_was(checks(GOOD, BAD, NONE, LEFT), tmp_path / "others")
     stored = Checks.load(out)
     assert [each.outcome for each in stored.results] == [PASSED, FAILED, FAILED, NOT_RUN]
     assert stored.results[1].bound == MADE[1].bound
     page = (out / "check.html").read_text()
     (out / "check.html").unlink()
-    for command in ("show", "report"):
-        with pytest.raises(SystemExit) as ended:
-            main([command, str(out)])
-        assert ended.value.code == 0
+    assert [command_line(command, str(out)) for command in ("show", "report")] == [0, 0]
     assert (out / "check.html").read_text() == page
     assert run("--only", "exact", "--out", str(out)) == 2
     assert "holds check of `" in capsys.readouterr().err
     assert run("--update-baseline", "--out", str(out)) == 2
-
-
-def test_checks_that_are_loaded_are_the_same_value(tmp_path: Path) -> None:
-    made = checks(GOOD, BAD, NONE, LEFT)
-    loads_as_it_was(made, tmp_path)
-    assert [repr(each) for each in Checks.load(tmp_path).results] == [repr(each) for each in made.results]
-    assert [repr(each) for each in made.results] == [repr(each) for each in (GOOD, BAD, NONE, LEFT)]
 
 
 def test_an_update_needs_a_reason_and_keeps_it(

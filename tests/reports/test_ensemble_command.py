@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
-import io
 
 import numpy as np
 import pandas as pd
 import pytest
-from rich.console import Console
 from showing import call, is_golden
 
 from rockwobble.compare.storage.manifest import read_manifests
@@ -38,46 +36,31 @@ duration = 2
 """
 
 
-def made_up(factor: float = 1.1, model: str = "recess model", engine: str = "mujoco recess") -> Ensemble:
+def made_up(factor: float = 1.1) -> Ensemble:
     """Ten members by a model and an engine: one overturns by both, one by the engine alone."""
     first = np.array([*np.arange(1, 9) / 10.0, 0.9, FALLEN])
-    peaks = {model: first, engine: np.array([*factor * first[:8], FALLEN, FALLEN])}
-    rows = [
-        {
-            "member": f"record {i + 1}",
-            "method": method,
-            "peak_tilt": peak,
-            "outcome": "overturned" if peak == FALLEN else "stands",
-            "diagnostics": "",
-            "wall_time": 1.0,
-        }
+    peaks = {"recess model": first, "mujoco recess": np.array([*factor * first[:8], FALLEN, FALLEN])}
+    members = [
+        pd.DataFrame(
+            {"member": [f"record {i + 1}" for i in range(10)], "method": method, "peak_tilt": values}
+            | {
+                "outcome": np.where(values == FALLEN, "overturned", "stands"),
+                "diagnostics": "",
+                "wall_time": 1.0,
+            }
+        )
         for method, values in peaks.items()
-        for i, peak in enumerate(values)
     ]
     span = {"from": 6.0, "to": 6.0, "count": 1}
-    about = {
-        "members": "records",
-        "methods": {model: "", engine: model},
-        "seed": 3,
-        "semidiagonal": span,
-        "tan_alpha": span,
-    }
-    return ensemble_of(pd.DataFrame(rows), about)
+    about = {"members": "records", "methods": {"recess model": "", "mujoco recess": "recess model"}}
+    about |= {"seed": 3, "semidiagonal": span, "tan_alpha": span}
+    return ensemble_of(pd.concat(members, ignore_index=True), about)
 
 
-def said(found: Ensemble, width: int = 100_000) -> str:
-    """Return the page as a terminal shows it."""
-    console = Console(file=io.StringIO(), width=width, force_terminal=True, no_color=True)
-    page_of(found.made_by("rockwobble ensemble")).show(console)
-    return " ".join(console.file.getvalue().split())  # type: ignore[attr-defined]
-
-
-@pytest.mark.parametrize(("last", "sizes"), [(2.0, "2"), (9.0, "2 to 9")])
-def test_sizes_of_the_members_are_a_number_or_a_range(last, sizes):
+def test_sizes_of_the_members_are_a_range():
     found = made_up()
-    facts = {**found.facts, "semidiagonal": {"from": 2.0, "to": last, "count": 3}}
-    words = page_of(dataclasses.replace(found, facts=facts).made_by()).markdown()
-    assert f"R = {sizes} m," in words
+    facts = {**found.facts, "semidiagonal": {"from": 2.0, "to": 9.0, "count": 3}}
+    assert "R = 2 to 9 m," in page_of(dataclasses.replace(found, facts=facts).made_by()).markdown()
 
 
 def test_the_page_is_the_golden_one():
@@ -149,7 +132,6 @@ def test_the_axis_of_ratios_is_as_long_on_both_sides():
 def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process, capsys):
     assert call("ensemble", *RELEASE, "--out", str(tmp_path)) == 0
     printed = " ".join(capsys.readouterr().out.split())
-    assert "alpha = 11.31°" in printed
     assert "Members: 3, perturbed copies, 1 %" in printed
     assert {"few", "undecided"} <= keys(Ensemble.load(tmp_path))
     assert b'"key": "ensemble.few"' in (tmp_path / "ensemble.json").read_bytes()
@@ -168,10 +150,7 @@ def test_made_up_records_are_the_members(tmp_path, in_this_process, monkeypatch,
     monkeypatch.setattr(Page, "files", lambda *_, **__: {})  # of a page that is drawn the test above tells
     options = ["--synthetic", "2", "--peak", "1.5", "--duration", "2", "--engine", "none", "--seed", "7"]
     assert call("ensemble", *options, "--out", str(tmp_path)) == 0
-    assert (
-        "Members: 2, synthetic ground motions, seed 7, with peaks of 1.5 g tan alpha"
-        in capsys.readouterr().out
-    )
+    assert "synthetic ground motions, seed 7, with peaks of 1.5 g tan alpha" in capsys.readouterr().out
     table = pd.read_parquet(tmp_path / "members.parquet")
     assert sorted(set(table["member"])) == ["synthetic 7-1", "synthetic 7-2"]
 

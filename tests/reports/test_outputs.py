@@ -27,20 +27,9 @@ def test_every_command_that_writes_knows_overwrite() -> None:
 
 
 GRID = ("sweep", "--semidiagonal", "1,2", "--scale", "1", "--workers", "1")
-COARSE = ("--search-step", "0.5", "--probes", "0")
+SIMULATE = ("simulate", *SHORT)
 # each with options of another plan
-PLANS = {
-    "sweep": (GRID, (*GRID[:2], "1,3", *GRID[3:])),
-    "simulate": (("simulate", *SHORT), ("simulate", *SHORT, "--tan-alpha", "0.3")),
-    "ensemble": (
-        ("ensemble", "--engine", "none", "--copies", "2", *SHORT),
-        ("ensemble", "--engine", "none", "--copies", "3", *SHORT),
-    ),
-    "spectrum": (
-        ("spectrum", "--semidiagonal", "1,20", "--intensity", "1,4", *COARSE),
-        ("spectrum", "--semidiagonal", "1,20", "--intensity", "1,5", *COARSE),
-    ),
-}
+PLANS = {each[0]: (each, (*each, "--tan-alpha", "0.3")) for each in (GRID, SIMULATE)}
 
 
 @pytest.mark.slow

@@ -54,19 +54,10 @@ def suite(pytester: pytest.Pytester):
     return write
 
 
-def test_each_case_and_run_is_an_item(suite) -> None:
+def test_each_case_and_run_is_an_item_that_passes(suite) -> None:
     result = suite().runpytest("--collect-only", "-q")
-    result.stdout.fnmatch_lines(
-        [
-            "*pier.suite.toml::release: tan_alpha 0.2, mujoco recess",
-            "*pier.suite.toml::release: tan_alpha 0.2, mujoco flat",
-            "*pier.suite.toml::release: tan_alpha 1, mujoco recess",
-            "*pier.suite.toml::release: tan_alpha 1, mujoco flat",
-        ]
-    )
-
-
-def test_engines_that_follow_the_models_pass(suite) -> None:
+    runs = [f"{ratio}, mujoco {support}" for ratio in ("0.2", "1") for support in ("recess", "flat")]
+    result.stdout.fnmatch_lines([f"*pier.suite.toml::release: tan_alpha {run}" for run in runs])
     suite().runpytest("-W", "error").assert_outcomes(passed=4)
 
 
@@ -75,16 +66,9 @@ def test_stated_bounds_hold_or_fail_with_the_budget_of_the_difference(suite, in_
     pytester = suite(bounded('tilt_rms = 1e-5\nagreement_time = 0.8\nreference = "recess"'))
     result = pytester.runpytest("-k", "alpha and not 0.2", "-W", "error")
     result.assert_outcomes(passed=1, failed=1)
-    result.stdout.fnmatch_lines(
-        [
-            "*pier.suite.toml: release: tan_alpha 1, mujoco flat*",
-            "release: tan_alpha 1, mujoco flat compared with recess: tilt_rms: *, at most 1e-5 *",
-            "Difference from the recess model, RMS in alpha until * numerics *",
-        ]
-    )
-
-
-def test_an_assertion_against_another_model_names_the_failure(suite, in_this_process) -> None:
+    head = "release: tan_alpha 1, mujoco flat"
+    said = [f"*pier.suite.toml: {head}*", f"{head} compared with recess: tilt_rms: *, at most 1e-5 *"]
+    result.stdout.fnmatch_lines([*said, "Difference from the recess model, RMS in alpha until * numerics *"])
     result = suite(bounded('tilt_rms = 1e-12\nreference = "flat"')).runpytest("-k", "alpha and 1 and recess")
     result.stdout.fnmatch_lines(["*compared with flat: tilt_rms: *at most 1e-12*", "There is no budget *"])
     assert "Error" not in result.stdout.str()
@@ -106,14 +90,11 @@ def test_a_run_that_fails_says_why(suite) -> None:
 
 
 @pytest.mark.slow
-def test_a_wrong_file_is_an_error_of_its_own(suite) -> None:
+def test_a_wrong_file_or_setting_is_an_error_of_its_own(suite) -> None:
     result = suite("[[cases]]\nname = 'x'\n").runpytest()
     result.assert_outcomes(errors=1)
     result.stdout.fnmatch_lines(["pier.suite.toml: cases[[]0].cylinder: must be given"])
     assert "Traceback" not in result.stdout.str()
-
-
-def test_a_setting_that_an_engine_has_not_is_one_line(suite) -> None:
     text = SUITE.replace('support = ["recess", "flat"]', "settings = { softness = 1 }")
     result = suite(text).runpytest("-k", "0.2")
     result.stdout.fnmatch_lines(["pier.suite.toml: 'softness' is not a setting of mujoco*"])

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -42,20 +42,15 @@ def test_comparison_shows_itself_case_by_case(comparison, tmp_path):
     assert not np.array_equal(*(each.axes[0].lines[0].get_ydata() for each in (first, second)))
 
 
-def test_ensemble_shows_itself(tmp_path):
-    found = rw.ensemble(RELEASE, runs=[], copies=4, workers=1)
-    shows_itself(found, "4, perturbed copies of free response", "overturned 0 of 8")
-    loads_as_it_was(found, tmp_path)
-
-
-def test_sweep_shows_itself(tmp_path):
-    found = rw.sweep([RELEASE], workers=1)
-    shows_itself(found, "runs 1, stands 1")
-    loads_as_it_was(found, tmp_path / "cases")
+def test_ensembles_and_sweeps_show_themselves(tmp_path):
     grid = rs.Grid(semidiagonals=[1, 6], tan_alphas=[0.2], scales=[0.1, 2], motions=[rw.el_centro_1940()])
-    found = rw.sweep(grid, workers=1)
-    shows_itself(found, "runs 4, stands 2, overturned 2")
-    loads_as_it_was(found, tmp_path / "grid")
+    for found, *facts in (
+        (rw.ensemble(RELEASE, runs=[], copies=4, workers=1), "4, perturbed copies", "overturned 0 of 8"),
+        (rw.sweep([RELEASE], workers=1), "runs 1, stands 1"),
+        (rw.sweep(grid, workers=1), "runs 4, stands 2, overturned 2"),
+    ):
+        shows_itself(found, *facts)
+        loads_as_it_was(found, tmp_path / facts[0])
 
 
 @pytest.mark.slow
@@ -98,9 +93,7 @@ def test_values_are_a_line(comparison):
         RELEASE.initial,
         trace.run,
         pair,
-        rw.Suite(
-            [rw.Case(PIER, record.scaled(scale), name=str(scale)) for scale in (1.0, 2.0, 3.0, 4.0)], []
-        ),
+        rw.Suite([rw.Case(PIER, record.scaled(scale), name=str(scale)) for scale in range(1, 5)], []),
         rw.External(path="shake table.csv"),
         rs.Grid(semidiagonals=range(1, 100), tan_alphas=[0.2], scales=[1.0], motions=[record]),
         Job(case=RELEASE, run=trace.run),
@@ -108,7 +101,6 @@ def test_values_are_a_line(comparison):
         trace.source,
         engine.source,
         trace.assumptions,
-        Bounds(),
         Bounds(tilt_rms=1e-3, agreement_time=3.0),
         rw.reduced.free_response(PIER, RELEASE.initial),
         comparison.made_by("rockwobble compare " + 20 * "--record-x EW.AT2 ").manifest,
@@ -125,9 +117,7 @@ def test_values_are_a_line(comparison):
 
 
 def test_a_line_says_of_what_is_long_how_much_there_is():
-    import dataclasses
-
-    @dataclasses.dataclass(repr=False)
+    @dataclass(repr=False)
     class Made(CompactRepr):
         share: float
         few: tuple[int, ...]

@@ -46,9 +46,6 @@ def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, caps
     assert "b = " not in printed  # of which of the sizes?
     written = {"spectrum.html", "spectrum.json", "manifest.json"} | {f"{name}.parquet" for name in TABLES}
     assert {path.name for path in tmp_path.iterdir()} == written | {"kept.txt", "finished"}
-    assert f"Written to {tmp_path}: " in printed
-    assert "spectrum.html" in printed
-
     found = OverturningSpectrum.load(tmp_path).maps
     sizes, levels = np.linspace(0.5, 20.0, 4), np.linspace(1.0, 9.0, 8)
     assert np.array_equal(found.semidiagonals, sizes)
@@ -59,10 +56,7 @@ def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, caps
     lowest = pd.read_parquet(tmp_path / "lowest.parquet")
     assert lowest["confirmed"].any()
     assert (lowest["intensity"] <= lowest["on_grid"].fillna(np.inf)).sum() >= 6
-    stored = stored_page(KIND, tmp_path)
-    assert stored.html().encode() == (tmp_path / "spectrum.html").read_bytes()
-    page = stored.markdown()
-    assert f"numpy {np.__version__}" in page
+    assert stored_page(KIND, tmp_path).html().encode() == (tmp_path / "spectrum.html").read_bytes()
 
 
 @pytest.mark.slow
@@ -84,16 +78,9 @@ def test_any_record_will_do(tmp_path: Path, monkeypatch):
 @pytest.fixture(scope="module")
 def spectrum() -> TiltMaps:
     whole = el_centro_1940()
-    return tilt_maps(
-        0.1,
-        GroundMotion(whole.acceleration[:1500], whole.time_step, whole.name),
-        SpectrumPlan(
-            semidiagonals=np.linspace(0.5, 30.0, 12),
-            intensities=np.linspace(1.0, 12.0, 12),
-            search_step=0.2,
-            probes=5,
-        ),
-    )
+    grid = {"semidiagonals": np.linspace(0.5, 30.0, 12), "intensities": np.linspace(1.0, 12.0, 12)}
+    motion = GroundMotion(whole.acceleration[:1500], whole.time_step, whole.name)
+    return tilt_maps(0.1, motion, SpectrumPlan(**grid, search_step=0.2, probes=5))
 
 
 @pytest.mark.slow
@@ -158,21 +145,15 @@ def with_safe(found: TiltMaps, cells: list[tuple[int, int]]) -> TiltMaps:
     for cell in cells:
         tilt[cell] = 0.1
     edge = np.full(12, found.intensities[3])
-    return dataclasses.replace(
-        found,
-        peak_tilt={**found.peak_tilt, SPATIAL: tilt},
-        lowest={**found.lowest, SPATIAL: edge},
-    )
+    peaks, lowest = {**found.peak_tilt, SPATIAL: tilt}, {**found.lowest, SPATIAL: edge}
+    return dataclasses.replace(found, peak_tilt=peaks, lowest=lowest)
 
 
-@pytest.mark.parametrize(
-    ("cells", "gaps", "sizes", "end"),
-    [([(2, 5)], 1, 1, 6.0), ([(2, 5), (2, 6)], 1, 1, 7.0), ([(2, 5), (2, 6), (4, 8)], 2, 2, 7.0)],
-)
-def test_gaps_are_counted_and_the_widest_is_spanned(spectrum, cells, gaps, sizes, end):
-    found = numbers(with_safe(spectrum, cells))["gaps"]
+def test_gaps_are_counted_and_the_widest_is_spanned(spectrum):
     stated = ("count", "count_sizes", "count_all", "intensity", "intensity_end")
-    assert [found[name] for name in stated] == [gaps, sizes, 12, 6.0, end]
+    for cells, count, end in (([(2, 5)], 1, 6.0), ([(2, 5), (2, 6), (4, 8)], 2, 7.0)):
+        found = numbers(with_safe(spectrum, cells))["gaps"]
+        assert [found[name] for name in stated] == [count, count, 12, 6.0, end]
 
 
 def test_the_search_says_what_it_missed_and_what_is_chance(spectrum):
@@ -211,11 +192,8 @@ def test_a_record_of_one_component_has_a_picture_and_a_page(still):
     acceleration = np.array(el_centro_1940().acceleration[:1500])  # with the strongest shaking
     acceleration[:, still] = 0.0
     motion = GroundMotion(acceleration, 0.01, "one component")
-    found = tilt_maps(
-        0.1,
-        motion,
-        SpectrumPlan(semidiagonals=[1.0, 8.0], intensities=[0.5, 4.0, 9.0], search_step=1.0, probes=0),
-    )
+    plan = SpectrumPlan(semidiagonals=[1.0, 8.0], intensities=[0.5, 4.0, 9.0], search_step=1.0, probes=0)
+    found = tilt_maps(0.1, motion, plan)
     assert not found.peak_tilt[SERIES[1 + still]].any()
     picture = picture_of(found)
     assert still or svg(picture)  # the planes differ in their place alone

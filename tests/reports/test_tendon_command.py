@@ -17,6 +17,7 @@ from rockwobble.studies.stated import case_findings
 
 PIER = ["--diameter", "1.6", "--height", "9", "--release-tilt-deg", "4", "--duration", "2"]
 STEEL = ["--tendon-force", "400e3", "--tendon-rigidity", "30e6", "--tendon-length", "10", "--mass", "45"]
+DRAWN = {"prestress": 400e3, "axial_rigidity": 30e6, "length": 10.0, "column_mass": 45e3, "base_radius": 0.8}
 
 
 @pytest.mark.slow
@@ -37,9 +38,7 @@ def test_a_comparison_leaves_flat_ground_out_and_refuses_it_before_anything_runs
 
 @pytest.mark.slow
 def test_ratios_and_a_drawing_state_the_same_tendon(tmp_path: Path) -> None:
-    drawn = rw.Tendon.from_steel(
-        prestress=400e3, axial_rigidity=30e6, length=10.0, column_mass=45e3, base_radius=0.8
-    )
+    drawn = rw.Tendon.from_steel(**DRAWN)
     ratios = ["--tendon-prestress", repr(drawn.prestress), "--tendon-stiffness", repr(drawn.stiffness)]
     traces = []
     for name, options in {"drawn": STEEL, "ratios": ratios}.items():
@@ -62,39 +61,28 @@ def test_ratios_and_a_drawing_state_the_same_tendon(tmp_path: Path) -> None:
 def test_a_suite_states_tendons(tmp_path: Path) -> None:
     path = tmp_path / "tied.toml"
     path.write_text(
-        """
-        [[cases]]
-        name = "pier"
-        duration = 2.0
-        cylinder = { semidiagonal = 6.0, tan_alpha = 0.2 }
-        release = { tilt_over_alpha = 0.5 }
-        tendon = { prestress = [0.0, 0.5], stiffness = 2.0, yield_force = 3.0 }
-        [[runs]]
-        engine = "mujoco"
-        """
+        '[[cases]]\nname = "pier"\nduration = 2.0\ncylinder = { semidiagonal = 6.0, tan_alpha = 0.2 }\n'
+        "release = { tilt_over_alpha = 0.5 }\n"
+        "tendon = { prestress = [0.0, 0.5], stiffness = 2.0, yield_force = 3.0 }\n"
+        '[[runs]]\nengine = "mujoco"\n'
     )
     cases = rw.read_suite(path).cases
-    assert [case.tendon for case in cases] == [
-        rw.Tendon(prestress=0.0, stiffness=2.0, yield_force=3.0),
-        rw.Tendon(prestress=0.5, stiffness=2.0, yield_force=3.0),
-    ]
+    tied = [rw.Tendon(prestress=prestress, stiffness=2.0, yield_force=3.0) for prestress in (0.0, 0.5)]
+    assert [case.tendon for case in cases] == tied
     assert [case.name for case in cases] == ["pier: prestress 0", "pier: prestress 0.5"]
     path.write_text(path.read_text().replace("[0.0, 0.5]", "4.0"))
     with pytest.raises(ValueError, match=r"cases\[0\]\.tendon: yield_force must be above the prestress"):
         rw.read_suite(path)
 
 
-@pytest.mark.parametrize("slab", [0.0, 1.0])
-def test_the_threshold_of_uplift_counts_the_prestress(slab: float) -> None:
-    pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    body = rw.WobblingFrame(pier, slab) if slab else pier
-    tendon = rw.Tendon(prestress=1.0)
+def test_the_threshold_of_uplift_counts_the_prestress() -> None:
+    pier, tendon = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2), rw.Tendon(prestress=1.0)
     motion = rw.el_centro_1940(vertical=True)
-    times = []
-    for held in (None, tendon):
-        found = {each.key: each.values for each in case_findings(rw.Case(body, motion, tendon=held))}  # noqa: PD011
-        times.append(found["input.ground"]["factor"])
-    assert times[0] / times[1] == pytest.approx(tendon.uplift_factor(body))
+    for body in (pier, rw.WobblingFrame(pier, 1.0)):
+        free, tied = (case_findings(rw.Case(body, motion, tendon=held)) for held in (None, tendon))
+        stated = [{each.key: each.values for each in said}["input.ground"] for said in (free, tied)]  # noqa: PD011
+        factors = [each["factor"] for each in stated]
+        assert factors[0] / factors[1] == pytest.approx(tendon.uplift_factor(body))
 
 
 @pytest.mark.skipif(find_spec("exudyn") is None, reason="an engine of flat ground alone")
@@ -113,44 +101,36 @@ def test_a_case_with_a_tendon_leaves_flat_ground_out_by_default() -> None:
         rw.comparison(tied, runs=named)
 
 
-ONE = {  # a study of one body of PIER's dimensions, and of two
-    "fragility": [
-        *("--synthetic", "2", "--model", "recess", "--levels", "2,4", "--resamples", "2"),
-        *("--limit", "overturned", "--limit", "tendon yields"),
-    ],
-    "spectrum": ["--intensity", "1,2,4", "--search-step", "0.5", "--probes", "0"],
-    "sweep": ["--scale", "2,3"],
-    "ensemble": ["--engine", "none", "--copies", "2", "--scale", "3", "--duration", "4"],
-}
-TABLES = {"fragility": "runs", "spectrum": "spectrum", "sweep": "sweep", "ensemble": "members"}
+SIZE = ["--diameter", "1.6", "--height", "9"]
 BODY = rw.Cylinder.from_dimensions(base_radius=0.8, height=9.0)
 BY_SIZE = ["--semidiagonal", repr(BODY.semidiagonal), "--tan-alpha", repr(BODY.tan_alpha)]
-SIZE = {
-    "fragility": ["--diameter", "1.6", "--height", "9"],
-    "spectrum": BY_SIZE,
-    "sweep": BY_SIZE,
-    "ensemble": ["--diameter", "1.6", "--height", "9"],
+FRAGILITY = "--synthetic 2 --model recess --levels 2,4 --resamples 2 --limit overturned"
+# a study of one body: its table, and its options
+STUDIES = {
+    "fragility": ("runs", [*SIZE, *FRAGILITY.split(), "--limit", "tendon yields"]),
+    "spectrum": ("spectrum", [*BY_SIZE, "--intensity", "1,2,4", "--search-step", "0.5", "--probes", "0"]),
+    "sweep": ("sweep", [*BY_SIZE, "--scale", "2,3"]),
+    "ensemble": (
+        "members",
+        [*SIZE, *["--engine", "none", "--copies", "2", "--scale", "3", "--duration", "4"]],
+    ),
 }
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("in_this_process")
-@pytest.mark.parametrize("command", ONE)
+@pytest.mark.parametrize("command", STUDIES)
 def test_a_study_of_one_body_takes_the_tendon_of_its_drawing(command: str, tmp_path: Path) -> None:
-    steel = {"axial_rigidity": 30e6, "length": 10.0, "column_mass": 45e3, "base_radius": 0.8}
-    drawn = rw.Tendon.from_steel(prestress=400e3, yield_force=900e3, **steel)
+    drawn = rw.Tendon.from_steel(**DRAWN, yield_force=900e3)
     ratios = ["--tendon-prestress", repr(drawn.prestress), "--tendon-stiffness", repr(drawn.stiffness)]
-    yields = command in ("fragility", "spectrum")  # whose plans state where it does
-    ends = (
-        [["--tendon-yield-force", "900e3"], ["--tendon-yield", repr(drawn.yield_force)]]
-        if yields
-        else [[], []]
-    )
-    peaks = []
-    for name, options in {"drawn": STEEL + ends[0], "ratios": ratios + ends[1]}.items():
-        given = [command, *SIZE[command], *ONE[command], *options, "--out", str(tmp_path / name)]
-        assert call(*given) == 0
-        table = pd.read_parquet(tmp_path / name / f"{TABLES[command]}.parquet")
-        peaks.append(table["peak_tilt"].to_numpy(float))
+    steel = [*STEEL]
+    if command in ("fragility", "spectrum"):  # whose plans state where it yields
+        steel += ["--tendon-yield-force", "900e3"]
+        ratios += ["--tendon-yield", repr(drawn.yield_force)]
+    peaks, (table, stated) = [], STUDIES[command]
+    for place, options in enumerate((steel, ratios)):
+        out = tmp_path / str(place)
+        assert call(command, *stated, *options, "--out", str(out)) == 0
+        peaks.append(pd.read_parquet(out / f"{table}.parquet")["peak_tilt"].to_numpy(float))
     assert peaks[0].max() > 0.0
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-6)  # the base radius is known to rounding
