@@ -175,21 +175,12 @@ def test_help_imports_nothing_heavy():
 @pytest.mark.slow
 def test_ctrl_c_stops_a_real_run_at_once_and_leaves_no_process(tmp_path):
     # hours of free response: it would run for an hour
-    arguments = [
-        "--release-tilt-deg",
-        "5",
-        "--rolling-rate",
-        "0.5",
-        "--duration",
-        "20000",
-        "--engine",
-        "mujoco",
-    ]
+    release = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "20000"]
     # who runs the tests in the background may have taught their children to ignore it
     script = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
     script += "from rockwobble.reports.cli.main import main; main()"
     process = subprocess.Popen(
-        [sys.executable, "-c", script, "compare", *arguments],
+        [sys.executable, "-c", script, "compare", *release, "--engine", "mujoco"],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
